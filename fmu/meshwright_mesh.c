@@ -12,6 +12,15 @@
 #define EXPORT __attribute__((visibility("default")))
 #endif
 
+/* Names as FMI 2.0 has them: whoever links several sources into one program defines a prefix for each. */
+#ifdef FMI2_FUNCTION_PREFIX
+#define PASTE(a, b) a##b
+#define JOIN(a, b) PASTE(a, b)
+#define NAMED(name) JOIN(FMI2_FUNCTION_PREFIX, fmi2##name)
+#else
+#define NAMED(name) fmi2##name
+#endif
+
 typedef enum { ok, warning, discard, error, fatal, pending } Status;
 typedef unsigned int Reference;
 enum { THETA_1, THETA_2, TORQUE_1, TORQUE_2, TRANSMISSION_ERROR, REALS };
@@ -75,7 +84,7 @@ static double load_at(const Mesh *mesh, double theta, double delta, double *per_
     return 0;
 }
 
-EXPORT void *fmi2Instantiate(const char *name, int type, const char *guid, const char *resources, const void *callbacks, int visible, int logging) {
+EXPORT void *NAMED(Instantiate)(const char *name, int type, const char *guid, const char *resources, const void *callbacks, int visible, int logging) {
     (void)name, (void)type, (void)guid, (void)callbacks, (void)visible, (void)logging;
     Mesh *mesh = calloc(1, sizeof *mesh);
     if (mesh && resources && read_table(mesh, resources)) return mesh;
@@ -83,11 +92,11 @@ EXPORT void *fmi2Instantiate(const char *name, int type, const char *guid, const
     free(mesh);
     return NULL;
 }
-EXPORT void fmi2FreeInstance(void *c) {
+EXPORT void NAMED(FreeInstance)(void *c) {
     if (c) free(((Mesh *)c)->loads);
     free(c);
 }
-EXPORT Status fmi2GetReal(void *c, const Reference of[], size_t count, double value[]) {
+EXPORT Status NAMED(GetReal)(void *c, const Reference of[], size_t count, double value[]) {
     Mesh *mesh = c;
     double per_angle, delta = mesh->radius_1 * mesh->input[THETA_1] - mesh->radius_2 * mesh->input[THETA_2];
     double load = load_at(mesh, mesh->input[THETA_1], delta, &per_angle);
@@ -98,34 +107,34 @@ EXPORT Status fmi2GetReal(void *c, const Reference of[], size_t count, double va
     }
     return ok;
 }
-EXPORT Status fmi2SetReal(void *c, const Reference of[], size_t count, const double value[]) {
+EXPORT Status NAMED(SetReal)(void *c, const Reference of[], size_t count, const double value[]) {
     for (size_t i = 0; i < count; i++) {
         if (of[i] > THETA_2) return error;
         ((Mesh *)c)->input[of[i]] = value[i];
     }
     return ok;
 }
-EXPORT Status fmi2Reset(void *c) {
+EXPORT Status NAMED(Reset)(void *c) {
     memset(((Mesh *)c)->input, 0, sizeof ((Mesh *)c)->input);
     return ok;
 }
 typedef struct { int again, terminate, nominals, values, defined; double next; } EventInfo;
-EXPORT Status fmi2NewDiscreteStates(void *c, EventInfo *info) {
+EXPORT Status NAMED(NewDiscreteStates)(void *c, EventInfo *info) {
     (void)c;
     memset(info, 0, sizeof *info);
     return ok;
 }
-EXPORT Status fmi2CompletedIntegratorStep(void *c, int keep, int *event, int *terminate) {
+EXPORT Status NAMED(CompletedIntegratorStep)(void *c, int keep, int *event, int *terminate) {
     (void)c, (void)keep;
     *event = *terminate = 0;
     return ok;
 }
-EXPORT const char *fmi2GetTypesPlatform(void) { return "default"; }
-EXPORT const char *fmi2GetVersion(void) { return "2.0"; }
+EXPORT const char *NAMED(GetTypesPlatform)(void) { return "default"; }
+EXPORT const char *NAMED(GetVersion)(void) { return "2.0"; }
 
 /* What a model without states, events and further variables has nothing to do for. */
-#define NOTHING(name, ...) EXPORT Status fmi2##name(__VA_ARGS__) { return ok; }
-#define NEVER(name, ...) EXPORT Status fmi2##name(__VA_ARGS__) { return error; }
+#define NOTHING(name, ...) EXPORT Status NAMED(name)(__VA_ARGS__) { return ok; }
+#define NEVER(name, ...) EXPORT Status NAMED(name)(__VA_ARGS__) { return error; }
 #pragma GCC diagnostic ignored "-Wunused-parameter"
 NOTHING(SetDebugLogging, void *c, int on, size_t n, const char *const categories[])
 NOTHING(SetupExperiment, void *c, int defined, double tolerance, double start, int ends, double stop)

@@ -242,8 +242,8 @@ pub struct DoorOptions {
     #[arg(long, env = "MESHWRIGHT_IDLE_TIME", default_value = "20s", value_parser = span, value_name = "TIME")]
     pub idle_time: Duration,
 
-    /// Hosts that clients may be told at by webhooks, separated by commas: hooks.example.com, *.example.com. Without any,
-    /// webhooks are off.
+    /// Hosts that clients may be told at by webhooks, separated by commas: hooks.example.com, *.example.com. A host named
+    /// in full may have a private address, one of this machine or its link only if it is named by that address. Without any, webhooks are off.
     #[arg(
         long = "webhook-host",
         env = "MESHWRIGHT_WEBHOOK_HOSTS",

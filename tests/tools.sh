@@ -23,12 +23,13 @@ provide() {
     $command >/dev/null 2>&1
 }
 
-# Whether PROGRAM is in the Python environment FOLDER, once REQUIREMENTS are installed there: python_tool FOLDER PROGRAM REQUIREMENTS
+# Whether PROGRAM is in the environment FOLDER of PYTHON (python3), once REQUIREMENTS are installed there: python_tool FOLDER PROGRAM REQUIREMENTS [PYTHON]
 python_tool() {
+    local python=${4:-python3}
     cmp -s "$3" "$1/requirements.txt" && "$1/bin/$2" --version >/dev/null 2>&1 && return
-    provide 'python3 -m ensurepip --version' python3-venv || return 1
+    provide "$python -m ensurepip --version" $python-venv || return 1
     say "installing $2."
-    python3 -m venv --clear "$1" >/dev/null 2>&1 &&
+    $python -m venv --clear "$1" >/dev/null 2>&1 &&
         timeout $patience "$1/bin/pip" install --quiet --requirement "$3" >/dev/null 2>&1 </dev/null &&
         cp "$3" "$1/requirements.txt"
 }

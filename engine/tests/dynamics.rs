@@ -198,7 +198,7 @@ fn with_backlash_of(
             .collect()
     };
     let flanks = [rows(0.0, 1.0), rows(-apart, -1.0)];
-    ForceTable::new(1, ladder, flanks.map(FlankRows::of_delta)).expect("rows that rise")
+    ForceTable::new(1, ladder.loads(), flanks.map(FlankRows::of_delta)).expect("rows that rise")
 }
 
 fn data(speeds: Vec<f64>, load: f64, orders: &[f64]) -> RunUpData {
@@ -365,22 +365,29 @@ fn a_nonlinear_mesh_moves_as_a_plain_integrator_has_it() {
 }
 
 #[test]
-fn orders_resonate_where_they_meet_the_natural_frequency_or_twice_it() {
-    let speeds: Vec<f64> = (0..=10).map(|i| 0.1 * f64::from(i)).collect();
-    let mut data = data(speeds, 1.0, &[1.0, 0.2]);
-    data.tooth_count = 2;
-    data.stiffness = (2.0 * PI).powi(2);
-    let found: Vec<_> = data
-        .resonances()
-        .into_iter()
-        .map(|each| (each.order, each.kind, (each.speed * 1e6).round() / 1e6))
+fn resonances_stand_where_orders_meet_the_natural_frequency_or_twice_it_by_what_they_do_there() {
+    // A linear mesh under 0.02 cos θ + 0.01 cos 3θ: at its resonance an order is 1/(2ζ) = 10 times its static amplitude, and nothing pumps. Twice the
+    // natural frequency meets the first order beyond the range.
+    let wave = |eta: f64| 0.02 * (2.0 * PI * eta).cos() + 0.01 * (6.0 * PI * eta).cos();
+    let table = table(128, 2.0, wave, |_| 1.0);
+    let speeds = [0.1, 0.5, 1.9].map(|w| w / (2.0 * PI)).to_vec();
+    let found = run_up(&data(speeds, 1.0, &[1.0, 3.0]), &table);
+    let told: Vec<_> = found
+        .resonances
+        .iter()
+        .map(|each| (each.order, each.kind, 2.0 * PI * each.speed, each.amplitude))
         .collect();
-    // 1 Hz: the mesh order at 0.5 and 1 revolutions per second; the fifth of it only beyond the range.
-    assert_eq!(
-        found,
-        [
-            (0, ResonanceKind::Forced, 0.5),
-            (0, ResonanceKind::Parametric, 1.0)
-        ]
-    );
+    use ResonanceKind::{Forced, Parametric};
+    let expected = [
+        (0, Forced, 1.0, 0.2),
+        (1, Forced, 1.0 / 3.0, 0.1),
+        (1, Parametric, 2.0 / 3.0, 0.0),
+    ];
+    assert_eq!(told.len(), expected.len(), "{told:?}");
+    for ((order, kind, speed, amplitude), expected) in told.into_iter().zip(expected) {
+        assert_eq!((order, kind), (expected.0, expected.1));
+        assert!((speed / expected.2 - 1.0).abs() < 1e-12);
+        // Steps of a 128th of a period, second order.
+        assert!((amplitude - expected.3).abs() < 2e-3 * 0.2, "{amplitude}");
+    }
 }

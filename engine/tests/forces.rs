@@ -12,7 +12,9 @@ use meshwright_engine::analysis::at_speed::{
 use meshwright_engine::analysis::forces::{
     ForceTableRequest, ForcesRequest, analyze_with_forces, force_table,
 };
-use meshwright_engine::analysis::{Case, Faces, Method, StiffnessRule, analyze, pair_model};
+use meshwright_engine::analysis::{
+    Analysis, Case, Faces, Method, StiffnessRule, Warning, analyze, pair_model,
+};
 use meshwright_engine::assembly::{FaceResolution, FaceYield};
 use meshwright_engine::contact::face::{FaceModel, FlankYield};
 use meshwright_engine::contact::{MadePair, WarmStart};
@@ -530,6 +532,7 @@ fn the_run_up_of_a_pair_with_holes_resonates_at_its_mesh_and_hole_orders() {
     // The order of the holes, a fifth of it, meets the natural frequency at five times the speed.
     let holes = label("H_N").expect("told");
     let forced: Vec<f64> = found
+        .run_up
         .resonances
         .iter()
         .filter(|each| each.order == holes)
@@ -559,6 +562,179 @@ fn without_holes_and_relief_at_any_torque_a_run_up_ends_and_is_finite() {
             let lists = [&branch.rms, &branch.peak_to_peak, &branch.load_factor];
             assert!(lists.into_iter().flatten().all(|value| value.is_finite()));
         }
+    }
+}
+
+#[test]
+fn light_loads_are_met_to_a_part_of_themselves() {
+    // A pair with relief, one without, which differ by what happens before all pairs carry, and one with holes.
+    for case in [
+        case(standard_pair(true), &[115.0]),
+        case(standard_pair(false), &[115.0]),
+        test_case(2),
+    ] {
+        let mut case = case;
+        case.resolution.positions_per_mesh_period = 20;
+        let table = table(&case);
+        let largest = *table.loads().last().expect("loads");
+        // Straight lines between rows that rise by a tenth.
+        let rows = (0..=100).map(|i| largest * f64::powi(1.1, i - 100));
+        let table = table.under(1, [0.0].into_iter().chain(rows).collect());
+        let mut direct = case.clone();
+        direct.resolution.positions_per_mesh_period = 40;
+        direct.resolution.span_mesh_periods = Some(1);
+        let parts = [
+            1e-4, 3e-4, 6e-4, 1e-3, 2e-3, 3e-3, 5e-3, 0.01, 0.02, 0.05, 0.1,
+        ];
+        let torque = |part: &f64| part * largest * case.pair.driven().base_radius();
+        direct.output_torques = parts.iter().map(torque).collect();
+        let curves = analyze(&direct, &*LIBRARY, &Run::unattended())
+            .expect("curves")
+            .curves;
+        for (part, curve) in parts.iter().zip(&curves) {
+            for (i, delta) in curve.transmission_error.iter().enumerate() {
+                let found = table.load(i as f64 / 40.0, *delta) / largest;
+                // Lighter ones to as many parts of the largest as this is of 1/500.
+                let most = if *part >= 2e-3 { 0.01 * part } else { 2e-5 };
+                assert!((found - part).abs() < most, "{part} at {i}: {found}");
+            }
+        }
+    }
+}
+
+/// What a run-up of `case` from `speeds` tells beside its curves, with a table up to a torque.
+fn told_at_speed(case: &Case, speeds: &[f64], largest: Option<f64>) -> (Analysis, CurveDynamics) {
+    let forces = ForcesRequest {
+        table: ForceTableRequest {
+            loads: 12,
+            largest_output_torque: largest,
+        },
+        dynamics: Some(DynamicsRequest {
+            speeds: speeds.iter().map(|rpm| rpm / 60.0).collect(),
+            damping_ratio: 0.05,
+            inertias: [None; 2],
+            sweeps: [true, true],
+        }),
+    };
+    let (analysis, forces) =
+        analyze_with_forces(case, &forces, &*LIBRARY, &Run::unattended()).expect("a run-up");
+    let told = forces.dynamics.into_iter().next().expect("one curve");
+    (analysis, told)
+}
+
+#[test]
+fn a_tooth_that_stands_out_hides_no_order_of_the_mesh() {
+    let mut data = gear(50, 16e-3);
+    data.deviations.cumulative_pitch = vec![0.0; 50];
+    data.deviations.cumulative_pitch[0] = 3e-6;
+    let mut case = case(pair(data, gear(50, 16e-3), 100.5e-3), &[60.0]);
+    case.method = Method::LoadDistribution;
+    case.resolution.positions_per_mesh_period = 10;
+    let (_, told) = told_at_speed(&case, &[500.0, 2000.0, 8000.0], None);
+    let critical = told.run_up.natural_frequency / 50.0 * 60.0;
+    let in_range = |k: f64, times: f64| (500.0..=8000.0).contains(&(times * critical / k));
+    // Of ten multiples of the mesh order, each forced and each parametric.
+    let expected = (1..=10)
+        .flat_map(|k| [1.0, 2.0].map(|times| in_range(f64::from(k), times)))
+        .filter(|in_range| *in_range)
+        .count();
+    let of_mesh = |label: &str| {
+        let multiple = label
+            .strip_prefix("H_")
+            .and_then(|rest| rest.strip_suffix("Z2"));
+        multiple.is_some_and(|k| k.is_empty() || k.parse::<u32>().is_ok())
+    };
+    let resonances = &told.run_up.resonances;
+    let found = resonances
+        .iter()
+        .filter(|each| of_mesh(&told.labels[each.order]));
+    assert_eq!(found.count(), expected);
+    assert!(expected >= 16, "{expected}");
+    for label in ["H_1", "H_3", "H_Z2-1", "H_Z2+2", "H_4Z2+1", "H_10Z2"] {
+        assert!(told.labels.iter().any(|each| each == label), "{label}");
+    }
+    assert!(resonances.is_sorted_by(|a, b| a.amplitude >= b.amplitude));
+    assert!(resonances[0].amplitude > 10.0 * resonances[expected].amplitude);
+}
+
+#[test]
+fn a_run_up_beyond_its_force_table_says_by_how_much() {
+    let mut case = test_case(2);
+    case.method = Method::LoadDistribution;
+    let speeds = [4000.0, 4600.0, 5200.0, 5800.0];
+    let beyond = |analysis: &Analysis| {
+        let mut all = analysis.warnings.iter();
+        all.find_map(|warning| match warning {
+            Warning::LoadBeyondForceTable {
+                speeds,
+                ratio,
+                largest_output_torque,
+            } => Some((*speeds, *ratio, *largest_output_torque)),
+            _ => None,
+        })
+    };
+    let torque = case.output_torques[0];
+    let (analysis, told) = told_at_speed(&case, &speeds, Some(torque));
+    let (within, ratio, largest) = beyond(&analysis).expect("a warning");
+    let branches =
+        [&told.run_up.up, &told.run_up.down].map(|branch| branch.as_ref().expect("asked for"));
+    let factors = branches.into_iter().flat_map(|branch| &branch.load_factor);
+    let most = factors.copied().fold(0.0, f64::max);
+    assert!(
+        (ratio / most - 1.0).abs() < 1e-12 && most > 1.05,
+        "{ratio} {most}"
+    );
+    assert!((largest / torque - 1.0).abs() < 1e-12);
+    assert!(within[0] >= 4000.0 / 60.0 && within[1] <= 5800.0 / 60.0);
+    let (analysis, _) = told_at_speed(&case, &speeds, Some(8.0 * torque));
+    assert_eq!(beyond(&analysis), None);
+}
+
+#[test]
+fn rims_outside_their_webs_make_another_natural_frequency_and_it_is_told() {
+    // Both blanks in torsion with their inertia where it is, as others computed: 50/50, webs from 22 to 43 mm.
+    for (thickness, expected) in [(20e-3, 5159.0), (8e-3, 5625.0), (2e-3, 5286.0)] {
+        let mut data = gear(50, 16e-3);
+        data.blank.web = Some(Web {
+            inner_radius: 22e-3,
+            outer_radius: 43e-3,
+            thickness,
+        });
+        let mut case = case(pair(data.clone(), data, 100.5e-3), &[115.0]);
+        case.resolution.positions_per_mesh_period = 20;
+        let (analysis, told) = told_at_speed(&case, &[1000.0, 20_000.0], None);
+        let found = analysis.warnings.iter().find_map(|warning| match warning {
+            Warning::RimInertiaOnHub {
+                natural_frequency,
+                of_rims,
+            } => Some((*natural_frequency, *of_rims)),
+            _ => None,
+        });
+        let (natural, of_rims) = found.expect("a warning");
+        assert_eq!(natural, told.run_up.natural_frequency);
+        // What is asked is five percent.
+        assert!(
+            (of_rims / expected - 1.0).abs() < 0.02,
+            "{of_rims} {expected}"
+        );
+        assert!(natural < 0.9 * expected);
+        // With flywheels at the bores the whole gears turn with them, and rims matter no more.
+        let request = DynamicsRequest {
+            speeds: vec![100.0],
+            damping_ratio: 0.05,
+            inertias: [Some(1.0); 2],
+            sweeps: [true, false],
+        };
+        let heavy = dynamics(
+            &case,
+            &analysis.curves[0],
+            &table(&case),
+            &request,
+            &Run::unattended(),
+        );
+        let heavy = heavy.expect("nobody stops it");
+        let of_rims = heavy.natural_frequency_of_rims.expect("an estimate");
+        assert!((of_rims / heavy.run_up.natural_frequency - 1.0).abs() < 1e-3);
     }
 }
 

@@ -9,6 +9,7 @@ use zip::result::ZipResult;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
+use super::digits::significant;
 use super::force_table::MeshForces;
 
 /// The program in C, which every FMU holds.
@@ -65,7 +66,7 @@ pub fn fmu(forces: &MeshForces, guid: &str) -> ZipResult<Vec<u8>> {
         archive.write_all(bytes)?;
         Ok(())
     };
-    add("modelDescription.xml", description(guid).as_bytes())?;
+    add("modelDescription.xml", description(forces, guid).as_bytes())?;
     add("resources/table.bin", &forces.table_of_doubles())?;
     add(&format!("sources/{NAME}.c"), SOURCE.as_bytes())?;
     for (path, bytes) in BINARIES {
@@ -74,12 +75,17 @@ pub fn fmu(forces: &MeshForces, guid: &str) -> ZipResult<Vec<u8>> {
     Ok(archive.finish()?.into_inner())
 }
 
-fn description(guid: &str) -> String {
+fn description(forces: &MeshForces, guid: &str) -> String {
     let compiled = if BINARIES.is_empty() {
         "It holds its source only: no C compiler was there when the service was built."
     } else {
         "It holds its source too."
     };
+    let [z_1, z_2] = forces.tooth_counts();
+    let [d_1, d_2] = forces.base_radii.map(|r| significant(2e3 * r, 6));
+    let [least, largest] =
+        [-1.0, 1.0].map(|sign| significant(sign * forces.largest_output_torque(), 6));
+    let method = &forces.method;
     let variables: String = VARIABLES
         .iter()
         .enumerate()
@@ -101,7 +107,7 @@ fn description(guid: &str) -> String {
     let sources = format!("<SourceFiles><File name=\"{NAME}.c\"/></SourceFiles>");
     format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>
-<fmiModelDescription fmiVersion=\"2.0\" modelName=\"Gear mesh\" guid=\"{guid}\" description=\"The force between two gears over their angles. {compiled}\" generationTool=\"Meshwright\" variableNamingConvention=\"flat\" numberOfEventIndicators=\"0\">
+<fmiModelDescription fmiVersion=\"2.0\" modelName=\"Gear mesh {z_1}/{z_2}\" guid=\"{guid}\" description=\"The force between two gears over their angles: {z_1} and {z_2} teeth on base circles of {d_1} and {d_2} mm, by the method {method}. Output torques from {least} to {largest} N m; beyond them the force goes on straight. Angles in rad, torques in N m, transmission error in um. {compiled}\" generationTool=\"Meshwright\" variableNamingConvention=\"flat\" numberOfEventIndicators=\"0\">
   <ModelExchange modelIdentifier=\"{NAME}\" completedIntegratorStepNotNeeded=\"true\">{sources}</ModelExchange>
   <CoSimulation modelIdentifier=\"{NAME}\" canHandleVariableCommunicationStepSize=\"true\">{sources}</CoSimulation>
   <UnitDefinitions>
@@ -126,6 +132,7 @@ fn description(guid: &str) -> String {
 #[cfg(test)]
 mod tests {
     use std::io::Read;
+    use std::process::Command;
 
     use zip::ZipArchive;
 
@@ -163,7 +170,47 @@ mod tests {
 
     #[test]
     fn an_fmu_without_a_binary_says_so() {
-        let said = description("one").contains("source only");
+        let said = description(&forces(), "one").contains("source only");
         assert_eq!(said, BINARIES.is_empty());
+    }
+
+    #[test]
+    fn the_description_names_pair_torque_range_and_units() {
+        let text = description(&forces(), "one");
+        for said in [
+            "modelName=\"Gear mesh 20/25\"",
+            "20 and 25 teeth on base circles of 80 and 100 mm, by the method flexible",
+            "Output torques from -50 to 50 N m",
+            "Angles in rad, torques in N m, transmission error in um",
+        ] {
+            assert!(text.contains(said), "{said}: {text}");
+        }
+    }
+
+    #[test]
+    fn functions_get_the_prefix_that_a_static_link_asks_for() {
+        // FMI 2.0, fmi2Functions.h: FMI2_FUNCTION_PREFIX stands before each name, and nothing where it is not defined.
+        let source = concat!(env!("CARGO_MANIFEST_DIR"), "/../fmu/meshwright_mesh.c");
+        for (define, name) in [
+            (None, "fmi2DoStep"),
+            (Some("-DFMI2_FUNCTION_PREFIX=one_"), "one_fmi2DoStep"),
+        ] {
+            let object = format!("{}/{name}.o", env!("OUT_DIR"));
+            let made = Command::new("cc")
+                .args(["-std=c99", "-c", "-fPIC", "-o", &object, source])
+                .args(define)
+                .status();
+            let Ok(made) = made else {
+                println!("NOT CHECKED: there is no C compiler here.");
+                return;
+            };
+            assert!(made.success());
+            let bytes = std::fs::read(&object).expect("an object");
+            let symbol = [&b"\0"[..], name.as_bytes(), b"\0"].concat();
+            assert!(
+                bytes.windows(symbol.len()).any(|part| part == symbol),
+                "{name}"
+            );
+        }
     }
 }

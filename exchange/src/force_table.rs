@@ -13,6 +13,16 @@ use meshwright_engine::dynamics::ForceTable;
 /// How much finer than computed the tables are that others interpolate in straight lines: in position, and in load.
 const REFINED: (usize, usize) = (2, 4);
 
+/// Parts of the largest load between which rows of the table of an FMU rise by the same factor, and by which about: a kink of δ between two rows leaves
+/// straight lines less than a percent beside the load.
+const LIGHT: ([f64; 2], f64) = ([5e-4, 0.1], 1.11);
+
+/// Parts of the largest load at which that table has rows below these, and from which step on above.
+const BESIDE_LIGHT: ([f64; 2], f64) = ([1e-4, 2.5e-4], 0.0375);
+
+/// Loads that differ by less than this part of them are one.
+const NEXT: f64 = 0.02;
+
 /// Columns of a table over approach for a flank that closes evenly from touch to the largest load: straight lines cut the corner at the
 /// touch by less than 0.2 % of that load.
 const COLUMNS: f64 = 160.0;
@@ -47,6 +57,21 @@ pub struct MeshForces {
 }
 
 impl MeshForces {
+    /// The numbers of teeth, driving and driven.
+    pub(super) fn tooth_counts(&self) -> [f64; 2] {
+        let [r_1, r_2] = self.base_radii;
+        [self.tooth_count, (self.tooth_count * r_2 / r_1).round()]
+    }
+
+    /// The output torque of the largest load in N m.
+    pub(super) fn largest_output_torque(&self) -> f64 {
+        self.largest_load() * self.base_radii[1]
+    }
+
+    fn largest_load(&self) -> f64 {
+        self.table.loads().last().copied().unwrap_or_default()
+    }
+
     /// The angle of the driving gear in a mesh period.
     fn pitch_angle(&self) -> f64 {
         TAU / self.tooth_count
@@ -200,10 +225,29 @@ impl MeshForces {
         text
     }
 
+    /// The loads of the table and others between them, closer where they are light.
+    fn dense_loads(&self) -> Vec<f64> {
+        let ([from, to], factor) = LIGHT;
+        let (below, step) = BESIDE_LIGHT;
+        let light = ((to / from).ln() / factor.ln()).round();
+        let heavy = ((1.0 - to) / step).round();
+        let parts = below
+            .into_iter()
+            .chain((0..=light as u32).map(|i| from * (to / from).powf(f64::from(i) / light)))
+            .chain((1..heavy as u32).map(|i| to + (1.0 - to) * f64::from(i) / heavy));
+        let (own, largest) = (self.table.loads(), self.largest_load());
+        // Rows that were computed stand for those next to them.
+        let is_new = |load: &f64| own.iter().all(|own| (own - load).abs() > NEXT * load);
+        let mut loads = own.to_vec();
+        loads.extend(parts.map(|part| part * largest).filter(is_new));
+        loads.sort_by(f64::total_cmp);
+        loads
+    }
+
     /// The table as the FMU reads it, as doubles, little-endian: positions, rows, the period in rad, both base radii, the loads, and δ at each
     /// position under each load, of the loaded and of the other flank.
     pub(super) fn table_of_doubles(&self) -> Vec<u8> {
-        let fine = self.table.refined(REFINED.0, REFINED.1);
+        let fine = self.table.under(REFINED.0, self.dense_loads());
         let [r_1, r_2] = self.base_radii;
         let period = f64::from(fine.period()) * self.pitch_angle();
         let head = [
@@ -301,11 +345,30 @@ pub(crate) mod tests {
         };
         let flanks = [flank(rows(1.0, 0.0)), flank(rows(-1.0, -100e-6))];
         MeshForces {
-            table: ForceTable::new(1, ladder, flanks).expect("rows that rise"),
+            table: ForceTable::new(1, ladder.loads(), flanks).expect("rows that rise"),
             base_radii: [40e-3, 50e-3],
             tooth_count: 20.0,
             method: "flexible".to_owned(),
         }
+    }
+
+    #[test]
+    fn the_rows_of_an_fmu_are_close_where_loads_are_light() {
+        let forces = forces();
+        let loads = forces.dense_loads();
+        assert!(loads.is_sorted_by(|a, b| a < b) && loads.len() < 100);
+        assert_eq!((loads[0], loads[loads.len() - 1]), (0.0, 1000.0));
+        for own in forces.table.loads() {
+            assert!(loads.contains(own), "{own}");
+        }
+        for pair in loads.windows(2).skip(1) {
+            let [low, high] = [pair[0], pair[1]];
+            if (2.0..100.0).contains(&low) {
+                assert!(high / low < 1.14, "{low} {high}");
+            }
+            assert!(high - low < 45.0, "{low} {high}");
+        }
+        assert!(loads[1] <= 0.1);
     }
 
     #[test]

@@ -65,7 +65,7 @@ impl Serve {
         let world = World {
             compute: Arc::new(wire::solve),
             clock: Clock::system(),
-            hooks: HookRules::to_public(self.config.door.webhook_hosts.clone()),
+            hooks: HookRules::to_named(self.config.door.webhook_hosts.clone()),
         };
         let spans = self.otlp_endpoint.as_deref().map(Spans::start);
         let spans = spans.transpose().context("spans cannot be told")?;

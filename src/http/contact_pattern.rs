@@ -21,7 +21,6 @@ use crate::wire::{Code, ContactPatternDocument, Problem, Submission};
 #[into_params(parameter_in = Query)]
 pub(super) struct PatternParameters {
     /// One of the job's output torques, in N m, not 0; without it, all of them.
-    #[param(example = 100.0)]
     torque: Option<f64>,
 }
 

@@ -7,13 +7,13 @@ use axum::extract::Path;
 use axum::http::HeaderMap;
 use axum::response::{Redirect, Response};
 use axum::routing::get;
-use serde_json::Value;
+use serde_json::{Value, json};
 use utoipa::OpenApi as _;
 use utoipa::openapi::path::{Operation, Parameter, ParameterBuilder, ParameterIn};
 use utoipa::openapi::security::{HttpAuthScheme, HttpBuilder, SecurityRequirement, SecurityScheme};
 use utoipa::openapi::{
-    ContentBuilder, HeaderBuilder, ObjectBuilder, OpenApi, Ref, RefOr, Required, ResponseBuilder,
-    SchemaFormat, Server, ServerBuilder, Type,
+    ContentBuilder, HeaderBuilder, KnownFormat, ObjectBuilder, OpenApi, Ref, RefOr, Required,
+    ResponseBuilder, SchemaFormat, Server, ServerBuilder, Type,
 };
 
 use super::app::App;
@@ -63,6 +63,44 @@ pub(super) fn introduction() -> OpenApi {
     openapi
 }
 
+/// A submission, a study, and a model that operations show as what may be sent to them: they work as they stand.
+const SUBMISSION: &str = include_str!("../../api/examples/standard-pair.json");
+const STUDY: &str = include_str!("../../api/examples/study-section-5.json");
+const MODEL: &str = include_str!("../../api/examples/test-case-2.rexs");
+
+/// What may be sent to the operation at `path`, where it takes a body.
+fn example_of(path: &str) -> Option<Value> {
+    let read = |text: &str| serde_json::from_str::<Value>(text).ok();
+    Some(match path {
+        "/v1/jobs" | "/v1/outline" | "/v1/preview" | "/v1/validate" => read(SUBMISSION)?,
+        "/v1/jobs/batch" => json!({ "submissions": [read(SUBMISSION)?] }),
+        "/v1/studies" => read(STUDY)?,
+        "/v1/draw-deviations" => {
+            json!({ "gear": read(SUBMISSION)?.pointer("/pair/driven")?, "iso_1328_class": 6, "seed": 1 })
+        }
+        "/v1/rexs" => MODEL.into(),
+        "/v1/webhooks" => json!({ "url": "https://hooks.example.com/meshwright" }),
+        _ => return None,
+    })
+}
+
+/// Adds what may be sent to the operation at `path`. A body that is no JSON is bytes, which is what generators of clients send it as.
+fn show_body(path: &str, operation: &mut Operation) {
+    let Some(RefOr::T(body)) = &mut operation.request_body else {
+        return;
+    };
+    for (media_type, content) in &mut body.content {
+        let RefOr::T(content) = content else { continue };
+        content.example = example_of(path);
+        if !media_type.ends_with("json") {
+            let bytes = ObjectBuilder::new()
+                .schema_type(Type::String)
+                .format(Some(SchemaFormat::KnownFormat(KnownFormat::Binary)));
+            content.schema = Some(bytes.into());
+        }
+    }
+}
+
 /// Adds to every operation what may be answered whatever it is: by who asks, by its bounds, by the state of the service. Whatever
 /// is refused is refused with a problem.
 pub(super) fn add_common_answers(openapi: &mut OpenApi) {
@@ -91,6 +129,7 @@ pub(super) fn add_common_answers(openapi: &mut OpenApi) {
         let operations = [&mut item.get, &mut item.post, &mut item.delete];
         for operation in operations.into_iter().flatten() {
             describe_ids(path, operation);
+            show_body(path, operation);
             add_answers_to_conditions(operation);
             let is_public = operation.security.is_some();
             let with_key = WITH_KEY.iter().filter(|_| !is_public);

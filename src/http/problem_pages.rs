@@ -35,7 +35,7 @@ pub(super) async fn index() -> Html<String> {
 #[utoipa::path(
     get, path = "/problems/{slug}", tag = "Reference", operation_id = "get_problem",
     security(()),
-    params(("slug" = String, Path, description = "The code of the problem, with hyphens.")),
+    params(("slug" = String, Path, example = "out-of-range", description = "The code of the problem, with hyphens.")),
     responses(
         (status = 200, description = "The page.", body = String, content_type = "text/html"),
         (status = 404, description = "There is no such problem."),

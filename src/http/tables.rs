@@ -27,6 +27,9 @@ use crate::wire::{Code, Problem, Results};
 /// The text of the results, what is read of it, and the table take so many times its bytes together.
 const TIMES_THE_RESULTS: u64 = 4;
 
+/// The FMU, whose table is finer, takes so many times their bytes.
+const TIMES_FOR_AN_FMU: u64 = 16;
+
 /// What a table shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Table {
@@ -231,14 +234,15 @@ pub(super) struct TableParameters {
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/results/{table}", tag = "Results", operation_id = "get_table",
     params(
-        ("table" = String, Path, description = "`ste`, `mesh-stiffness`, `spectrum`, `run-up` or `face-load`, with `.json`, `.csv` or `.svg`; or `load-share.svg`; or `force-table.csv`, `force-table.txt` (CombiTable2D), `force-table.mo` (a Modelica package), `force-table.fmu` (FMU 2.0, `application/octet-stream`); or `look-up-table.csv`, `look-up-table.txt`, which have one curve over the angle in SI units, datum and signs in their head."),
+        ("table" = String, Path, example = "ste.csv", description = "`ste`, `mesh-stiffness`, `spectrum`, `run-up` or `face-load`, with `.json`, `.csv` or `.svg`; or `load-share.svg`; or `force-table.csv`, `force-table.txt` (CombiTable2D), `force-table.mo` (a Modelica package), `force-table.fmu` (FMU 2.0, `application/octet-stream`); or `look-up-table.csv`, `look-up-table.txt`, which have one curve over the angle in SI units, datum and signs in their head."),
         TableParameters,
         IfNoneMatch,
     ),
     responses(
+        // Generators that know one answer only take the first: a text, of which JSON is one.
         (status = 200, description = "The table.", content(
-            (CurveTable = "application/json"),
             (String = "text/csv"),
+            (CurveTable = "application/json"),
             (String = "image/svg+xml"),
             (String = "text/plain"),
         )),
@@ -263,7 +267,11 @@ pub(super) async fn table(
     let part = torque.map_or_else(|| format!("/{file}"), |torque| format!("/{file}/{torque}"));
     let made = async {
         let stored = client.app.jobs.stored(&job).await?;
-        let most = TIMES_THE_RESULTS * stored.bytes;
+        let times = match wanted {
+            File::Fmu => TIMES_FOR_AN_FMU,
+            _ => TIMES_THE_RESULTS,
+        };
+        let most = times * stored.bytes;
         let memory = client.app.bodies.for_answer(client.name(), most).await?;
         let document = client.app.jobs.document_of(&job, &stored).await?;
         let name = format!("{id}-{file}");

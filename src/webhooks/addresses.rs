@@ -1,5 +1,5 @@
-//! Where messages may go: hosts that the operator names, at addresses that belong to everybody. A service that sends requests where its
-//! clients say must not be sent to its own neighbors.
+//! Where messages may go: hosts that the operator names, at public addresses, or at a private one where the operator names the host in full. A service that
+//! sends requests where its clients say must not be sent to neighbors that its operator does not name.
 
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr};
 use std::str::FromStr;
@@ -12,17 +12,25 @@ use reqwest::Url;
 pub struct HookRules {
     /// The hosts; none: webhooks are off.
     pub allowed: Vec<HookTarget>,
-    /// Whether an address may be connected to, after the name has been looked up. Only tests have another answer than
-    /// [`is_public`].
-    pub reachable: Arc<dyn Fn(IpAddr) -> bool + Send + Sync>,
+    /// Whether a host may be connected to at an address, after its name has been looked up. Only tests have another answer than that of
+    /// [`HookRules::to_named`].
+    pub reachable: Reachable,
 }
 
+/// Whether a host, as a URL has it, may be connected to at an address.
+pub(super) type Reachable = Arc<dyn Fn(&str, IpAddr) -> bool + Send + Sync>;
+
 impl HookRules {
-    /// Messages to these hosts, at public addresses.
-    pub fn to_public(allowed: Vec<HookTarget>) -> Self {
+    /// Messages to these hosts: at public addresses, of a host that is named in full at private ones too, and at an address that is named as such also if it is
+    /// one of this machine or of its link.
+    pub fn to_named(allowed: Vec<HookTarget>) -> Self {
+        let named = allowed.clone();
+        let reachable = move |host: &str, address| {
+            is_public(address) || named.iter().any(|target| target.names(host, address))
+        };
         Self {
             allowed,
-            reachable: Arc::new(is_public),
+            reachable: Arc::new(reachable),
         }
     }
 
@@ -61,7 +69,7 @@ impl HookRules {
         }
         let literal = host.trim_start_matches('[').trim_end_matches(']');
         match literal.parse::<IpAddr>() {
-            Ok(address) if !(self.reachable)(address) => {
+            Ok(address) if !(self.reachable)(host, address) => {
                 Err(format!("{address} is not a public address."))
             }
             _ => Ok(()),
@@ -80,6 +88,16 @@ pub struct HookTarget {
 }
 
 impl HookTarget {
+    /// Whether this names `host` so that it may be at `address`, which is not public.
+    fn names(&self, host: &str, address: IpAddr) -> bool {
+        if self.any_below || self.host != host {
+            return false;
+        }
+        let literal = self.host.trim_start_matches('[').trim_end_matches(']');
+        let is_literal = literal.parse() == Ok(address);
+        is_private(address) || is_literal && is_here(address)
+    }
+
     fn takes(&self, scheme: &str, host: &str, port: u16) -> bool {
         let host_fits = if self.any_below {
             host.strip_suffix(&self.host)
@@ -121,9 +139,25 @@ impl FromStr for HookTarget {
     }
 }
 
+/// Whether an address is one of a private network.
+fn is_private(address: IpAddr) -> bool {
+    match address {
+        IpAddr::V4(address) => address.is_private(),
+        IpAddr::V6(address) => address.is_unique_local(),
+    }
+}
+
+/// Whether an address is one of this machine or of its link.
+fn is_here(address: IpAddr) -> bool {
+    match address {
+        IpAddr::V4(address) => address.is_loopback() || address.is_link_local(),
+        IpAddr::V6(address) => address.is_loopback() || address.is_unicast_link_local(),
+    }
+}
+
 /// Whether an address is one of the public internet: not this host, not its network, not one that is set aside (IANA's
 /// registries of special-purpose addresses).
-pub fn is_public(address: IpAddr) -> bool {
+fn is_public(address: IpAddr) -> bool {
     match address {
         IpAddr::V4(address) => is_public_v4(address),
         IpAddr::V6(address) => is_public_v6(address),
@@ -226,22 +260,66 @@ mod tests {
     }
 
     #[test]
-    fn messages_go_to_allowed_hosts_at_public_addresses_only() {
+    fn a_host_that_is_named_in_full_may_have_a_private_address_and_this_machine_only_as_an_address()
+    {
+        let targets = [
+            "hooks.example.com",
+            "*.portal.example",
+            "127.0.0.1",
+            "[fe80::1]",
+            "10.0.0.7",
+        ];
+        let rules = HookRules::to_named(targets.map(|target| target.parse().unwrap()).to_vec());
+        let reaches = |host: &str, address: &str| (rules.reachable)(host, address.parse().unwrap());
+        for (host, address) in [
+            ("hooks.example.com", "8.8.8.8"),
+            ("hooks.example.com", "10.0.0.1"),
+            ("hooks.example.com", "192.168.1.1"),
+            ("hooks.example.com", "172.31.255.255"),
+            ("hooks.example.com", "fd12::1"),
+            ("a.portal.example", "8.8.8.8"),
+            ("127.0.0.1", "127.0.0.1"),
+            ("[fe80::1]", "fe80::1"),
+            ("10.0.0.7", "10.0.0.7"),
+        ] {
+            assert!(reaches(host, address), "{host} at {address}");
+        }
+        for (host, address) in [
+            ("hooks.example.com", "127.0.0.1"),
+            ("hooks.example.com", "169.254.169.254"),
+            ("hooks.example.com", "::1"),
+            ("hooks.example.com", "fe80::1"),
+            ("hooks.example.com", "::ffff:10.0.0.1"),
+            ("hooks.example.com", "0.0.0.0"),
+            ("hooks.example.com", "100.64.0.1"),
+            ("hooks.example.com", "224.0.0.1"),
+            ("a.portal.example", "10.0.0.1"),
+            ("portal.example", "10.0.0.1"),
+            ("a.portal.example", "fd12::1"),
+            ("other.example", "10.0.0.1"),
+            ("127.0.0.2", "127.0.0.2"),
+        ] {
+            assert!(!reaches(host, address), "{host} at {address}");
+        }
+    }
+
+    #[test]
+    fn messages_go_to_allowed_hosts_only() {
         let targets = [
             "hooks.example.com",
             "*.portal.example:8443",
             "http://plain.example",
             "10.0.0.1",
-            "[::1]",
-            "127.0.0.1",
         ];
-        let rules = HookRules::to_public(targets.map(|target| target.parse().unwrap()).to_vec());
+        let rules = HookRules::to_named(targets.map(|target| target.parse().unwrap()).to_vec());
         for url in [
             "https://hooks.example.com/a?b",
             "https://HOOKS.example.com:443/",
             "https://a.portal.example:8443/",
             "https://a.b.portal.example:8443/",
             "http://plain.example/",
+            "https://10.0.0.1/",
+            "https://0xa000001/",
         ] {
             assert_eq!(rules.check(url), Ok(()), "{url}");
         }
@@ -255,11 +333,10 @@ mod tests {
             "https://portal.example:8443/",
             "https://evilportal.example:8443/",
             "https://plain.example/",
-            "https://10.0.0.1/",
-            "https://10.1/",
-            "https://0xa000001/",
-            "https://167772161/",
-            "https://012.0.0.1/",
+            "https://10.0.0.2/",
+            "https://10.2/",
+            "https://0xa000002/",
+            "https://167772162/",
             "https://[::1]/",
             "https://127.1/",
             "https://0x7f000001/",
@@ -280,7 +357,7 @@ mod tests {
         ] {
             assert!(rules.check(url).is_err(), "{url}");
         }
-        let off = HookRules::to_public(Vec::new());
+        let off = HookRules::to_named(Vec::new());
         assert!(
             off.check("https://hooks.example.com/")
                 .unwrap_err()

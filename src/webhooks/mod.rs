@@ -10,7 +10,7 @@ mod hooks;
 mod send;
 mod store;
 
-pub use addresses::{HookRules, HookTarget, is_public};
+pub use addresses::{HookRules, HookTarget};
 pub use deliver::Deliveries;
 pub use hooks::{Made, WebhookError, most_webhooks};
 pub use store::{Delivery, Webhook, Webhooks};

@@ -1,7 +1,7 @@
 //! Sending a message: one request to an address that may be connected to, of whose answer the status alone is read.
 
 use std::io;
-use std::net::{IpAddr, SocketAddr};
+use std::net::SocketAddr;
 use std::pin::Pin;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -22,6 +22,7 @@ use tokio::time::timeout;
 use tokio_util::sync::CancellationToken;
 use tower::Service;
 
+use super::addresses::Reachable;
 use crate::client::{AGENT, install_encryption, told};
 
 /// One attempt takes so long at most.
@@ -30,21 +31,18 @@ const TIME_OUT: Duration = Duration::from_secs(10);
 /// A receiver may send so many informational answers (1xx) before its answer.
 const MOST_INFORMATIONAL: usize = 8;
 
-/// Which addresses may be connected to.
-type Reachable = Arc<dyn Fn(IpAddr) -> bool + Send + Sync>;
-
 /// The client that sends messages. It follows no redirect and uses no proxy.
-pub(super) struct Sender(Client<HttpsConnector<HttpConnector<PublicOnly>>, Body>);
+pub(super) struct Sender(Client<HttpsConnector<HttpConnector<ReachableOnly>>, Body>);
 
 impl Sender {
-    /// A client that connects to these addresses.
+    /// A client that connects to these hosts at these addresses.
     ///
     /// # Errors
     ///
     /// When there is no encryption to be had.
     pub(super) fn to(reachable: &Reachable) -> Result<Self, rustls::Error> {
         install_encryption();
-        let mut tcp = HttpConnector::new_with_resolver(PublicOnly(Arc::clone(reachable)));
+        let mut tcp = HttpConnector::new_with_resolver(ReachableOnly(Arc::clone(reachable)));
         tcp.enforce_http(false);
         let connector = HttpsConnectorBuilder::new()
             .with_tls_config(ClientConfig::with_platform_verifier()?)
@@ -86,9 +84,9 @@ impl Sender {
 /// Looks names up, and keeps the addresses that may be connected to. The connection is made to one of these: nobody looks
 /// the name up again.
 #[derive(Clone)]
-struct PublicOnly(Reachable);
+struct ReachableOnly(Reachable);
 
-impl Service<Name> for PublicOnly {
+impl Service<Name> for ReachableOnly {
     type Response = std::vec::IntoIter<SocketAddr>;
     type Error = io::Error;
     type Future = Pin<Box<dyn Future<Output = io::Result<Self::Response>> + Send>>;
@@ -101,12 +99,13 @@ impl Service<Name> for PublicOnly {
         let reachable = Arc::clone(&self.0);
         Box::pin(async move {
             let found = tokio::net::lookup_host((name.as_str(), 0)).await?;
-            let public: Vec<_> = found.filter(|address| reachable(address.ip())).collect();
-            if public.is_empty() {
-                let error = format!("{} has no public address", name.as_str());
+            let reached = found.filter(|address| reachable(name.as_str(), address.ip()));
+            let reached: Vec<_> = reached.collect();
+            if reached.is_empty() {
+                let error = format!("{} has no address that may be sent to", name.as_str());
                 return Err(io::Error::other(error));
             }
-            Ok(public.into_iter())
+            Ok(reached.into_iter())
         })
     }
 }
@@ -131,7 +130,7 @@ mod tests {
                 tokio::task::yield_now().await;
             }
         });
-        let reachable: Reachable = Arc::new(|_| true);
+        let reachable: Reachable = Arc::new(|_, _| true);
         let sender = Sender::to(&reachable).unwrap();
         let request = Request::post(format!("http://{address}/hook"));
         sender.send(request.body(Body::from("{}")).unwrap()).await

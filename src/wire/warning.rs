@@ -57,6 +57,10 @@ pub enum WarningCode {
     WebOutsidePlaneModel,
     /// The motion grows without bound at some speeds.
     MotionUnbounded,
+    /// The motion loads the mesh beyond the force table, which goes on straight there.
+    LoadBeyondForceTable,
+    /// Rims and teeth have inertia outside the webs that carry them, which the motion takes to stand on the hubs.
+    RimInertiaOnHub,
     /// A tip corner carries load off the line of action.
     TipCornerContact,
     /// The contact reaches the fillet of a gear, where it is not followed.
@@ -198,6 +202,34 @@ impl WarningDocument {
                 );
                 (Code::MotionUnbounded, None, None, detail)
             }
+            Warning::LoadBeyondForceTable {
+                speeds,
+                ratio,
+                largest_output_torque,
+            } => {
+                let [low, high] = speeds.map(|speed| plain((60.0 * speed).round()));
+                let [times, told, wanted] = [
+                    ratio,
+                    largest_output_torque,
+                    1.1 * ratio * largest_output_torque,
+                ]
+                .map(|value| plain(significant(value, 3)));
+                let detail = format!(
+                    "Between {low} and {high} 1/min the force between the gears reaches {times} times the largest load of the force table, that of {told} N m. Beyond it the table goes on straight, so that force and motion are not what they are there. A table for /force_table/largest_output_torque_n_m {wanted} reaches so far."
+                );
+                (Code::LoadBeyondForceTable, None, Some((ratio, "1")), detail)
+            }
+            Warning::RimInertiaOnHub {
+                natural_frequency,
+                of_rims,
+            } => {
+                let [told, estimate] =
+                    [natural_frequency, of_rims].map(|hertz| plain(significant(hertz, 4)));
+                let detail = format!(
+                    "The run-up has the inertia of rims and teeth on the hubs, so that its natural frequency is {told} Hz. With the inertia where it is, outside the webs, it is about {estimate} Hz: speeds of resonances are off by as much."
+                );
+                (Code::RimInertiaOnHub, None, Some((of_rims, "Hz")), detail)
+            }
             Warning::TipCornerContact {
                 member,
                 largest_share,
@@ -338,7 +370,9 @@ impl WarningCode {
     fn guide(self) -> Option<&'static str> {
         match self {
             Self::WebOutsidePlaneModel => Some("/guides/is-my-thin-web-all-right"),
-            Self::MotionUnbounded => Some("/guides/will-it-rattle-or-whine"),
+            Self::MotionUnbounded | Self::LoadBeyondForceTable | Self::RimInertiaOnHub => {
+                Some("/guides/will-it-rattle-or-whine")
+            }
             _ => None,
         }
     }
@@ -490,6 +524,41 @@ mod tests {
                 warned(thickness, radius)
                     .expect("far outside")
                     .contains("three-dimensional")
+            );
+        }
+    }
+
+    #[test]
+    fn what_a_run_up_leaves_open_is_told_with_its_numbers() {
+        let beyond = WarningDocument::of(&Warning::LoadBeyondForceTable {
+            speeds: [80.0, 90.5],
+            ratio: 1.0402,
+            largest_output_torque: 230.0,
+        });
+        assert_eq!(
+            (beyond.value, beyond.unit.as_deref()),
+            (Some(1.0402), Some("1"))
+        );
+        for said in [
+            "Between 4800 and 5430 1/min",
+            "1.04 times the largest load of the force table, that of 230 N m",
+            "/force_table/largest_output_torque_n_m 263",
+        ] {
+            assert!(beyond.detail.contains(said), "{said}: {}", beyond.detail);
+        }
+        let rims = WarningDocument::of(&Warning::RimInertiaOnHub {
+            natural_frequency: 3975.97,
+            of_rims: 5251.56,
+        });
+        assert_eq!(
+            (rims.value, rims.unit.as_deref()),
+            (Some(5251.56), Some("Hz"))
+        );
+        assert!(rims.detail.contains("is 3976 Hz") && rims.detail.contains("about 5252 Hz"));
+        for warning in [beyond, rims] {
+            assert_eq!(
+                warning.guide.as_deref(),
+                Some("/guides/will-it-rattle-or-whine")
             );
         }
     }

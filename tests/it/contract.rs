@@ -6,6 +6,8 @@ use std::process::Command;
 
 use serde_json::Value;
 
+use crate::bench::Bench;
+
 fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
@@ -23,6 +25,44 @@ fn the_committed_openapi_document_is_the_generated_one() {
         committed == generated,
         "api/openapi.json is stale: run MESHWRIGHT_WRITE_OPENAPI=1 ./test contract"
     );
+}
+
+#[tokio::test]
+async fn what_operations_show_to_send_works_as_it_stands() {
+    let bench = Bench::quick().await;
+    let document = meshwright::http::openapi();
+    let mut sent = Vec::new();
+    for (path, item) in document["paths"].as_object().unwrap() {
+        let Some(contents) = item["post"]["requestBody"]["content"].as_object() else {
+            continue;
+        };
+        for (media_type, content) in contents {
+            let shown = &content["example"];
+            assert!(!shown.is_null(), "{path} shows nothing");
+            // Where messages may go the operator says.
+            if path == "/v1/webhooks" {
+                continue;
+            }
+            let body = match shown.as_str() {
+                Some(text) => text.to_owned(),
+                None => shown.to_string(),
+            };
+            let request = bench
+                .client
+                .post(bench.url(path))
+                .header("content-type", media_type)
+                .body(body);
+            let answer = request.send().await.unwrap();
+            let status = answer.status();
+            assert!(
+                status.is_success(),
+                "{path}: {status} {}",
+                answer.text().await.unwrap()
+            );
+            sent.push(path.as_str());
+        }
+    }
+    assert!(sent.len() >= 8, "{sent:?}");
 }
 
 #[test]

@@ -1,16 +1,21 @@
 //! What the mesh of a case does at speed.
 
+use std::f64::consts::PI;
+
 use super::curve::Curve;
+use super::orders::Orders;
 use super::{AnalysisError, Case, OrderKind};
-use crate::dynamics::{ForceTable, Resonance, RunUp, RunUpData};
+use crate::dynamics::torsion::{Coupled, Ring, Rotor};
+use crate::dynamics::{ForceTable, RunUp, RunUpData};
 use crate::gear::{GearPair, Member};
 use crate::run::Run;
 
-/// Harmonics of the mesh that are told at speed.
-const MESH_HARMONICS: u32 = 5;
+/// Orders that are told of a pair, at most, for each mesh period of its true period: speeds are as many fewer as that is longer, so that this bounds what
+/// a run-up tells in all. Those that are known are never more.
+const TOLD_A_PERIOD: usize = 12;
 
-/// Orders that are told at speed, at most, and the least part of the largest static line that one of a sideband or a revolution has.
-const TOLD: (usize, f64) = (12, 0.01);
+/// Rings into which the band of a hole is divided.
+const BANDS: u32 = 8;
 
 /// The stiffness of a mesh over E b of its softer gear, about: 0.03 with large holes under a heavy load, 0.04 in the paper's case 2.
 const STIFFNESS: f64 = 0.035;
@@ -39,22 +44,107 @@ pub struct CurveDynamics {
     pub run_up: RunUp,
     /// The labels of the orders that are told.
     pub labels: Vec<String>,
-    /// Where they resonate.
-    pub resonances: Vec<Resonance>,
+    /// The natural frequency in Hz with the inertia of rims and teeth outside their webs, about; `None` where the inertia given
+    /// is less than the gear's own.
+    pub natural_frequency_of_rims: Option<f64>,
 }
 
 /// The mass m_e on the line of action: 1/m_e = r_b1²/J_1 + r_b2²/J_2.
 pub fn equivalent_mass(case: &Case, inertias: [Option<f64>; 2]) -> f64 {
     let of = |member: Member| {
-        let section = case.pair.gear(member);
-        let own = || match &case.faces {
-            Some(faces) => faces.pair.gear(member).polar_inertia(),
-            None => section.polar_inertia(),
-        };
-        let inertia = inertias[member.index()].unwrap_or_else(own);
-        section.base_radius().powi(2) / inertia
+        let inertia = inertias[member.index()].unwrap_or_else(|| own_inertia(case, member));
+        case.pair.gear(member).base_radius().powi(2) / inertia
     };
     1.0 / (of(Member::Driving) + of(Member::Driven))
+}
+
+/// The polar inertia of a gear as drawn, in kg m².
+fn own_inertia(case: &Case, member: Member) -> f64 {
+    match &case.faces {
+        Some(faces) => faces.pair.gear(member).polar_inertia(),
+        None => case.pair.gear(member).polar_inertia(),
+    }
+}
+
+/// The lowest natural frequency in Hz of the gears of `case` on a mesh whose mean stiffness is `stiffness` with the bores held: their blanks turn in
+/// themselves, and what turns with a gear beside its own inertia stands at its bore.
+fn natural_frequency_of_rims(
+    case: &Case,
+    inertias: [Option<f64>; 2],
+    stiffness: f64,
+) -> Option<f64> {
+    let rotor = |member: Member| {
+        let own = own_inertia(case, member);
+        let beside = inertias[member.index()].map_or(0.0, |given| given - own);
+        rotor(case, member, own, beside)
+    };
+    let coupled = Coupled {
+        rotors: [rotor(Member::Driving), rotor(Member::Driven)],
+        radii: Member::BOTH.map(|member| case.pair.gear(member).base_radius()),
+        stiffness,
+    };
+    coupled.natural_frequency()
+}
+
+/// The rings of a blank between bore and root circle, with what of a ring its holes leave, the teeth on the last of them, and what turns `beside` at
+/// the bore.
+fn rotor(case: &Case, member: Member, own: f64, beside: f64) -> Rotor {
+    let gear = case.pair.gear(member);
+    let blank = &gear.data().blank;
+    let hub = case
+        .faces
+        .as_ref()
+        .and_then(|of| of.pair.gear(member).hub());
+    let (bore, root) = (blank.bore_radius, gear.root_radius());
+    let mut edges = vec![bore, root];
+    edges.extend(
+        blank
+            .web
+            .iter()
+            .flat_map(|web| [web.inner_radius, web.outer_radius]),
+    );
+    edges.extend(hub.map(|hub| hub.outer_radius));
+    for hole in &blank.holes {
+        let [inner, outer] = [hole.inner_reach(), hole.outer_reach()];
+        edges
+            .extend((0..=BANDS).map(|i| inner + (outer - inner) * f64::from(i) / f64::from(BANDS)));
+    }
+    edges.retain(|edge| (bore..=root).contains(edge));
+    edges.sort_by(f64::total_cmp);
+    edges.dedup();
+    let open = |radius: f64| -> f64 {
+        let areas = blank
+            .holes
+            .iter()
+            .map(|hole| hole.moments_within(radius).area);
+        areas.sum()
+    };
+    let rings = edges.windows(2).map(|ends| {
+        let [inner, outer] = [ends[0], ends[1]];
+        let middle = f64::midpoint(inner, outer);
+        let thickness = match hub {
+            Some(hub) if middle < hub.outer_radius => hub.width,
+            _ => blank.thickness_at(middle, gear.face_width()),
+        };
+        let share = (open(outer) - open(inner)) / (PI * (outer * outer - inner * inner));
+        Ring {
+            radii: [inner, outer],
+            thickness: thickness * (1.0 - share),
+        }
+    });
+    let material = gear.material();
+    let rotor = Rotor {
+        rings: rings.collect(),
+        shear_modulus: material.shear_modulus(),
+        density: material.density,
+        inner: beside,
+        outer: 0.0,
+    };
+    let teeth = own - rotor.inertia_of_rings();
+    Rotor {
+        outer: teeth,
+        ..rotor
+    }
 }
 
 /// The mean stiffness of a mesh in N/m, about.
@@ -73,7 +163,7 @@ pub(super) fn run_up_seconds(case: &Case, request: &DynamicsRequest) -> f64 {
         mass: equivalent_mass(case, request.inertias),
         damping_ratio: request.damping_ratio,
         stiffness: usual_stiffness(pair),
-        orders: Vec::new(),
+        orders: known(pair).into_iter().map(|(_, order)| order).collect(),
         sweeps: request.sweeps,
     };
     case.output_torques.len() as f64 * data.seconds(pair.period())
@@ -117,32 +207,38 @@ pub fn dynamics(
         speeds: data.speeds.clone(),
         run_up,
         labels,
-        resonances: data.resonances(),
+        natural_frequency_of_rims: natural_frequency_of_rims(
+            case,
+            request.inertias,
+            data.stiffness,
+        ),
     })
 }
 
-/// The orders that are told, with their labels and per mesh period: of the mesh, of holes, and of what else stands out.
-fn told(pair: &GearPair, curve: &Curve) -> Vec<(String, f64)> {
-    let Some(spectrum) = &curve.spectrum else {
-        return Vec::new();
-    };
-    let amplitudes = spectrum.named.iter().map(|line| line.transmission_error);
-    let least = TOLD.1 * amplitudes.fold(0.0, f64::max);
-    let mut lines: Vec<_> = spectrum
-        .named
-        .iter()
-        .filter(|line| match &line.kind {
-            OrderKind::Mesh { harmonic } => *harmonic <= MESH_HARMONICS,
-            OrderKind::Cause { cause, multiple: 1 } if cause.holes => true,
-            _ => line.transmission_error >= least,
-        })
-        .collect();
-    lines.sort_by(|a, b| b.transmission_error.total_cmp(&a.transmission_error));
-    lines.truncate(TOLD.0);
-    lines.sort_by(|a, b| a.order.total_cmp(&b.order));
-    let per_period = |order: f64| order / f64::from(pair.driven().tooth_count());
-    lines
-        .into_iter()
-        .map(|line| (line.label.clone(), per_period(line.order)))
+/// The orders of `pair` that are told whatever their amplitude, with their labels and per mesh period, rising: of the mesh to the tenth, of holes, of the
+/// first revolutions of gears that deviate, and the sidebands of both.
+fn known(pair: &GearPair) -> Vec<(String, f64)> {
+    let known = Orders::of(pair).known().into_iter();
+    known
+        .map(|known| (known.label, per_mesh_period(pair, known.order)))
         .collect()
+}
+
+fn per_mesh_period(pair: &GearPair, order: f64) -> f64 {
+    order / f64::from(pair.driven().tooth_count())
+}
+
+/// The orders that are told: those that are known, and what else stands out of the static curve but for the mesh, as far as there is room.
+fn told(pair: &GearPair, curve: &Curve) -> Vec<(String, f64)> {
+    let mut told = known(pair);
+    let most = TOLD_A_PERIOD * pair.period() as usize;
+    let named = curve.spectrum.iter().flat_map(|spectrum| &spectrum.named);
+    for line in named {
+        let is_new = told.iter().all(|(label, _)| *label != line.label);
+        if is_new && told.len() < most && !matches!(line.kind, OrderKind::Mesh { .. }) {
+            told.push((line.label.clone(), per_mesh_period(pair, line.order)));
+        }
+    }
+    told.sort_by(|a, b| a.1.total_cmp(&b.1));
+    told
 }

@@ -78,13 +78,14 @@ pub fn analyze_with_forces(
     let dynamics = curves
         .map(|(request, curve)| dynamics(case, curve, &table, request, run))
         .collect::<Result<Vec<_>, _>>()?;
-    warn_of_motions(&mut analysis.warnings, &dynamics);
+    let driven = case.pair.driven().base_radius();
+    warn_of_motions(&mut analysis.warnings, &dynamics, (&table, driven));
     Ok((analysis, Forces { table, dynamics }))
 }
 
 /// What is computed of a table.
 pub(super) struct TablePlan {
-    ladder: Ladder,
+    loads: Vec<f64>,
     /// Its rows.
     rows: Plan,
     /// The rows of the other flanks.
@@ -93,10 +94,10 @@ pub(super) struct TablePlan {
 
 impl TablePlan {
     pub(super) fn of(case: &Case, request: ForceTableRequest) -> Self {
-        let ladder = request.ladder(case);
-        let rows = rows_case(case, &ladder.loads());
+        let loads = request.ladder(case).loads();
+        let rows = rows_case(case, &loads);
         Self {
-            ladder,
+            loads,
             other: OtherFlank::of(&rows),
             rows: Plan::of_rows(&rows),
         }
@@ -130,7 +131,7 @@ impl TablePlan {
         let case = &self.rows.asked;
         let [loaded, mirrored] = self.plans().map(rows_of);
         let flanks = [loaded?, self.other.turned(&mirrored?, case.positions())];
-        Ok(ForceTable::new(case.pair.period(), self.ladder, flanks)?)
+        Ok(ForceTable::new(case.pair.period(), self.loads, flanks)?)
     }
 }
 

@@ -3,6 +3,7 @@
 use super::at_speed::CurveDynamics;
 use super::{Case, Curve, Method, Statistics};
 use crate::contact::MeshContact;
+use crate::dynamics::ForceTable;
 use crate::gear::{GearPair, Member, SpurGear};
 use crate::load_distribution::{FormulaRange, out_of_range};
 
@@ -26,6 +27,12 @@ const DOUBTFUL_PROJECTION: [f64; 2] = [0.01, 0.05];
 
 /// Below so many positions a mesh period orders are told with a warning: each tells half as many mesh harmonics, and the upper ones badly.
 pub const FEW_POSITIONS: u32 = 20;
+
+/// Forces beyond this part of the largest load of a table are told; up to it they are it but for rounding.
+const BEYOND: f64 = 1.0 + 1e-9;
+
+/// From this part on by which the natural frequency is another with the inertia of rims and teeth where it is, that is told: the estimate is as good.
+const RIMS_MATTER: f64 = 0.05;
 
 /// A curve that fluctuates by a smaller part of its mean counts as one that fluctuates by so much: less is no concern of anyone.
 const LEAST_FLUCTUATION: f64 = 1e-3;
@@ -72,6 +79,22 @@ pub enum Warning {
     MotionUnbounded {
         /// The lowest and the highest of these speeds of the driving gear, in revolutions per second.
         speeds: [f64; 2],
+    },
+    /// The motion loads the mesh beyond the force table, which goes on straight there.
+    LoadBeyondForceTable {
+        /// The lowest and the highest of these speeds of the driving gear, in revolutions per second.
+        speeds: [f64; 2],
+        /// The largest force over the largest load of the table.
+        ratio: f64,
+        /// The output torque of the largest load of the table, in N m.
+        largest_output_torque: f64,
+    },
+    /// Rims and teeth have inertia outside the webs that carry them, which the motion takes to stand on the hubs.
+    RimInertiaOnHub {
+        /// The natural frequency of the motion in Hz.
+        natural_frequency: f64,
+        /// The same with the inertia where it is, about.
+        of_rims: f64,
     },
     /// A tip corner carries load off the line of action.
     TipCornerContact {
@@ -316,19 +339,55 @@ pub(super) fn warn_of_pressures(warnings: &mut Vec<Warning>, case: &Case, curves
     );
 }
 
-/// Tells of speeds at which the motion grows without bound.
-pub(super) fn warn_of_motions(warnings: &mut Vec<Warning>, dynamics: &[CurveDynamics]) {
-    let speeds = dynamics.iter().flat_map(|of| {
+/// Tells of speeds at which the motion grows without bound or loads the mesh beyond its `table`, whose loads are those of the base radius `driven`, and of
+/// inertia that stands elsewhere than the motion has it.
+pub(super) fn warn_of_motions(
+    warnings: &mut Vec<Warning>,
+    dynamics: &[CurveDynamics],
+    (table, driven): (&ForceTable, f64),
+) {
+    let largest = table.loads().last().copied().unwrap_or(f64::INFINITY);
+    let seen = dynamics.iter().flat_map(|of| {
         let branches = [&of.run_up.up, &of.run_up.down].into_iter().flatten();
         branches.flat_map(|branch| {
-            let seen = branch.runs_away.iter().zip(&of.speeds);
-            seen.filter(|(runs_away, _)| **runs_away)
-                .map(|(_, speed)| *speed)
+            let seen = branch.runs_away.iter().zip(&branch.largest_force);
+            seen.zip(&of.speeds)
+                .map(|((runs_away, force), speed)| (*runs_away, force / largest, *speed))
         })
     });
-    let ends = speeds.fold(None, |ends: Option<[f64; 2]>, speed| {
+    let seen: Vec<(bool, f64, f64)> = seen.collect();
+    let unbounded = seen.iter().filter(|(runs_away, ..)| *runs_away);
+    let found = ends(unbounded.map(|(.., speed)| *speed));
+    warnings.extend(found.map(|speeds| Warning::MotionUnbounded { speeds }));
+    let beyond = || {
+        seen.iter()
+            .filter(|(runs_away, ratio, _)| !runs_away && *ratio > BEYOND)
+    };
+    let found = ends(beyond().map(|(.., speed)| *speed));
+    warnings.extend(found.map(|speeds| Warning::LoadBeyondForceTable {
+        speeds,
+        ratio: beyond().map(|(_, ratio, _)| *ratio).fold(0.0, f64::max),
+        largest_output_torque: largest * driven,
+    }));
+    let off = dynamics.iter().filter_map(|of| {
+        let (natural_frequency, of_rims) =
+            (of.run_up.natural_frequency, of.natural_frequency_of_rims?);
+        let off = (of_rims / natural_frequency - 1.0).abs();
+        (off > RIMS_MATTER).then_some((off, natural_frequency, of_rims))
+    });
+    let most = off.max_by(|a, b| a.0.total_cmp(&b.0));
+    warnings.extend(
+        most.map(|(_, natural_frequency, of_rims)| Warning::RimInertiaOnHub {
+            natural_frequency,
+            of_rims,
+        }),
+    );
+}
+
+/// The lowest and the highest of `speeds`.
+fn ends(speeds: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
+    speeds.fold(None, |ends, speed| {
         let [low, high] = ends.unwrap_or([speed; 2]);
         Some([low.min(speed), high.max(speed)])
-    });
-    warnings.extend(ends.map(|speeds| Warning::MotionUnbounded { speeds }));
+    })
 }

@@ -12,7 +12,7 @@ use crate::run::{Run, Stopped};
 const STEPS_A_PERIOD: usize = 128;
 
 /// Pieces of the law of force of a flank, at least.
-const PIECES: usize = 30;
+const PIECES: usize = 44;
 
 /// Looks in a period of free motion, about.
 const LOOKS: f64 = 20.0;
@@ -56,6 +56,8 @@ pub struct Branch {
     pub peak_to_peak: Vec<f64>,
     /// The largest F(θ, x) over F_0.
     pub load_factor: Vec<f64>,
+    /// The largest force on either flank in N.
+    pub largest_force: Vec<f64>,
     /// Whether the loaded flanks part.
     pub contact_lost: Vec<bool>,
     /// True periods after which the motion repeats; `None` where it was not found to.
@@ -75,15 +77,30 @@ pub struct RunUp {
     pub up: Option<Branch>,
     /// Down, where asked for; its lists rise with speed too.
     pub down: Option<Branch>,
+    /// The resonances in range. The first has the largest amplitude; of equal ones a forced one comes first, then the lower speed.
+    pub resonances: Vec<Resonance>,
 }
 
 /// Why an order resonates.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ResonanceKind {
     /// The order meets the natural frequency.
     Forced,
     /// It meets twice that, and its part of the stiffness pumps.
     Parametric,
+}
+
+/// Both, forced first.
+const KINDS: [ResonanceKind; 2] = [ResonanceKind::Forced, ResonanceKind::Parametric];
+
+impl ResonanceKind {
+    /// How often what moves at the natural frequency comes in two true periods, in one of which the order comes so many `times`.
+    fn half_order(self, times: u64) -> u64 {
+        match self {
+            Self::Forced => 2 * times,
+            Self::Parametric => times,
+        }
+    }
 }
 
 /// A speed at which an order resonates.
@@ -95,6 +112,17 @@ pub struct Resonance {
     pub order: usize,
     /// Why.
     pub kind: ResonanceKind,
+    /// The amplitude of x at the natural frequency at this speed, in m, on the branch where it is larger.
+    pub amplitude: f64,
+}
+
+/// A speed at which a half order is at the natural frequency.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Meeting {
+    /// The speed of the driving gear in revolutions per second.
+    speed: f64,
+    /// How often it comes in two true periods.
+    half_order: u64,
 }
 
 impl RunUpData {
@@ -110,35 +138,70 @@ impl RunUpData {
     /// Seconds of one core that the run-up through a mesh that repeats after `period` mesh periods takes, about.
     pub fn seconds(&self, period: u32) -> f64 {
         let steps = STEPS_A_PERIOD as f64 * f64::from(period);
-        let looks = |speed: &f64| {
+        let looks = |speed: f64| {
             let step = 1.0 / (speed * f64::from(self.tooth_count) * STEPS_A_PERIOD as f64);
             (LOOKS * step * self.natural() / (2.0 * PI)).clamp(1.0, MOST_LOOKS)
         };
-        let all: f64 = self.speeds.iter().map(looks).sum();
+        let meetings = self.meetings(period);
+        let speeds = self.speeds.iter().copied();
+        let all: f64 = speeds
+            .chain(meetings.iter().map(|meeting| meeting.speed))
+            .map(looks)
+            .sum();
         let sweeps = self.sweeps.iter().filter(|asked| **asked).count() as f64;
         SECONDS_A_LOOK * LOOKED_THROUGH * sweeps * steps * all
     }
 
-    /// The speeds in range at which one of the orders resonates, rising.
-    pub fn resonances(&self) -> Vec<Resonance> {
+    /// How often each order comes in a true period of `period` mesh periods.
+    fn per_true_period(&self, period: u32) -> impl Iterator<Item = u64> {
+        let times = move |order: &f64| (order * f64::from(period)).round() as u64;
+        self.orders.iter().map(times)
+    }
+
+    /// The speeds in range at which one of the orders resonates, each once, rising.
+    fn meetings(&self, period: u32) -> Vec<Meeting> {
         let natural = self.natural() / (2.0 * PI);
-        let range = self.speeds.first().zip(self.speeds.last());
-        let Some((&first, &last)) = range else {
+        let (Some(&first), Some(&last)) = (self.speeds.first(), self.speeds.last()) else {
             return Vec::new();
         };
-        let mut found: Vec<Resonance> = Vec::new();
-        for (order, per_period) in self.orders.iter().enumerate() {
-            for (kind, times) in [
-                (ResonanceKind::Forced, 1.0),
-                (ResonanceKind::Parametric, 2.0),
-            ] {
-                let speed = times * natural / (per_period * f64::from(self.tooth_count));
-                if (first..=last).contains(&speed) {
-                    found.push(Resonance { speed, order, kind });
-                }
+        let mut half_orders: Vec<u64> = self
+            .per_true_period(period)
+            .flat_map(|times| KINDS.map(|kind| kind.half_order(times)))
+            .filter(|half_order| *half_order > 0)
+            .collect();
+        half_orders.sort_unstable();
+        half_orders.dedup();
+        let teeth = f64::from(self.tooth_count);
+        let meetings = half_orders.into_iter().rev().map(|half_order| Meeting {
+            speed: 2.0 * natural * f64::from(period) / (half_order as f64 * teeth),
+            half_order,
+        });
+        meetings
+            .filter(|meeting| (first..=last).contains(&meeting.speed))
+            .collect()
+    }
+
+    /// The resonances at `meetings`, at which x has these `amplitudes` at the natural frequency.
+    fn resonances(&self, period: u32, meetings: &[(Meeting, f64)]) -> Vec<Resonance> {
+        let mut found = Vec::new();
+        for (order, times) in self.per_true_period(period).enumerate() {
+            for kind in KINDS {
+                let half_order = kind.half_order(times);
+                let met = meetings.iter().find(|(at, _)| at.half_order == half_order);
+                found.extend(met.map(|&(Meeting { speed, .. }, amplitude)| Resonance {
+                    speed,
+                    order,
+                    kind,
+                    amplitude,
+                }));
             }
         }
-        found.sort_by(|a, b| a.speed.total_cmp(&b.speed));
+        found.sort_by(|a, b| {
+            let larger = b.amplitude.total_cmp(&a.amplitude);
+            larger
+                .then(a.kind.cmp(&b.kind))
+                .then(a.speed.total_cmp(&b.speed))
+        });
         found
     }
 
@@ -149,15 +212,26 @@ impl RunUpData {
     /// [`Stopped`] if `run` was told to stop.
     pub fn run_up(&self, table: &ForceTable, run: &Run) -> Result<RunUp, Stopped> {
         let mesh = Mesh::new(self, table);
+        let meetings = self.meetings(table.period());
         let branch = |down: bool| {
             let wanted = self.sweeps[usize::from(down)];
-            wanted.then(|| mesh.branch(down, run)).transpose()
+            wanted
+                .then(|| mesh.branch(down, &meetings, run))
+                .transpose()
         };
         let (up, down) = rayon::join(|| branch(false), || branch(true));
+        let ((up, upward), (down, downward)) = (up?.unzip(), down?.unzip());
+        let met = meetings.iter().enumerate().map(|(i, meeting)| {
+            let amplitudes = [&upward, &downward].into_iter().flatten();
+            let larger = amplitudes.map(|branch| branch[i]).fold(0.0, f64::max);
+            (*meeting, larger)
+        });
+        let met: Vec<(Meeting, f64)> = met.collect();
         Ok(RunUp {
             natural_frequency: self.natural() / (2.0 * PI),
-            up: up?,
-            down: down?,
+            up,
+            down,
+            resonances: self.resonances(table.period(), &met),
         })
     }
 }
@@ -170,8 +244,10 @@ struct Mesh<'a> {
     per_period: f64,
     /// δ_s under F_0 at the ends of steps.
     deflection: Vec<f64>,
-    /// Cosine and sine of each order at the end of each step.
-    waves: Vec<Vec<(f64, f64)>>,
+    /// How often each order comes in two true periods.
+    half_orders: Vec<u64>,
+    /// Cosine and sine at the ends of the steps of two true periods of what comes once in them.
+    waves: Vec<(f64, f64)>,
 }
 
 impl<'a> Mesh<'a> {
@@ -203,20 +279,19 @@ impl<'a> Mesh<'a> {
             );
         }
         let per_period = count as f64 / f64::from(table.period());
-        let wave = |order: &f64| {
-            (1..=count)
-                .map(|i| {
-                    let (sin, cos) = (2.0 * PI * order * i as f64 / per_period).sin_cos();
-                    (cos, sin)
-                })
-                .collect()
+        let twice = 2 * count;
+        let wave = |i: usize| {
+            let (sin, cos) = (2.0 * PI * i as f64 / twice as f64).sin_cos();
+            (cos, sin)
         };
+        let times = data.per_true_period(table.period());
         Self {
             data,
             laws: Laws::new(forces, knots, loads.len()),
             per_period,
             deflection,
-            waves: data.orders.iter().map(wave).collect(),
+            half_orders: times.map(|times| 2 * times).collect(),
+            waves: (0..twice).map(wave).collect(),
         }
     }
 
@@ -265,13 +340,20 @@ impl<'a> Mesh<'a> {
         }
     }
 
-    /// The branch from the lowest speed up, or from the highest down, each motion going on from the last.
-    fn branch(&self, down: bool, run: &Run) -> Result<Branch, Stopped> {
+    /// The branch from the lowest speed up, or from the highest down, each motion going on from the last; and the amplitudes of x at the natural
+    /// frequency at each of the `meetings`, whose motions go on from the nearest speed before.
+    fn branch(
+        &self,
+        down: bool,
+        meetings: &[Meeting],
+        run: &Run,
+    ) -> Result<(Branch, Vec<f64>), Stopped> {
         let data = self.data;
         let count = data.speeds.len();
         let mut seen: Vec<Option<Motion>> = vec![None; count];
         let scale = self.scale();
         let mut orbit = Orbit::REST;
+        let mut orbits = vec![orbit; count];
         let order = |k: usize| if down { count - 1 - k } else { k };
         for place in (0..count).map(order) {
             run.check()?;
@@ -279,7 +361,7 @@ impl<'a> Mesh<'a> {
             seen[place] = Some(if speed > 0.0 {
                 let oscillator = self.oscillator(speed);
                 orbit = oscillator.settled(orbit, scale);
-                let motion = self.motion(&oscillator, orbit);
+                let motion = self.motion(&oscillator, orbit, &self.half_orders);
                 if orbit.runs_away {
                     orbit = Orbit::REST;
                 }
@@ -287,6 +369,21 @@ impl<'a> Mesh<'a> {
             } else {
                 self.standing()
             });
+            orbits[place] = orbit;
+        }
+        let mut amplitudes = Vec::with_capacity(meetings.len());
+        for meeting in meetings {
+            run.check()?;
+            let below = data.speeds.partition_point(|speed| *speed <= meeting.speed);
+            let before = if down {
+                below.min(count - 1)
+            } else {
+                below - 1
+            };
+            let oscillator = self.oscillator(meeting.speed);
+            let settled = oscillator.settled(orbits[before], scale);
+            let motion = self.motion(&oscillator, settled, &[meeting.half_order]);
+            amplitudes.push(motion.orders[0]);
         }
         let mut branch = Branch {
             orders: vec![Vec::with_capacity(count); data.orders.len()],
@@ -296,6 +393,7 @@ impl<'a> Mesh<'a> {
             branch.rms.push(motion.rms);
             branch.peak_to_peak.push(motion.peak_to_peak);
             branch.load_factor.push(motion.load_factor);
+            branch.largest_force.push(motion.largest_force);
             branch.contact_lost.push(motion.contact_lost);
             branch.repeats.push(motion.repeats);
             branch.runs_away.push(motion.runs_away);
@@ -303,25 +401,25 @@ impl<'a> Mesh<'a> {
                 list.push(amplitude);
             }
         }
-        Ok(branch)
+        Ok((branch, amplitudes))
     }
 
     /// The static curve.
     fn standing(&self) -> Motion {
-        let mut watched = Watched::new(self);
-        for (i, &x) in self.deflection.iter().enumerate() {
+        let mut watched = Watched::new(self, &self.half_orders);
+        for &x in &self.deflection {
             watched.take(x);
-            let before = (i + self.deflection.len() - 1) % self.deflection.len();
-            watched.end_of_step(before, x);
+            watched.end_of_step(x);
         }
-        watched.motion(1.0, false, Orbit::REST)
+        watched.force(self.data.load, false);
+        watched.motion(Orbit::REST)
     }
 
-    /// What `orbit` is seen to do.
-    fn motion(&self, oscillator: &Oscillator<'_>, orbit: Orbit) -> Motion {
-        let mut watched = Watched::new(self);
+    /// What `orbit` is seen to do, at these half orders.
+    fn motion(&self, oscillator: &Oscillator<'_>, orbit: Orbit, half_orders: &[u64]) -> Motion {
+        let mut watched = Watched::new(self, half_orders);
         let mut state = orbit.state;
-        let (mut most, mut parted, mut left) = (0.0_f64, false, false);
+        let mut left = false;
         let scale = self.scale();
         let count = self.deflection.len();
         for _ in 0..orbit.periods {
@@ -336,14 +434,13 @@ impl<'a> Mesh<'a> {
                 );
                 let x = from + seen.part * (to - from) + seen.u;
                 watched.take(x);
-                most = most.max(seen.force);
-                parted |= seen.apart;
+                watched.force(seen.force, seen.apart);
                 if seen.part == 1.0 {
-                    watched.end_of_step(seen.step, x);
+                    watched.end_of_step(x);
                 }
             });
         }
-        watched.motion(most / self.data.load, parted, orbit)
+        watched.motion(orbit)
     }
 }
 
@@ -353,6 +450,7 @@ struct Motion {
     rms: f64,
     peak_to_peak: f64,
     load_factor: f64,
+    largest_force: f64,
     contact_lost: bool,
     repeats: Option<u32>,
     orders: Vec<f64>,
@@ -368,12 +466,17 @@ struct Watched<'a> {
     squares: f64,
     least: f64,
     most: f64,
-    steps: f64,
-    orders: Vec<(f64, f64)>,
+    /// The largest force of the loaded flank, and of either.
+    largest: [f64; 2],
+    parted: bool,
+    steps: u64,
+    half_orders: &'a [u64],
+    /// The sums of x times the cosine and times the sine of each.
+    waves: Vec<(f64, f64)>,
 }
 
 impl<'a> Watched<'a> {
-    fn new(mesh: &'a Mesh<'a>) -> Self {
+    fn new(mesh: &'a Mesh<'a>, half_orders: &'a [u64]) -> Self {
         Self {
             mesh,
             datum: mesh.deflection[0],
@@ -381,8 +484,11 @@ impl<'a> Watched<'a> {
             squares: 0.0,
             least: f64::INFINITY,
             most: f64::NEG_INFINITY,
-            steps: 0.0,
-            orders: vec![(0.0, 0.0); mesh.waves.len()],
+            largest: [0.0; 2],
+            parted: false,
+            steps: 0,
+            half_orders,
+            waves: vec![(0.0, 0.0); half_orders.len()],
         }
     }
 
@@ -392,29 +498,47 @@ impl<'a> Watched<'a> {
         self.most = self.most.max(x);
     }
 
-    fn end_of_step(&mut self, step: usize, x: f64) {
+    fn force(&mut self, force: f64, apart: bool) {
+        self.largest[0] = self.largest[0].max(force);
+        self.largest[1] = self.largest[1].max(force.abs());
+        self.parted |= apart;
+    }
+
+    fn end_of_step(&mut self, x: f64) {
         let x = x - self.datum;
-        self.steps += 1.0;
+        self.steps += 1;
         self.sum += x;
         self.squares += x * x;
-        for (sum, wave) in self.orders.iter_mut().zip(&self.mesh.waves) {
-            sum.0 += x * wave[step].0;
-            sum.1 += x * wave[step].1;
+        let count = self.mesh.waves.len() as u64;
+        for (sum, half_order) in self.waves.iter_mut().zip(self.half_orders) {
+            let (cosine, sine) = self.mesh.waves[(half_order * self.steps % count) as usize];
+            sum.0 += x * cosine;
+            sum.1 += x * sine;
         }
     }
 
-    fn motion(self, load_factor: f64, contact_lost: bool, orbit: Orbit) -> Motion {
-        let steps = self.steps.max(1.0);
+    fn motion(self, orbit: Orbit) -> Motion {
+        let steps = self.steps.max(1) as f64;
         let mean = self.sum / steps;
-        let amplitude = |(cosine, sine): (f64, f64)| 2.0 * cosine.hypot(sine) / steps;
+        // What repeats after an odd number of true periods has nothing that comes an odd number of times in two of them.
+        let odd = orbit.repeats.is_some_and(|repeats| repeats % 2 == 1);
+        let waves = self.half_orders.iter().zip(&self.waves);
+        let amplitude = |(half_order, (cosine, sine)): (&u64, &(f64, f64))| {
+            if odd && half_order % 2 == 1 {
+                0.0
+            } else {
+                2.0 * cosine.hypot(*sine) / steps
+            }
+        };
         Motion {
             rms: (self.squares / steps - mean * mean).max(0.0).sqrt(),
             peak_to_peak: (self.most - self.least).max(0.0),
-            load_factor,
-            contact_lost,
+            load_factor: self.largest[0] / self.mesh.data.load,
+            largest_force: self.largest[1],
+            contact_lost: self.parted,
             repeats: orbit.repeats,
             runs_away: orbit.runs_away,
-            orders: self.orders.into_iter().map(amplitude).collect(),
+            orders: waves.map(amplitude).collect(),
         }
     }
 }

@@ -1,7 +1,8 @@
 //! The force between two gears over position and approach, and the energy behind it.
 
-/// How loads rise from one row of a table to the next: as this power, so that rows are dense where a line contact is soft.
-const RISE: f64 = 1.5;
+/// How loads rise from one row of a table to the next: at the place x of 0 to 1 the part of the largest load is 3 y/(1 + 2 y) with y = x to this power. Rows are
+/// close where loads are light, since a line contact is soft there and pairs of teeth come to carry one after the other, and even where they are not.
+const RISE: f64 = 3.5;
 
 /// The least rise of δ from row to row in m, less than an atom.
 const APART: f64 = 1e-14;
@@ -37,12 +38,12 @@ impl Ladder {
     pub fn loads(&self) -> Vec<f64> {
         let last = (self.count - 1) as f64;
         (0..self.count)
-            .map(|j| self.largest * (j as f64 / last).powf(RISE))
+            .map(|j| self.largest * part_at(j as f64 / last))
             .collect()
     }
 }
 
-/// F(θ, δ) over the true period: the approach δ at each position under each of a ladder of loads, of both flanks.
+/// F(θ, δ) over the true period: the approach δ at each position under each of its loads, of both flanks.
 ///
 /// Between positions and between loads δ is linear in both; beyond the largest load it goes on straight. [`ForceTable::refined`] puts a
 /// smooth table between the rows that were computed. F follows by inversion: it is zero in the backlash, rises with δ, and has the
@@ -51,7 +52,6 @@ impl Ladder {
 pub struct ForceTable {
     /// Mesh periods after which it repeats.
     period: u32,
-    ladder: Ladder,
     loads: Vec<f64>,
     loaded: FlankRows,
     /// At minus the loads.
@@ -89,7 +89,8 @@ pub struct Forces {
 }
 
 impl ForceTable {
-    /// A table over `period` mesh periods with these rows of the loaded and of the other flank, a row each load of the `ladder`. Rows that rounding
+    /// A table over `period` mesh periods with these rows of the loaded and of the other flank, a row each of the `loads`, which rise
+    /// from 0. Rows that rounding
     /// leaves equal are set apart.
     ///
     /// # Errors
@@ -97,10 +98,10 @@ impl ForceTable {
     /// [`FallingRow`] if δ does not rise with the load.
     pub fn new(
         period: u32,
-        ladder: Ladder,
+        loads: Vec<f64>,
         [loaded, other]: [FlankRows; 2],
     ) -> Result<Self, FallingRow> {
-        let table = Self::set_apart(period, ladder, [loaded.clone(), other.clone()]);
+        let table = Self::set_apart(period, loads, [loaded.clone(), other.clone()]);
         let step = table.step();
         for (given, found, sign) in [(loaded, &table.loaded, 1.0), (other, &table.other, -1.0)] {
             let rows = given.delta.iter().zip(&found.delta).zip(&table.loads);
@@ -125,13 +126,12 @@ impl ForceTable {
     }
 
     /// With each row beyond the one before.
-    fn set_apart(period: u32, ladder: Ladder, [mut loaded, mut other]: [FlankRows; 2]) -> Self {
+    fn set_apart(period: u32, loads: Vec<f64>, [mut loaded, mut other]: [FlankRows; 2]) -> Self {
         set_apart(&mut loaded.delta, |a, b| a.max(b + APART));
         set_apart(&mut other.delta, |a, b| a.min(b - APART));
         Self {
             period,
-            ladder,
-            loads: ladder.loads(),
+            loads,
             loaded,
             other,
         }
@@ -256,22 +256,36 @@ impl ForceTable {
         }
     }
 
-    /// The table with `by_position` times as many positions and `by_load` times as many loads, of four at least. Along a row: on cubics through
-    /// its own, and on the lesser of two branches where pairs of teeth begin or cease to carry. From row to row: so that compliances are met where
-    /// they are known, and as along a row where they are not. Where that brings two rows together between positions they are set apart.
+    /// The table with `by_position` times as many positions and `by_load` times as many stretches between loads, of four at least.
     pub fn refined(&self, by_position: usize, by_load: usize) -> Self {
-        let ladder = Ladder {
-            count: (self.ladder.count - 1) * by_load + 1,
-            ..self.ladder
-        };
-        let loads = ladder.loads();
+        let largest = self.loads[self.loads.len() - 1];
+        let between = self.loads.windows(2).flat_map(|ends| {
+            let [from, to] = [ends[0], ends[1]].map(|load| place_of(load / largest));
+            (1..=by_load).map(move |j| {
+                let part = j as f64 / by_load as f64;
+                // The end as it stands, to the last digit.
+                if j == by_load {
+                    ends[1]
+                } else {
+                    largest * part_at(from + part * (to - from))
+                }
+            })
+        });
+        let loads = self.loads.iter().take(1).copied().chain(between).collect();
+        self.under(by_position, loads)
+    }
+
+    /// The table with `by_position` times as many positions under `loads`, which rise from 0 to its largest. Along a row: on cubics through its own, and on
+    /// the lesser of two branches where pairs of teeth begin or cease to carry. From row to row, of four at least: so that compliances are met where they
+    /// are known, and as along a row where they are not. Where that brings two rows together between positions they are set apart.
+    pub fn under(&self, by_position: usize, loads: Vec<f64>) -> Self {
         // The other flanks have their kinks upside down.
         let flank = |rows: &FlankRows, sign: f64| {
             let turned = |row: &Vec<f64>| row.iter().map(|delta| sign * delta).collect();
             let delta: Vec<Vec<f64>> = rows.delta.iter().map(turned).collect();
             let between_loads = match &rows.compliance {
-                Some(compliance) => self.met(&delta, compliance, &loads, by_load),
-                None => self.along_loads(&delta, &loads, by_load),
+                Some(compliance) => self.met(&delta, compliance, &loads),
+                None => self.along_loads(&delta, &loads),
             };
             let along_positions = between_loads.iter().map(|row| {
                 (0..row.len() * by_position)
@@ -281,44 +295,54 @@ impl ForceTable {
             FlankRows::of_delta(along_positions.collect())
         };
         let flanks = [flank(&self.loaded, 1.0), flank(&self.other, -1.0)];
-        Self::set_apart(self.period, ladder, flanks)
+        Self::set_apart(self.period, loads, flanks)
     }
 
-    /// `delta` at its positions under `loads`, of which every `by_load`-th is its own.
-    fn along_loads(&self, delta: &[Vec<f64>], loads: &[f64], by_load: usize) -> Vec<Vec<f64>> {
-        let loads = loads.iter().enumerate();
-        loads
-            .map(|(j, &load)| {
-                let place = (j / by_load, (j % by_load) as f64 / by_load as f64);
-                let at = |i: usize| between_open(&self.loads, |j| delta[j][i], place, load);
-                (0..self.positions()).map(at).collect()
-            })
-            .collect()
+    /// `delta` at its positions under `loads`.
+    fn along_loads(&self, delta: &[Vec<f64>], loads: &[f64]) -> Vec<Vec<f64>> {
+        let largest = self.loads[self.loads.len() - 1];
+        let row = |&load: &f64| {
+            let first = self.row_below(|j| self.loads[j] <= load);
+            let [from, to] = [first, first + 1].map(|j| self.loads[j]);
+            if load == to {
+                return delta[first + 1].clone();
+            }
+            let [place, first_place, last_place] =
+                [load, from, to].map(|load| place_of(load / largest));
+            let part = (place - first_place) / (last_place - first_place);
+            let at = |i: usize| between_open(&self.loads, |j| delta[j][i], (first, part), load);
+            (0..self.positions()).map(at).collect()
+        };
+        loads.iter().map(row).collect()
     }
 
     /// The same, so that `compliance` is met too.
-    fn met(
-        &self,
-        delta: &[Vec<f64>],
-        compliance: &[Vec<f64>],
-        loads: &[f64],
-        by_load: usize,
-    ) -> Vec<Vec<f64>> {
+    fn met(&self, delta: &[Vec<f64>], compliance: &[Vec<f64>], loads: &[f64]) -> Vec<Vec<f64>> {
         let mut rows = vec![vec![0.0; self.positions()]; loads.len()];
         for i in 0..self.positions() {
             let at = |rows: &[Vec<f64>]| rows.iter().map(|row| row[i]).collect::<Vec<f64>>();
             let stretches = Stretch::all(&self.loads, &at(delta), &at(compliance));
             for (j, &load) in loads.iter().enumerate() {
-                let stretch = &stretches[(j / by_load).min(stretches.len() - 1)];
-                rows[j][i] = if j % by_load == 0 {
-                    delta[j / by_load][i]
-                } else {
-                    stretch.delta(load)
-                };
+                let first = self.row_below(|j| self.loads[j] <= load);
+                let own = [first, first + 1]
+                    .into_iter()
+                    .find(|&j| self.loads[j] == load);
+                rows[j][i] = own.map_or_else(|| stretches[first].delta(load), |j| delta[j][i]);
             }
         }
         rows
     }
+}
+
+/// The part of the largest load at a place between the first row of a [`Ladder`], 0, and its last, 1.
+fn part_at(place: f64) -> f64 {
+    let y = place.powf(RISE);
+    3.0 * y / (1.0 + 2.0 * y)
+}
+
+/// The place at which that part stands.
+fn place_of(part: f64) -> f64 {
+    (part / (3.0 - 2.0 * part)).powf(1.0 / RISE)
 }
 
 /// From this ratio on of how fast its compliance falls to how fast those beside it do, a stretch has a kink.
@@ -587,7 +611,7 @@ pub(super) mod tests {
             compliance: Some(compliance.collect()),
         };
         let other = FlankRows::of_delta(rows(-1.0, -3.0));
-        ForceTable::new(1, ladder, [loaded, other]).expect("rows that rise")
+        ForceTable::new(1, ladder.loads(), [loaded, other]).expect("rows that rise")
     }
 
     #[test]
@@ -608,7 +632,7 @@ pub(super) mod tests {
                 rows(1.0, 0.0, falling(1.0)),
                 rows(-1.0, -9e-6, falling(-1.0)),
             ];
-            ForceTable::new(2, ladder, flanks)
+            ForceTable::new(2, ladder.loads(), flanks)
         };
         for sign in [1.0, -1.0] {
             let told = table(0.3e-6, sign).expect_err("it falls");
@@ -779,7 +803,7 @@ pub(super) mod tests {
                 delta: rows(sign),
                 compliance: Some(compliance.clone()),
             });
-            let table = ForceTable::new(1, ladder, flanks).expect("rows that rise");
+            let table = ForceTable::new(1, ladder.loads(), flanks).expect("rows that rise");
             let table = table.refined(1, 16);
             let both = table.loaded.delta.iter().zip(&table.other.delta);
             let missed = table.loads().iter().zip(both).map(|(load, (row, other))| {

@@ -122,7 +122,7 @@ async fn document(
 #[utoipa::path(
     get, path = "/v1/studies/{id}/designs/{row}", tag = "Studies", operation_id = "get_study_design",
     params(
-        ("row" = u32, Path, description = "The place of the design in the table, from 0.", minimum = 0),
+        ("row" = u32, Path, example = 0, description = "The place of the design in the table, from 0.", minimum = 0),
         IfNoneMatch,
     ),
     responses(

@@ -62,7 +62,7 @@ pub(in crate::http) async fn results(
 #[utoipa::path(
     get, path = "/v1/studies/{id}/results/{file}", tag = "Studies", operation_id = "get_study_file",
     params(
-        ("file" = inline(StudyFile), Path, description = "`table.json`, `table.ndjson`, `table.csv` or `documents.ndjson`."),
+        ("file" = inline(StudyFile), Path, example = "table.csv", description = "`table.json`, `table.ndjson`, `table.csv` or `documents.ndjson`."),
         IfNoneMatch,
     ),
     responses(

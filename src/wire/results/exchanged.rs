@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use meshwright_engine::dynamics::{FlankRows, ForceTable, Ladder};
+use meshwright_engine::dynamics::{FlankRows, ForceTable};
 use meshwright_exchange::force_table::MeshForces;
 use meshwright_exchange::look_up::LookUp;
 
@@ -12,10 +12,6 @@ impl Results {
     /// The force table with what turns it into torques; `None` if there is none.
     pub fn mesh_forces(&self) -> Option<MeshForces> {
         let (pair, table) = (&self.pair, self.force_table.as_ref()?);
-        let ladder = Ladder {
-            count: table.load_n.len(),
-            largest: *table.load_n.last()?,
-        };
         let rows = |rows: &[Vec<f64>], convert: fn(f64) -> f64| {
             let row = |row: &Vec<f64>| row.iter().copied().map(convert).collect();
             rows.iter().map(row).collect::<Vec<Vec<f64>>>()
@@ -37,7 +33,7 @@ impl Results {
         ];
         let base_radii = self.base_radii();
         Some(MeshForces {
-            table: ForceTable::new(pair.period_mesh_periods, ladder, flanks).ok()?,
+            table: ForceTable::new(pair.period_mesh_periods, table.load_n.clone(), flanks).ok()?,
             base_radii,
             tooth_count: (TAU * base_radii[0] / (pair.base_pitch_mm * 1e-3)).round(),
             method: self.method.to_string(),

@@ -56,8 +56,8 @@ answer! {
         up?: BranchDocument = run_up.up.as_ref().map(branch),
         /// Run down from the highest speed; absent if not asked for.
         down?: BranchDocument = run_up.down.as_ref().map(branch),
-        /// The speeds at which an order meets the natural frequency, or twice it, rising.
-        resonances: Vec<ResonanceDocument> = all(&dynamics.resonances, |found| ResonanceDocument::of(found, labels)),
+        /// The speeds at which an order meets the natural frequency, or twice it: the one with the largest amplitude first.
+        resonances: Vec<ResonanceDocument> = all(&run_up.resonances, |found| ResonanceDocument::of(found, labels)),
     }
 }
 
@@ -72,7 +72,8 @@ answer! {
         contact_lost: Vec<bool> = branch.contact_lost.clone(),
         /// True periods after which the motion repeats; 0 where it was not found to.
         period_multiple: Vec<u32> = all(&branch.repeats, |repeats| repeats.unwrap_or(0)),
-        /// The amplitudes at the orders of mesh and holes, and at others that stand out.
+        /// The amplitudes at the orders of the mesh to the tenth, of holes, of the first revolutions of gears that deviate, at the sidebands of both, and at
+        /// others that stand out.
         orders: Vec<OrderAmplitudesDocument> =
             labels.iter().zip(&branch.orders).map(|(label, found)| OrderAmplitudesDocument::of(label, found)).collect(),
     }
@@ -109,6 +110,11 @@ answer! {
         label: String = labels[resonance.order].clone(),
         /// Whether it is forced or parametric.
         kind: ResonanceKindName = resonance.kind.into(),
+        /// The amplitude of the motion at the natural frequency at this speed, in um, on the branch where it is larger. A parametric resonance that does not
+        /// pump has 0.
+        #[serde(default)]
+        #[schema(required)]
+        amplitude_um: f64 = to_um(resonance.amplitude),
     }
 }
 

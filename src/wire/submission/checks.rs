@@ -6,7 +6,7 @@ use meshwright_engine::gear::{GearPair, SpurGear};
 use super::Purpose;
 use super::document::{Document, OUTPUT_TORQUE};
 use crate::wire::declare::{Choice as _, Errors};
-use crate::wire::forces::{DynamicsQuestion, ForceTableQuestion, SpeedRange};
+use crate::wire::forces::{DynamicsQuestion, ForceTableQuestion, SpeedRange, Speeds};
 use crate::wire::problem::{Code, FieldError};
 use crate::wire::resolution::{ContactSolverDocument, ResolutionDocument};
 use crate::wire::units::{Side, plain, rounded_inward};
@@ -128,13 +128,15 @@ impl Document {
                 );
             }
         }
-        let range = &dynamics.driving_speed_rpm;
+        let speeds = &dynamics.driving_speed_rpm;
         let within = format!(
             "/{}/{}",
             Self::dynamics.name,
             DynamicsQuestion::driving_speed_rpm.name
         );
-        if range.to <= range.from {
+        if let Speeds::Range(range) = speeds
+            && range.to <= range.from
+        {
             let most = SpeedRange::to.spec.bounds.1;
             let (name, nearest) = if range.from < most {
                 (SpeedRange::to.name, (range.from + 1.0).min(most))
@@ -150,12 +152,12 @@ impl Document {
             errors.push(FieldError::new(pointer, Code::OutOfRange, detail).nearest(nearest));
         }
         let each = u64::from(pair.period()) * self.output_torques_n_m.len() as u64;
-        let total = each * u64::from(range.count);
+        let total = each * u64::from(speeds.count());
         if total > MOST_PERIODS_RUN {
             let fits = MOST_PERIODS_RUN / each;
             let detail = format!(
                 "{} of {} at {} are {total} mesh periods; the limit is {MOST_PERIODS_RUN}. What would fit: {}.",
-                counted(u64::from(range.count), "speed"),
+                counted(u64::from(speeds.count()), "speed"),
                 counted(u64::from(pair.period()), "mesh period"),
                 counted(self.output_torques_n_m.len() as u64, "torque"),
                 counted(fits, "speed")

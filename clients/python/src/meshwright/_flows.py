@@ -13,7 +13,7 @@ from .contact_pattern import ContactPattern
 from .force_table import ForceTable
 from .look_up import LookUpTable
 from .problem import ProblemError
-from .results import Results
+from .results import Job, Results
 from .study import StudyTable
 
 Json = dict[str, Any]
@@ -87,7 +87,7 @@ def solve(submission: Submission, report: Report) -> Flow[Results]:
     if job["status"] != "successful":
         raise ProblemError(job.get("problem") or {"code": job["status"], "detail": f"the job was {job['status']}"})
     found = yield from results(job["id"])
-    found.job = job
+    found.job = Job(job)
     return found
 
 

@@ -55,7 +55,12 @@ class LookUpTable:
         return float(self.mesh_stiffness_n_per_m[:-1].mean())
 
     def to_ross(self, mesh: Any) -> Any:
-        """Gives a `ross` `Mesh` this stiffness: it interpolates over the angle of the driving gear and wraps at its end."""
+        """Gives a `ross` `Mesh` (ROSS 2.3 and 3.1) this stiffness: it interpolates over the angle of the driving gear and wraps at its end.
+
+        Raises ValueError where that cannot take effect: with its backlash model on, ROSS takes the force from a table of its own.
+        """
+        if getattr(mesh, "backlash", None) is not None:
+            raise ValueError("with backlash enabled, ROSS takes the mesh force from a stiffness table of its own, and this one would have no effect: make the Mesh without backlash")
         mesh.theta_range = self.driving_angle_rad
         mesh.stiffness_range = self.mesh_stiffness_n_per_m
         mesh.stiffness = self.mean_stiffness_n_per_m

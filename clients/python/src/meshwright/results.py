@@ -31,6 +31,30 @@ def _array(values: list[float | None]) -> Array:
     return np.array([np.nan if value is None else value for value in values], dtype=np.float64)
 
 
+# How the ends of names say units, and how people write them.
+_UNITS = (("_n_per_m", "N/m"), ("_n_per_mm", "N/mm"), ("_n_m", "N m"), ("_um", "µm"), ("_mm", "mm"), ("_deg", "deg"), ("_mpa", "MPa"), ("_n", "N"))
+
+
+def _labeled(column: str) -> str:
+    """The name of a column as an axis has it, with its unit."""
+    for end, unit in _UNITS:
+        if column.endswith(end):
+            return f"{column.removesuffix(end).replace('_', ' ')} in {unit}"
+    return column.replace("_", " ")
+
+
+class Job(dict[str, Any]):
+    """A job as the service tells it; what is asked most is an attribute too."""
+
+    @property
+    def id(self) -> str:
+        return str(self["id"])
+
+    @property
+    def status(self) -> str:
+        return str(self["status"])
+
+
 class Curve:
     """The curves at one output torque. Units stand in the names; all arrays run over the same positions."""
 
@@ -84,6 +108,11 @@ class Curve:
         return None if factor is None else float(factor)
 
     @property
+    def K_Hbeta(self) -> float | None:  # noqa: N802
+        """The same by its symbol."""
+        return self.face_load_factor
+
+    @property
     def lead_cure(self) -> dict[str, float] | None:
         """The slope and crowning of the driving leads that would make K_Hbeta least, and what it would be; none where there is no face."""
         cure: dict[str, float] | None = self.document.get("face", {}).get("cure")
@@ -106,7 +135,7 @@ class Results:
     def __init__(self, document: dict[str, Any]) -> None:
         self.document = document
         self.curves = [Curve(curve) for curve in document["curves"]]
-        self.job: dict[str, Any] | None = None
+        self.job: Job | None = None
         """The job that computed it, with its id; none of a preview."""
 
     @property
@@ -146,6 +175,6 @@ class Results:
         axes = pyplot.subplots()[1] if axes is None else axes
         for curve in self.curves:
             axes.plot(curve.mesh_position, curve[column], label=f"{curve.output_torque_n_m:g} N m")
-        axes.set(xlabel="mesh position in mesh periods", ylabel=column)
+        axes.set(xlabel="mesh position in mesh periods", ylabel=_labeled(column))
         axes.legend()
         return axes

@@ -172,6 +172,31 @@ fn a_run_up_is_refused_where_it_has_no_table_or_no_load_and_the_nearest_will_do(
 }
 
 #[test]
+fn a_run_up_may_be_one_speed() {
+    let of = |speed: serde_json::Value| {
+        with(
+            case_2(),
+            &[("/dynamics", json!({ "driving_speed_rpm": speed }))],
+        )
+    };
+    let submission = parse(&of(json!(3000))).expect("valid");
+    assert_eq!(
+        echo(&submission)["dynamics"]["driving_speed_rpm"],
+        json!(3000.0)
+    );
+    let request = submission.forces().expect("asked for");
+    assert_eq!(request.dynamics.as_ref().expect("asked for").speeds, [50.0]);
+    for (speed, code) in [
+        (json!(-1), OutOfRange),
+        (json!(2e6), OutOfRange),
+        (json!("fast"), WrongType),
+        (json!([1, 2]), WrongType),
+    ] {
+        fault(&of(speed), "/dynamics/driving_speed_rpm", code);
+    }
+}
+
+#[test]
 fn a_table_of_too_many_positions_is_refused_with_the_loads_that_fit() {
     let mut document = case_2();
     put(
