@@ -238,6 +238,7 @@ function onBusy(busy) {
 
 /** How far the job is that computes a design too large for a preview. */
 function onProgress(job) {
+  clearInterval(onProgress.timer);
   byId("progress").hidden = !job;
   byId("stop").hidden = !job;
   if (!job) return;
@@ -246,7 +247,12 @@ function onProgress(job) {
   const { id, progress_percent: done = 0, begun, expected, status, away } = job;
   if (onProgress.id !== id) onProgress.left = remaining(expected, () => performance.now() - begun);
   onProgress.id = id;
-  byId("state").textContent = away ? "The service does not answer; a job goes on." : status === "accepted" ? "A job waits for its turn." : done < 100 ? `A job: ${done} %${onProgress.left(done, 100)}.` : "A job: every position is solved, and the results are put together.";
+  // Between two events time goes on.
+  const tick = () => {
+    byId("state").textContent = away ? "The service does not answer; a job goes on." : status === "accepted" ? "A job waits for its turn." : done < 100 ? `A job: ${done} %${onProgress.left(done, 100)}.` : "A job: every position is solved, and the results are put together.";
+  };
+  tick();
+  onProgress.timer = setInterval(tick, 1000);
 }
 
 /** The last good curve stays; what is wrong stands above it and at its field. */

@@ -273,10 +273,10 @@ export async function shownSteps(service) {
       for (const [at, done] of [[20, 1], [40, 2], [60, 3]]) tell(at, done);
       for (let done = 4; done <= 100; done += 1) tell(60 + 0.65 * (done - 3), done);
       // A third in ten seconds: twenty more. Of too few nothing is said; what was expected counts before anything is known.
-      const of = (done, total, expected) => { let at = 0; const words = remaining(expected, () => at); at = 10_000; return words(done, total); };
-      return { all, of: [of(5, 15), of(2, 15), of(15, 15), of(5, 155), of(0, 100, 60_000)] };
+      const of = (done, total, expected, after = 10_000) => { let at = 0; const words = remaining(expected, () => at); at = after; return words(done, total); };
+      return { all, of: [of(5, 15), of(2, 15), of(15, 15), of(5, 155), of(0, 100, 60_000), of(0, 100, 60_000, 70_000)] };
     });
-    assert.deepEqual(said.of, [", about 20 s more", "", "", ", about 5 min more", ", about 50 s more"]);
+    assert.deepEqual(said.of, [", about 20 s more", "", "", ", about 5 min more", ", about 50 s more", ", longer than was thought"]);
     for (const [at, done, words] of said.all.filter(([, done]) => done > 6 && done < 98)) {
       const told = Number(/about (\d+) s/.exec(words)?.[1]);
       const true_ = 60 + 0.65 * 97 - at;
