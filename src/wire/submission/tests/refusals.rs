@@ -187,10 +187,10 @@ fn a_run_up_may_be_one_speed() {
     let request = submission.forces().expect("asked for");
     assert_eq!(request.dynamics.as_ref().expect("asked for").speeds, [50.0]);
     for (speed, code) in [
-        (json!(-1), OutOfRange),
-        (json!(2e6), OutOfRange),
-        (json!("fast"), WrongType),
-        (json!([1, 2]), WrongType),
+        (json!(-1), Code::OutOfRange),
+        (json!(2e6), Code::OutOfRange),
+        (json!("fast"), Code::WrongType),
+        (json!([1, 2]), Code::WrongType),
     ] {
         fault(&of(speed), "/dynamics/driving_speed_rpm", code);
     }
