@@ -161,6 +161,8 @@ def ross_mesh(ross):
         from ross.gear_element import GearElementTVMS, Mesh
     gear = {"material": ross.steel, "width": 0.02, "bore_diameter": 0.032, "module": 0.002, "n_teeth": 50, "pr_angle": np.deg2rad(20)}
     driving, driven = (GearElementTVMS(n=node, **gear) for node in (0, 1))
+    # As a rotor numbers them, which the backlash model asks.
+    driving.dof_global_index, driven.dof_global_index = ({f"dof_{i}": node * 6 + i for i in range(6)} for node in (0, 1))
     return lambda **more: Mesh(driving, driven, gear_mesh_stiffness=1e8, **more)
 
 
