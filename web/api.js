@@ -39,7 +39,7 @@ export async function request(path, { method = "GET", body, headers = {}, signal
   if (key) all.authorization = `Bearer ${key}`;
   if (body !== undefined) all["content-type"] ??= "application/json";
   const init = { method, headers: all, signal, cache: "no-cache", credentials: "same-origin" };
-  if (body !== undefined) init.body = typeof body === "string" ? body : JSON.stringify(body);
+  if (body !== undefined) init.body = typeof body === "string" || body instanceof Blob ? body : JSON.stringify(body);
   const response = await fetch(new URL(path, document.baseURI), init).catch((error) => { throw broken(error); });
   if (response.ok) return response;
   const problem = await response.json().catch(() => ({ status: response.status, title: response.statusText, code: "unknown" }));

@@ -634,12 +634,13 @@ async function openFile(file) {
   const note = byId("start-note");
   try {
     const text = await file.text();
-    if (!text.trimStart().startsWith("<")) {
-      const document = JSON.parse(text);
+    // What is a model, and of which kind, the service sees by its content.
+    const document = text.trimStart().startsWith("{") ? JSON.parse(text) : null;
+    if (document && !document.model) {
       design.replace(document.submission ?? document, "open");
       return;
     }
-    const { submissions, not_read: left, assumed, refused } = await post("v1/rexs", text, { headers: { "content-type": "application/xml" } });
+    const { submissions, not_read: left, assumed, refused } = await post("v1/rexs", file, { headers: { "content-type": "application/octet-stream" } });
     const [submission] = submissions;
     if (!submission) throw new ProblemError({ detail: refused.map(({ place, detail }) => `${place}: ${detail}`).join(" ") || "The model has no pair of external gears." });
     design.replace(submission, "open");
