@@ -1,5 +1,7 @@
 //! A thousand pairs as gear programs write them: shifts to four decimals, distances and tip diameters to three, tips shortened, few teeth.
 
+use std::f64::consts::PI;
+
 use serde_json::{Value, json};
 
 use crate::wire::testing::parse;
@@ -51,8 +53,9 @@ fn designed(chance: &mut Chance) -> Value {
     let z_2 = (z_1 * chance.between(1.0, 5.0)).floor();
     let (alpha_n, beta) = (f64::to_radians(angle_deg), f64::to_radians(helix_deg));
     let alpha = (alpha_n.tan() / beta.cos()).atan();
-    // The shift below which the rack of ISO 53 A undercuts, and those that programs choose.
-    let depth = 1.25 - 0.38 * (1.0 - alpha_n.sin());
+    // The shift below which the rack of ISO 53 A undercuts, its rounding as large as fits, and those that programs choose.
+    let room = (PI / 4.0 - 1.25 * alpha_n.tan()) * alpha_n.cos() / (1.0 - alpha_n.sin());
+    let depth = 1.25 - room.min(0.38) * (1.0 - alpha_n.sin());
     let undercut = |z: f64| depth - z * alpha.sin().powi(2) / (2.0 * beta.cos());
     let least = |z: f64| {
         if WITH_UNDERCUT {
