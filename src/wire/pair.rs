@@ -155,9 +155,7 @@ impl PairDocument {
         })?;
         let (one, other) = (driving.clone(), driven.clone());
         let pair = GearPair::new(one, other, from_mm(self.center_distance_mm));
-        errors.report(pair.map_err(|error| {
-            self.told([&driving, &driven], 0.0, &error)
-        }))
+        errors.report(pair.map_err(|error| self.told([&driving, &driven], 0.0, &error)))
     }
 
     /// Both gears, if they can be made and could mesh; what prevents that is reported to `errors`.

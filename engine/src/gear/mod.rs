@@ -29,7 +29,9 @@ pub mod spur;
 pub mod tip;
 
 pub use accuracy::{Normals, Tolerances, total_pitch_deviation};
-pub use blank::{BlankRegion, Hole, HolePattern, HoleShape, Ligament, Moments, Symmetry, Web};
+pub use blank::{
+    BlankRegion, Core, Hole, HolePattern, HoleShape, Ligament, Moments, Symmetry, Web,
+};
 pub use data::{DeviationList, GearData, GearError};
 pub use deviation::{Eccentricity, ToothDeviations};
 pub use involute::{Involute, involute_function};

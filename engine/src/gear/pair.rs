@@ -558,7 +558,12 @@ mod tests {
     }
 
     /// Two gears by the ISO 53 rack with this `tip_radius`, in modules.
-    fn of_module(teeth: [u32; 2], module: f64, tip_radius: f64, a: f64) -> Result<GearPair, GearPairError> {
+    fn of_module(
+        teeth: [u32; 2],
+        module: f64,
+        tip_radius: f64,
+        a: f64,
+    ) -> Result<GearPair, GearPairError> {
         let [one, other] = teeth.map(|tooth_count| {
             let mut data = paper_gear(tooth_count);
             data.rack = crate::gear::Rack {
@@ -580,7 +585,14 @@ mod tests {
         for (teeth, module, tip_radius, a, ratio, lost) in [
             ([17, 43], 1.0, 0.38, 30.0, 1.6211, 0.0),
             ([16, 64], 0.396_875, 0.38, 15.875, 1.6452, 0.0017),
-            ([10, 80], 1.0, 0.38, 45.0, 1.0927, (1.598 - 1.0927) * PI_COS_20),
+            (
+                [10, 80],
+                1.0,
+                0.38,
+                45.0,
+                1.0927,
+                (1.598 - 1.0927) * PI_COS_20,
+            ),
             ([17, 22], 4.0, 0.25, 78.0, 1.5477, 0.0),
         ] {
             let pair = of_module(teeth, module * 1e-3, tip_radius, a * 1e-3).expect("meshes");
@@ -588,12 +600,18 @@ mod tests {
             assert!((found - ratio).abs() < 6e-5, "{teeth:?}: {found}");
             let shorter = pair.lost_to_undercut(Member::Driving) * 1e3;
             // The ratio without the undercut is printed to three decimals.
-            assert!((shorter - lost).abs() < (1.5e-3 * lost).max(6e-5), "{shorter}");
+            assert!(
+                (shorter - lost).abs() < (1.5e-3 * lost).max(6e-5),
+                "{shorter}"
+            );
             assert_eq!(pair.lost_to_undercut(Member::Driven), 0.0);
         }
         let pair = of_module([17, 43], 1e-3, 0.38, 30e-3).expect("meshes");
         let begins = pair.path_of_contact().0;
-        assert!((begins - 0.36e-3).abs() < 5e-6, "contact begins above the base circle");
+        assert!(
+            (begins - 0.36e-3).abs() < 5e-6,
+            "contact begins above the base circle"
+        );
         assert!(matches!(
             of_module([10, 80], 1e-3, 0.38, 45.8e-3),
             Err(GearPairError::ContactRatioBelowOne { .. })

@@ -21,7 +21,7 @@ mod tests;
 
 use meshwright_engine::gear::{GearData, Rack, TipEdge, ToothDeviations};
 
-pub use blank::{BlankDocument, HubDocument, WebDocument};
+pub use blank::{BlankDocument, HubDocument, ShaftDocument, WebDocument};
 pub use deviation::{DeviationsDocument, EccentricityDocument};
 pub(super) use holes::MOST_HOLES;
 pub use holes::{HolesDocument, PatternDocument, SlotDocument};
@@ -46,7 +46,7 @@ pub(super) const MOST_MODIFICATIONS: usize = 16;
 document! {
     /// A spur or helical gear as its drawing describes it.
     pub struct GearDocument as "Gear", "Gear" {
-        /// The number of teeth Z. Few teeth need profile shift against undercut.
+        /// The number of teeth Z. Few teeth without profile shift are undercut.
         tooth_count: u32 = number("Number of teeth", "1", 5.0, 300.0),
         /// The module m, the same for both gears.
         pub(super) module_mm: f64 = number("Module", "mm", 0.1, 50.0),

@@ -63,7 +63,10 @@ impl SpurGear {
     fn neck(&self) -> f64 {
         const PLACES: u32 = 64;
         let (from, to) = self.fillet.ends();
-        let at = |i: u32| self.fillet.point(from + (to - from) * f64::from(i) / f64::from(PLACES));
+        let at = |i: u32| {
+            self.fillet
+                .point(from + (to - from) * f64::from(i) / f64::from(PLACES))
+        };
         2.0 * (0..=PLACES).map(|i| at(i).y).fold(f64::INFINITY, f64::min)
     }
 
