@@ -152,7 +152,7 @@ mod tests {
         let entering = curve.load_shares.iter().find(|pair| pair.pair_offset == 1);
         let share = &entering.expect("the next pair carries too").share;
         // By its path of contact the next pair takes up load at the mesh position 0.59; at 0.45 it carries a quarter on its corner, at which pressure has no limit.
-        assert!(share[18] > 0.25 && share[18] < 0.45, "{}", share[18]);
+        assert!(share[18] > 0.2 && share[18] < 0.3, "{}", share[18]);
         assert_eq!(curve.peak_contact_pressure[18], None);
         let largest = curve.transmission_error.iter().copied().fold(0.0, f64::max);
         // The levels differ as they do elsewhere.
