@@ -15,7 +15,7 @@ use meshwright_engine::contact::WarmStart;
 use meshwright_engine::contact::facing::Facing;
 use meshwright_engine::contact::flank_table::FlankTable;
 use meshwright_engine::contact::{PairModel, Stage, solve_active_set};
-use meshwright_engine::gear::{BlankRegion, Hole, HoleShape, SpurGear};
+use meshwright_engine::gear::{BlankRegion, Core, Hole, HoleShape, SpurGear};
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
 use meshwright_engine::library::Library;
 use meshwright_engine::ring::blank::BlankSubstructure;
@@ -90,6 +90,7 @@ fn whole_blank(criterion: &mut Criterion) {
     };
     let region = BlankRegion {
         bore_radius: 15e-3,
+        core: Core::Bore,
         holes: vec![
             hole(0.0, 10e-3),
             hole(1.7, 8e-3),

@@ -10,8 +10,9 @@ use crate::assembly::interface::{harmonics, interface_radius, orders_of_blank};
 use crate::assembly::pair::cells_per_patch;
 use crate::contact::facing::Facing;
 use crate::contact::{ContactSolver, default_penalty};
-use crate::gear::{Member, gcd};
+use crate::gear::{Core, Member, gcd};
 use crate::grid::{GridLevel, ToothGrid};
+use crate::ring::shaft::orders_of_edge;
 
 /// Seconds of one core for the first contact solution at a fraction of the mesh period, for each further one there, and for a linear
 /// system of the augmented Lagrangian, all with the cells of [`CELLS`]; for a node of a factorized grid; and for a multiplication and
@@ -283,6 +284,10 @@ fn of_gear(case: &Case, member: Member, pass: &Pass) -> Estimate {
             + 2.0 * met * rows.min(32.0) * PATTERNS
             + 5.0 * couplings * (2.0 * PATTERNS).powi(2))
         + 3e3 * (tooth_nodes + blank_nodes) as f64) as u64;
+    if gear.data().blank.core == Core::Shaft {
+        let edge = orders_of_edge(&blank).unknowns() as f64;
+        estimate.memory += (8.0 * 2.0 * edge * (edge + met)) as u64;
+    }
     let factorization = met * met * met / (6.0 * repeats * repeats);
     let answers = rows * PATTERNS * met * (met / (2.0 * repeats) + 5.0 * PATTERNS);
     estimate.seconds =

@@ -187,10 +187,16 @@ fn add_blank(
     let whole = blank.unrolled();
     let first = inside.sector_angles().first().copied().unwrap_or(0.0);
     let angles: Vec<f64> = whole.arc_angles.iter().map(|angle| angle + first).collect();
-    let on_circle = answer.on_circle(&angles).into_iter().zip(&whole.arc_angles);
-    let moves = on_circle
-        .map(|([u_r, u_t], angle)| u_r * radial(*angle) + u_t * tangential(*angle))
-        .chain(whole.bore_nodes.iter().map(|_| Vector::zeros()));
+    let bore = whole.bore_nodes.iter().map(|node| {
+        let point = whole.grid.nodes[*node as usize];
+        point.y.atan2(point.x)
+    });
+    let bore: Vec<f64> = bore.collect();
+    let on_arc = answer.on_circle(&angles).into_iter().zip(&whole.arc_angles);
+    let on_bore = answer.on_bore(&bore).into_iter().zip(&bore);
+    let moves = on_arc
+        .chain(on_bore)
+        .map(|([u_r, u_t], angle)| u_r * radial(*angle) + u_t * tangential(*angle));
     let acting = Load {
         moves: moves.flat_map(|u| [u.x, u.y]).collect(),
         forces: Vec::new(),

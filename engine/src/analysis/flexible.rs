@@ -107,3 +107,61 @@ pub(super) fn solved<T: Send>(
         stiffness,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::analysis::{
+        BodyFormula, Case, ContactSolver, Formulas, Method, PlaneState, Resolution, StiffnessRule,
+        ToothFormula, analyze,
+    };
+    use crate::contact::facing::tests::undercut_pair;
+    use crate::grid::GridLevel;
+    use crate::library::Library;
+    use crate::run::Run;
+
+    #[test]
+    fn the_corner_of_an_undercut_flank_takes_up_load_before_its_path_of_contact_begins() {
+        let case = |grid| Case {
+            pair: undercut_pair(),
+            faces: None,
+            method: Method::Flexible,
+            output_torques: vec![8.0],
+            resolution: Resolution {
+                positions_per_mesh_period: 40,
+                first_position: 0.0,
+                span_mesh_periods: None,
+                grid,
+                contact_solver: ContactSolver::ActiveSet,
+                stiffness: StiffnessRule::Tangent,
+                blank_positions: 16,
+                interface_radii: [None; 2],
+                formulas: Formulas {
+                    tooth: ToothFormula::WeberBanaschek,
+                    body: BodyFormula::Sainsot,
+                    plane_state: PlaneState::Stress,
+                },
+                error_estimate: false,
+            },
+            stress: false,
+            driving_speed: None,
+        };
+        let solved =
+            |grid| analyze(&case(grid), &Library::default(), &Run::unattended()).expect("solves");
+        let [coarse, standard] = [GridLevel::Coarse, GridLevel::Standard].map(solved);
+        let [curve, coarse] = [&standard, &coarse].map(|solved| &solved.curves[0]);
+        let entering = curve.load_shares.iter().find(|pair| pair.pair_offset == 1);
+        let share = &entering.expect("the next pair carries too").share;
+        // By its path of contact the next pair takes up load at the mesh position 0.59; at 0.45 it carries a quarter on its corner, at which pressure has no limit.
+        assert!(share[18] > 0.2 && share[18] < 0.3, "{}", share[18]);
+        assert_eq!(curve.peak_contact_pressure[18], None);
+        let largest = curve.transmission_error.iter().copied().fold(0.0, f64::max);
+        // The levels differ as they do elsewhere.
+        for (one, other) in curve
+            .transmission_error
+            .iter()
+            .zip(&coarse.transmission_error)
+        {
+            assert!((one - other).abs() < 1e-2 * largest);
+        }
+    }
+}

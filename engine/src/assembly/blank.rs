@@ -74,7 +74,8 @@ impl BlankSpec {
         asked: &[Functional],
         run: &Run,
     ) -> Result<(BlankSubstructure, BlankRecovery), PartError> {
-        let plate = (self.gear.material(), self.gear.face_width());
+        let core = self.gear.data().blank.core;
+        let plate = (core, self.gear.material(), self.gear.face_width());
         let (radius, orders) = (self.interface_radius, self.orders());
         let made = BlankSubstructure::with_recovery(grid, radius, plate, orders, asked, run)?;
         Ok(made)

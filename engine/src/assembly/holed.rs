@@ -14,7 +14,7 @@ use crate::fem::FemError;
 use crate::fem::axial::AxialBasis;
 use crate::fem::dense::entries;
 use crate::fem::prism::{COMPONENTS, Prism};
-use crate::gear::{BlankRegion, Material, SpurGear, gcd};
+use crate::gear::{BlankRegion, Core, Material, SpurGear, gcd};
 use crate::grid::{BlankGrid, GridLevel};
 use crate::ring::solid::gear::ClassAnswers;
 use crate::ring::solid::web::{HoledRing, condensed_blocks, conjugate_below_zero, of_order};
@@ -346,6 +346,7 @@ fn holed_grid(
     let layer = &stack.layers[1];
     let region = BlankRegion {
         bore_radius: layer.inner_radius,
+        core: Core::Bore,
         web: None,
         ..section.data().blank.clone()
     };

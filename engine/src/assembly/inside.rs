@@ -144,6 +144,16 @@ impl Answer<'_> {
         angles.iter().map(at).collect()
     }
 
+    /// How the circle of the bore moves, radially and tangentially, at `angles` from the frame of sector 0 of the blank: a bore stands still.
+    pub fn on_bore(&self, angles: &[f64]) -> Vec<[f64; 2]> {
+        let Inside { cut, in_blank, .. } = self.inside;
+        let both = cut.blank.as_ref().zip(in_blank.as_ref());
+        both.map_or_else(
+            || vec![[0.0; 2]; angles.len()],
+            |(blank, recovery)| recovery.on_bore(blank.hole_angle, &self.motion, angles),
+        )
+    }
+
     /// What was asked of the blank, in sector `sector`; nothing of a rigid one.
     pub fn in_blank(&self, sector: usize) -> Vec<f64> {
         let Inside { cut, in_blank, .. } = self.inside;

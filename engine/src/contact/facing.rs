@@ -422,7 +422,7 @@ impl<'a> View<'a> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::gear::spur::tests::paper_gear;
     use crate::gear::{ModificationData, ReliefData, ReliefShape, ReliefStart};
@@ -509,7 +509,7 @@ mod tests {
     }
 
     /// 10 and 80 teeth of module 1 at their reference distance: the pinion's flank begins at a radius of 4.7256 mm.
-    fn undercut_pair() -> GearPair {
+    pub(crate) fn undercut_pair() -> GearPair {
         let gear = |tooth_count| {
             let mut data = paper_gear(tooth_count);
             data.rack = crate::gear::Rack {
@@ -528,15 +528,15 @@ mod tests {
 
     #[test]
     fn before_the_shortened_path_of_contact_the_corner_of_an_undercut_flank_is_nearest() {
-        // Gaps in µm between the outlines of both teeth, sampled at 4000 points by a program of its own, where they would nominally touch at a
-        // roll length in mm of the pinion; the flank begins at 0.507 mm.
+        // How far the driven gear lags in µm until the outlines of both teeth touch, sampled by a program of its own, where they would nominally touch at
+        // a roll length in mm of the pinion; the flank begins at 0.506 mm.
         let pair = undercut_pair();
         for (s, gap) in [
-            (-0.6, 3.768),
-            (-0.4, 3.767),
-            (-0.21, 3.096),
-            (-0.06, 2.310),
-            (0.2, 0.878),
+            (-0.6, 3.766),
+            (-0.4, 3.771),
+            (-0.21, 3.108),
+            (-0.06, 2.319),
+            (0.2, 0.872),
         ] {
             let phase = (s * 1e-3 - pair.pitch_roll_length()) / pair.base_pitch();
             let facing = Facing::drawn(&pair, phase).expect("they face each other");

@@ -23,7 +23,7 @@ pub(super) struct Meeting<T = f64> {
 
 /// The direction in which two flanks push.
 ///
-/// Pressed together both turn to a common normal between their own.
+/// Pressed together both turn to a common normal between their own, but for a corner ([`placement::weights`]).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Push<T = f64> {
     seat: Member,
@@ -34,18 +34,24 @@ pub(super) struct Push<T = f64> {
 impl Placement<'_> {
     /// How the flanks meet at `place` on the flank of `seat`, which sees `sight`.
     pub(super) fn meeting(&self, seat: Member, place: &FlankPlace, sight: &Sight) -> Meeting {
-        let push = Push::new(seat, place.normal, sight.normal);
+        let push = self.push(seat, place, sight);
         push.meeting(self.pair, place.point, sight.gap, self.centers)
     }
 }
 
 impl<T: Numbers> Push<T> {
-    /// Between flanks with the outward normals `on_seat` and `on_mate`.
+    /// Between flanks with the outward normals `on_seat` and `on_mate`, which count as the `weights` of the driving and the driven flank say.
     #[inline(always)]
-    pub(super) fn new(seat: Member, on_seat: Vector2<T>, on_mate: Vector2<T>) -> Self {
+    pub(super) fn new(
+        seat: Member,
+        on_seat: Vector2<T>,
+        on_mate: Vector2<T>,
+        weights: [f64; 2],
+    ) -> Self {
+        let weight = |member: Member| T::splat(weights[member.index()]);
         Self {
             seat,
-            normal: unit(on_mate - on_seat),
+            normal: unit(on_mate * weight(seat.other()) - on_seat * weight(seat)),
         }
     }
 
@@ -125,6 +131,7 @@ pub(super) struct Standing<'a> {
     /// The profile slope deviations, and the roll lengths at which they begin.
     slopes: [f64; 2],
     forms: [f64; 2],
+    weights: [f64; 2],
 }
 
 impl Probe {
@@ -254,6 +261,7 @@ impl<'a> Standing<'a> {
             slopes: Member::BOTH
                 .map(|member| deviations.of_gear(member).slope(teeth[member.index()])),
             forms: Member::BOTH.map(|member| pair.gear(member).form_roll_length()),
+            weights: placement::weights(pair, eta - n as f64),
         }
     }
 
@@ -322,7 +330,7 @@ impl<'a> Standing<'a> {
             inclined(radial, across, s, other.base_radius(), inclination - slope),
         );
         let on_seat = turned(self.turns[seat].map(number), normal);
-        let push = Push::new(self.seat, on_seat, on_mate);
+        let push = Push::new(self.seat, on_seat, on_mate, self.weights);
         push.meeting(self.pair, point, s - foot + missing, self.centers)
     }
 }

@@ -6,7 +6,7 @@
 
 use super::facing::{Facing, Hollow, RangeEnd, View};
 use super::half_plane::{NearField, logarithm_factor};
-use super::meeting::{Probe, Probes, Push};
+use super::meeting::{Probe, Probes};
 use crate::gear::{GearPair, Member, Vector};
 use crate::root_finding::bisect;
 
@@ -197,7 +197,7 @@ impl Patch {
         let meeting = view.meeting(&middle);
         let gap = mean_gap(view, kinks, from, to).unwrap_or(meeting.gap);
         let (place, sight) = (&middle.place, &middle.sight);
-        let normal = Push::new(view.seat, place.normal, sight.normal).normal;
+        let normal = view.placement.push(view.seat, place, sight).normal;
         let on = |radial: Vector| {
             let across = Vector::new(-radial.y, radial.x);
             [normal.dot(&across), normal.dot(&radial)]

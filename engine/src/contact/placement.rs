@@ -7,6 +7,7 @@ use std::f64::consts::PI;
 
 use nalgebra::{SimdBool, Vector2};
 
+use super::meeting::Push;
 use super::wide::Numbers;
 use crate::gear::{
     GearPair, Member, PairDeviations, SpurGear, Vector, radial, tangential, teeth_on,
@@ -22,6 +23,8 @@ pub struct Placement<'a> {
     pub(super) centers: [Vector; 2],
     /// The angle of each tooth's centerline.
     angles: [f64; 2],
+    /// How much the normal of either flank counts ([`weights`]).
+    weights: [f64; 2],
     /// What deviates, and the teeth that stand there; nothing of a pair as drawn.
     made: Option<(&'a PairDeviations, [usize; 2])>,
 }
@@ -100,6 +103,26 @@ pub(super) fn angles(pair: &GearPair, phase: f64) -> [f64; 2] {
     ]
 }
 
+/// How much the normals of the driving and of the driven flank of a pair of `phase` count in the direction in which they push: alike, but for the corner of an
+/// undercut flank. That pushes along the normal of the smooth flank on which it stands, whichever way its own sides lie.
+pub(super) fn weights(pair: &GearPair, phase: f64) -> [f64; 2] {
+    /// The part of the roll length of the corner over which one goes over into the other as the nominal contact passes it.
+    const GOES_OVER: f64 = 0.1;
+    let s_1 = pair.roll_length_of(phase);
+    let rolls = [s_1, pair.line_of_action() - s_1];
+    let mut weights = [1.0; 2];
+    for member in Member::BOTH {
+        let (gear, g) = (pair.gear(member), member.index());
+        let corner = gear.form_roll_length();
+        if gear.is_undercut() && rolls[g] < corner {
+            let beyond = ((corner - rolls[g]) / (GOES_OVER * corner)).min(1.0);
+            weights[g] -= beyond;
+            weights[member.other().index()] += beyond;
+        }
+    }
+    weights
+}
+
 /// The axes of rotation.
 pub(super) fn axes(pair: &GearPair) -> [Vector; 2] {
     [Vector::zeros(), Vector::new(pair.center_distance(), 0.0)]
@@ -128,6 +151,7 @@ impl<'a> Placement<'a> {
             pair,
             centers: axes(pair),
             angles: angles(pair, phase),
+            weights: weights(pair, phase),
             made: None,
         }
     }
@@ -147,6 +171,7 @@ impl<'a> Placement<'a> {
             pair,
             centers: centers(pair, deviations, n, angles),
             angles,
+            weights: weights(pair, eta - n as f64),
             made: Some((deviations, pair.teeth(n))),
         }
     }
@@ -159,6 +184,11 @@ impl<'a> Placement<'a> {
     /// The gears.
     pub(super) fn gears(&self) -> &'a GearPair {
         self.pair
+    }
+
+    /// How the flanks push at `place` on the flank of `seat`, which sees `sight`.
+    pub(super) fn push(&self, seat: Member, place: &FlankPlace, sight: &Sight) -> Push {
+        Push::new(seat, place.normal, sight.normal, self.weights)
     }
 
     /// What is missing from the involute of `member` at the roll length `s`, and its slope.

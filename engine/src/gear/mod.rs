@@ -31,7 +31,9 @@ pub mod thickness;
 pub mod tip;
 
 pub use accuracy::{Inspection, Normals, Passed, Tolerances};
-pub use blank::{BlankRegion, Hole, HolePattern, HoleShape, Ligament, Moments, Symmetry, Web};
+pub use blank::{
+    BlankRegion, Core, Hole, HolePattern, HoleShape, Ligament, Moments, Symmetry, Web,
+};
 pub use data::{DeviationList, GearData, GearError};
 pub use deviation::{Eccentricity, ToothDeviations};
 pub use involute::{Involute, involute_function};

@@ -9,7 +9,7 @@ use super::outlines::{LEAST_AROUND, Outlines};
 use super::sizes::{Boundary, Sizes};
 use super::triangles::{Chain, TriangleNet};
 use super::{BlankGrid, Element, Grid, GridError, GridLevel, checked};
-use crate::gear::{BlankRegion, Hole, HoleShape, Ligament, Vector, Web};
+use crate::gear::{BlankRegion, Core, Hole, HoleShape, Ligament, Vector, Web};
 
 /// Elements around a round hole at the coarse level, and along as much of a slot: half those of the structured blank at the
 /// standard level.
@@ -118,6 +118,7 @@ impl Plan {
         let length = |length: f64| short(length / interface_radius);
         let region = BlankRegion {
             bore_radius: length(region.bore_radius),
+            core: Core::Bore,
             holes: region
                 .holes
                 .iter()
@@ -302,6 +303,7 @@ mod tests {
     fn region(bore: f64, holes: Vec<Hole>, web: Option<(f64, f64)>) -> BlankRegion {
         BlankRegion {
             bore_radius: bore * 1e-3,
+            core: Core::Bore,
             holes,
             web: web.map(|(inner, outer)| Web {
                 inner_radius: inner * 1e-3,
@@ -481,6 +483,7 @@ mod tests {
             let factor = 7.3;
             let scaled = BlankRegion {
                 bore_radius: factor * region.bore_radius,
+                core: Core::Bore,
                 holes: region
                     .holes
                     .iter()

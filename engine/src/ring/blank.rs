@@ -1,18 +1,19 @@
-//! The blank between the rigid bore and the interface circle, as a substructure.
+//! The blank between the rigid bore, or the axis of its shaft, and the interface circle, as a substructure.
 
 use faer::Mat;
 
 use super::axes::{in_axes, polar_axes, rows_in_axes};
 use super::cyclic::{Component, Harmonics, Sector};
+use super::shaft::{OnShaft, ShaftSection, orders_of_edge};
 use crate::fem::FemError;
 use crate::fem::condensation::condense_with;
 use crate::fem::recovery::Functional;
 
-use crate::gear::Material;
+use crate::gear::{Core, Material};
 use crate::grid::BlankGrid;
 use crate::run::Run;
 
-/// A blank on its interface circle, its bore held.
+/// A blank on its interface circle, its bore held, or the section of its shaft in the mean.
 #[derive(Debug, Clone)]
 pub struct BlankSubstructure {
     /// The interface radius R_w.
@@ -44,7 +45,7 @@ impl BlankSubstructure {
         let parts = Self::with_recovery(
             grid,
             interface_radius,
-            (material, thickness),
+            (Core::Bore, material, thickness),
             harmonics,
             &[],
             run,
@@ -60,16 +61,21 @@ impl BlankSubstructure {
     pub fn with_recovery(
         grid: &BlankGrid,
         interface_radius: f64,
-        (material, thickness): (&Material, f64),
+        (core, material, thickness): (Core, &Material, f64),
         harmonics: Harmonics,
         asked: &[Functional],
         run: &Run,
     ) -> Result<(Self, BlankRecovery), FemError> {
         let (right, left) = &grid.side_nodes;
+        let (edge, held) = match core {
+            Core::Bore => (&[][..], grid.bore_nodes.as_slice()),
+            Core::Shaft => (grid.bore_nodes.as_slice(), &[][..]),
+        };
         let kept: Vec<u32> = right
             .iter()
             .chain(left)
             .chain(&grid.arc_nodes)
+            .chain(edge)
             .copied()
             .collect();
         let condensed = condense_with(
@@ -77,7 +83,7 @@ impl BlankSubstructure {
             &grid.grid,
             (material, thickness),
             &kept,
-            &grid.bore_nodes,
+            held,
             asked,
         )?;
         let axes: Vec<_> = kept
@@ -90,16 +96,45 @@ impl BlankSubstructure {
             side_nodes: right.len(),
             arc_angles: grid.arc_angles.clone(),
         };
-        let stiffness = sector.ring_stiffness(&harmonics, run)?;
-        let rows = if asked.is_empty() {
-            Mat::zeros(0, harmonics.unknowns())
-        } else {
-            sector.ring_rows(&rows_in_axes(&condensed.rows, &axes), &harmonics, run)?
+        let asked_rows = rows_in_axes(&condensed.rows, &axes);
+        let (stiffness, rows, edge) = match core {
+            Core::Bore => {
+                let rows = if asked.is_empty() {
+                    Mat::zeros(0, harmonics.unknowns())
+                } else {
+                    sector.ring_rows(&asked_rows, &harmonics, run)?
+                };
+                (sector.ring_stiffness(&harmonics, run)?, rows, None)
+            }
+            Core::Shaft => {
+                let angles: Vec<f64> = edge
+                    .iter()
+                    .map(|node| {
+                        let point = grid.grid.nodes[*node as usize];
+                        point.y.atan2(point.x)
+                    })
+                    .collect();
+                let shaft = ShaftSection::new(material, thickness);
+                let made = OnShaft::new(
+                    &sector,
+                    (&angles, orders_of_edge(grid)),
+                    &shaft,
+                    &harmonics,
+                    &asked_rows,
+                    run,
+                )?;
+                (
+                    made.stiffness,
+                    made.rows,
+                    Some((made.edge, made.edge_moved)),
+                )
+            }
         };
         let recovery = BlankRecovery {
             harmonics,
             sector_count: sector.count,
             rows,
+            edge,
         };
         let substructure = Self {
             interface_radius,
@@ -130,6 +165,8 @@ pub struct BlankRecovery {
     pub sector_count: usize,
     /// The functionals by the harmonics, with hole 0 at the angle 0.
     pub rows: Mat<f64>,
+    /// The orders of the edge of a shaft, and how it moves by the harmonics.
+    edge: Option<(Harmonics, Mat<f64>)>,
 }
 
 impl BlankRecovery {
@@ -147,6 +184,22 @@ impl BlankRecovery {
                 .sum()
         };
         (0..self.rows.nrows()).map(row).collect()
+    }
+
+    /// How the circle of the bore moves at `angles` of sector 0, outward and counter-clockwise, for the amplitudes `q` as in [`BlankRecovery::values`]: a bore
+    /// stands still.
+    pub fn on_bore(&self, hole_angle: f64, q: &[f64], angles: &[f64]) -> Vec<[f64; 2]> {
+        let Some((orders, moved)) = &self.edge else {
+            return vec![[0.0; 2]; angles.len()];
+        };
+        let seen = self
+            .harmonics
+            .turned(&q[..self.harmonics.unknowns()], hole_angle);
+        let q = Mat::from_fn(seen.len(), 1, |i, _| seen[i]);
+        let at = orders.on_circle(angles) * (moved * q);
+        (0..angles.len())
+            .map(|i| [at[(2 * i, 0)], at[(2 * i + 1, 0)]])
+            .collect()
     }
 }
 

@@ -5,7 +5,7 @@
 //! is condensed on one sector. Teeth (S = Z) and holed blanks (S = N) meet in the same harmonics, whatever Z, N and the
 //! angle between them: rigid motions and linear fields are the orders 0, 1 and 2 and are exact.
 
-use faer::{Mat, c64};
+use faer::{Mat, MatRef, c64};
 
 pub use super::harmonics::{Component, Harmonics};
 use crate::fem::FemError;
@@ -49,15 +49,7 @@ impl Sector {
 
     /// E: the polar displacements of the arc's nodes for unit amplitudes of `orders`; two columns an order.
     pub fn arc_of_harmonics(&self, orders: &[i64]) -> Mat<c64> {
-        let mut e = Mat::<c64>::zeros(2 * self.arc_angles.len(), 2 * orders.len());
-        for (j, &n) in orders.iter().enumerate() {
-            for (i, &angle) in self.arc_angles.iter().enumerate() {
-                let (sin, cos) = (n as f64 * angle).sin_cos();
-                e[(2 * i, 2 * j)] = c64::new(cos, sin);
-                e[(2 * i + 1, 2 * j + 1)] = c64::new(cos, sin);
-            }
-        }
-        e
+        at_angles(&self.arc_angles, orders)
     }
 
     /// Condenses one class to its harmonics: returns the Hermitian stiffness of one sector and the way back to the sides.
@@ -72,10 +64,21 @@ impl Sector {
         run: &Run,
     ) -> Result<(Mat<c64>, ClassSolution), FemError> {
         let orders = harmonics.orders_of_class(class, self.count);
-        let ns = 2 * self.side_nodes;
-        let na = 2 * self.arc_angles.len();
-        let k = &self.stiffness;
         let e = self.arc_of_harmonics(&orders);
+        self.condense_class_on(class, &e, orders, run)
+    }
+
+    /// As [`Sector::condense_class`], with the unknowns behind both sides moved by the columns of `e`; `orders` are those that the way back is told of.
+    pub(super) fn condense_class_on(
+        &self,
+        class: usize,
+        e: &Mat<c64>,
+        orders: Vec<i64>,
+        run: &Run,
+    ) -> Result<(Mat<c64>, ClassSolution), FemError> {
+        let ns = 2 * self.side_nodes;
+        let na = e.nrows();
+        let k = &self.stiffness;
         // Displacements of (right, left) are (1, turn) times those of the right side.
         let turn = self.turn(class, 1);
         let real = |i: usize, j: usize| c64::new(k[(i, j)], 0.0);
@@ -106,7 +109,7 @@ impl Sector {
             let sides_to_arc = Mat::<c64>::from_fn(ns, na, |i, j| {
                 real(i, 2 * ns + j) + turn.conj() * real(ns + i, 2 * ns + j)
             });
-            let sides_to_harmonics = &sides_to_arc * &e;
+            let sides_to_harmonics = &sides_to_arc * e;
             let sides = Cholesky::new(sides).ok_or(FemError::NotPositiveDefinite {
                 part: "a ring's sides",
                 unknowns: ns,
@@ -193,11 +196,23 @@ impl Sector {
 
     /// Rows on the unknowns of sector 0 as rows on the complex amplitudes of the orders of one class.
     pub fn class_rows(&self, rows: &Mat<f64>, class: usize, solution: &ClassSolution) -> Mat<c64> {
-        let (ns, na) = (2 * self.side_nodes, 2 * self.arc_angles.len());
-        let on_arc = Mat::<c64>::from_fn(rows.nrows(), na, |i, j| {
+        let e = self.arc_of_harmonics(&solution.orders);
+        self.class_rows_on(rows, class, &e, solution)
+    }
+
+    /// As [`Sector::class_rows`], of a class that was condensed with the columns of `e`.
+    pub(super) fn class_rows_on(
+        &self,
+        rows: &Mat<f64>,
+        class: usize,
+        e: &Mat<c64>,
+        solution: &ClassSolution,
+    ) -> Mat<c64> {
+        let ns = 2 * self.side_nodes;
+        let on_arc = Mat::<c64>::from_fn(rows.nrows(), e.nrows(), |i, j| {
             c64::new(rows[(i, 2 * ns + j)], 0.0)
         });
-        let mut on_harmonics = on_arc * self.arc_of_harmonics(&solution.orders);
+        let mut on_harmonics = on_arc * e;
         if let Some(sides) = &solution.sides {
             let mut moved = solution.sides_to_harmonics.clone();
             sides.solve_in_place(moved.as_mut());
@@ -214,6 +229,13 @@ impl Sector {
         })
     }
 
+    /// How often a condensed class counts in the stiffness of the ring: it stands for all sectors, and for its conjugate.
+    pub(super) fn class_weight(&self, class: usize) -> f64 {
+        let own_conjugate = (2 * class).is_multiple_of(self.count);
+        // The conjugate class has the orders −n and conjugate blocks; its real contribution equals this one's.
+        self.count as f64 * if own_conjugate { 1.0 } else { 2.0 }
+    }
+
     /// Adds one condensed class, and its conjugate, to the ring's real stiffness.
     pub fn add_class(
         &self,
@@ -223,19 +245,47 @@ impl Sector {
         condensed: &Mat<c64>,
         orders: &[i64],
     ) {
-        let own_conjugate = (2 * class).is_multiple_of(self.count);
-        // The conjugate class has the orders −n and conjugate blocks; its real contribution equals this one's.
-        let weight = self.count as f64 * if own_conjugate { 1.0 } else { 2.0 };
-        for (i, &n) in orders.iter().enumerate() {
-            for (j, &n_other) in orders.iter().enumerate() {
-                let at = |a: usize, b: usize| condensed[(2 * i + a, 2 * j + b)] * weight;
-                harmonics.add_block(
-                    stiffness,
-                    n,
-                    n_other,
-                    [[at(0, 0), at(0, 1)], [at(1, 0), at(1, 1)]],
-                );
-            }
+        let weight = self.class_weight(class);
+        add_orders(
+            stiffness,
+            harmonics,
+            condensed.as_ref(),
+            [orders, orders],
+            weight,
+        );
+    }
+}
+
+/// The polar displacements of nodes at `angles` for unit amplitudes of `orders`; two columns an order.
+pub(super) fn at_angles(angles: &[f64], orders: &[i64]) -> Mat<c64> {
+    let mut e = Mat::<c64>::zeros(2 * angles.len(), 2 * orders.len());
+    for (j, &n) in orders.iter().enumerate() {
+        for (i, &angle) in angles.iter().enumerate() {
+            let (sin, cos) = (n as f64 * angle).sin_cos();
+            e[(2 * i, 2 * j)] = c64::new(cos, sin);
+            e[(2 * i + 1, 2 * j + 1)] = c64::new(cos, sin);
+        }
+    }
+    e
+}
+
+/// Adds the blocks of `condensed`, of one set of orders by another, to a real `stiffness` so many times.
+pub(super) fn add_orders(
+    stiffness: &mut Mat<f64>,
+    harmonics: &Harmonics,
+    condensed: MatRef<'_, c64>,
+    [orders, others]: [&[i64]; 2],
+    weight: f64,
+) {
+    for (i, &n) in orders.iter().enumerate() {
+        for (j, &n_other) in others.iter().enumerate() {
+            let at = |a: usize, b: usize| condensed[(2 * i + a, 2 * j + b)] * weight;
+            harmonics.add_block(
+                stiffness,
+                n,
+                n_other,
+                [[at(0, 0), at(0, 1)], [at(1, 0), at(1, 1)]],
+            );
         }
     }
 }

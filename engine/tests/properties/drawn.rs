@@ -3,9 +3,9 @@
 use std::f64::consts::PI;
 
 use meshwright_engine::gear::{
-    BlankRegion, Eccentricity, GearData, GearPair, Hole, HolePattern, HoleShape, Material, Member,
-    ModificationData, Rack, ReliefData, ReliefShape, ReliefStart, RootReliefData, RootReliefStart,
-    SpurGear, TablePlaces, TipEdge, ToothDeviations, Web,
+    BlankRegion, Core, Eccentricity, GearData, GearPair, Hole, HolePattern, HoleShape, Material,
+    Member, ModificationData, Rack, ReliefData, ReliefShape, ReliefStart, RootReliefData,
+    RootReliefStart, SpurGear, TablePlaces, TipEdge, ToothDeviations, Web,
 };
 
 /// A stream of pseudo-random numbers (xorshift*), so that a seed names a draw forever.
@@ -123,6 +123,7 @@ fn blank(draw: &mut Draw, root_radius: f64, module: f64) -> BlankRegion {
     });
     BlankRegion {
         bore_radius,
+        core: Core::Bore,
         holes: pattern.map_or_else(Vec::new, |pattern| pattern.holes()),
         web: None,
     }
@@ -253,6 +254,7 @@ fn irregular_blank(draw: &mut Draw, root_radius: f64, module: f64) -> BlankRegio
     }
     BlankRegion {
         bore_radius,
+        core: Core::Bore,
         holes,
         web: None,
     }

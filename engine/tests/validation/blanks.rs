@@ -10,7 +10,8 @@ use faer::Mat;
 use meshwright_engine::fem::condensation::condense_with;
 use meshwright_engine::fem::recovery::{Functional, edge_stresses, nodal_stresses};
 use meshwright_engine::gear::{
-    BlankRegion, Hole, HolePattern, HoleShape, Material, SpurGear, Vector, Web, radial, tangential,
+    BlankRegion, Core, Hole, HolePattern, HoleShape, Material, SpurGear, Vector, Web, radial,
+    tangential,
 };
 use meshwright_engine::grid::{BlankGrid, Grid, GridLevel, ToothGrid};
 use meshwright_engine::ring::blank::BlankSubstructure;
@@ -52,6 +53,7 @@ fn pattern(count: u32, circle_radius: f64, radius: f64) -> HolePattern {
 fn region(holes: Vec<Hole>, web: Option<Web>) -> BlankRegion {
     BlankRegion {
         bore_radius: 15e-3,
+        core: Core::Bore,
         holes,
         web,
     }
@@ -526,6 +528,7 @@ fn a_hole_in_a_plate_in_tension_triples_the_stress_as_kirsch_says() {
     for (level, bound) in LEVELS.into_iter().zip([4e-2, 1e-2, 3e-3]) {
         let plate = BlankRegion {
             bore_radius: a,
+            core: Core::Bore,
             holes: Vec::new(),
             web: None,
         };
@@ -571,7 +574,7 @@ fn stresses_at_hole_edges_settle_and_symmetry_recovers_what_the_whole_does() {
         BlankSubstructure::with_recovery(
             grid,
             INTERFACE,
-            (&Material::STEEL, FACE_WIDTH),
+            (Core::Bore, &Material::STEEL, FACE_WIDTH),
             harmonics,
             &asked,
             &run,

@@ -2,7 +2,7 @@
 
 use meshwright_engine::assembly::interface::default_interface_radius;
 use meshwright_engine::fem::recovery::edge_stresses;
-use meshwright_engine::gear::SpurGear;
+use meshwright_engine::gear::{Core, SpurGear};
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
 use meshwright_engine::ring::blank::BlankSubstructure;
 use meshwright_engine::ring::cyclic::Harmonics;
@@ -83,14 +83,14 @@ fn by_recovery(level: GridLevel, teeth: &[usize], orders: (usize, usize)) -> Str
     );
     let (r_w, plate) = (
         default_interface_radius(&gear),
-        (gear.material(), gear.face_width()),
+        (Core::Bore, gear.material(), gear.face_width()),
     );
     let (blank, around) =
         BlankSubstructure::with_recovery(&blank_grid, r_w, plate, low, &edge, &run)
             .expect("a blank");
     let solid_grid = BlankGrid::new(gear.bore_radius(), r_w, None, 18, 6.0, level).expect("a ring");
     let solid =
-        BlankSubstructure::new(&solid_grid, r_w, plate.0, plate.1, harmonics, &run).expect("solid");
+        BlankSubstructure::new(&solid_grid, r_w, plate.1, plate.2, harmonics, &run).expect("solid");
 
     let forces = [0.35, 0.8].map(|part| flank_forces(&tooth_grid, part));
     let loads: Vec<_> = LOADED

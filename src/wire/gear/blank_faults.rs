@@ -188,7 +188,7 @@ impl GearDocument {
         else {
             return Ok(());
         };
-        let (least, bore) = (self.least_web_mm(), self.blank.bore_radius_mm);
+        let (least, bore) = (self.least_web_mm(), self.blank.core_field().1);
         if inner > bore && inner < (bore + least) * (1.0 - 1e-12) {
             let detail = format!(
                 "The web begins {} mm outside of the bore; it begins there, or at least 0.1 modules away.",

@@ -5,7 +5,6 @@ use std::f64::consts::PI;
 use meshwright_engine::gear::data::{LEAST_RIM, LEAST_TIP_THICKNESS};
 use meshwright_engine::gear::{DeviationList, GearError, Helix};
 
-use super::blank::BlankDocument;
 use super::field::{Field, ReliefPlace};
 use super::relief::{ReliefEnd, StartWay};
 use super::{GearDocument, LEAST_RACK_TIP_RADIUS};
@@ -157,10 +156,14 @@ impl GearDocument {
                 bore_radius,
                 largest,
             } => Fault::new(
-                Field::of("blank/", BlankDocument::bore_radius_mm),
+                self.blank.core_field().0,
                 Code::BoreTooLarge,
                 format!(
-                    "A bore of radius {} mm leaves less than {LEAST_RIM} module below the root circle; at most {} mm.",
+                    "A {} of radius {} mm leaves less than {LEAST_RIM} module below the root circle; at most {} mm.",
+                    match self.blank.shaft {
+                        Some(_) => "shaft",
+                        None => "bore",
+                    },
                     mm(bore_radius),
                     mm(largest)
                 ),

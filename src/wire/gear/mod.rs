@@ -22,7 +22,7 @@ mod thickness;
 
 use meshwright_engine::gear::{GearData, Helix, Rack, TipEdge, ToothDeviations};
 
-pub use blank::{BlankDocument, HubDocument, WebDocument};
+pub use blank::{BlankDocument, HubDocument, ShaftDocument, WebDocument};
 pub use deviation::{DeviationsDocument, EccentricityDocument};
 pub(super) use holes::MOST_HOLES;
 pub use holes::{HolesDocument, PatternDocument, SlotDocument};
@@ -48,7 +48,7 @@ pub(super) const MOST_MODIFICATIONS: usize = 16;
 document! {
     /// A spur or helical gear as its drawing describes it.
     pub struct GearDocument as "Gear", "Gear" {
-        /// The number of teeth Z. Few teeth need profile shift against undercut. Internal gears, whose number is negative by some programs, are not
+        /// The number of teeth Z. Few teeth without profile shift are undercut. Internal gears, whose number is negative by some programs, are not
         /// computed.
         tooth_count: u32 = number("Number of teeth", "1", 4.0, 1_000.0).negative_means(INTERNAL),
         /// The module m, the same for both gears. Where they differ in printed digits only, that with more digits is taken for both.

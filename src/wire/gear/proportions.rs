@@ -2,7 +2,7 @@
 
 use meshwright_engine::gear::{Helix, SpurGear};
 
-use super::blank::BlankDocument;
+use super::GearDocument;
 use super::faults::Fault;
 use super::field::Field;
 use super::holes::HolesDocument;
@@ -62,9 +62,10 @@ impl GearDocument {
         }
         // A bore or a hole that is a mere point has a logarithmically singular compliance.
         let least_bore = 0.05 * self.root_radius_mm();
+        let (core, radius) = self.blank.core_field();
         check_between(
-            Field::of("blank/", BlankDocument::bore_radius_mm),
-            self.blank.bore_radius_mm,
+            core,
+            radius,
             least_bore,
             f64::INFINITY,
             "5 % of the root radius and more",

@@ -1,7 +1,8 @@
 //! The gear along its axis: its helix, where its web stands, and its hub.
 
 use meshwright_engine::gear::{
-    BlankRegion, GearData, GearError, Helix, LeadModification, SolidGear, SolidGearError, SpurGear,
+    BlankRegion, FaceEnds, GearData, GearError, Helix, LeadModification, SolidGear, SolidGearError,
+    SpurGear,
 };
 
 use super::GearDocument;
@@ -77,11 +78,22 @@ impl GearDocument {
                 .hub
                 .as_ref()
                 .map(|_| (format!("blank/{}", BlankDocument::hub.name), None)),
+            self.blank
+                .shaft
+                .as_ref()
+                .filter(|shaft| shaft.torque_at != FaceEnds::Both)
+                .map(|_| ("blank/shaft/torque_at".to_owned(), None)),
         ];
         let found = found.into_iter().flatten();
         found
             .map(|(place, nearest)| (format!("{pointer}/{place}"), nearest))
             .collect()
+    }
+
+    /// The shaft on which it is cut at `pointer`, which is not told along the axis.
+    pub(in crate::wire) fn shaft_at(&self, pointer: &str) -> Option<String> {
+        let shaft = self.blank.shaft.as_ref();
+        shaft.map(|_| format!("{pointer}/blank/{}", BlankDocument::shaft.name))
     }
 
     /// What is wrong with a gear along its axis.

@@ -2,7 +2,7 @@
 
 use meshwright_engine::analysis::forces::ForcesRequest;
 use meshwright_engine::analysis::{BodyFormula, Case, Formulas, Method, ToothFormula};
-use meshwright_engine::gear::{SpurGear, TipEdge};
+use meshwright_engine::gear::{Core, SpurGear, TipEdge};
 
 /// What the method of `case` leaves out, and what `forces` do that are asked for beside the curves.
 pub(super) fn does_not_see(case: &Case, forces: Option<&ForcesRequest>) -> Vec<&'static str> {
@@ -87,6 +87,14 @@ fn real_teeth_do_not_see(case: &Case) -> Vec<&'static str> {
     let by_formula = case.method == Method::LoadDistribution;
     if by_formula && any(|gear| gear.data().blank.web.is_some()) {
         unseen.push("webs: the bodies are as thick as their faces are wide");
+    }
+    if any(|gear| gear.data().blank.core == Core::Shaft) {
+        unseen.push("how a shaft bends and twists beside the gear that is cut on it: its section under the gear is held in the mean");
+    }
+    if by_formula && any(|gear| gear.data().blank.core == Core::Shaft) {
+        unseen.push(
+            "that a shaft in one piece with its gear gives way: the formulas take it for rigid",
+        );
     }
     if by_formula && any(|gear| gear.data().tip_edge != TipEdge::Sharp) {
         unseen.push("contact on broken tip edges: a pair is taken to part where they begin");

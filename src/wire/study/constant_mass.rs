@@ -165,6 +165,10 @@ fn blank_area(gear: &Node) -> Option<f64> {
         None => shifted + or_preset(addendum.name, addendum.spec)?,
     };
     let r_f = shifted - or_preset(dedendum.name, dedendum.spec)?;
-    let bore = gear.number_at(&["blank", BlankDocument::bore_radius_mm.name])?;
+    let shaft = gear.at(&["blank", BlankDocument::shaft.name]);
+    let bore = match shaft.filter(|shaft| **shaft != Node::Null) {
+        Some(_) => 0.0,
+        None => gear.number_at(&["blank", BlankDocument::bore_radius_mm.name])?,
+    };
     Some(PI * (((r_a + r_f) / 2.0).powi(2) - bore.powi(2)))
 }

@@ -12,7 +12,7 @@ pub mod symmetry;
 
 pub use hole::{Hole, HoleShape};
 pub use moments::Moments;
-pub use region::{BlankRegion, Ligament, Web};
+pub use region::{BlankRegion, Core, Ligament, Web};
 pub use symmetry::Symmetry;
 
 /// N equal round holes on a circle.

@@ -15,12 +15,25 @@ pub struct Web {
     pub thickness: f64,
 }
 
-/// What carries the teeth: the bore, on which the hub is rigid, the holes, and a web, if there is one. Elsewhere the blank
+/// What is inside of the circle on which a blank ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Core {
+    /// A bore, on which the hub is rigid.
+    #[default]
+    Bore,
+    /// A shaft in one piece with the blank: it is solid to the axis, and what holds the gear is even over the section of the shaft, or a torque that rises with
+    /// the radius.
+    Shaft,
+}
+
+/// What carries the teeth: the bore or the shaft, the holes, and a web, if there is one. Elsewhere the blank
 /// is as thick as the face is wide.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BlankRegion {
-    /// The radius of the bore, in meters.
+    /// The radius of the bore, or of the shaft, in meters.
     pub bore_radius: f64,
+    /// Which of them it is.
+    pub core: Core,
     /// The holes.
     pub holes: Vec<Hole>,
     /// The web.
@@ -60,8 +73,17 @@ impl BlankRegion {
     pub fn solid(bore_radius: f64) -> Self {
         Self {
             bore_radius,
+            core: Core::Bore,
             holes: Vec::new(),
             web: None,
+        }
+    }
+
+    /// The radius of what is not there about the axis: 0 of a shaft.
+    pub fn open_radius(&self) -> f64 {
+        match self.core {
+            Core::Bore => self.bore_radius,
+            Core::Shaft => 0.0,
         }
     }
 
@@ -134,7 +156,7 @@ impl BlankRegion {
     /// In closed form, also where a hole crosses the edge of the web. A web thicker than the face adds, which is negative here.
     pub fn taken_away(&self, face_width: f64) -> Moments {
         let holes: Moments = self.holes.iter().map(Hole::moments).sum();
-        let through = (Moments::of_disc(self.bore_radius) + holes) * face_width;
+        let through = (Moments::of_disc(self.open_radius()) + holes) * face_width;
         let Some(web) = self.web else { return through };
         let (inner, outer) = (
             web.inner_radius.max(self.bore_radius),
@@ -181,6 +203,7 @@ mod tests {
         };
         BlankRegion {
             bore_radius: 12e-3,
+            core: Core::Bore,
             holes: vec![all[0], all[1], all[3], apart],
             web,
         }

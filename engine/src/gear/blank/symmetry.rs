@@ -117,6 +117,7 @@ impl HoleShape {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gear::Core;
 
     fn pattern(count: u32, circle_radius: f64, radius: f64, phase: f64) -> HolePattern {
         HolePattern {
@@ -130,6 +131,7 @@ mod tests {
     fn region(patterns: &[HolePattern]) -> BlankRegion {
         BlankRegion {
             bore_radius: 10e-3,
+            core: Core::Bore,
             holes: patterns.iter().flat_map(HolePattern::holes).collect(),
             web: None,
         }

@@ -217,7 +217,7 @@ impl SpurGear {
         &self.data.material
     }
 
-    /// The bore radius.
+    /// The bore radius, or that of the shaft.
     pub fn bore_radius(&self) -> f64 {
         self.data.blank.bore_radius
     }
@@ -352,7 +352,7 @@ impl SpurGear {
         least.map(|(_, ligament)| ligament)
     }
 
-    /// The share of the blank that the holes remove; the blank is the ring between the bore and the mean of tip and root
+    /// The share of the blank that the holes remove; the blank is the ring between the bore, or the axis of a shaft, and the mean of tip and root
     /// circle.
     pub fn removed_fraction(&self) -> f64 {
         self.data.blank.hole_area() / self.nominal_blank_area()
@@ -361,7 +361,7 @@ impl SpurGear {
     /// The area π (((r_a + r_f)/2)² − r_bore²) to which removed mass is referred.
     pub fn nominal_blank_area(&self) -> f64 {
         let mean = f64::midpoint(self.tip_radius(), self.root_radius());
-        PI * (mean.powi(2) - self.bore_radius().powi(2))
+        PI * (mean.powi(2) - self.data.blank.open_radius().powi(2))
     }
 
     pub(in crate::gear) fn profile_shift_length(&self) -> f64 {

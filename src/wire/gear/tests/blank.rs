@@ -1,6 +1,6 @@
 //! Blanks: patterns of holes, angles, slots and webs.
 
-use meshwright_engine::gear::{Hole, HoleShape};
+use meshwright_engine::gear::{Core, Hole, HoleShape};
 use serde_json::{Value, json};
 
 use super::{fault, faults, mended, near, told};
@@ -117,6 +117,24 @@ fn a_pattern_says_where_and_how_its_holes_are_in_one_way() {
         { "count": 40, "circle_radius_mm": 30.0, "radius_mm": 1.0 }
     ]);
     fault(&holes(&many), "blank/holes", Code::TooLarge);
+}
+
+#[test]
+fn a_gear_that_is_cut_on_its_shaft_says_the_shaft_instead_of_the_bore() {
+    let on_shaft = |radius: f64| json!({ "blank": { "shaft": { "radius_mm": radius } } });
+    let told = told(&on_shaft(15.0)).blank;
+    assert_eq!((told.core, told.bore_radius), (Core::Shaft, 15e-3));
+    let both = json!({ "blank": { "bore_radius_mm": 15.0, "shaft": { "radius_mm": 15.0 } } });
+    for (fields, place, code, _) in refused! {
+        both => "shaft", ConflictingFields;
+        json!({ "blank": {} }) => "bore_radius_mm", MissingField;
+        json!({ "blank": { "shaft": {} } }) => "shaft/radius_mm", MissingField;
+        on_shaft(1.0) => "shaft/radius_mm", OutOfRange;
+        on_shaft(46.0) => "shaft/radius_mm", BoreTooLarge;
+    } {
+        fault(&fields, &format!("blank/{place}"), code);
+    }
+    mended(&on_shaft(46.0));
 }
 
 #[test]

@@ -5,11 +5,13 @@ mod refusals;
 mod schema;
 mod three_dimensions;
 
+use meshwright_engine::analysis::warnings;
 use serde_json::{Value, json};
 
 use super::*;
 use crate::wire::examples;
 use crate::wire::testing::{echo, example, parse, put};
+use crate::wire::warning::{WarningCode, WarningDocument};
 
 /// Every needed field and nothing else.
 pub(super) fn least() -> Value {
@@ -136,5 +138,46 @@ fn the_choices_of_the_resolution_reach_the_engine() {
     let echo = echo(&submission);
     for choice in ["contact_solver", "stiffness", "load_distribution"] {
         assert_eq!(echo["resolution"][choice], document["resolution"][choice]);
+    }
+}
+
+#[test]
+fn undercut_gears_are_computed_with_the_path_of_contact_that_is_left() {
+    // Public examples of gears; contact ratios by the swept rounding of the rack, and the roll length in mm that the path loses where it does.
+    for (teeth, module, tip_radius, center_distance, ratio, lost) in [
+        ([17, 43], 1.0, 0.38, 30.0, 1.6211, None),
+        (
+            [16, 64],
+            0.396_875,
+            0.150_812_5,
+            15.875,
+            1.6452,
+            Some(0.00175),
+        ),
+        ([10, 80], 1.0, 0.38, 45.0, 1.0927, Some(1.49)),
+        ([17, 22], 4.0, 1.0, 78.0, 1.5477, None),
+    ] {
+        let gear = |tooth_count: u32| {
+            json!({ "tooth_count": tooth_count, "module_mm": module, "face_width_mm": 5.0 * module, "rack_tip_radius_mm": tip_radius,
+                    "blank": { "bore_radius_mm": 0.15 * module * f64::from(tooth_count) } })
+        };
+        let document = json!({
+            "method": "flexible",
+            "pair": { "center_distance_mm": center_distance, "driving": gear(teeth[0]), "driven": gear(teeth[1]) },
+            "output_torques_n_m": [0.05],
+        });
+        let submission = parse(&document).expect("computed");
+        let case = submission.case();
+        let found = case.pair.contact_ratio();
+        assert!((found - ratio).abs() < 6e-5, "{teeth:?}: {found}");
+        let told = warnings(case)
+            .iter()
+            .map(WarningDocument::of)
+            .find(|told| told.code == WarningCode::UndercutShortensPath);
+        let value = told.as_ref().and_then(|told| told.value);
+        assert_eq!(value.is_some(), lost.is_some(), "{teeth:?}: {value:?}");
+        if let (Some(value), Some(lost)) = (value, lost) {
+            assert!((value / lost - 1.0).abs() < 5e-3, "{teeth:?}: {value}");
+        }
     }
 }

@@ -61,6 +61,49 @@ fn planes_refuse_what_they_do_not_know_and_three_dimensions_take_it() {
 }
 
 #[test]
+fn a_transverse_contact_ratio_below_one_is_taken_where_teeth_overlap_along_the_face() {
+    // 50/50 teeth of module 2 with an addendum of 0.4 modules: about 0.7 transverse, and 1.09 of overlap at a width of 20 mm.
+    let changes = |width: f64| -> Changes<'_> {
+        vec![
+            ("/pair/helix_angle_deg", json!(20)),
+            ("/pair/center_distance_mm", json!(106.42)),
+            ("/pair/driving/addendum_mm", json!(0.8)),
+            ("/pair/driven/addendum_mm", json!(0.8)),
+            ("/pair/driving/face_width_mm", json!(width)),
+        ]
+    };
+    let submission = parse(&with(solid(), &changes(20.0))).expect("the total is above one");
+    assert!(submission.case().pair.contact_ratio() < 0.8);
+    let narrow = with(solid(), &changes(3.0));
+    fault(
+        &narrow,
+        "/pair/center_distance_mm",
+        Code::ContactRatioBelowOne,
+    );
+}
+
+#[test]
+fn a_shaft_takes_its_torque_at_both_ends_in_the_plane_and_is_not_told_in_three_dimensions() {
+    let cut = |torque_at: &str, method: &str| {
+        let blank = json!({ "shaft": { "radius_mm": 20, "torque_at": torque_at } });
+        let changes = [("/pair/driving/blank", blank), ("/method", json!(method))];
+        with(least(), &changes)
+    };
+    assert!(parse(&cut("both", "flexible")).is_ok());
+    for torque_at in ["minus", "plus"] {
+        let place = "/pair/driving/blank/shaft/torque_at";
+        fault(
+            &cut(torque_at, "flexible"),
+            place,
+            Code::NeedsThreeDimensions,
+        );
+    }
+    let place = "/pair/driving/blank/shaft";
+    let three_dimensional = cut("both", "three_dimensional");
+    fault(&three_dimensional, place, Code::NotInThreeDimensions);
+}
+
+#[test]
 fn what_is_said_to_be_nothing_is_nothing() {
     let nothing = [
         ("/pair/helix_angle_deg", json!(0)),
@@ -94,8 +137,9 @@ fn each_fault_along_the_axis_is_told_with_a_value_that_would_do() {
             ("/pair/driven/blank/holes", holes),
         ]
     };
-    // In the transverse section the teeth are undercut below fewer than in the normal one.
+    // The fillets of so few teeth, shifted inward, would meet.
     let undercut = vec![
+        ("/pair/driving/profile_shift", json!(-1.8)),
         ("/pair/helix_angle_deg", json!(20)),
         ("/pair/driving/tooth_count", json!(10)),
         ("/pair/center_distance_mm", json!(64.5)),
