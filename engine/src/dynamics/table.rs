@@ -3,6 +3,10 @@
 /// How loads rise from one row of a table to the next: as this power, so that rows are dense where a line contact is soft.
 const RISE: f64 = 1.5;
 
+/// How loads rise where a table is refined between two of its rows: evenly in x, the part of the largest load being 3 y/(1 + 2 y) with y = x to this
+/// power, so that rows are close where loads are light and even where they are not.
+const BETWEEN: f64 = 3.5;
+
 /// Parts of the largest load that stand between 0 and the others: pairs of teeth come to carry one after the other there. Tables of so few loads have none.
 const LIGHT: ([f64; 2], usize) = ([7.5e-4, 6e-3], 7);
 
@@ -41,7 +45,7 @@ impl Ladder {
         let (light, few) = LIGHT;
         let light = if self.count > few { &light[..] } else { &[] };
         let heavy = self.count - 1 - light.len();
-        let heavy = (1..=heavy).map(|j| part_at(j as f64 / heavy as f64));
+        let heavy = (1..=heavy).map(|j| (j as f64 / heavy as f64).powf(RISE));
         let parts = [0.0].into_iter().chain(light.iter().copied()).chain(heavy);
         parts.map(|part| self.largest * part).collect()
     }
@@ -340,12 +344,13 @@ impl ForceTable {
 
 /// The part of the largest load at a place between 0 and 1.
 fn part_at(place: f64) -> f64 {
-    place.powf(RISE)
+    let y = place.powf(BETWEEN);
+    3.0 * y / (1.0 + 2.0 * y)
 }
 
 /// The place at which that part stands.
 fn place_of(part: f64) -> f64 {
-    part.powf(1.0 / RISE)
+    (part / (3.0 - 2.0 * part)).powf(1.0 / BETWEEN)
 }
 
 /// From this ratio on of how fast its compliance falls to how fast those beside it do, a stretch has a kink.
