@@ -13,7 +13,7 @@ from python.api.jobs import get_job, submit_job
 from python.api.reference import read_model
 from python.api.results import get_results, get_table
 from python.client import Client
-from python.models import Job, Results, RexsModel, Status, Submission
+from python.models import Job, Model, Results, Status, Submission
 from python.types import File
 
 submission = json.loads(pathlib.Path(sys.argv[1]).read_text())
@@ -35,5 +35,5 @@ table = json.loads(get_table.sync(job.id, "ste.json", client=client))
 assert len(table["curves"][0]["transmission_error_um"]) == len(rows)
 model = pathlib.Path(sys.argv[1]).with_suffix(".rexs").read_bytes()
 read = read_model.sync(client=client, body=File(payload=io.BytesIO(model)))
-assert isinstance(read, RexsModel) and len(read.submissions) == 1, read
+assert isinstance(read, Model) and len(read.submissions) == 1, read
 print(f"clients: a program by openapi-python-client ran a job: {mean:.3f} um.")

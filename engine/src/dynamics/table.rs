@@ -1,8 +1,14 @@
 //! The force between two gears over position and approach, and the energy behind it.
 
-/// How loads rise from one row of a table to the next: at the place x of 0 to 1 the part of the largest load is 3 y/(1 + 2 y) with y = x to this power. Rows are
-/// close where loads are light, since a line contact is soft there and pairs of teeth come to carry one after the other, and even where they are not.
-const RISE: f64 = 3.5;
+/// How loads rise from one row of a table to the next: as this power, so that rows are dense where a line contact is soft.
+const RISE: f64 = 1.5;
+
+/// How loads rise where a table is refined between two of its rows: evenly in x, the part of the largest load being 3 y/(1 + 2 y) with y = x to this
+/// power, so that rows are close where loads are light and even where they are not.
+const BETWEEN: f64 = 3.5;
+
+/// Parts of the largest load that stand between 0 and the others: pairs of teeth come to carry one after the other there. Tables of so few loads have none.
+const LIGHT: ([f64; 2], usize) = ([7.5e-4, 6e-3], 7);
 
 /// The least rise of δ from row to row in m, less than an atom.
 const APART: f64 = 1e-14;
@@ -36,10 +42,12 @@ pub struct Ladder {
 impl Ladder {
     /// The loads in N, rising from 0.
     pub fn loads(&self) -> Vec<f64> {
-        let last = (self.count - 1) as f64;
-        (0..self.count)
-            .map(|j| self.largest * part_at(j as f64 / last))
-            .collect()
+        let (light, few) = LIGHT;
+        let light = if self.count > few { &light[..] } else { &[] };
+        let heavy = self.count - 1 - light.len();
+        let heavy = (1..=heavy).map(|j| (j as f64 / heavy as f64).powf(RISE));
+        let parts = [0.0].into_iter().chain(light.iter().copied()).chain(heavy);
+        parts.map(|part| self.largest * part).collect()
     }
 }
 
@@ -334,15 +342,15 @@ impl ForceTable {
     }
 }
 
-/// The part of the largest load at a place between the first row of a [`Ladder`], 0, and its last, 1.
+/// The part of the largest load at a place between 0 and 1.
 fn part_at(place: f64) -> f64 {
-    let y = place.powf(RISE);
+    let y = place.powf(BETWEEN);
     3.0 * y / (1.0 + 2.0 * y)
 }
 
 /// The place at which that part stands.
 fn place_of(part: f64) -> f64 {
-    (part / (3.0 - 2.0 * part)).powf(1.0 / RISE)
+    (part / (3.0 - 2.0 * part)).powf(1.0 / BETWEEN)
 }
 
 /// From this ratio on of how fast its compliance falls to how fast those beside it do, a stretch has a kink.
@@ -579,39 +587,37 @@ pub(super) mod tests {
 
     /// A mesh that softens towards no load, with an approach that varies by position, and another flank 3 below.
     pub(in crate::dynamics) fn wavy(positions: usize, count: usize) -> ForceTable {
-        let ladder = Ladder {
-            count,
-            largest: 4.0,
-        };
+        let place = |j: usize| j as f64 / (count - 1) as f64;
+        let loads: Vec<f64> = (0..count).map(|j| 4.0 * part_at(place(j))).collect();
         let eta = |i: usize| i as f64 / positions as f64;
         let of = |load: f64, eta: f64| {
             let wave = 0.2 * (2.0 * PI * eta).cos() + 0.1 * (4.0 * PI * eta + 0.7).sin();
             0.05 * wave + load.powf(0.9) * (1.0 + wave)
         };
         let rows = |sign: f64, from: f64| {
-            ladder
-                .loads()
-                .into_iter()
+            loads
+                .iter()
                 .map(|load| {
                     (0..positions)
-                        .map(|i| from + sign * of(load, sign * eta(i)))
+                        .map(|i| from + sign * of(*load, sign * eta(i)))
                         .collect()
                 })
                 .collect()
         };
-        let compliance = ladder.loads().into_iter().map(|load| {
+        let compliance = loads.iter().map(|load| {
             let at = |i: usize| {
                 let waved = of(1.0, eta(i)) - of(0.0, eta(i));
                 0.9 * load.powf(-0.1) * waved
             };
             (0..positions).map(at).collect()
         });
+        let compliance = compliance.collect();
         let loaded = FlankRows {
             delta: rows(1.0, 0.0),
-            compliance: Some(compliance.collect()),
+            compliance: Some(compliance),
         };
         let other = FlankRows::of_delta(rows(-1.0, -3.0));
-        ForceTable::new(1, ladder.loads(), [loaded, other]).expect("rows that rise")
+        ForceTable::new(1, loads, [loaded, other]).expect("rows that rise")
     }
 
     #[test]

@@ -13,7 +13,7 @@ document! {
         /// The radius on which the hub is rigid: at least 5 % of the root radius, and a module below it. A gear that is cut on its shaft has none, and says
         /// the shaft instead.
         pub(super) bore_radius_mm: Option<f64> =
-            unless("shaft", number("Bore radius", "mm", 0.02, 25_000.0)).left_out(),
+            unless(&["shaft"], number("Bore radius", "mm", 0.02, 25_000.0)).left_out(),
         /// The shaft on which the gear is cut, said instead of the bore: gear and shaft are one piece, solid to the axis.
         pub(super) shaft: Option<ShaftDocument> = absent(nested("Shaft"), "the gear has a bore").left_out(),
         /// The holes of the blank: a pattern, or a list of patterns.
@@ -30,7 +30,7 @@ document! {
     /// a force is even. The transmission error refers to the mean rotation of that section, and its mean displacement is none.
     pub struct ShaftDocument as "Shaft", "Shaft" {
         /// The radius of the shaft: at least 5 % of the root radius, and a module below it. Holes and web lie outside of it.
-        pub(super) radius_mm: f64 = number("Radius of the shaft", "mm", 0.02, 7_500.0),
+        pub(super) radius_mm: f64 = number("Radius of the shaft", "mm", 0.02, 25_000.0),
         /// Through which ends of the face the torque enters, half of it each where it is both. A plane knows both only.
         pub(super) torque_at: FaceEnds = word("Where the torque enters").or(FaceEnds::Both),
     }

@@ -2,7 +2,6 @@
 
 use meshwright_engine::gear::{Helix, SpurGear};
 
-use super::GearDocument;
 use super::faults::Fault;
 use super::field::Field;
 use super::holes::HolesDocument;
