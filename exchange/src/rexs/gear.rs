@@ -577,9 +577,10 @@ impl<'a> Gear<'a> {
                 };
                 // Where it says to have no bore, or nothing would be left of it around one, it is of one piece with its shaft.
                 let radius = diameter / 2.0;
-                let solid = solid.is_some() || root - radius < LEAST_RIM * self.module;
+                let largest = root - LEAST_RIM * self.module;
+                let solid = solid.is_some() || radius > largest;
                 let blank = if solid {
-                    self.on_solid_shaft(&pointer, radius, section)?
+                    self.on_solid_shaft(&pointer, (radius, largest), section)
                 } else {
                     reading.remark(format!(
                         "Assumed: {} has no inner_diameter; taken is the outer diameter of its shaft under it, {diameter} mm of {}.",
@@ -611,24 +612,27 @@ impl<'a> Gear<'a> {
         Some(blank)
     }
 
-    /// The blank of a gear that is of one piece with its shaft, whose radius under the teeth is `radius`, in mm.
-    fn on_solid_shaft(&self, pointer: &str, radius: f64, section: &'a Component) -> Option<Value> {
-        let told = format!(
-            "{} is of one piece with its shaft, whose radius under it is {radius} mm by {}",
+    /// The blank of a gear that is of one piece with its shaft, whose radius under the teeth is `radius`, in mm; at most `largest`.
+    fn on_solid_shaft(
+        &self,
+        pointer: &str,
+        (radius, largest): (f64, f64),
+        section: &'a Component,
+    ) -> Value {
+        let reading = self.reading;
+        let taken = radius.min((1e4 * largest).floor() / 1e4);
+        let thicker = if taken < radius {
+            format!("; taken are {taken} mm, a module below the root circle")
+        } else {
+            String::new()
+        };
+        reading.remark(format!(
+            "Assumed: {} is of one piece with its shaft, whose radius under it is {radius} mm by {}{thicker}.",
             self.gear.place(),
             section.place()
-        );
-        let reading = self.reading;
-        if !SOLID_SHAFTS {
-            let detail = format!(
-                "{told}; a gear without a bore cannot be computed. Say one by --bore-radius MM."
-            );
-            reading.wrong(section.place_of(SECTION), detail);
-            return None;
-        }
-        reading.remark(format!("Assumed: {told}."));
+        ));
         reading.from(format!("{pointer}/shaft/radius_mm"), section, SECTION);
-        Some(json!({ "shaft": { "radius_mm": radius } }))
+        json!({ "shaft": { "radius_mm": taken } })
     }
 
     /// The web between a rim, which lies under the root circle, and the bore, unless we wrote where it begins.
@@ -659,9 +663,6 @@ impl<'a> Gear<'a> {
         }
     }
 }
-
-/// Whether a submission can have `blank.shaft`.
-const SOLID_SHAFTS: bool = false;
 
 /// The tool whose root is known.
 const RACK: &str = "rack_shaped_tool";

@@ -944,17 +944,19 @@ fn a_gear_without_a_bore_sits_on_the_section_of_its_shaft() {
         r#"<attribute id="inner_diameter" unit="mm">0</attribute><attribute id="u_coordinate_on_shaft""#,
         1,
     );
-    for (model, radius) in [(thick, "21 mm"), (solid, "12 mm")] {
-        assert_refused(
-            &model,
-            "component 61 (shaft_section)",
-            &[
-                "of one piece with its shaft",
-                radius,
-                "component 10",
-                "--bore-radius",
-            ],
+    // Of the thick one a module is left below the root circle.
+    for (model, radius, taken_radius) in [(thick, "21 mm", None), (solid, "12 mm", Some(12.0))] {
+        let read = taken_of(model.as_bytes());
+        let shaft = field(&read, "/pair/driving/blank/shaft/radius_mm");
+        let shaft = shaft.as_f64().expect("a radius");
+        assert!(
+            taken_radius.is_none_or(|radius| shaft == radius) && shaft < 21.0,
+            "{shaft}"
         );
+        let told = read.remarks.join(" ");
+        for word in ["of one piece with its shaft", radius, "component 10"] {
+            assert!(told.contains(word), "{told}");
+        }
         let choices = Choices {
             bore_radii: vec![12.0],
             ..Choices::default()

@@ -1,14 +1,9 @@
 //! A thousand pairs as gear programs write them: shifts to four decimals, distances and tip diameters to three, tips shortened, few teeth.
 
-use std::f64::consts::PI;
-
 use serde_json::{Value, json};
 
 use crate::wire::testing::parse;
 use crate::wire::{Code, Submission};
-
-/// Whether pairs are drawn whose teeth the rack undercuts.
-const WITH_UNDERCUT: bool = false;
 
 /// Numbers between 0 and 1, the same on every machine (splitmix64).
 struct Chance(u64);
@@ -53,19 +48,9 @@ fn designed(chance: &mut Chance) -> Value {
     let z_2 = (z_1 * chance.between(1.0, 5.0)).floor();
     let (alpha_n, beta) = (f64::to_radians(angle_deg), f64::to_radians(helix_deg));
     let alpha = (alpha_n.tan() / beta.cos()).atan();
-    // The shift below which the rack of ISO 53 A undercuts, its rounding as large as fits, and those that programs choose.
-    let room = (PI / 4.0 - 1.25 * alpha_n.tan()) * alpha_n.cos() / (1.0 - alpha_n.sin());
-    let depth = 1.25 - room.min(0.38) * (1.0 - alpha_n.sin());
-    let undercut = |z: f64| depth - z * alpha.sin().powi(2) / (2.0 * beta.cos());
-    let least = |z: f64| {
-        if WITH_UNDERCUT {
-            -0.1
-        } else {
-            undercut(z) + 1e-3
-        }
-    };
-    let x_1 = chance.between(least(z_1).max(0.0), least(z_1).max(0.5));
-    let x_2 = chance.between(least(z_2).max(-0.3), least(z_2).max(0.3));
+    // Few teeth without a shift are undercut.
+    let x_1 = chance.between(0.0, 0.5);
+    let x_2 = chance.between(-0.1, 0.3);
     // No backlash: inv α_wt = inv α_t + 2 (x_1 + x_2) tan α_n/(z_1 + z_2).
     let wanted = involute(alpha) + 2.0 * (x_1 + x_2) * alpha_n.tan() / (z_1 + z_2);
     let (mut low, mut high) = (0.0, 1.2);
