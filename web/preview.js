@@ -282,7 +282,11 @@ function draftOf(submission, period) {
   const parts = [1, 2, 4].filter((part) => all % part === 0 && all / part >= LEAST_POSITIONS);
   const part = parts.find((each) => (all / each) * periods <= DRAFT_POSITIONS) ?? parts.at(-1) ?? 1;
   const { force_table: table, dynamics, ...asked } = submission;
-  if (isSolid(submission.method)) asked.method = PROJECTED;
+  if (isSolid(submission.method)) {
+    // It tells no stresses.
+    asked.method = PROJECTED;
+    delete asked.stress;
+  }
   if (asked.method === submission.method && part === 1 && grid === "coarse" && !table && !dynamics) return null;
   return { ...asked, resolution: { ...submission.resolution, positions_per_mesh_period: all / part, grid: "coarse" } };
 }

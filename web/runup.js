@@ -16,6 +16,8 @@ const QUANTITIES = {
 };
 const BRANCHES = { up: "running up", down: "running down" };
 const HEIGHT = 290;
+/** So many orders are drawn; a run-up tells many more. */
+const MOST_RIDGES = 16;
 /** A row of the waterfall, and how many rows its highest ridge may cover, in px. */
 const [ROW, RISE] = [24, 2.4];
 const FRAME = { left: 74, right: 14, top: 44, bottom: 44 };
@@ -187,13 +189,14 @@ export class RunUp {
     };
   }
 
-  /** The named orders of the run-up with their numbers, rising. */
+  /** The named orders of the run-up with their numbers, rising: those that move most. */
   #orders() {
     const named = this.#curve.spectrum?.named ?? [];
+    const most = ({ amplitude }) => Math.max(...amplitude);
     return this.#run.orders.flatMap((each) => {
       const known = named.find(({ label }) => label === each.label);
       return known ? [{ ...known, amplitude: each.amplitude_um }] : [];
-    }).sort((a, b) => a.order - b.order);
+    }).sort((a, b) => most(b) - most(a)).slice(0, MOST_RIDGES).sort((a, b) => a.order - b.order);
   }
 
   /** A ridge for each order over speed, the lowest in front, and a mark where an order resonates. */
@@ -201,7 +204,8 @@ export class RunUp {
     const orders = this.#orders();
     const speeds = this.#dynamics.driving_speed_rpm;
     const height = FRAME.top + ROW * orders.length + FRAME.bottom;
-    const [first, last] = [speeds[0], speeds.at(-1)];
+    // One speed stands in the middle.
+    const [first, last] = speeds.length > 1 ? [speeds[0], speeds.at(-1)] : [0.9 * speeds[0], 1.1 * speeds[0] || 1];
     const px = (speed) => FRAME.left + ((speed - first) / (last - first)) * (width - FRAME.left - FRAME.right);
     const most = Math.max(1e-9, ...orders.flatMap(({ amplitude }) => amplitude));
     const foot = (i) => height - FRAME.bottom - ROW * i - 4;

@@ -298,7 +298,7 @@ mod tests {
         let pointer = Pointer::parse("/pair/driven/blank/hole/count").unwrap();
         let (code, detail) = pointer.check_named().unwrap_err();
         assert_eq!(code, Code::UnknownField);
-        assert!(detail.contains("bore_radius_mm, holes"), "{detail}");
+        assert!(detail.contains("bore_radius_mm, shaft, holes"), "{detail}");
     }
 
     #[test]

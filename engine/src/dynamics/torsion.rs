@@ -180,7 +180,8 @@ mod tests {
         };
         let found = coupled.natural_frequency().expect("springs and masses");
         let expected = expected / (2.0 * PI);
-        assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
+        // The integration along the radius leaves 6e-8.
+        assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}");
     }
 
     #[test]

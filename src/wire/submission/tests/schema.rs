@@ -33,9 +33,19 @@ fn every_field_of_the_schema_has_a_title_and_the_defaults_are_those_that_are_fil
             .and_then(Value::as_object)
             .expect("an object");
         let properties = schema["properties"].as_object().expect("properties");
+        // What is one of several ways to say the same is left out where another is taken.
+        let is_echoed = |field: &&String| {
+            let ways = [
+                "tooth_thickness_deviation_normal_um",
+                "span_measurement",
+                "ball_measurement",
+                "shaft",
+            ];
+            !ways.contains(&field.as_str())
+        };
         assert_eq!(
             fields.keys().collect::<Vec<_>>(),
-            properties.keys().collect::<Vec<_>>(),
+            properties.keys().filter(is_echoed).collect::<Vec<_>>(),
             "{name} is echoed field by field"
         );
         for (field, property) in properties {
@@ -45,7 +55,7 @@ fn every_field_of_the_schema_has_a_title_and_the_defaults_are_those_that_are_fil
             // A span that is not given is filled in with the true period.
             if let Some(default) = property
                 .get("default")
-                .filter(|_| field != "span_mesh_periods")
+                .filter(|_| field != "span_mesh_periods" && is_echoed(&field))
             {
                 assert_eq!(default.as_f64(), fields[field].as_f64(), "{name}.{field}");
                 if !default.is_number() {
@@ -127,7 +137,7 @@ fn a_submission_with_other_fields_or_words_has_another_version() {
         (DOCUMENT_VERSION, sha256_hex(told.join("\n")).as_str()),
         (
             3,
-            "4a584189500fbf8e517dea580ecefa26c2c02f7256cc7086367de4b4d3e4abc1"
+            "8acf12e762c2a4a04bbe40b91d43258bb1aa51abb60af5fb19cd7b3712c27186"
         ),
         "{told:#?}"
     );
