@@ -123,7 +123,7 @@ impl FromStr for HookTarget {
             Some(rest) => (true, rest),
             None => (false, rest),
         };
-        let authority: axum::http::uri::Authority = rest
+        let authority: hyper::http::uri::Authority = rest
             .parse()
             .map_err(|_| format!("{rest:?} is no host, or host and port"))?;
         if authority.as_str().contains(['@', '*']) || authority.host().is_empty() {

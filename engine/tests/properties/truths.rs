@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-use meshwright_engine::analysis::{Analysis, Case, ContactSolver, Curve, analyze, pair_model};
+use meshwright_engine::analysis::{
+    Analysis, Case, ContactSolver, Curve, Warning, analyze, pair_model,
+};
 use meshwright_engine::contact::MeshContact;
 use meshwright_engine::contact::half_plane::{hertz, logarithm_factor};
 use meshwright_engine::gear::{
@@ -176,7 +178,17 @@ fn apart(one: &[f64], other: &[f64], deflection: f64) -> f64 {
 fn penetration(drawn: &DrawnPair) -> Result<Option<f64>, String> {
     let analysis = solve(&case(&drawn.pair, &[drawn.output_torque]))?;
     let deflection = deflection(&analysis.curves[0]);
-    Ok(Some(analysis.evidence.largest_penetration / deflection))
+    let figure = analysis.evidence.largest_penetration / deflection;
+    let is_undercut = |member: Member| drawn.pair.gear(member).is_undercut();
+    if !Member::BOTH.into_iter().any(is_undercut) {
+        return Ok(Some(figure));
+    }
+    // Below the corner of an undercut flank contact on the fillet is not followed, and warned of where it carries; beside the corner ten times as much is
+    // allowed.
+    let reaches_fillet =
+        |warning: &Warning| matches!(warning, Warning::ContactReachesFillet { .. });
+    let is_warned = analysis.warnings.iter().any(reaches_fillet);
+    Ok((!is_warned).then_some(0.1 * figure))
 }
 
 /// The rigid gap of pair `n` at `eta` along the line of action, by looking at dense polygons of both flanks: independent of
