@@ -43,7 +43,7 @@ pub(crate) fn run(arguments: Stub) -> anyhow::Result<()> {
         let world = World {
             compute,
             clock: Clock::system(),
-            hooks: HookRules::to_public(Vec::new()),
+            hooks: HookRules::to_named(Vec::new()),
         };
         let service = serve(&arguments.config, world).await?;
         println!(

@@ -192,7 +192,7 @@ fn check_media_type(headers: &HeaderMap, kinds: &[&str]) -> Result<(), Problem> 
         }
         None => *kind == "xml" && essence == "text/xml",
     };
-    if kinds.iter().any(|kind| known(kind)) {
+    if kinds.iter().any(known) {
         return Ok(());
     }
     refuse(format!(
