@@ -133,10 +133,10 @@ export async function hourSteps(service) {
     await answered(await page.locator("details.tool[open] [role=status]").last().innerText());
     await changing(page, () => page.locator("#undo").click());
     await tab(page, "population");
-    await typed(page.locator("#population-size"), 40);
+    await typed(page.locator("#population-size"), 80);
     await typed(page.locator("#population-torques"), "150");
     await page.locator("#population button[type=submit]").click();
-    await page.waitForFunction(() => /40 of 40 members, successful/.test(document.querySelector("#population [role=status]").innerText));
+    await page.waitForFunction(() => /80 of 80 members, successful/.test(document.querySelector("#population [role=status]").innerText));
     await page.locator("#population-quantity").selectOption("mesh_order_um");
     await answered((await page.locator("#population .out p").first().innerText()).split(";")[0]);
 
