@@ -91,7 +91,10 @@ fn show_body(path: &str, operation: &mut Operation) {
     };
     for (media_type, content) in &mut body.content {
         let RefOr::T(content) = content else { continue };
-        content.example = example_of(path);
+        // A model is shown as XML; its other containers hold the same.
+        let example = example_of(path);
+        content.example =
+            example.filter(|one| one.is_string() == (media_type == "application/xml"));
         if !media_type.ends_with("json") {
             let bytes = ObjectBuilder::new()
                 .schema_type(Type::String)

@@ -78,7 +78,7 @@ view! {
 #[utoipa::path(
     post, path = "/v1/rexs", tag = "Reference", operation_id = "read_model",
     request_body(
-        content((String = "application/xml"), (Value = "application/json"), (Value = "application/zip")),
+        content((String = "application/xml"), (HashMap<String, Value> = "application/json"), (Value = "application/octet-stream")),
         description = "The model, in any of its containers.",
     ),
     params(ModelParameters),

@@ -53,14 +53,14 @@ impl Study {
             self.paths().map(|path| (path.text(), path)).collect();
         let mended = |error: &FieldError| {
             let pointer = &error.pointer;
-            // A list that is too long stays so whatever stands in it.
-            let may_be_completed = error.code != Code::TooLarge;
-            self.constant_mass
-                .as_ref()
-                .is_some_and(|rule| rule.sets(pointer))
-                || places.values().any(|path| {
-                    path.covers(pointer) || (may_be_completed && path.is_below(pointer))
-                })
+            let is_set = |path: &&Pointer| path.covers(pointer) || path.is_below(pointer);
+            // A list that is too long is so whatever stands in it, and no base that anybody means.
+            error.code != Code::TooLarge
+                && (self
+                    .constant_mass
+                    .as_ref()
+                    .is_some_and(|rule| rule.sets(pointer))
+                    || places.values().any(is_set))
         };
         for error in Submission::wrong_fields(&self.base) {
             if !mended(&error) {
