@@ -90,7 +90,7 @@ def test_a_study_is_a_frame(service):
 def test_a_population_is_what_numpy_makes_of_its_table(service):
     base = service.example("standard-pair") | {"method": "load_distribution"}
     vary = [{"path": "/pair/center_distance_mm", "kind": "normal", "mean": 100.5, "standard_deviation": 0.02, "low": 100.4, "high": 100.6}]
-    asked = {"size": 300, "vary": vary, "accuracy": {"driving": {"iso_1328_class": 6}, "driven": {"iso_1328_class": 6}}}
+    asked = {"size": 400, "vary": vary, "accuracy": {"driving": {"iso_1328_class": 6}, "driven": {"iso_1328_class": 6}}}
     table = service.study({"base": base, "population": asked, "keep": "statistics"})
     members = table.frame()
     spread = table.population().frame()
