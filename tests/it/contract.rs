@@ -36,9 +36,17 @@ async fn what_operations_show_to_send_works_as_it_stands() {
         let Some(contents) = item["post"]["requestBody"]["content"].as_object() else {
             continue;
         };
+        let examples = contents.values().map(|content| &content["example"]);
+        assert!(
+            examples.into_iter().any(|shown| !shown.is_null()),
+            "{path} shows nothing"
+        );
         for (media_type, content) in contents {
             let shown = &content["example"];
-            assert!(!shown.is_null(), "{path} shows nothing");
+            // Other containers of a model hold what its XML shows.
+            if shown.is_null() {
+                continue;
+            }
             // Where messages may go the operator says.
             if path == "/v1/webhooks" {
                 continue;
