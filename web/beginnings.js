@@ -40,6 +40,10 @@ export class Beginnings {
     if (/\/profile_modifications\/\d+$/.test(pointer)) return this.#modification(pointer, kind);
     if (/\/lead_modifications\/\d+$/.test(pointer)) return this.#lead(pointer, kind);
     if (name === "interface_radius_mm") return this.#interface(kind);
+    if (name === "driving_speed_rpm") {
+      const { driving_speed_rpm: range } = this.#runUp();
+      return kind.kind === "number" ? range.to / 2 : range;
+    }
     if (name !== "holes") return this.#begin(kind);
     const patterns = there ? [there].flat() : [this.object(pointer, kind)];
     return kind.kind === "list" ? patterns : patterns[0];
