@@ -8,7 +8,7 @@ use faer::{Mat, c64};
 
 use super::cyclic::{Component, Harmonics, Sector, add_orders, at_angles};
 use crate::fem::FemError;
-use crate::fem::dense::Cholesky;
+use crate::fem::dense::{Cholesky, symmetrize};
 use crate::gear::Material;
 use crate::grid::BlankGrid;
 use crate::run::Run;
@@ -109,9 +109,9 @@ impl OnShaft {
         edge_moved = -edge_moved;
         let mut stiffness = on_outer;
         stiffness += between.transpose() * &edge_moved;
-        let symmetric = Mat::from_fn(o, o, |i, j| 0.5 * (stiffness[(i, j)] + stiffness[(j, i)]));
+        symmetrize(&mut stiffness);
         Ok(Self {
-            stiffness: symmetric,
+            stiffness,
             rows: outer_rows + edge_rows * &edge_moved,
             edge,
             edge_moved,
@@ -140,7 +140,7 @@ pub(super) struct ShaftSection {
 impl ShaftSection {
     pub(super) fn new(material: &Material, thickness: f64) -> Self {
         Self {
-            shear_modulus: material.youngs_modulus / (2.0 * (1.0 + material.poisson_ratio)),
+            shear_modulus: material.shear_modulus(),
             poisson_ratio: material.poisson_ratio,
             thickness,
         }
