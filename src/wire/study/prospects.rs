@@ -171,9 +171,7 @@ impl Asked {
             errors.push(FieldError::new(pointer, Code::QuantityNotTold, detail));
         }
     }
-}
 
-impl Asked {
     /// Where no design can be built because its method does not tell the stresses that are asked for, goals and conditions of stress are told so too.
     fn report_stresses(&self, errors: &Errors) {
         let failed = self
