@@ -1,6 +1,6 @@
 //! What is drawn, what is refused, and what the members tell.
 
-use meshwright_engine::gear::ToothDeviations;
+use meshwright_engine::gear::{SpurGear, ToothDeviations};
 use meshwright_engine::run::Run;
 use serde_json::{Value, json};
 
@@ -422,15 +422,8 @@ fn gears_that_an_inspector_rejects_are_drawn_again_and_told() {
     );
     // The same share by looking at gears that nobody has looked at.
     let inspection = |design: &Design| {
-        let gear = design
-            .submission
-            .as_ref()
-            .unwrap()
-            .case()
-            .pair
-            .driven()
-            .clone();
-        Inspection::of(&gear, 6).largest_part(gear.deviations())
+        let gear = driven_of(design);
+        Inspection::of(gear, 6).largest_part(gear.deviations())
     };
     let more = study(json!({ "size": 2000, "seed": 9, "accuracy": {
         "driven": { "iso_1328_class": 6, "capability": 0.8, "inspected": false } } }));
@@ -449,6 +442,12 @@ fn gears_that_an_inspector_rejects_are_drawn_again_and_told() {
             "what passes at once is taken"
         );
     }
+}
+
+/// The driven gear of a design that can be made.
+fn driven_of(design: &Design) -> &SpurGear {
+    let submission = design.submission.as_ref().unwrap();
+    submission.case().pair.driven()
 }
 
 #[test]
@@ -478,15 +477,8 @@ fn shares_of_inspected_gears_are_those_that_the_result_was_made_of() {
     let asked = |vary: Value| json!({ "size": 2048, "vary": vary, "accuracy": { "driving": accuracy(5), "driven": accuracy(6) } });
     let whole = study(asked(json!([distance()])));
     let total = |design: &Design| {
-        let gear = design
-            .submission
-            .as_ref()
-            .unwrap()
-            .case()
-            .pair
-            .driven()
-            .clone();
-        1e6 * Inspection::of(&gear, 6).total_pitch_deviation(gear.deviations())
+        let gear = driven_of(design);
+        1e6 * Inspection::of(gear, 6).total_pitch_deviation(gear.deviations())
     };
     // What passed of the driven gear as a whole, of the driving one in one tooth, and the distance.
     let parts = |design: &Design| {
