@@ -1,7 +1,6 @@
 //! Random numbers, alike on every machine.
 
-use std::f64::consts::TAU;
-
+use meshwright_sample::normal::quantile;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 
@@ -29,9 +28,8 @@ impl Chance {
         self.even() < probability
     }
 
-    /// A standard normal deviate (Box and Muller).
+    /// A standard normal deviate.
     pub(crate) fn normal(&mut self) -> f64 {
-        let (one, other) = (1.0 - self.even(), self.even());
-        (-2.0 * libm::log(one)).sqrt() * libm::cos(TAU * other)
+        quantile(self.even())
     }
 }
