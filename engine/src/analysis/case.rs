@@ -267,3 +267,42 @@ impl Case {
             .collect()
     }
 }
+
+#[cfg(test)]
+pub(in crate::analysis) mod tests {
+    use super::*;
+    use crate::analysis::{BodyFormula, PlaneState, ToothFormula};
+
+    /// `pair` by `method` under one torque, on the coarse grid, with so many positions a mesh period.
+    pub(in crate::analysis) fn plain(
+        pair: GearPair,
+        method: Method,
+        output_torque: f64,
+        positions_per_mesh_period: u32,
+    ) -> Case {
+        Case {
+            pair,
+            faces: None,
+            method,
+            output_torques: vec![output_torque],
+            resolution: Resolution {
+                positions_per_mesh_period,
+                first_position: 0.0,
+                span_mesh_periods: None,
+                grid: GridLevel::Coarse,
+                contact_solver: ContactSolver::ActiveSet,
+                stiffness: StiffnessRule::Tangent,
+                blank_positions: 16,
+                interface_radii: [None; 2],
+                formulas: Formulas {
+                    tooth: ToothFormula::WeberBanaschek,
+                    body: BodyFormula::Sainsot,
+                    plane_state: PlaneState::Stress,
+                },
+                error_estimate: false,
+            },
+            stress: false,
+            driving_speed: None,
+        }
+    }
+}

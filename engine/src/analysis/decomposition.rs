@@ -8,13 +8,13 @@ use super::case::Case;
 use super::curve::{BlankFit, BlankSample, Curve, DecompositionParts};
 use super::curve_parts::CurveParts;
 use super::evidence::Evidence;
+use super::pair_contacts::ModeledPair;
 use super::plan::{Pass, Sweep, unlike_holes};
-use super::rigid_blank::RigidBlank;
 use super::setup::Setup;
 use super::warning::{warn_of_tips, warnings};
 use super::{Analysis, AnalysisError};
 use crate::assembly::interface::interface_radius;
-use crate::assembly::{CutGear, PartError};
+use crate::assembly::{Blanks, CutGear, PartError};
 use crate::contact::positions::contacts_keeping;
 use crate::contact::{MeshContact, PairModel};
 use crate::fem::FemError;
@@ -34,14 +34,14 @@ struct HoledBlank<'a> {
     motion: InterfaceMotion<'a>,
     annulus: Annulus,
     /// The pair with all holed blanks rigid.
-    rigid: &'a RigidBlank<'a>,
+    rigid: &'a ModeledPair<'a>,
     interface_radius: f64,
 }
 
 /// Eqs. 9 to 15: δ = δ_wh + Σ over holed gears of A + B cos(N θ + phase), fitted to samples of the holed blank's rotation.
 pub(super) fn solve(setup: Setup<'_>, plan: &Pass) -> Result<Analysis, AnalysisError> {
     let case = setup.case;
-    let rigid = RigidBlank::new(setup)?;
+    let rigid = ModeledPair::new(setup, Blanks::HoledRigid)?;
     // How a blank turns under its hub is fitted as drawn: what teeth deviate is in δ_wh.
     let drawn = Case {
         pair: case.pair.as_drawn(),
@@ -51,7 +51,7 @@ pub(super) fn solve(setup: Setup<'_>, plan: &Pass) -> Result<Analysis, AnalysisE
         case: &drawn,
         ..setup
     };
-    let apart = (drawn.pair != case.pair).then(|| RigidBlank::new(of_drawn));
+    let apart = (drawn.pair != case.pair).then(|| ModeledPair::new(of_drawn, Blanks::HoledRigid));
     let apart = apart.transpose()?;
     let rigid_as_drawn = apart.as_ref().unwrap_or(&rigid);
     let mut degrees_of_freedom = rigid.degrees_of_freedom;
@@ -101,7 +101,7 @@ pub(super) fn solve(setup: Setup<'_>, plan: &Pass) -> Result<Analysis, AnalysisE
 
 /// The curve at one torque, its stiffness by a central difference, and the contacts on rigid blanks behind it.
 fn curve(
-    rigid: &RigidBlank<'_>,
+    rigid: &ModeledPair<'_>,
     blanks: &[HoledBlank<'_>],
     told: &Sweep,
     output_torque: f64,
@@ -154,14 +154,14 @@ fn curve(
 
 /// The terms of eq. 15 under one load.
 struct Terms<'a> {
-    rigid: &'a RigidBlank<'a>,
+    rigid: &'a ModeledPair<'a>,
     load: f64,
     fits: Vec<BlankFit>,
 }
 
 impl<'a> Terms<'a> {
     fn under(
-        rigid: &'a RigidBlank<'a>,
+        rigid: &'a ModeledPair<'a>,
         blanks: &[HoledBlank<'_>],
         load: f64,
     ) -> Result<Self, AnalysisError> {

@@ -4,6 +4,7 @@ use super::between::{Sample, Sections};
 use super::case::Place;
 use super::curve_parts::CurveParts;
 use super::evidence::Evidence;
+use super::pair_contacts::ModeledPair;
 use super::plan::{Pass, Sweep};
 use super::setup::Setup;
 use super::stress::{GearStresses, PositionPeaks, StressModel};
@@ -15,25 +16,29 @@ use crate::contact::{ContactCells, ContactSolution, MeshContact, PairModel};
 /// Computes the case of `setup` by the flexible method.
 pub(super) fn solve(setup: Setup<'_>, plan: &Pass) -> Result<Analysis, AnalysisError> {
     let case = setup.case;
-    let (model, degrees_of_freedom) = setup.model(plan.told.blanks)?;
-    let mut evidence = Evidence::new(degrees_of_freedom);
+    let pair = ModeledPair::new(setup, plan.told.blanks)?;
+    let mut evidence = Evidence::new(pair.degrees_of_freedom);
     let mut warnings = warnings(case);
     let stress = plan.stress.then(|| StressModel::new(&setup)).transpose()?;
     let stress = stress.as_ref().map(|model| model.loaded(setup.run));
     let stress = stress.transpose()?;
-    let peaks = |cells: &ContactCells<'_>, solution: &ContactSolution| {
-        stress.as_ref().map(|pair| pair.peaks(cells, solution))
-    };
     let mut curves = Vec::with_capacity(case.output_torques.len());
     for &output_torque in &case.output_torques {
         let load = case.pair.load(output_torque);
-        let solved = solved(&setup, &model, load, &plan.told, peaks)?;
+        let solved: Solved<PositionPeaks> = match &stress {
+            None => solved_once(&pair, load, &plan.told)?,
+            Some(stress) => {
+                let peaks = |cells: &ContactCells<'_>, solution: &ContactSolution| {
+                    stress.peaks(cells, solution)
+                };
+                solved(&setup, &pair.model, load, &plan.told, peaks)?
+            }
+        };
         evidence.gather(&solved.contacts, load);
         warn_of_tips(&mut warnings, &solved.contacts);
-        let sections = sections(&setup, &model, load, &plan.told, &solved, &mut evidence)?;
-        let peaks: Option<Vec<PositionPeaks>> = solved.kept.into_iter().collect();
+        let sections = sections(&pair, load, &plan.told, &solved, &mut evidence)?;
         let parts = CurveParts {
-            stresses: peaks.map(|peaks| GearStresses::of_positions(&peaks)),
+            stresses: (plan.stress).then(|| GearStresses::of_positions(&solved.kept)),
             ..CurveParts::of_contacts(case, &solved.contacts, solved.stiffness, sections)
         };
         curves.push(parts.into_curve(case, output_torque));
@@ -57,18 +62,17 @@ pub(super) struct Solved<T> {
 
 /// The curve through what was `solved` under one load, and through what is solved further between its positions.
 fn sections<T>(
-    setup: &Setup<'_>,
-    model: &PairModel,
+    pair: &ModeledPair<'_>,
     load: f64,
     told: &Sweep,
     solved_at_first: &Solved<T>,
     evidence: &mut Evidence,
 ) -> Result<Sections, AnalysisError> {
-    let case = setup.case;
+    let Setup { case, run, .. } = pair.setup;
     let after = case.curves_repeat_after();
     let samples = solved_at_first.samples(&case.places_after(&told.positions, case.span()));
-    told.sections((case, after), samples, setup.run, |sweep| {
-        let further = solved(setup, model, load, sweep, |_, _| ())?;
+    told.sections((case, after), samples, run, |sweep| {
+        let further: Solved<()> = solved_once(pair, load, sweep)?;
         evidence.gather(&further.contacts, load);
         Ok(further.samples(&case.places_after(&sweep.positions, after)))
     })
@@ -83,6 +87,26 @@ impl<T> Solved<T> {
         let stiffness: Vec<f64> = stiffness.collect();
         Sample::of(places, &self.contacts, &deltas, &stiffness)
     }
+}
+
+/// Solves `sweep` under one load, unless the contacts of an equal pair are known, and keeps nothing beside them.
+fn solved_once<T>(
+    pair: &ModeledPair<'_>,
+    load: f64,
+    sweep: &Sweep,
+) -> Result<Solved<T>, AnalysisError> {
+    let contacts = pair.contacts(load, &sweep.positions)?.to_vec();
+    let of_contacts = || contacts.iter().map(|contact| contact.stiffness).collect();
+    let stiffness = sweep.stiffness(load, of_contacts, |load| {
+        let contacts = pair.contacts(load, &sweep.positions)?;
+        let deltas = contacts.iter().map(|contact| contact.transmission_error);
+        Ok(deltas.collect())
+    })?;
+    Ok(Solved {
+        contacts,
+        kept: Vec::new(),
+        stiffness,
+    })
 }
 
 /// Solves `sweep` under one load and keeps of each contact what `keep` takes.
@@ -110,10 +134,8 @@ pub(super) fn solved<T: Send>(
 
 #[cfg(test)]
 mod tests {
-    use crate::analysis::{
-        BodyFormula, Case, ContactSolver, Formulas, Method, PlaneState, Resolution, StiffnessRule,
-        ToothFormula, analyze,
-    };
+    use crate::analysis::case::tests::plain;
+    use crate::analysis::{Method, analyze};
     use crate::contact::facing::tests::undercut_pair;
     use crate::grid::GridLevel;
     use crate::library::Library;
@@ -121,29 +143,10 @@ mod tests {
 
     #[test]
     fn the_corner_of_an_undercut_flank_takes_up_load_before_its_path_of_contact_begins() {
-        let case = |grid| Case {
-            pair: undercut_pair(),
-            faces: None,
-            method: Method::Flexible,
-            output_torques: vec![8.0],
-            resolution: Resolution {
-                positions_per_mesh_period: 40,
-                first_position: 0.0,
-                span_mesh_periods: None,
-                grid,
-                contact_solver: ContactSolver::ActiveSet,
-                stiffness: StiffnessRule::Tangent,
-                blank_positions: 16,
-                interface_radii: [None; 2],
-                formulas: Formulas {
-                    tooth: ToothFormula::WeberBanaschek,
-                    body: BodyFormula::Sainsot,
-                    plane_state: PlaneState::Stress,
-                },
-                error_estimate: false,
-            },
-            stress: false,
-            driving_speed: None,
+        let case = |grid| {
+            let mut case = plain(undercut_pair(), Method::Flexible, 8.0, 40);
+            case.resolution.grid = grid;
+            case
         };
         let solved =
             |grid| analyze(&case(grid), &Library::default(), &Run::unattended()).expect("solves");

@@ -1,6 +1,6 @@
 //! From a pair to its curves: the methods, their results and spectra.
 //!
-//! Read in this order: [`case`] (what is asked), `plan` (what will be computed of it), `setup` (what the methods work with), `flexible`, `rigid_blank`,
+//! Read in this order: [`case`] (what is asked), `plan` (what will be computed of it), `setup` (what the methods work with), `flexible`, `pair_contacts`,
 //! `decomposition`, `projected`, `three_dimensional` and `load_distribution` (the methods), `first_order` (what holes change, in the plane and along faces), `light` (torque 0, alike for all), [`stress`] (at roots and holes; along faces `face_stress`) and [`fields`] (everywhere; along faces [`face_fields`]), [`contact_pattern`] (over the flanks), `between` (a curve between its positions), `curve_parts` and [`curve`], [`largest_where`] (where its largest values stand), [`evidence`], [`warning`],
 //! [`error`] and [`spectrum`] (what comes out), `answer` (all of it); `analyze` (who carries out the plan), `estimate` (what it costs); [`forces`] (tables of force), [`at_speed`] (motion).
 
@@ -26,9 +26,9 @@ pub mod largest_where;
 mod light;
 mod load_distribution;
 mod orders;
+mod pair_contacts;
 mod plan;
 mod projected;
-mod rigid_blank;
 mod setup;
 pub mod spectrum;
 pub mod stress;

@@ -8,11 +8,12 @@ use super::curve_parts::CurveParts;
 use super::evidence::Evidence;
 use super::first_order::{OnRound, WithHoles, with_holes};
 use super::flexible::{self, Solved};
+use super::pair_contacts::ModeledPair;
 use super::plan::{Pass, Sweep};
-use super::rigid_blank::RigidBlank;
 use super::setup::Setup;
 use super::warning::{warn_of_projection, warn_of_tips, warnings};
 use super::{Analysis, AnalysisError, Case};
+use crate::assembly::Blanks;
 use crate::contact::positions::contacts;
 use crate::contact::{ContactCells, ContactSolution, MeshContact, PairLoads, PairModel};
 use crate::gear::{Member, teeth_on};
@@ -20,7 +21,7 @@ use crate::gear::{Member, teeth_on};
 /// The models of a pair whose holed blanks are expanded about round ones.
 struct Expansion<'a> {
     plan: &'a Pass,
-    rigid: RigidBlank<'a>,
+    rigid: ModeledPair<'a>,
     /// The gears with holes.
     holed: Vec<Member>,
     /// Both gears as drawn.
@@ -36,7 +37,7 @@ struct Expansion<'a> {
 /// compliance instead of its fluctuation: the peak-to-peak of cases 1 and 3 is then 8 % off.
 pub(super) fn solve(setup: Setup<'_>, plan: &Pass) -> Result<Analysis, AnalysisError> {
     let case = setup.case;
-    let rigid = RigidBlank::new(setup)?;
+    let rigid = ModeledPair::new(setup, Blanks::HoledRigid)?;
     let (whole, unknowns) = setup.model(plan.told.blanks)?;
     let mut evidence = Evidence::new(rigid.degrees_of_freedom.max(unknowns));
     let mut warnings = warnings(case);
@@ -239,11 +240,9 @@ fn yielded(model: &PairModel, members: &[Member], pairs: &[PairLoads], period: i
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::{
-        BodyFormula, ContactSolver, Formulas, Method, PlaneState, Resolution, StiffnessRule,
-        ToothFormula,
-    };
-    use crate::assembly::{Blanks, MakeAll};
+    use crate::analysis::Method;
+    use crate::analysis::case::tests::plain;
+    use crate::assembly::MakeAll;
     use crate::contact::{Stage, WarmStart};
     use crate::gear::spur::tests::paper_gear;
     use crate::gear::{GearPair, HolePattern, PairDeviations, SpurGear};
@@ -261,30 +260,8 @@ mod tests {
         }
         .holes();
         let gear = SpurGear::new(data).expect("a gear that can be made");
-        Case {
-            pair: GearPair::new(gear.clone(), gear, 100.5e-3).expect("a pair that meshes"),
-            faces: None,
-            method: Method::ProjectedDecomposition,
-            output_torques: vec![115.0],
-            resolution: Resolution {
-                positions_per_mesh_period: 8,
-                first_position: 0.0,
-                span_mesh_periods: None,
-                grid: GridLevel::Coarse,
-                contact_solver: ContactSolver::ActiveSet,
-                stiffness: StiffnessRule::Tangent,
-                blank_positions: 16,
-                interface_radii: [None; 2],
-                formulas: Formulas {
-                    tooth: ToothFormula::WeberBanaschek,
-                    body: BodyFormula::Sainsot,
-                    plane_state: PlaneState::Stress,
-                },
-                error_estimate: false,
-            },
-            stress: false,
-            driving_speed: None,
-        }
+        let pair = GearPair::new(gear.clone(), gear, 100.5e-3).expect("a pair that meshes");
+        plain(pair, Method::ProjectedDecomposition, 115.0, 8)
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The pair with its holed blanks rigid (paper: wh), whose contacts repeat each mesh period.
+//! A pair with those of its blanks that take part, and its contacts.
 
 use std::sync::Arc;
 
@@ -7,28 +7,29 @@ use super::setup::Setup;
 use crate::assembly::{Blanks, ContactsSpec, PairSpec};
 use crate::contact::{MeshContact, PairModel};
 
-/// The pair with its holed blanks rigid inside R_w.
-pub(super) struct RigidBlank<'a> {
+/// A pair as a method models it.
+pub(super) struct ModeledPair<'a> {
     pub(super) setup: Setup<'a>,
     /// Unknowns before condensation.
     pub(super) degrees_of_freedom: u64,
+    pub(super) model: PairModel,
     spec: PairSpec,
-    model: PairModel,
 }
 
-impl<'a> RigidBlank<'a> {
-    pub(super) fn new(setup: Setup<'a>) -> Result<Self, AnalysisError> {
-        let spec = setup.spec(Blanks::HoledRigid);
+impl<'a> ModeledPair<'a> {
+    pub(super) fn new(setup: Setup<'a>, blanks: Blanks) -> Result<Self, AnalysisError> {
+        let spec = setup.spec(blanks);
         let (model, degrees_of_freedom) = spec.model(setup.parts, setup.run)?;
         Ok(Self {
             setup,
             degrees_of_freedom,
-            spec,
             model,
+            spec,
         })
     }
 
-    /// Its contacts under `load` at `positions`. They depend on no hole: all hole patterns on the same teeth have them alike.
+    /// Its contacts under `load` at `positions`. Equal pairs have them alike: with rigid blanks all hole patterns on the same teeth, and as drawn all
+    /// members of a population.
     pub(super) fn contacts(
         &self,
         load: f64,
