@@ -9,21 +9,21 @@ WORKDIR /source
 ENV CARGO_PROFILE_RELEASE_STRIP=debuginfo
 # First the dependencies, in a layer that stays as long as the manifests do: the sources are empty, so that nothing else is built.
 COPY Cargo.toml Cargo.lock build.rs ./
-COPY engine/Cargo.toml engine/
-COPY paper/Cargo.toml paper/build.rs paper/
-COPY exchange/Cargo.toml exchange/build.rs exchange/
-COPY plot/Cargo.toml plot/
-COPY sample/Cargo.toml sample/
-COPY search/Cargo.toml search/
+COPY crates/engine/Cargo.toml crates/engine/
+COPY crates/exchange/Cargo.toml crates/exchange/build.rs crates/exchange/
+COPY crates/paper/Cargo.toml crates/paper/build.rs crates/paper/
+COPY crates/plot/Cargo.toml crates/plot/
+COPY crates/sample/Cargo.toml crates/sample/
+COPY crates/search/Cargo.toml crates/search/
 COPY migrations migrations
-RUN mkdir -p web src/http benches/load engine/src engine/benches exchange/src paper/src plot/src sample/src search/src \
-    && touch src/http/docs.js src/lib.rs engine/src/lib.rs exchange/src/lib.rs plot/src/lib.rs sample/src/lib.rs search/src/lib.rs \
-    && for file in src/main benches/load/main engine/benches/jobs engine/benches/parts paper/src/main; do \
+RUN mkdir -p web src/http benches/load crates/engine/benches && touch src/http/docs.js src/lib.rs \
+    && for name in engine exchange paper plot sample search; do mkdir -p crates/$name/src && touch crates/$name/src/lib.rs; done \
+    && for file in src/main benches/load/main crates/engine/benches/jobs crates/engine/benches/parts crates/paper/src/main; do \
          echo 'fn main() {}' > "$file.rs"; done \
     && cargo build --release --locked --bin meshwright
 COPY . .
 # The empty sources were newer than these.
-RUN touch src/lib.rs src/main.rs engine/src/lib.rs exchange/src/lib.rs plot/src/lib.rs sample/src/lib.rs search/src/lib.rs && cargo build --release --locked --bin meshwright
+RUN touch src/lib.rs src/main.rs crates/*/src/lib.rs && cargo build --release --locked --bin meshwright
 
 FROM ${RUN_IMAGE}
 # The certificates are for webhooks and for a PostgreSQL elsewhere.

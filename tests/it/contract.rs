@@ -224,11 +224,11 @@ fn each_part_knows_only_the_parts_below_it() {
         ),
         ("src/webhooks", &["crate::http", "crate::serve", "axum"]),
         (
-            "exchange/src",
+            "crates/exchange/src",
             &["tokio", "axum", "sqlx", "std::fs", "std::net"],
         ),
         (
-            "engine/src",
+            "crates/engine/src",
             &[
                 "serde",
                 "tokio",
@@ -272,7 +272,7 @@ fn the_mechanics_build_on_each_other_in_one_direction() {
         "analysis",
     ];
     for (level, layer) in layers.iter().enumerate() {
-        for file in rust_files(&root().join("engine/src").join(layer)) {
+        for file in rust_files(&root().join("crates/engine/src").join(layer)) {
             let text = fs::read_to_string(&file).unwrap();
             let code = text.split("#[cfg(test)]").next().unwrap_or_default();
             for above in &layers[level + 1..] {

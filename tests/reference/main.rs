@@ -5,7 +5,7 @@ mod calculix;
 mod fillets;
 mod paper;
 mod solid;
-#[path = "../../engine/tests/validation/support.rs"]
+#[path = "../../crates/engine/tests/validation/support.rs"]
 mod support;
 
 use std::fs;

@@ -1,13 +1,13 @@
 //! Bytes as a submission, a preview, a study and a REXS model: whatever they are, reading ends in a document or a problem, and what was
-//! read is read again from its echo, or from the model that it is written as. Guided by coverage (libFuzzer); `fuzz/run` builds and runs it.
+//! read is read again from its echo, or from the model that it is written as. Guided by coverage (libFuzzer); `crates/fuzz/run` builds and runs it.
 
 #![no_main]
 #![allow(dead_code, unused_imports, unreachable_pub, missing_docs)]
 
 // The documents alone, without the service around them, which would take minutes to build.
-#[path = "../../src/hash.rs"]
+#[path = "../../../src/hash.rs"]
 mod hash;
-#[path = "../../src/wire/mod.rs"]
+#[path = "../../../src/wire/mod.rs"]
 mod wire;
 
 use libfuzzer_sys::fuzz_target;

@@ -341,7 +341,7 @@ mod tests {
 
     /// The committed document.
     fn committed() -> String {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/reproduction.md");
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/reproduction.md");
         std::fs::read_to_string(path).expect("docs/reproduction.md is committed")
     }
 
@@ -394,7 +394,7 @@ mod tests {
     fn the_document_shows_only_figures_that_are_committed_and_no_number_that_is_none() {
         let document = committed();
         assert!(!document.contains("NaN") && !document.contains(" inf"));
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs");
         let links = document.split("](figures/").skip(1);
         let files: Vec<&str> = links.filter_map(|rest| rest.split(')').next()).collect();
         assert_eq!(files.len(), 10);
