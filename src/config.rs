@@ -14,7 +14,6 @@ use crate::jobs::{Keep, Migrate, Pace, Place, Rules};
 use crate::machine;
 use crate::tokens::{self, Claim, ClaimValue, IssuerUrl, TokenRules};
 use crate::webhooks::HookTarget;
-use crate::wire;
 
 /// Where and how the service runs. Every option has its variable of the environment.
 #[derive(Debug, Clone, clap::Args)]
@@ -104,7 +103,7 @@ pub struct Config {
 
     /// Positions times torques of one preview, at most.
     #[arg(long, env = "MESHWRIGHT_PREVIEW_POSITIONS", default_value_t = 4000, value_name = "NUMBER",
-          value_parser = clap::value_parser!(u64).range(1..=wire::Limits::of().positions))]
+          value_parser = clap::value_parser!(u64).range(1..=meshwright_wire::Limits::of().positions))]
     pub preview_positions: u64,
 
     /// Time for one preview, from its request to its answer.

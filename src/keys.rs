@@ -3,9 +3,9 @@
 use std::fmt;
 
 use jiff::Timestamp;
+use meshwright_wire::hash::sha256_hex;
 use subtle::ConstantTimeEq;
 
-use crate::hash::sha256_hex;
 use crate::jobs::{KeyRecord, Store, StoreError};
 
 /// What every key begins with, so that programs that look for leaked secrets know it.

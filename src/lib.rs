@@ -3,12 +3,11 @@
 //! The parts, in the order to read them; each knows only those above it; `serve` puts them together, and `commands` is what the program does.
 
 mod client;
-mod hash;
 mod machine;
+#[cfg(test)]
+mod testing;
 
 pub mod spans;
-
-pub mod wire;
 
 pub mod compute;
 

@@ -7,6 +7,7 @@ use std::time::Duration;
 use anyhow::{Context, bail};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
+use meshwright_wire::{Problem, Results, Submission};
 use tokio::net::TcpListener;
 use tokio_util::sync::CancellationToken;
 use tracing::{info, warn};
@@ -20,7 +21,6 @@ use crate::jobs::store::lock::{DatabaseLock, LockError};
 use crate::jobs::{Clock, Jobs, Keeper, Migrate, OpenError, Place, Store, Workers};
 use crate::tokens::Tokens;
 use crate::webhooks::{Deliveries, HookRules, Webhooks};
-use crate::wire::{Problem, Results, Submission};
 
 /// At a shutdown, running work and open answers get so long to end.
 const GRACE: Duration = Duration::from_secs(8);
@@ -29,7 +29,7 @@ const GRACE: Duration = Duration::from_secs(8);
 pub const END: Duration = Duration::from_secs(9);
 
 /// How a submission is computed with the substructures that all computations share, as by
-/// [`wire::solve`](fn@crate::wire::solve).
+/// [`wire::solve`](fn@meshwright_wire::solve).
 pub type Compute =
     Arc<dyn Fn(&Submission, &Library, &Run) -> Result<Results, Problem> + Send + Sync>;
 

@@ -10,9 +10,9 @@ use meshwright::config::Config;
 use meshwright::jobs::Clock;
 use meshwright::serve::{Compute, World, serve};
 use meshwright::webhooks::HookRules;
-use meshwright::wire::{self, Code, Problem, Submission};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
+use meshwright_wire::{Code, Problem, Submission};
 
 use crate::SUBMISSION;
 
@@ -61,7 +61,7 @@ pub(crate) fn run(arguments: Stub) -> anyhow::Result<()> {
 fn instant() -> anyhow::Result<Compute> {
     let submission = Submission::parse(SUBMISSION.as_bytes())
         .map_err(|problem| anyhow::anyhow!("{problem:?}"))?;
-    let results = wire::solve(&submission, &Library::default(), &Run::unattended())
+    let results = meshwright_wire::solve(&submission, &Library::default(), &Run::unattended())
         .map_err(|problem| anyhow::anyhow!("{problem:?}"))?;
     let jobs = AtomicU64::new(0);
     Ok(Arc::new(move |_, _, _| {

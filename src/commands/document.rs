@@ -6,7 +6,7 @@ use std::path::Path;
 
 use anyhow::Context;
 
-use crate::wire::Problem;
+use meshwright_wire::Problem;
 
 /// The exit code for a submission that cannot be computed.
 pub(super) const EXIT_PROBLEM: u8 = 2;

@@ -6,10 +6,10 @@ use std::process::ExitCode;
 use anyhow::Context;
 use jiff::Zoned;
 use meshwright_exchange::rexs::{Choices, Import, import};
+use meshwright_wire::{Submission, model_of};
 use serde_json::Value;
 
 use super::document::{EXIT_PROBLEM, read, told, told_with, write};
-use crate::wire::{Submission, model_of};
 
 /// Take a pair out of a REXS model, or write one.
 #[derive(Debug, clap::Subcommand)]

@@ -14,7 +14,6 @@ use crate::jobs::Clock;
 use crate::serve::{END, World, serve};
 use crate::spans::Spans;
 use crate::webhooks::HookRules;
-use crate::wire;
 
 /// Serve jobs over HTTP.
 #[derive(Debug, clap::Args)]
@@ -63,7 +62,7 @@ impl Serve {
         }
 
         let world = World {
-            compute: Arc::new(wire::solve),
+            compute: Arc::new(meshwright_wire::solve),
             clock: Clock::system(),
             hooks: HookRules::to_named(self.config.door.webhook_hosts.clone()),
         };

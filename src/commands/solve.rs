@@ -9,11 +9,11 @@ use indicatif::{ProgressBar, ProgressStyle};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use meshwright_exchange::rexs::is_model;
+use meshwright_wire::results::{CurveDocument, GearPeakStress, PeakStressDocument, Results};
+use meshwright_wire::{Problem, Submission, solve};
 
 use super::document::{EXIT_PROBLEM, is_dash, read, told, write};
 use super::rexs::ModelChoices;
-use crate::wire::results::{CurveDocument, GearPeakStress, PeakStressDocument, Results};
-use crate::wire::{Problem, Submission, solve};
 
 /// What the substructures of one submission may take; it is never reached by one pair.
 const LIBRARY_BYTES: usize = 512 << 20;

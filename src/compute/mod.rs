@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use meshwright_engine::run::Run;
 
-use crate::wire::{Problem, Results, Submission};
+use meshwright_wire::{Problem, Results, Submission};
 
 pub use budget::{Budget, Part};
 pub use previews::{Computed, PreviewError, PreviewRules, Previewed, Previews};

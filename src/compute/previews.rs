@@ -12,6 +12,7 @@ use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
 
 use meshwright_engine::run::Run;
+use meshwright_wire::{Code, Preview, Problem, memory_of};
 use rayon::ThreadPool;
 use tokio::sync::oneshot;
 use tokio::time::{Instant, sleep_until};
@@ -21,7 +22,6 @@ use tracing::error;
 use super::budget::{Budget, Part};
 use super::threads::{Cores, NoThreads, Work, engine_threads};
 use super::{Solve, message_of};
-use crate::wire::{Code, Preview, Problem, memory_of};
 
 /// Rooms that there are at least, so that a newer preview begins while the one that it replaces winds down.
 const FEWEST_ROOMS: usize = 2;

@@ -13,12 +13,12 @@ use axum::http::uri::Authority;
 use axum::http::{HeaderMap, Uri};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
+use meshwright_wire::{Code, Problem};
 use tokio::time::Instant;
 
 use super::connections::{Address, Connection, Rates, Unauthenticated};
 use super::problem::Refusal;
 use crate::compute::{Budget, Part};
-use crate::wire::{Code, Problem};
 
 /// A client may send so many times its requests of a second at once.
 const BURST_SECONDS: NonZeroU32 = NonZeroU32::new(2).unwrap();
@@ -233,7 +233,7 @@ pub(super) async fn check_host(
     let strict = access.rules.strict_hosts;
     match access.check_host(request.uri(), request.headers(), strict) {
         Ok(()) => next.run(request).await,
-        Err(problem) => problem.into_response(),
+        Err(problem) => Refusal::from(problem).into_response(),
     }
 }
 
@@ -245,7 +245,7 @@ pub(super) async fn check_known_host(
 ) -> Response {
     match access.check_host(request.uri(), request.headers(), true) {
         Ok(()) => next.run(request).await,
-        Err(problem) => problem.into_response(),
+        Err(problem) => Refusal::from(problem).into_response(),
     }
 }
 

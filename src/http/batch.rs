@@ -4,6 +4,7 @@ use axum::Json;
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use futures_util::future::join_all;
+use meshwright_wire::{Code, FieldError, Problem, Submission};
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 use utoipa::ToSchema;
@@ -13,9 +14,9 @@ use super::client::Client;
 use super::document::Document;
 use super::headers::Made;
 use super::parameters::IdempotencyKey;
+use super::problem::Refusal;
 use super::view::{JobView, with_public_type};
 use crate::jobs::{Job, Submitted};
-use crate::wire::{Code, FieldError, Problem, Submission};
 
 /// The most submissions of a batch.
 pub(super) const MOST_IN_BATCH: usize = 100;
@@ -75,7 +76,7 @@ pub(super) async fn submit(
     client: Client,
     IdempotencyKey(key): IdempotencyKey,
     document: Document<4>,
-) -> Result<Response, Problem> {
+) -> Result<Response, Refusal> {
     let read = aside(client.name(), move |_| read(&document)).await??;
     let jobs = read.into_iter().enumerate().map(|(i, submission)| {
         let key = key.as_ref().map(|key| key_within(key, i));

@@ -6,6 +6,7 @@ use axum::extract::FromRequestParts;
 use axum::http::request::Parts;
 use axum::http::{HeaderMap, Method};
 use jiff::Timestamp;
+use meshwright_wire::{Code, Problem};
 
 use super::app::App;
 use super::connections::ActiveRequest;
@@ -14,7 +15,6 @@ use super::problem::Refusal;
 use crate::jobs::{JobError, KeyRecord, Member, Role};
 use crate::keys::Key;
 use crate::tokens::{Bearer, TokenError};
-use crate::wire::{Code, Problem};
 
 /// The client of requests without a key, where none is needed.
 const ANONYMOUS: &str = "anonymous";

@@ -3,9 +3,9 @@
 use axum::http::header::{CACHE_CONTROL, CONTENT_ENCODING, ETAG, HeaderValue, IF_NONE_MATCH};
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
+use meshwright_wire::hash::sha256_hex_of;
 
 use super::packing::takes_gzip;
-use crate::hash::sha256_hex_of;
 
 /// How long an answer may be kept by who asked for it.
 #[derive(Debug, Clone, Copy)]

@@ -3,6 +3,8 @@
 use axum::http::HeaderMap;
 use axum::response::Response;
 use meshwright_engine::analysis::contact_pattern::ContactPattern;
+use meshwright_wire::solve::contact_pattern;
+use meshwright_wire::{Code, ContactPatternDocument, Problem, Submission};
 use serde::Deserialize;
 use utoipa::IntoParams;
 use uuid::Uuid;
@@ -11,9 +13,7 @@ use super::client::Client;
 use super::fields::{Done, File, NoLook};
 use super::parameters::{IfNoneMatch, JobId, Parameters};
 use super::pictures;
-use super::problem::internal;
-use crate::wire::solve::contact_pattern;
-use crate::wire::{Code, ContactPatternDocument, Problem, Submission};
+use super::problem::{Refusal, internal};
 
 /// Which curve.
 #[derive(Deserialize, IntoParams)]
@@ -45,7 +45,7 @@ pub(super) async fn json(
     Parameters(which): Parameters<PatternParameters>,
     JobId(id): JobId,
     request: HeaderMap,
-) -> Result<Response, Problem> {
+) -> Result<Response, Refusal> {
     let write = |pattern: &ContactPattern| {
         let document = ContactPatternDocument::of(pattern);
         Ok(document.to_json().map_err(|_| internal())?.into_bytes())
@@ -73,7 +73,7 @@ pub(super) async fn svg(
     Parameters(which): Parameters<PatternParameters>,
     JobId(id): JobId,
     request: HeaderMap,
-) -> Result<Response, Problem> {
+) -> Result<Response, Refusal> {
     let write = |pattern: &ContactPattern| Ok(pictures::contact_pattern(pattern).into_bytes());
     let file = File::shown("contact-pattern.svg", "image/svg+xml");
     answer(&client, id, &which, &request, file, write).await
@@ -86,7 +86,7 @@ async fn answer(
     request: &HeaderMap,
     file: File,
     write: impl FnOnce(&ContactPattern) -> Result<Vec<u8>, Problem> + Send + 'static,
-) -> Result<Response, Problem> {
+) -> Result<Response, Refusal> {
     let done = Done::find(client, id).await?;
     let torques = which.of(&done.submission)?;
     let form = which

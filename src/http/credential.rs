@@ -2,11 +2,11 @@
 
 use axum::http::HeaderMap;
 use axum::http::header::AUTHORIZATION;
+use meshwright_wire::hash::sha256_hex;
+use meshwright_wire::{Code, Problem};
 
-use crate::hash::sha256_hex;
 use crate::keys::{self, Key};
 use crate::tokens;
-use crate::wire::{Code, Problem};
 
 /// What a request has with it to get in by.
 pub(super) enum Credential {

@@ -7,6 +7,7 @@ use axum::extract::Path;
 use axum::http::HeaderMap;
 use axum::response::{Redirect, Response};
 use axum::routing::get;
+use meshwright_wire::{Code, Problem};
 use serde_json::{Value, json};
 use utoipa::OpenApi as _;
 use utoipa::openapi::path::{Operation, Parameter, ParameterBuilder, ParameterIn};
@@ -18,9 +19,9 @@ use utoipa::openapi::{
 
 use super::app::App;
 use super::events::ProgressView;
+use super::problem::Refusal;
 use super::standing::{Folder, Standing, files};
 use super::studies::StudyProgressView;
-use crate::wire::{Code, Problem};
 
 /// What stands before the paths.
 #[derive(utoipa::OpenApi)]
@@ -319,7 +320,7 @@ pub(super) fn routes_of_docs(openapi: &OpenApi) -> Router<App> {
 
 static FILES: LazyLock<Folder> = LazyLock::new(|| Folder::of(files::DOCS));
 
-async fn file(name: &str, request: HeaderMap) -> Result<Response, Problem> {
+async fn file(name: &str, request: HeaderMap) -> Result<Response, Refusal> {
     let file = FILES.find(name).ok_or_else(|| {
         let detail = format!("The documentation has no file {name:?}; it begins at /docs/.");
         Problem::new(Code::NotFound, detail)

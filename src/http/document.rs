@@ -13,6 +13,7 @@ use futures_util::StreamExt;
 use http_body::Body as _;
 use meshwright_engine::run::Run;
 use meshwright_exchange::rexs::{Refused, is_packed, unpacked};
+use meshwright_wire::{Code, Problem};
 use serde::Deserialize;
 use tokio::time::timeout;
 use utoipa::IntoResponses;
@@ -21,8 +22,8 @@ use utoipa::openapi::{RefOr, Response};
 use super::app::App;
 use super::aside::aside;
 use super::client::ClientName;
+use super::problem::Refusal;
 use crate::compute::Part;
-use crate::wire::{Code, Problem};
 
 /// So many times the limit is read and thrown away, because a client that is still sending does not see the answer.
 const DRAINED: usize = 64;
@@ -39,9 +40,9 @@ pub(super) struct Document<const MIB: usize = 1>(pub(super) Bytes, pub(super) Me
 pub(super) type Memory = [Option<Part>; 2];
 
 impl<const MIB: usize> FromRequest<App> for Document<MIB> {
-    type Rejection = Problem;
+    type Rejection = Refusal;
 
-    async fn from_request(request: Request, app: &App) -> Result<Self, Problem> {
+    async fn from_request(request: Request, app: &App) -> Result<Self, Refusal> {
         let (body, memory) = taken(request, app, MIB, &["json"]).await?;
         Ok(Self(body, memory))
     }
@@ -130,9 +131,9 @@ pub(super) const MODEL_TYPES: &[&str] = &["xml", "json", "zip"];
 pub(super) struct ModelDocument(pub(super) Bytes, pub(super) Memory);
 
 impl FromRequest<App> for ModelDocument {
-    type Rejection = Problem;
+    type Rejection = Refusal;
 
-    async fn from_request(request: Request, app: &App) -> Result<Self, Problem> {
+    async fn from_request(request: Request, app: &App) -> Result<Self, Refusal> {
         let client = client_of(&request);
         let (body, memory) = taken(request, app, MODEL_MIB, MODEL_TYPES).await?;
         if !is_packed(&body) {

@@ -1,12 +1,13 @@
 //! Teeth drawn at random, for those who have no measured ones.
 
 use axum::Json;
+use meshwright_wire::draw::DrawDocument;
+use meshwright_wire::{Draw, DrawnDeviations};
 
 use super::aside::aside;
 use super::client::Onlooker;
 use super::document::Document;
-use crate::wire::draw::DrawDocument;
-use crate::wire::{Draw, DrawnDeviations, Problem};
+use super::problem::Refusal;
 
 /// Draw deviations
 ///
@@ -25,7 +26,7 @@ use crate::wire::{Draw, DrawnDeviations, Problem};
 pub(super) async fn draw(
     onlooker: Onlooker,
     Document(document, _memory): Document,
-) -> Result<Json<DrawnDeviations>, Problem> {
+) -> Result<Json<DrawnDeviations>, Refusal> {
     let made = aside(onlooker.name(), move |_| {
         Draw::parse(&document).and_then(|draw| draw.drawn())
     });

@@ -7,6 +7,7 @@ use std::time::Duration;
 use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
 use futures_util::stream;
+use meshwright_wire::{Code, Problem, Status};
 use serde::Serialize;
 use utoipa::ToSchema;
 use uuid::Uuid;
@@ -14,10 +15,10 @@ use uuid::Uuid;
 use super::app::App;
 use super::client::{Client, Pass};
 use super::parameters::JobId;
+use super::problem::Refusal;
 use super::view::JobView;
 use crate::compute::Part;
 use crate::jobs::{News, Progress};
-use crate::wire::{Code, Problem, Status};
 
 /// While nothing happens, it is looked so often whether who watches may still do so.
 const LOOK_AT_KEYS: Duration = Duration::from_secs(1);
@@ -85,7 +86,7 @@ impl From<WatchEvent> for Event {
         (status = 429, description = "As many streams are open as one client may have."),
     ),
 )]
-pub(super) async fn events(client: Client, JobId(id): JobId) -> Result<Response, Problem> {
+pub(super) async fn events(client: Client, JobId(id): JobId) -> Result<Response, Refusal> {
     client.app.jobs.find(client.name(), id).await?;
     let place = place(&client.app, client.name())?;
     let watch = Watch {

@@ -16,6 +16,8 @@ use meshwright_engine::gear::Member;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use meshwright_exchange::vtu;
+use meshwright_wire::solve::{Inside, inside, section};
+use meshwright_wire::{Code, LoadedEdges, Problem, SOLVER_VERSION, Submission, memory_of};
 use serde::Deserialize;
 use utoipa::{IntoParams, IntoResponses};
 use uuid::Uuid;
@@ -25,11 +27,9 @@ use super::conditional::{Keep, Tag};
 use super::memory::Held;
 use super::packing::{packed, takes_gzip};
 use super::parameters::{IfNoneMatch, JobId, Parameters, invalid};
-use super::problem::{internal, of_missing_results};
+use super::problem::{Refusal, internal, of_missing_results};
 use crate::compute::PreviewError;
 use crate::jobs::Job;
-use crate::wire::solve::{Inside, inside, section};
-use crate::wire::{Code, LoadedEdges, Problem, SOLVER_VERSION, Submission, memory_of};
 
 /// How long it may take, in times of a preview, and at most: nobody drags what is looked at here, and volumes of both gears take seconds.
 const PREVIEWS_LONG: u32 = 4;
@@ -79,7 +79,7 @@ pub(super) async fn vtu(
     Parameters(place): Parameters<FieldParameters>,
     JobId(id): JobId,
     request: HeaderMap,
-) -> Result<Response, Problem> {
+) -> Result<Response, Refusal> {
     let work = |submission: &Submission, place, library: &Library, run: &Run| {
         let gears = match inside(submission, place, library, run)? {
             Inside::Plates(found) => found.gears.each_ref().map(vtu::Piece::from),
@@ -117,7 +117,7 @@ pub(super) async fn edges(
     Parameters(place): Parameters<FieldParameters>,
     JobId(id): JobId,
     request: HeaderMap,
-) -> Result<Response, Problem> {
+) -> Result<Response, Refusal> {
     let work = |submission: &Submission, place: (f64, f64), library: &Library, run: &Run| {
         let found = section(submission, place, library, run)?;
         let edges = LoadedEdges::of(&found, place.0, place.1);
@@ -200,7 +200,7 @@ async fn answer(
     work: impl FnOnce(&Submission, (f64, f64), &Library, &Run) -> Result<Vec<u8>, Problem>
     + Send
     + 'static,
-) -> Result<Response, Problem> {
+) -> Result<Response, Refusal> {
     let done = Done::find(client, id).await?;
     let (torque, position) = place.within(&done.submission)?;
     let form = format!("{torque}/{position}");
@@ -240,7 +240,7 @@ impl Done {
         (file, form): (File, &str),
         request: &HeaderMap,
         work: impl FnOnce(&Submission, &Library, &Run) -> Result<Vec<u8>, Problem> + Send + 'static,
-    ) -> Result<Response, Problem> {
+    ) -> Result<Response, Refusal> {
         let Self {
             job,
             hash,
@@ -291,7 +291,7 @@ impl Done {
                 true => packed_or_plain(held.hold(document), request),
                 false => document.into_response(),
             };
-            Ok::<_, Problem>(if saved {
+            Ok::<_, Refusal>(if saved {
                 super::answer::file(media_type, &format!("{}-{name}", job.id), body)
             } else {
                 ([(CONTENT_TYPE, media_type)], body).into_response()
@@ -391,7 +391,7 @@ impl FieldParameters {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::wire::testing::submission;
+    use crate::testing::submission;
 
     #[test]
     fn the_file_of_plates_and_what_it_is_made_of_take_no_more_than_is_said() {

@@ -8,11 +8,12 @@ use axum::http::HeaderMap;
 use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
+use meshwright_wire::{Code, Problem};
 use pulldown_cmark::{CowStr, Event, Options, Parser, Tag, TagEnd, html};
 
 use super::app::App;
 use super::conditional::{Keep, Tag as EntityTag};
-use crate::wire::{Code, Problem};
+use super::problem::Refusal;
 
 /// A guide by its name, as it is written.
 struct Guide {
@@ -78,7 +79,7 @@ pub(super) fn routes_of_guides() -> Router<App> {
         .route("/guides/figures/{name}", get(figure))
 }
 
-async fn index(request: HeaderMap) -> Result<Response, Problem> {
+async fn index(request: HeaderMap) -> Result<Response, Refusal> {
     let list = GUIDES.iter().fold(String::new(), |mut list, guide| {
         let _ = write!(
             list,
@@ -92,14 +93,14 @@ async fn index(request: HeaderMap) -> Result<Response, Problem> {
     answer("text/html; charset=utf-8", page.into(), &request).await
 }
 
-async fn guide(Path(name): Path<String>, request: HeaderMap) -> Result<Response, Problem> {
+async fn guide(Path(name): Path<String>, request: HeaderMap) -> Result<Response, Refusal> {
     let guide = GUIDES.iter().find(|guide| guide.name == name);
     let guide = guide.ok_or_else(|| nothing("guide", &name))?;
     let page = page(title_of(guide.text), "..", &as_html(guide.text));
     answer("text/html; charset=utf-8", page.into(), &request).await
 }
 
-async fn figure(Path(name): Path<String>, request: HeaderMap) -> Result<Response, Problem> {
+async fn figure(Path(name): Path<String>, request: HeaderMap) -> Result<Response, Refusal> {
     let figure = FIGURES.iter().find(|figure| figure.name == name);
     let figure = figure.ok_or_else(|| nothing("figure", &name))?;
     let media_type = if name.ends_with(".svg") {
@@ -119,7 +120,7 @@ async fn answer(
     media_type: &'static str,
     bytes: Vec<u8>,
     request: &HeaderMap,
-) -> Result<Response, Problem> {
+) -> Result<Response, Refusal> {
     let tag = EntityTag::of(&[&String::from_utf8_lossy(&bytes)]);
     let made = async { Ok(([(CONTENT_TYPE, media_type)], bytes).into_response()) };
     tag.answer(Keep::AskAgain, request, made).await

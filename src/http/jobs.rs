@@ -4,6 +4,7 @@ use axum::Json;
 use axum::http::StatusCode;
 use axum::http::header::HeaderMap;
 use axum::response::{IntoResponse, Response};
+use meshwright_wire::{Problem, Status};
 use serde::Deserialize;
 use utoipa::IntoParams;
 use uuid::Uuid;
@@ -15,9 +16,9 @@ use super::conditional::{Keep, Tag};
 use super::page::{self, LARGEST_LIMIT, Page, USUAL_LIMIT};
 use super::parameters::{IfNoneMatch, JobId, Parameters, invalid};
 use super::prefer::Wait;
+use super::problem::Refusal;
 use super::view::JobView;
 use crate::jobs::{Filter, Membership};
-use crate::wire::{Problem, Status};
 
 /// What to list.
 #[derive(Deserialize, IntoParams)]
@@ -155,7 +156,7 @@ fn words(list: &str) -> impl Iterator<Item = &str> {
 pub(super) async fn list(
     client: Client,
     Parameters(parameters): Parameters<ListParameters>,
-) -> Result<Response, Problem> {
+) -> Result<Response, Refusal> {
     let limit = parameters.limit()?;
     let app = &client.app;
     let _turn = turn_to_read(client.name()).await;
@@ -186,7 +187,7 @@ pub(super) async fn show(
     wait: Wait,
     JobId(id): JobId,
     request: HeaderMap,
-) -> Result<Response, Problem> {
+) -> Result<Response, Refusal> {
     let wait = wait.grant(&client);
     let job = match wait.patience() {
         Some(patience) => {
@@ -203,7 +204,7 @@ pub(super) async fn show(
     let whole = async {
         let submission = client.app.jobs.submission(id).await?;
         let body = JobView::whole(&job, &submission, &client.app.edge).to_json();
-        Ok::<_, Problem>(json(body))
+        Ok::<_, Refusal>(json(body))
     };
     let mut response = tag.answer(Keep::AskAgain, &request, whole).await?;
     wait.acknowledge(response.headers_mut());
@@ -222,7 +223,7 @@ pub(super) async fn show(
         (status = 409, description = "The job is successful or failed already."),
     ),
 )]
-pub(super) async fn cancel(client: Client, JobId(id): JobId) -> Result<Response, Problem> {
+pub(super) async fn cancel(client: Client, JobId(id): JobId) -> Result<Response, Refusal> {
     let job = client.app.jobs.cancel(client.name(), id).await?;
     Ok((
         StatusCode::ACCEPTED,
@@ -241,7 +242,7 @@ pub(super) async fn cancel(client: Client, JobId(id): JobId) -> Result<Response,
         (status = 409, description = "The job is running; cancel it first."),
     ),
 )]
-pub(super) async fn delete(client: Client, JobId(id): JobId) -> Result<StatusCode, Problem> {
+pub(super) async fn delete(client: Client, JobId(id): JobId) -> Result<StatusCode, Refusal> {
     client.app.jobs.delete(client.name(), id).await?;
     Ok(StatusCode::NO_CONTENT)
 }

@@ -8,12 +8,12 @@ use axum::extract::{Request, State};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use http_body::Body as _;
+use meshwright_wire::{Code, Problem};
 use tokio::time::timeout;
 
 use super::connections::Connection;
-use super::problem::internal;
+use super::problem::{Refusal, internal};
 use crate::compute::{Budget, Part};
-use crate::wire::{Code, Problem};
 
 /// So long a request waits for memory, at most.
 const LONGEST_WAIT: Duration = Duration::from_secs(90);
@@ -132,7 +132,7 @@ impl AnswerMemory {
     /// # Errors
     ///
     /// `internal_error` where it is not.
-    pub(super) async fn hold_body(self, answer: Response) -> Result<Response, Problem> {
+    pub(super) async fn hold_body(self, answer: Response) -> Result<Response, Refusal> {
         let (parts, body) = answer.into_parts();
         let bytes = to_bytes(body, usize::MAX).await;
         let bytes = self.hold(bytes.map_err(|_| internal())?).0;
@@ -186,7 +186,7 @@ pub(super) async fn hold(
     }
     let client = connection.map_or_else(String::new, |connection| connection.client());
     let Some(part) = memory.answers.try_take(&client, size) else {
-        return overloaded().into_response();
+        return Refusal::from(overloaded()).into_response();
     };
     let held = AnswerMemory(Some(part)).hold_body(response).await;
     held.unwrap_or_else(IntoResponse::into_response)

@@ -10,12 +10,13 @@ use axum::http::header::CONTENT_TYPE;
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use meshwright_engine::library::Library;
+use meshwright_wire::{Code, Problem, methods};
 use metrics_exporter_prometheus::{Matcher, PrometheusBuilder, PrometheusHandle};
 
 use super::app::App;
 use super::client::Operator;
+use super::problem::Refusal;
 use crate::jobs::JobError;
-use crate::wire::{Code, Problem, methods};
 
 /// Declares numbers: their names, and what they are.
 macro_rules! told {
@@ -160,20 +161,20 @@ pub(super) fn known(method: &Method) -> &'static str {
         (status = 503, description = "The database cannot be read now."),
     ),
 )]
-pub(super) async fn metrics(State(app): State<App>, _: Operator) -> Result<Response, Problem> {
+pub(super) async fn metrics(State(app): State<App>, _: Operator) -> Result<Response, Refusal> {
     if !app.edge.metrics_here {
         let detail = "The numbers of this service have a listener of their own.";
-        return Err(Problem::new(Code::NotFound, detail));
+        return Err(Problem::new(Code::NotFound, detail).into());
     }
     render(&app).await
 }
 
 /// The same on a listener of its own, which the operator keeps to himself.
-pub(super) async fn metrics_apart(State(app): State<App>) -> Result<Response, Problem> {
+pub(super) async fn metrics_apart(State(app): State<App>) -> Result<Response, Refusal> {
     render(&app).await
 }
 
-async fn render(app: &App) -> Result<Response, Problem> {
+async fn render(app: &App) -> Result<Response, Refusal> {
     let depth = app.jobs.depth().await?;
     metrics::gauge!("meshwright_jobs_waiting", "kind" => "alone").set(gauge(depth.alone));
     metrics::gauge!("meshwright_jobs_waiting", "kind" => "study").set(gauge(depth.in_studies));

@@ -3,14 +3,14 @@
 use axum::http::HeaderMap;
 use axum::http::header::{ACCEPT, HeaderValue, VARY};
 use axum::response::Response;
+use meshwright_wire::{PairOutline, Submission};
 
 use super::answer::json;
 use super::aside::aside;
 use super::client::Onlooker;
 use super::document::Document;
 use super::pictures;
-use super::problem::internal;
-use crate::wire::{PairOutline, Problem, Submission};
+use super::problem::{Refusal, internal};
 
 /// Get the outline of a pair
 ///
@@ -30,7 +30,7 @@ pub(super) async fn outline(
     onlooker: Onlooker,
     request: HeaderMap,
     Document(document, _memory): Document,
-) -> Result<Response, Problem> {
+) -> Result<Response, Refusal> {
     let as_picture = wants_picture(&request);
     let made = aside(onlooker.name(), move |_| {
         let submission = Submission::parse(&document)?;
@@ -39,7 +39,7 @@ pub(super) async fn outline(
             return Ok(pictures::answer(pictures::pair(pair)));
         }
         let outline = PairOutline::of(pair).to_json().map_err(|_| internal())?;
-        Ok::<_, Problem>(json(outline))
+        Ok::<_, Refusal>(json(outline))
     });
     let mut response = made.await??;
     let headers = response.headers_mut();

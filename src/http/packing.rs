@@ -19,7 +19,7 @@ use http_body::Body as _;
 use super::aside::aside;
 use super::conditional::tag_as_packed;
 use super::memory::Counted;
-use super::problem::internal;
+use super::problem::{Refusal, internal};
 
 /// What is smaller fits in a packet or two, and packing it would only take time.
 const LEAST: u64 = 4 << 10;
@@ -53,7 +53,7 @@ pub(super) async fn pack(request: Request, next: Next) -> Response {
     }
     match packed_whole(body).await {
         Some(packed) => Response::from_parts(parts, packed.into()),
-        None => internal().into_response(),
+        None => Refusal::from(internal()).into_response(),
     }
 }
 

@@ -4,13 +4,13 @@ use axum::Json;
 use axum::http::header::{HeaderValue, LINK};
 use axum::response::{IntoResponse, Response};
 use jiff::Timestamp;
+use meshwright_wire::Problem;
 use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::edge::Edge;
 use super::parameters::invalid;
 use crate::jobs::{Cursor, Listed, Span};
-use crate::wire::Problem;
 
 /// A list has so many items unless it is told, and so many at most.
 pub(super) const USUAL_LIMIT: u32 = 50;

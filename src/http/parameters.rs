@@ -2,26 +2,27 @@
 
 use axum::extract::{FromRequestParts, Path, Query};
 use axum::http::request::Parts;
+use meshwright_wire::{Code, Problem};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use utoipa::IntoParams;
 use uuid::Uuid;
 
-use crate::wire::{Code, Problem};
+use super::problem::Refusal;
 
 /// The query of a request. An unknown parameter is refused, as an unknown field is.
 pub(super) struct Parameters<T>(pub(super) T);
 
 impl<T: DeserializeOwned, S: Sync> FromRequestParts<S> for Parameters<T> {
-    type Rejection = Problem;
+    type Rejection = Refusal;
 
-    async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, Problem> {
+    async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, Refusal> {
         // No text that is kept has it, and PostgreSQL does not even take it for a text.
         let query = form_urlencoded::parse(parts.uri.query().unwrap_or_default().as_bytes());
         for (name, value) in query {
             if name.contains('\0') || value.contains('\0') {
                 let detail = format!("{name:?} has a character NUL, which stands in no text here.");
-                return Err(invalid(detail));
+                return Err(invalid(detail).into());
             }
         }
         let Query(parameters) =
@@ -40,9 +41,9 @@ pub(super) struct IdempotencyKey(
 );
 
 impl<S: Sync> FromRequestParts<S> for IdempotencyKey {
-    type Rejection = Problem;
+    type Rejection = Refusal;
 
-    async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, Problem> {
+    async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, Refusal> {
         let Some(key) = parts.headers.get("idempotency-key") else {
             return Ok(Self(None));
         };
@@ -55,9 +56,7 @@ impl<S: Sync> FromRequestParts<S> for IdempotencyKey {
             {
                 Ok(Self(Some(key.to_owned())))
             }
-            _ => Err(invalid(
-                "Idempotency-Key has 1 to 255 visible ASCII characters.",
-            )),
+            _ => Err(invalid("Idempotency-Key has 1 to 255 visible ASCII characters.").into()),
         }
     }
 }
@@ -93,12 +92,12 @@ macro_rules! ids {
         }
 
         impl<S: Send + Sync> FromRequestParts<S> for $Id {
-            type Rejection = Problem;
+            type Rejection = Refusal;
 
-            async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {
+            async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Refusal> {
                 let named = Path::<Named>::from_request_parts(parts, state).await;
                 let named = named.map_err(|_| invalid("The request is not understood."))?;
-                Self::of(&named.id)
+                Ok(Self::of(&named.id)?)
             }
         }
     )*};

@@ -9,7 +9,7 @@ use meshwright_plot::{
     Axis, Chart, Color, Drawing, Figure, Look, Map, Mark, PALETTE, Panel, Series, drawing,
 };
 
-use crate::wire::results::{CurveDocument, ResonanceDocument, ResonanceKindName};
+use meshwright_wire::results::{CurveDocument, ResonanceDocument, ResonanceKindName};
 
 /// Width and height of a picture in pixels.
 const SIZE: (u32, u32) = (760, 340);
@@ -372,16 +372,16 @@ fn chart(series: Vec<Series>, label: &str, range: Option<(f64, f64)>) -> Option<
 
 #[cfg(test)]
 mod tests {
+    use meshwright_wire::Results;
     use serde_json::json;
 
     use super::*;
-    use crate::wire::Results;
-    use crate::wire::results::STUB;
-    use crate::wire::testing::submission;
+    use crate::testing::RESULTS;
+    use crate::testing::submission;
 
     /// The first of the stub, with a run-up.
     fn curve() -> CurveDocument {
-        let mut curve = Results::read(STUB)
+        let mut curve = Results::read(RESULTS)
             .expect("a results document")
             .curves
             .remove(0);

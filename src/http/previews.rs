@@ -2,11 +2,12 @@
 
 use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE, HeaderName};
 use axum::response::{IntoResponse, Response};
+use meshwright_wire::Preview;
 
 use super::client::Client;
 use super::document::Document;
+use super::problem::Refusal;
 use crate::compute::Previewed;
-use crate::wire::{Preview, Problem};
 
 /// See the results at once
 ///
@@ -23,7 +24,7 @@ use crate::wire::{Preview, Problem};
     post, path = "/v1/preview", tag = "Results", operation_id = "preview",
     request_body(content = Preview, content_type = "application/json", description = "The submission, and perhaps a `preview_id`."),
     responses(
-        (status = 200, description = "The results, as a job would give them.", body = crate::wire::Results, headers(
+        (status = 200, description = "The results, as a job would give them.", body = meshwright_wire::Results, headers(
             ("Server-Timing" = String, description = "`engine`: time of the computation; `wait`: time until there were threads for it; both in ms."),
             ("Cache-Control" = String, description = "`no-store`."),
         )),
@@ -36,7 +37,7 @@ use crate::wire::{Preview, Problem};
 pub(super) async fn preview(
     client: Client,
     Document(document, memory): Document,
-) -> Result<Response, Problem> {
+) -> Result<Response, Refusal> {
     let preview = Preview::parse(&document, client.app.previews.rules().most_positions)?;
     drop((document, memory));
     client.app.jobs.check_memory(&preview.submission)?;

@@ -11,24 +11,15 @@ use axum::http::header::{
 use axum::http::{HeaderMap, StatusCode};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
+use meshwright_wire::{Code, Problem, Status, too_much_memory};
 use tracing::error;
 
 use super::edge::Edge;
 use crate::compute::PreviewError;
 use crate::jobs::JobError;
 use crate::webhooks::WebhookError;
-use crate::wire::{Code, Problem, Status, too_much_memory};
 
 const PROBLEM_JSON: HeaderValue = HeaderValue::from_static("application/problem+json");
-
-impl IntoResponse for Problem {
-    fn into_response(self) -> Response {
-        let mut response = render(&self, HeaderMap::new());
-        // `shape` finds it here and completes its links.
-        response.extensions_mut().insert(Arc::new(self));
-        response
-    }
-}
 
 /// A problem, and when it may be over.
 pub(super) struct Refusal {
@@ -63,10 +54,10 @@ impl Refusal {
     }
 }
 
-impl From<Problem> for Refusal {
-    fn from(problem: Problem) -> Self {
+impl<E: Into<Problem>> From<E> for Refusal {
+    fn from(error: E) -> Self {
         Self {
-            problem,
+            problem: error.into(),
             retry_after: None,
         }
     }
@@ -74,7 +65,9 @@ impl From<Problem> for Refusal {
 
 impl IntoResponse for Refusal {
     fn into_response(self) -> Response {
-        let mut response = self.problem.into_response();
+        let mut response = render(&self.problem, HeaderMap::new());
+        // `shape` finds it here and completes its links.
+        response.extensions_mut().insert(Arc::new(self.problem));
         if let Some(wait) = self.retry_after {
             // Whole seconds, never before the time.
             let seconds = wait.as_secs_f64().ceil().max(1.0) as u64;
@@ -283,7 +276,7 @@ pub(super) fn of_panic(panic: Box<dyn Any + Send>) -> Response {
         .or_else(|| panic.downcast_ref::<String>().map(String::as_str))
         .unwrap_or("no message");
     error!(panic = message, "a handler panicked");
-    internal().into_response()
+    Refusal::from(internal()).into_response()
 }
 
 pub(super) fn internal() -> Problem {

@@ -2,8 +2,9 @@
 
 use axum::extract::Path;
 use axum::response::Html;
+use meshwright_wire::{Code, Problem};
 
-use crate::wire::{Code, Problem};
+use super::problem::Refusal;
 
 /// List the problems
 ///
@@ -41,7 +42,7 @@ pub(super) async fn index() -> Html<String> {
         (status = 404, description = "There is no such problem."),
     ),
 )]
-pub(super) async fn page_of(Path(slug): Path<String>) -> Result<Html<String>, Problem> {
+pub(super) async fn page_of(Path(slug): Path<String>) -> Result<Html<String>, Refusal> {
     let code = Code::ALL
         .iter()
         .find(|code| code.slug() == slug)

@@ -6,6 +6,7 @@ use axum::Json;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
+use meshwright_wire::{Limits, Submission, Validation, view};
 use serde::Serialize;
 use serde_json::Value;
 use utoipa::ToSchema;
@@ -15,11 +16,11 @@ use super::aside::aside;
 use super::batch::MOST_IN_BATCH;
 use super::client::Onlooker;
 use super::document::Document;
+use super::problem::Refusal;
 use super::standing::Standing;
 use crate::compute::PreviewRules;
 use crate::jobs::Rules;
 use crate::webhooks::most_webhooks;
-use crate::wire::{self, Limits, Problem, Submission, Validation, view};
 
 /// Check a submission
 ///
@@ -38,17 +39,17 @@ use crate::wire::{self, Limits, Problem, Submission, Validation, view};
 pub(super) async fn validate(
     onlooker: Onlooker,
     Document(document, _memory): Document,
-) -> Result<Json<Validation>, Problem> {
+) -> Result<Json<Validation>, Refusal> {
     // The estimate divides both gears into elements.
     let validation = aside(onlooker.name(), move |_| {
-        Submission::parse(&document).map(|it| wire::validate(&it))
+        Submission::parse(&document).map(|it| meshwright_wire::validate(&it))
     });
     Ok(Json(validation.await??))
 }
 
 view! {
     /// A submission to start from.
-    pub(super) struct Example as Example of (example: &wire::Example) {
+    pub(super) struct Example as Example of (example: &meshwright_wire::Example) {
         /// A short name.
         name: &'static str = example.name,
         /// What it shows.
@@ -78,7 +79,10 @@ pub(super) struct Examples {
 )]
 pub(super) async fn examples(request: HeaderMap) -> Response {
     static EXAMPLES: LazyLock<Standing> = LazyLock::new(|| {
-        let items = wire::examples().iter().map(Example::of).collect();
+        let items = meshwright_wire::examples()
+            .iter()
+            .map(Example::of)
+            .collect();
         let json = serde_json::to_vec(&Examples { items }).expect("examples are plain data");
         Standing::document("application/json", json)
     });

@@ -3,6 +3,7 @@
 use axum::http::HeaderMap;
 use axum::http::header::{CONTENT_ENCODING, CONTENT_LOCATION, CONTENT_TYPE, HeaderValue, VARY};
 use axum::response::{IntoResponse, Response};
+use meshwright_wire::Problem;
 
 use super::app::App;
 use super::aside::aside;
@@ -10,9 +11,8 @@ use super::client::Client;
 use super::conditional::{Keep, Tag};
 use super::packing::takes_gzip;
 use super::parameters::{IfNoneMatch, JobId};
-use super::problem::of_missing_results;
+use super::problem::{Refusal, of_missing_results};
 use crate::jobs::{Document, Job, JobError};
-use crate::wire::Problem;
 
 /// Get the results
 ///
@@ -21,7 +21,7 @@ use crate::wire::Problem;
     get, path = "/v1/jobs/{id}/results", tag = "Results", operation_id = "get_results",
     params(IfNoneMatch),
     responses(
-        (status = 200, description = "The results.", body = crate::wire::Results),
+        (status = 200, description = "The results.", body = meshwright_wire::Results),
         (status = 404, description = "There is no such job, or it has not ended; then `Retry-After` says when to ask again."),
         (status = 409, description = "The job failed or was cancelled, and has no results."),
         (status = 410, description = "The study of the job keeps statistics only (`results_not_kept`); submitted alone, the design has results."),
@@ -31,15 +31,15 @@ pub(super) async fn results(
     client: Client,
     JobId(id): JobId,
     request: HeaderMap,
-) -> Result<Response, Problem> {
+) -> Result<Response, Refusal> {
     let job = client.app.jobs.find(client.name(), id).await?;
     answer(&client.app, &job, &request).await
 }
 
 /// The results of a job, or why there are none.
-pub(super) async fn answer(app: &App, job: &Job, request: &HeaderMap) -> Result<Response, Problem> {
+pub(super) async fn answer(app: &App, job: &Job, request: &HeaderMap) -> Result<Response, Refusal> {
     let Some(hash) = &job.document else {
-        return Err(of_missing_results(job.status, job.problem.as_ref()));
+        return Err(of_missing_results(job.status, job.problem.as_ref()).into());
     };
     let stored = packed_or_plain(app, job, request);
     let mut response = Tag::of_hash(hash, "")
@@ -52,7 +52,7 @@ pub(super) async fn answer(app: &App, job: &Job, request: &HeaderMap) -> Result<
 }
 
 /// A document is kept packed, and sent so to those who can unpack it: nobody packs it again.
-async fn packed_or_plain(app: &App, job: &Job, request: &HeaderMap) -> Result<Response, Problem> {
+async fn packed_or_plain(app: &App, job: &Job, request: &HeaderMap) -> Result<Response, Refusal> {
     let json = [(CONTENT_TYPE, "application/json")];
     let stored = app.jobs.stored(job).await?;
     // Packed and not, while it is unpacked.

@@ -4,6 +4,7 @@ use axum::Json;
 use axum::response::Response;
 use meshwright_engine::run::Run;
 use meshwright_exchange::rexs::{Choices, Fault, Import, NotRead, Refused, import, stages};
+use meshwright_wire::{Code, FieldError, Problem, Submission, model_of, view};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use utoipa::{IntoParams, ToSchema};
@@ -13,9 +14,8 @@ use super::aside::aside;
 use super::client::{Client, Onlooker};
 use super::document::ModelDocument;
 use super::parameters::{JobId, Parameters};
-use super::problem::internal;
+use super::problem::{Refusal, internal};
 use crate::jobs::JobError;
-use crate::wire::{Code, FieldError, Problem, Submission, model_of, view};
 
 /// Stages beyond this number are not looked at.
 const MOST_STAGES: usize = 20;
@@ -93,13 +93,13 @@ pub(super) async fn read(
     onlooker: Onlooker,
     Parameters(parameters): Parameters<ModelParameters>,
     ModelDocument(model, memory): ModelDocument,
-) -> Result<Json<ModelView>, Problem> {
+) -> Result<Json<ModelView>, Refusal> {
     let read = move |_: &Run| {
         let view = model_view(&model, &parameters);
         drop(memory);
         view
     };
-    aside(onlooker.name(), read).await?.map(Json)
+    Ok(Json(aside(onlooker.name(), read).await??))
 }
 
 fn model_view(model: &[u8], parameters: &ModelParameters) -> Result<ModelView, Problem> {
@@ -216,7 +216,7 @@ const TIMES_THE_RESULTS: u64 = 8;
         (status = 200, description = "The model.", body = String, content_type = "application/xml"),
     ),
 )]
-pub(super) async fn write(client: Client, JobId(id): JobId) -> Result<Response, Problem> {
+pub(super) async fn write(client: Client, JobId(id): JobId) -> Result<Response, Refusal> {
     let job = client.app.jobs.find(client.name(), id).await?;
     let submission = client.app.jobs.submission(job.id).await?;
     let stored = match &job.document {
@@ -244,7 +244,7 @@ pub(super) async fn write(client: Client, JobId(id): JobId) -> Result<Response, 
                 Some(serde_json::from_str(&text).map_err(|_| internal())?)
             }
         };
-        Ok::<_, Problem>(model_of(&submission, results.as_ref(), &date))
+        Ok::<_, Refusal>(model_of(&submission, results.as_ref(), &date))
     });
     let model = memory.hold(written.await??);
     Ok(file("application/xml", &format!("{id}.rexs"), model))

@@ -12,6 +12,7 @@ use axum::http::header::{
 use axum::http::{Method, StatusCode, Uri};
 use axum::middleware::{from_fn, from_fn_with_state};
 use axum::routing::get;
+use meshwright_wire::{Code, Problem};
 use serde_json::Value;
 use tower::ServiceBuilder;
 use tower_http::catch_panic::CatchPanicLayer;
@@ -25,12 +26,12 @@ use utoipa_axum::routes;
 
 use super::app::App;
 use super::headers::Trace;
+use super::problem::Refusal;
 use super::{
     access, batch, connections, contact_pattern, docs, draw, events, fields, guides, headers,
     health, jobs, memory, metrics, outline, packing, previews, problem, problem_pages, reference,
     results, rexs, studies, submit, tables, web, webhooks,
 };
-use crate::wire::{Code, Problem};
 
 /// A request has its answer's head within this time. Longer than the longest wait that a client may ask for.
 const REQUEST_TIMEOUT: Duration = Duration::from_secs(90);
@@ -163,24 +164,20 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(batch::submit))
 }
 
-async fn nothing_here(uri: Uri) -> Problem {
-    Problem::new(
-        Code::NotFound,
-        format!(
-            "There is nothing at {}. /docs lists what there is.",
-            uri.path()
-        ),
-    )
+async fn nothing_here(uri: Uri) -> Refusal {
+    let detail = format!(
+        "There is nothing at {}. /docs lists what there is.",
+        uri.path()
+    );
+    Problem::new(Code::NotFound, detail).into()
 }
 
-async fn not_that_method(method: Method, uri: Uri) -> Problem {
-    Problem::new(
-        Code::MethodNotAllowed,
-        format!(
-            "{} does not take {method}; the header Allow says what it takes.",
-            uri.path()
-        ),
-    )
+async fn not_that_method(method: Method, uri: Uri) -> Refusal {
+    let detail = format!(
+        "{} does not take {method}; the header Allow says what it takes.",
+        uri.path()
+    );
+    Problem::new(Code::MethodNotAllowed, detail).into()
 }
 
 fn cors(origins: &[HeaderValue]) -> CorsLayer {

@@ -10,11 +10,11 @@ use axum::http::HeaderMap;
 use axum::http::header::{CONTENT_ENCODING, CONTENT_TYPE, HeaderValue, VARY};
 use axum::response::{IntoResponse, Response};
 use flate2::Compression;
+use meshwright_wire::hash::sha256_hex;
 
 use super::conditional::{Keep, Tag};
 use super::memory::Counted;
 use super::packing::{packed, takes_gzip};
-use crate::hash::sha256_hex;
 
 /// An answer in both forms.
 #[derive(Debug)]

@@ -1,6 +1,7 @@
 //! Submitting a job.
 
 use axum::response::Response;
+use meshwright_wire::Submission;
 use serde_json::value::RawValue;
 
 use super::answer;
@@ -11,10 +12,10 @@ use super::headers::Made;
 use super::memory::{AnswerMemory, SMALL_ANSWER};
 use super::parameters::IdempotencyKey;
 use super::prefer::Wait;
+use super::problem::Refusal;
 use super::results::text_of;
 use super::view::JobView;
 use crate::jobs::Job;
-use crate::wire::{Problem, Submission};
 
 /// Submit a job
 ///
@@ -41,7 +42,7 @@ pub(super) async fn submit(
     IdempotencyKey(key): IdempotencyKey,
     wait: Wait,
     Document(document, memory): Document,
-) -> Result<Response, Problem> {
+) -> Result<Response, Refusal> {
     let submission = Submission::parse(&document)?;
     // What was read is small now, and its client may wait for long.
     drop((document, memory));

@@ -6,6 +6,11 @@ use axum::http::HeaderMap;
 use axum::response::{IntoResponse, Response};
 use meshwright_exchange::fmu::fmu;
 use meshwright_exchange::{force_table, look_up};
+use meshwright_wire::csv::CsvWriter;
+use meshwright_wire::results::{
+    CurveDocument, CurveDynamicsDocument, FaceDocument, NamedOrderDocument, ResonanceDocument,
+};
+use meshwright_wire::{Code, Problem, Results};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use utoipa::{IntoParams, ToSchema};
@@ -16,13 +21,8 @@ use super::client::Client;
 use super::conditional::{Keep, Tag};
 use super::parameters::{IfNoneMatch, JobId, Parameters};
 use super::pictures::{self, Picture};
-use super::problem::{internal, of_missing_results};
+use super::problem::{Refusal, internal, of_missing_results};
 use crate::jobs::{Document, JobError};
-use crate::wire::csv::CsvWriter;
-use crate::wire::results::{
-    CurveDocument, CurveDynamicsDocument, FaceDocument, NamedOrderDocument, ResonanceDocument,
-};
-use crate::wire::{Code, Problem, Results};
 
 /// The text of the results, what is read of it, and the table take so many times its bytes together.
 const TIMES_THE_RESULTS: u64 = 4;
@@ -257,12 +257,12 @@ pub(super) async fn table(
     Path((id, file)): Path<(String, String)>,
     Parameters(TableParameters { torque }): Parameters<TableParameters>,
     request: HeaderMap,
-) -> Result<Response, Problem> {
+) -> Result<Response, Refusal> {
     let wanted = find_file(&file)?;
     let JobId(id) = JobId::of(&id)?;
     let job = client.app.jobs.find(client.name(), id).await?;
     let Some(hash) = &job.document else {
-        return Err(of_missing_results(job.status, job.problem.as_ref()));
+        return Err(of_missing_results(job.status, job.problem.as_ref()).into());
     };
     let part = torque.map_or_else(|| format!("/{file}"), |torque| format!("/{file}/{torque}"));
     let made = async {
@@ -291,7 +291,7 @@ fn make(
     wanted: File,
     torque: Option<f64>,
     name: &str,
-) -> Result<Response, Problem> {
+) -> Result<Response, Refusal> {
     let text = document.text().map_err(JobError::from)?;
     let results = Results::read(&text).map_err(|error| {
         tracing::warn!(%error, "results are of a version that tables are not made of");
@@ -312,7 +312,7 @@ fn make(
                 let detail = "These results have nothing that this shows.";
                 Problem::new(Code::NotFound, detail)
             });
-            svg.map(pictures::answer)
+            Ok(pictures::answer(svg?))
         }
         File::LookUp(form) => look_up_table(&results, &curves, form, name),
         File::Forces(form) => forces(&results, form, name),
@@ -326,7 +326,7 @@ fn look_up_table(
     curves: &[&CurveDocument],
     form: look_up::Form,
     name: &str,
-) -> Result<Response, Problem> {
+) -> Result<Response, Refusal> {
     let first = curves.first();
     let table = first.and_then(|curve| results.look_up(curve)?.write(form));
     let table = table.ok_or_else(|| {
@@ -346,7 +346,7 @@ fn no_forces() -> Problem {
 }
 
 /// The force table as an FMU. What it was computed from tells it from others.
-fn packed(results: &Results, name: &str) -> Result<Response, Problem> {
+fn packed(results: &Results, name: &str) -> Result<Response, Refusal> {
     let forces = results.mesh_forces().ok_or_else(no_forces)?;
     let bytes = fmu(&forces, &results.evidence.input_hash).map_err(|error| {
         tracing::error!(%error, "an FMU could not be packed");
@@ -356,7 +356,7 @@ fn packed(results: &Results, name: &str) -> Result<Response, Problem> {
 }
 
 /// The force table as others read it.
-fn forces(results: &Results, form: force_table::Form, name: &str) -> Result<Response, Problem> {
+fn forces(results: &Results, form: force_table::Form, name: &str) -> Result<Response, Refusal> {
     let forces = results.mesh_forces().ok_or_else(no_forces)?;
     let media_type = match form {
         force_table::Form::Csv => "text/csv; charset=utf-8",
@@ -502,10 +502,10 @@ fn no_table(table: Table) -> Problem {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::wire::results::STUB;
+    use crate::testing::RESULTS;
 
     fn results() -> Results {
-        Results::read(STUB).expect("a results document")
+        Results::read(RESULTS).expect("a results document")
     }
 
     fn table_of(file: &str, torque: Option<f64>) -> Result<Vec<CurveColumns>, Problem> {

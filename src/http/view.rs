@@ -2,13 +2,13 @@
 
 use axum::body::Bytes;
 use jiff::Timestamp;
+use meshwright_wire::{Kept, Status, method_schema, view};
 use serde_json::Value;
 use serde_json::value::RawValue;
 use uuid::Uuid;
 
 use super::edge::Edge;
 use crate::jobs::Job;
-use crate::wire::{Kept, Status, method_schema, view};
 
 view! {
     /// A job: one submission, where it stands, and where to find what belongs to it.
@@ -44,15 +44,15 @@ view! {
         #[schema(example = "statistics")]
         keep?: Kept = Some(job.keep).filter(|keep| *keep != Kept::Results),
         /// Of a failed job: why.
-        #[schema(value_type = Option<crate::wire::Problem>)]
+        #[schema(value_type = Option<meshwright_wire::Problem>)]
         problem?: Value = job.problem.clone().map(|problem| with_public_type(problem, &edge.public_url)),
         links: Links = Links::of(job, edge),
         /// The submission with every default filled in. Absent in lists.
-        #[schema(value_type = Option<crate::wire::Submission>)]
+        #[schema(value_type = Option<meshwright_wire::Submission>)]
         submission?: &'a RawValue = None,
         /// The results, in the answer to a submission with `Prefer: wait` whose job has ended in time. Absent elsewhere: they stand at
         /// `links.results`.
-        #[schema(value_type = Option<crate::wire::Results>)]
+        #[schema(value_type = Option<meshwright_wire::Results>)]
         results?: Box<RawValue> = None,
     }
 }

@@ -8,10 +8,11 @@ use axum::http::HeaderMap;
 use axum::http::header::LINK;
 use axum::response::Response;
 use axum::routing::get;
+use meshwright_wire::{Code, Problem};
 
 use super::app::App;
+use super::problem::Refusal;
 use super::standing::{Folder, files};
-use crate::wire::{Code, Problem};
 
 static FILES: LazyLock<Folder> = LazyLock::new(|| Folder::of(files::PAGE));
 
@@ -22,7 +23,7 @@ pub(super) fn routes_of_page() -> Router<App> {
         .route("/web/{*name}", get(file))
 }
 
-async fn page(request: HeaderMap) -> Result<Response, Problem> {
+async fn page(request: HeaderMap) -> Result<Response, Refusal> {
     let mut response = answer("index.html", &request).await?;
     // Machines that come to the root find the description of the service.
     let links = "<openapi.json>; rel=\"service-desc\", <docs/>; rel=\"service-doc\"";
@@ -32,11 +33,11 @@ async fn page(request: HeaderMap) -> Result<Response, Problem> {
     Ok(response)
 }
 
-async fn file(Path(name): Path<String>, request: HeaderMap) -> Result<Response, Problem> {
+async fn file(Path(name): Path<String>, request: HeaderMap) -> Result<Response, Refusal> {
     answer(&name, &request).await
 }
 
-async fn answer(name: &str, request: &HeaderMap) -> Result<Response, Problem> {
+async fn answer(name: &str, request: &HeaderMap) -> Result<Response, Refusal> {
     let file = FILES.find(name).ok_or_else(|| {
         Problem::new(
             Code::NotFound,

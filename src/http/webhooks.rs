@@ -4,6 +4,7 @@ use axum::Json;
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use jiff::Timestamp;
+use meshwright_wire::{Code, Problem, view};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 use uuid::Uuid;
@@ -11,9 +12,9 @@ use uuid::Uuid;
 use super::client::Client;
 use super::document::Document;
 use super::parameters::{IdempotencyKey, WebhookId};
+use super::problem::Refusal;
 use crate::jobs::EventKind;
 use crate::webhooks::{Delivery, Webhook};
-use crate::wire::{Code, Problem, view};
 
 /// A webhook to be made.
 #[derive(Deserialize, ToSchema)]
@@ -133,7 +134,7 @@ pub(super) async fn make(
     client: Client,
     IdempotencyKey(key): IdempotencyKey,
     document: Document,
-) -> Result<Response, Problem> {
+) -> Result<Response, Refusal> {
     let new: NewWebhookDocument = document.parse("webhook")?;
     let mut events: Vec<EventKind> = Vec::new();
     for event in new.events {
@@ -144,7 +145,7 @@ pub(super) async fn make(
     if events.is_empty() {
         let words = EventKind::ALL.map(EventKind::word).join(", ");
         let detail = format!("/events is empty; give one or more of {words}, or leave it out.");
-        return Err(Problem::new(Code::OutOfRange, detail));
+        return Err(Problem::new(Code::OutOfRange, detail).into());
     }
     let made = client
         .app
@@ -167,7 +168,7 @@ pub(super) async fn make(
     get, path = "/v1/webhooks", tag = "Webhooks", operation_id = "list_webhooks",
     responses((status = 200, description = "The webhooks.", body = WebhookListView)),
 )]
-pub(super) async fn list(client: Client) -> Result<Json<WebhookListView>, Problem> {
+pub(super) async fn list(client: Client) -> Result<Json<WebhookListView>, Refusal> {
     let webhooks = client.app.webhooks.list(client.name()).await?.into_iter();
     Ok(Json(WebhookListView {
         items: webhooks
@@ -188,7 +189,7 @@ pub(super) async fn list(client: Client) -> Result<Json<WebhookListView>, Proble
 pub(super) async fn delete(
     client: Client,
     WebhookId(id): WebhookId,
-) -> Result<StatusCode, Problem> {
+) -> Result<StatusCode, Refusal> {
     client.app.webhooks.delete(client.name(), id).await?;
     Ok(StatusCode::NO_CONTENT)
 }
@@ -205,7 +206,7 @@ pub(super) async fn delete(
 pub(super) async fn show(
     client: Client,
     WebhookId(id): WebhookId,
-) -> Result<Json<WebhookView>, Problem> {
+) -> Result<Json<WebhookView>, Refusal> {
     let webhook = client.app.webhooks.find(client.name(), id).await?;
     Ok(Json(WebhookView::of(webhook, None)))
 }
@@ -220,7 +221,7 @@ pub(super) async fn show(
         (status = 409, description = "The webhook was given up."),
     ),
 )]
-pub(super) async fn ping(client: Client, WebhookId(id): WebhookId) -> Result<Response, Problem> {
+pub(super) async fn ping(client: Client, WebhookId(id): WebhookId) -> Result<Response, Refusal> {
     let ping = client.app.webhooks.ping(client.name(), id).await?;
     Ok((StatusCode::ACCEPTED, Json(DeliveryView::of(ping))).into_response())
 }
@@ -237,7 +238,7 @@ pub(super) async fn ping(client: Client, WebhookId(id): WebhookId) -> Result<Res
 pub(super) async fn deliveries(
     client: Client,
     WebhookId(id): WebhookId,
-) -> Result<Json<DeliveryListView>, Problem> {
+) -> Result<Json<DeliveryListView>, Refusal> {
     let deliveries = client.app.webhooks.deliveries(client.name(), id).await?;
     let items = deliveries.into_iter().map(DeliveryView::of).collect();
     Ok(Json(DeliveryListView { items }))
@@ -257,7 +258,7 @@ pub(super) async fn deliveries(
 pub(super) async fn enable(
     client: Client,
     WebhookId(id): WebhookId,
-) -> Result<Json<WebhookView>, Problem> {
+) -> Result<Json<WebhookView>, Refusal> {
     let webhook = client.app.webhooks.enable(client.name(), id).await?;
     Ok(Json(WebhookView::of(webhook, None)))
 }
@@ -275,7 +276,7 @@ pub(super) async fn enable(
 pub(super) async fn rotate(
     client: Client,
     WebhookId(id): WebhookId,
-) -> Result<Json<WebhookView>, Problem> {
+) -> Result<Json<WebhookView>, Refusal> {
     let rotated = client.app.webhooks.rotate(client.name(), id).await?;
     Ok(Json(WebhookView::of(rotated.webhook, Some(rotated.secret))))
 }

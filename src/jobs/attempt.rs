@@ -9,6 +9,7 @@ use std::time::Duration;
 
 use jiff::{SignedDuration, Timestamp};
 use meshwright_engine::run::Run;
+use meshwright_wire::{Code, Kept, Problem, SOLVER_VERSION, Submission, Summary, memory_of};
 use opentelemetry::KeyValue;
 use opentelemetry::trace::SpanId;
 use tokio::sync::mpsc;
@@ -22,7 +23,6 @@ use super::shop::{Shop, Threads};
 use super::store::{Came, Claim, Damaged, End, Ended, Packed, Started, StoreError};
 use crate::compute::{Budget, Solve, message_of};
 use crate::spans::{self, Span};
-use crate::wire::{Code, Kept, Problem, SOLVER_VERSION, Submission, Summary, memory_of};
 
 /// What a computation leaves: the results document or its name, and what the tables of studies show of it.
 struct Solved {

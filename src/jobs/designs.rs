@@ -1,12 +1,12 @@
 //! The designs of a study: the jobs that they become, and the rows in which they stand with what has come of them.
 
 use jiff::Timestamp;
+use meshwright_wire::{Design, Kept, RowState, Status, Study, memory_above, too_much_memory};
 use uuid::Uuid;
 
 use super::error::JobError;
 use super::queue::{Jobs, rough_cost};
 use super::store::{DocumentLine, NewJob, NewRow, StoredRow};
-use crate::wire::{Design, Kept, RowState, Status, Study, memory_above, too_much_memory};
 
 /// So many designs are expanded and written in one transaction. Others write in between.
 pub(super) const CHUNK: usize = 500;

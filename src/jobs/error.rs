@@ -1,9 +1,9 @@
 //! Why something cannot be done with a job or a study.
 
+use meshwright_wire::Status;
 use uuid::Uuid;
 
 use super::store::{Damaged, StoreError};
-use crate::wire::Status;
 
 /// Why something cannot be done with a job or a study.
 #[derive(Debug, Clone, thiserror::Error)]

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use jiff::Timestamp;
 use meshwright_engine::analysis::Method;
+use meshwright_wire::{DOCUMENT_VERSION, Kept, SOLVER_VERSION, Status, Submission};
 use tokio::sync::{Notify, mpsc, oneshot};
 use tokio_util::sync::CancellationToken;
 use uuid::Uuid;
@@ -18,7 +19,6 @@ use super::resource::{Listed, Submitted};
 use super::store::{Depth, Document, Filter, NewJob, Outcome, QueueBounds, Store, StoreError};
 use crate::compute::Budget;
 use crate::machine;
-use crate::wire::{DOCUMENT_VERSION, Kept, SOLVER_VERSION, Status, Submission};
 
 /// So long a repeated request is recognized by its key.
 pub(crate) const KEY_LIFETIME: jiff::SignedDuration = jiff::SignedDuration::from_hours(24);
@@ -204,7 +204,7 @@ impl Jobs {
     /// [`JobError::TooMuchMemory`].
     pub fn check_memory(&self, submission: &Submission) -> Result<(), JobError> {
         let limit_mb = self.rules.job_memory_mb;
-        match crate::wire::memory_above(submission, limit_mb) {
+        match meshwright_wire::memory_above(submission, limit_mb) {
             None => Ok(()),
             Some(needed_mb) => Err(JobError::TooMuchMemory {
                 needed_mb,

@@ -7,6 +7,8 @@ use tracing::{error, info};
 use uuid::Uuid;
 
 use meshwright_engine::run::Run;
+use meshwright_wire::hash::sha256_hex;
+use meshwright_wire::{DOCUMENT_VERSION, Study};
 
 use super::designs::{Owner, blocking, expand};
 use super::error::JobError;
@@ -15,8 +17,6 @@ use super::resource::{Listed, Submitted};
 use super::searches;
 use super::store::{NewRow, NewStudy, StoreError, StudyFilter, StudyOutcome};
 use super::study::StudyRecord;
-use crate::hash::sha256_hex;
-use crate::wire::{DOCUMENT_VERSION, Study};
 
 impl Jobs {
     /// Takes a study: it and its first designs are on the disk when this comes back.

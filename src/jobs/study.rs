@@ -3,8 +3,8 @@
 use jiff::Timestamp;
 use uuid::Uuid;
 
-use crate::wire::warning::GearName;
-use crate::wire::{Code, Problem, SearchState, Status};
+use meshwright_wire::warning::GearName;
+use meshwright_wire::{Code, Problem, SearchState, Status};
 
 /// A study and how far it has come. Where it stands follows from where its jobs stand.
 #[derive(Debug, Clone, PartialEq)]

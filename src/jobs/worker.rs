@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
+use meshwright_wire::{Code, DOCUMENT_VERSION, Problem, SOLVER_VERSION};
 use tokio::task::JoinSet;
 use tokio::time::{Instant, MissedTickBehavior, interval, interval_at, sleep};
 use tracing::{error, info, warn};
@@ -13,7 +14,6 @@ use super::queue::Jobs;
 use super::shop::{Pace, Shop, Threads};
 use super::store::{Claimed, Lease, Lost, Reader, Started, StoreError};
 use crate::compute::{Cores, NoThreads, Solve};
-use crate::wire::{Code, DOCUMENT_VERSION, Problem, SOLVER_VERSION};
 
 /// So much of a core is claimed at once, in microseconds by the rough estimate: many jobs of a millisecond, some members of a
 /// population, or one ordinary design, of which two would keep others waiting. While a claim and an end are written their worker
@@ -279,6 +279,7 @@ impl Shop {
 mod tests {
     use std::sync::mpsc;
 
+    use meshwright_wire::{Results, Status, Submission};
     use metrics::LocalRecorderGuard;
     use metrics_exporter_prometheus::{PrometheusBuilder, PrometheusHandle};
     use serde_json::json;
@@ -289,8 +290,7 @@ mod tests {
     use super::super::queue::{Member, Rules};
     use super::super::store::{Place, Store};
     use super::*;
-    use crate::wire::results::STUB;
-    use crate::wire::{Results, Status, Submission};
+    use crate::testing::RESULTS;
 
     const RULES: Rules = Rules {
         queue_limit: 100,
@@ -313,7 +313,7 @@ mod tests {
 
     /// What an engine gives at once; for each torque it is another document.
     fn results(torque: f64) -> Results {
-        let mut results = Results::read(STUB).unwrap();
+        let mut results = Results::read(RESULTS).unwrap();
         results.curves[0].output_torque_n_m = torque;
         results
     }

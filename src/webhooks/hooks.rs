@@ -3,10 +3,10 @@
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
+use meshwright_wire::hash::sha256_hex_of;
 use uuid::Uuid;
 
 use super::store::{Delivery, NewWebhook, Outcome, Webhook, Webhooks};
-use crate::hash::sha256_hex_of;
 use crate::jobs::{EventKind, JobError, StoreError};
 
 /// So many webhooks may a client have.

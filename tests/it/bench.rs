@@ -8,8 +8,8 @@ use meshwright::config::Config;
 use meshwright::jobs::{Clock, Place};
 use meshwright::serve::{Compute, Service, World, serve};
 use meshwright::webhooks::HookRules;
-use meshwright::wire::{self, Code, Problem, Results, Submission};
 use meshwright_engine::run::Run;
+use meshwright_wire::{Code, Problem, Results, Submission};
 use reqwest::{Client, RequestBuilder, Response, StatusCode};
 use serde_json::{Value, json};
 use tempfile::TempDir;
@@ -103,7 +103,7 @@ impl Bench {
 
     /// A service with one worker that computes.
     pub(crate) async fn real() -> Self {
-        Self::start_with(|_| {}, Arc::new(wire::solve)).await
+        Self::start_with(|_| {}, Arc::new(meshwright_wire::solve)).await
     }
 
     pub(crate) async fn start(adjust: impl FnOnce(&mut Config), solve: Solve) -> Self {

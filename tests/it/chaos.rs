@@ -7,9 +7,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use meshwright::jobs::Place;
-use meshwright::wire::{Submission, solve};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
+use meshwright_wire::{Submission, solve};
 use reqwest::Client;
 use serde_json::{Value, json};
 use tokio::sync::Mutex;

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicI64, Ordering};
 use jiff::Timestamp;
 use meshwright::http::KeysRule;
 use meshwright::jobs::Clock;
-use meshwright::wire::Code;
+use meshwright_wire::Code;
 use reqwest::{Method, StatusCode};
 use serde_json::{Value, json};
 
@@ -42,7 +42,7 @@ async fn every_link_bears_the_public_address() {
     let nowhere: Value = bench.document("/nowhere").await;
     assert_eq!(nowhere["type"], format!("{public}/problems/not-found"));
 
-    work.fail(meshwright::wire::Problem::new(Code::TimeLimit, "late"));
+    work.fail(meshwright_wire::Problem::new(Code::TimeLimit, "late"));
     assert_eq!(
         bench.ended(path).await["problem"]["type"],
         format!("{public}/problems/time-limit")

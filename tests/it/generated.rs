@@ -7,9 +7,9 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-use meshwright::wire::{self, Code, Problem, Submission};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
+use meshwright_wire::{Code, Problem, Submission};
 use serde_json::{Map, Value, json};
 
 /// The variable that says how many.
@@ -183,7 +183,7 @@ fn compute(document: &Value, library: &Library) -> Result<Option<Code>, String> 
         Ok(submission) => submission,
         Err(problem) => return told(&problem).map(Some),
     };
-    if wire::validate(&submission).estimate.seconds > LONGEST_S {
+    if meshwright_wire::validate(&submission).estimate.seconds > LONGEST_S {
         let mut smaller = document.clone();
         for (name, value) in [
             ("grid", json!("coarse")),
@@ -194,12 +194,14 @@ fn compute(document: &Value, library: &Library) -> Result<Option<Code>, String> 
             smaller["resolution"][name] = value;
         }
         match parse(&smaller) {
-            Ok(made) if wire::validate(&made).estimate.seconds <= LONGEST_S => submission = made,
+            Ok(made) if meshwright_wire::validate(&made).estimate.seconds <= LONGEST_S => {
+                submission = made
+            }
             _ => return Ok(None),
         }
     }
     let run = Run::new(Arc::new(AtomicBool::new(false)), |_, _| {});
-    match wire::solve(&submission, library, &run) {
+    match meshwright_wire::solve(&submission, library, &run) {
         Ok(_) => Ok(None),
         Err(problem) => told(&problem).map(Some),
     }
@@ -208,7 +210,7 @@ fn compute(document: &Value, library: &Library) -> Result<Option<Code>, String> 
 #[test]
 fn whatever_validates_has_results_or_a_problem_that_names_a_field() {
     let count = std::env::var(COUNT).map_or(150, |count| count.parse().unwrap());
-    let examples: Vec<Value> = wire::examples()
+    let examples: Vec<Value> = meshwright_wire::examples()
         .iter()
         .filter(|example| example.valid)
         .map(|example| serde_json::from_str(example.json).unwrap())

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use meshwright::compute::Solve;
-use meshwright::wire::{Code, Problem, Submission};
 use meshwright_engine::run::Run;
+use meshwright_wire::{Code, Problem, Submission};
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 

@@ -1,6 +1,6 @@
 //! Memory that submissions ask for: whatever way one comes in, none is accepted that may not take as much as it is estimated to.
 
-use meshwright::wire::{self, Submission};
+use meshwright_wire::Submission;
 use serde_json::{Value, json};
 
 use crate::bench::{Asked, Bench, Said};
@@ -11,7 +11,7 @@ const LIMIT_MB: u64 = 500;
 
 /// A pair by one of the methods, in two of three cases of a size that takes much.
 fn random(chance: &mut Chance) -> Value {
-    let methods: Vec<&str> = wire::methods().collect();
+    let methods: Vec<&str> = meshwright_wire::methods().collect();
     let method = methods[chance.below(methods.len())];
     let along_faces = method.starts_with("three_dimensional");
     let is_large = !chance.one_in(3);
@@ -124,7 +124,7 @@ async fn nothing_is_accepted_whose_estimate_is_above_the_limit_of_a_job() {
             assert!(unbuildable < 2000, "chance makes too few that can be built");
             continue;
         };
-        let needed_mb = wire::validate(&submission).estimate.memory_mb;
+        let needed_mb = meshwright_wire::validate(&submission).estimate.memory_mb;
         let is_too_large = needed_mb > LIMIT_MB;
         number += 1;
         let refusal = refusal(&bench, number % 6, &document).await;

@@ -7,7 +7,7 @@ use std::thread::sleep;
 use std::time::Duration;
 
 use meshwright::jobs::Place;
-use meshwright::wire::examples;
+use meshwright_wire::examples;
 use serde_json::{Value, json};
 use sqlx::Connection;
 

@@ -97,7 +97,7 @@ async fn no_label_has_a_value_that_a_client_invents() {
                 let methods = [
                     "GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS", "other",
                 ];
-                methods.contains(&value) || meshwright::wire::methods().any(|it| it == value)
+                methods.contains(&value) || meshwright_wire::methods().any(|it| it == value)
             }
             // What is no part of the document has one pattern for each of its folders.
             "route" => {
@@ -110,7 +110,7 @@ async fn no_label_has_a_value_that_a_client_invents() {
                 ["successful", "failed"].contains(&value) || matches!(value.parse(), Ok(200..=599))
             }
             "code" => {
-                meshwright::wire::Code::ALL
+                meshwright_wire::Code::ALL
                     .iter()
                     .any(|code| code.word() == value)
                     || value == "none"

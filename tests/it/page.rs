@@ -1,6 +1,6 @@
 //! The page, the outline that it draws, and the pictures and look-up tables of results.
 
-use meshwright::wire::examples;
+use meshwright_wire::examples;
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 

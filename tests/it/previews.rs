@@ -4,8 +4,8 @@ use std::sync::{Arc, mpsc as blocking};
 use std::time::Duration;
 
 use meshwright::compute::{Budget, PreviewError, PreviewRules, Previews, Solve};
-use meshwright::wire::{Code, Preview, Problem};
 use meshwright_engine::run::Run;
+use meshwright_wire::{Code, Preview, Problem};
 use reqwest::{Response, StatusCode};
 use serde_json::{Value, json};
 use tokio::sync::mpsc;

@@ -3,7 +3,6 @@
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 
-use meshwright::wire;
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 
@@ -61,7 +60,7 @@ async fn with_workers(workers: usize) -> Bench {
     let adjust =
         |config: &mut meshwright::config::Config| config.workers = NonZeroUsize::new(workers);
     // Two services in one test would be more than its stack has room for.
-    Box::pin(Bench::start_with(adjust, Arc::new(wire::solve))).await
+    Box::pin(Bench::start_with(adjust, Arc::new(meshwright_wire::solve))).await
 }
 
 #[tokio::test]

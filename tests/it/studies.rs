@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use meshwright::wire::{Code, Problem};
+use meshwright_wire::{Code, Problem};
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 

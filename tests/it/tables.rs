@@ -105,7 +105,7 @@ async fn fields_come_as_a_grid_at_any_position_and_torque_of_the_job() {
     assert_eq!(again.status(), StatusCode::NOT_MODIFIED);
     // Another version of the solver says it otherwise, under the same address: nobody keeps it unasked.
     assert_eq!(again.headers()["cache-control"], "private, no-cache");
-    let here = meshwright::wire::SOLVER_VERSION;
+    let here = meshwright_wire::SOLVER_VERSION;
     assert_eq!(again.headers()["solver-version"], here);
     assert!(!again.headers().contains_key("results-solver-version"));
     let older = "update jobs set solver_version = 'meshwright 0.1.0' returning cast(1 as bigint)";
@@ -244,7 +244,7 @@ async fn the_contact_pattern_of_a_pair_along_its_faces_comes_as_numbers_and_as_a
     assert_eq!(answer.headers()["cache-control"], "private, no-cache");
     assert_eq!(
         answer.headers()["solver-version"],
-        meshwright::wire::SOLVER_VERSION
+        meshwright_wire::SOLVER_VERSION
     );
     let tag = answer.headers()["etag"].clone();
     let pattern = answer.document().await;

@@ -7,7 +7,7 @@ use std::time::Duration;
 use jiff::Timestamp;
 use meshwright::compute::Solve;
 use meshwright::jobs::{Clock, Filter, Job, Jobs, Member, Pace, Place, Rules, Store, Workers};
-use meshwright::wire::{Code, Problem, Results, Status, Submission};
+use meshwright_wire::{Code, Problem, Results, Status, Submission};
 use tempfile::TempDir;
 use tokio_util::sync::CancellationToken;
 

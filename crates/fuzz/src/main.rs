@@ -2,18 +2,11 @@
 //! read is read again from its echo, or from the model that it is written as. Guided by coverage (libFuzzer); `crates/fuzz/run` builds and runs it.
 
 #![no_main]
-#![allow(dead_code, unused_imports, unreachable_pub, missing_docs)]
-
-// The documents alone, without the service around them, which would take minutes to build.
-#[path = "../../../src/hash.rs"]
-mod hash;
-#[path = "../../../src/wire/mod.rs"]
-mod wire;
 
 use libfuzzer_sys::fuzz_target;
 use meshwright_engine::run::Run;
 use meshwright_exchange::rexs::{Choices, import, is_model};
-use wire::{Preview, Problem, Searching, Study, Submission, model_of};
+use meshwright_wire::{Preview, Problem, Searching, Study, Submission, model_of};
 
 /// So many designs of a study are expanded.
 const DESIGNS: usize = 8;

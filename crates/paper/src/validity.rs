@@ -6,11 +6,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
-use meshwright::wire::Submission;
-use meshwright::wire::solve::solve;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use meshwright_plot::{Axis, Chart, Figure, Look, PALETTE, Panel, Series};
+use meshwright_wire::Submission;
+use meshwright_wire::solve::solve;
 use serde_json::{Value, json};
 
 /// Draw the transmission error of the service beside every series of reference solutions.
@@ -174,7 +174,7 @@ fn points_of(series: &Value, torque: f64) -> anyhow::Result<Vec<(f64, f64)>> {
 
 /// The curve of the service, to the end of its period.
 fn curve_of(submission: &Value, library: &Library) -> anyhow::Result<Vec<(f64, f64)>> {
-    let refused = |problem: meshwright::wire::Problem| anyhow::anyhow!("{}", problem.detail);
+    let refused = |problem: meshwright_wire::Problem| anyhow::anyhow!("{}", problem.detail);
     let submission = Submission::parse(submission.to_string().as_bytes()).map_err(refused)?;
     let results = solve(&submission, library, &Run::unattended()).map_err(refused)?;
     let curve = results.curves.into_iter().next().context("no curve")?;

@@ -6,6 +6,7 @@ use std::time::Duration;
 use anyhow::{Context, anyhow};
 use indicatif::{ProgressBar, ProgressStyle};
 use meshwright_engine::library::Library;
+use meshwright_wire::{Kept, RowState, Study as StudyDocument, solve};
 use tokio_util::sync::CancellationToken;
 use uuid::Uuid;
 
@@ -15,7 +16,6 @@ use crate::commands::serve::signal;
 use crate::compute::Cores;
 use crate::jobs::{Clock, Jobs, Member, Migrate, Pace, Place, Rules, StudyRecord, Workers};
 use crate::serve::open;
-use crate::wire::{Kept, RowState, Study as StudyDocument, solve};
 
 /// What the substructures that designs share may take.
 const LIBRARY_BYTES: usize = 256 << 20;

@@ -10,14 +10,14 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use meshwright_engine::run::Run;
+use meshwright_wire::study_table::{csv, table};
+use meshwright_wire::{PopulationResults, PopulationSample, Study as StudyDocument, StudyResults};
 
 use self::compute::{Computed, compute};
 use self::folder::ResultFolder;
 use self::picture::picture;
 use self::tables::{search_table, short_table, spread_table};
 use super::document::{EXIT_PROBLEM, read, told};
-use crate::wire::study_table::{csv, table};
-use crate::wire::{PopulationResults, PopulationSample, Study as StudyDocument, StudyResults};
 
 /// Compute a study: many variants of one submission, and their table.
 #[derive(Debug, clap::Args)]
@@ -122,14 +122,14 @@ mod tests {
     use std::fs;
     use std::time::Duration;
 
-    use crate::wire::Status;
+    use meshwright_wire::Status;
     use serde_json::{Value, json};
 
     use super::*;
 
     fn study() -> StudyDocument {
         let mut study: Value =
-            serde_json::from_str(crate::wire::examples::STUDY_SECTION_5).unwrap();
+            serde_json::from_str(meshwright_wire::examples::STUDY_SECTION_5).unwrap();
         // The formulas do not see holes, but they are quick.
         study["base"]["method"] = json!("load_distribution");
         let designs = study["designs"].as_array_mut().unwrap();
@@ -185,11 +185,11 @@ mod tests {
 
     #[test]
     fn a_search_whose_confirmation_fails_says_so_first_and_why_members_failed_last() {
-        use crate::wire::refusals::RefusalState;
-        use crate::wire::search::{ConfirmedDesign, FoundDesign};
+        use meshwright_wire::refusals::RefusalState;
+        use meshwright_wire::search::{ConfirmedDesign, FoundDesign};
         let search = include_str!("../../../api/examples/search-holes.json");
         let search = StudyDocument::parse(search.as_bytes(), &Run::unattended()).unwrap();
-        let state = crate::wire::SearchState {
+        let state = meshwright_wire::SearchState {
             evaluations: 3,
             best: Some(FoundDesign {
                 row: 1,
@@ -235,7 +235,7 @@ mod tests {
     #[test]
     fn a_population_leaves_what_its_members_come_to() {
         let mut document: Value =
-            serde_json::from_str(crate::wire::examples::STUDY_SECTION_5).unwrap();
+            serde_json::from_str(meshwright_wire::examples::STUDY_SECTION_5).unwrap();
         document["base"]["method"] = json!("load_distribution");
         document.as_object_mut().unwrap().remove("designs");
         document.as_object_mut().unwrap().remove("constant_mass");

@@ -2,8 +2,8 @@
 
 use meshwright_plot::{Axis, Chart, Color, Figure, Look, PALETTE, Panel, Series};
 
-use crate::wire::study_table::TableRow;
-use crate::wire::{PopulationResults, SearchState, Study as StudyDocument, StudyResults};
+use meshwright_wire::study_table::TableRow;
+use meshwright_wire::{PopulationResults, SearchState, Study as StudyDocument, StudyResults};
 
 /// The quantity that is shown of a population.
 const SHOWN: &str = "transmission_error_um.peak_to_peak";

@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
 
+use meshwright_wire::Problem;
 use tokio::sync::OwnedSemaphorePermit;
 use tokio::time::Instant;
 use tokio_util::sync::CancellationToken;
@@ -13,7 +14,6 @@ use super::limit::Connections;
 use super::stalled_reads::Reads;
 use super::stalled_writes::Writes;
 use crate::compute::Part;
-use crate::wire::Problem;
 
 /// A connection whose client has sent nothing of its request for so long counts as idle; so does one of a client with a key that has read
 /// nothing of its answer, and one without a key at once.

@@ -9,13 +9,14 @@ use axum::extract::Request;
 use axum::http::header::{CONNECTION, HeaderValue};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
+use meshwright_wire::{Code, Problem};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::time::{Instant, timeout};
 
 use super::connection::{ActiveRequest, Address, Connection, NEW, Owner};
 use crate::compute::{Budget, Part};
 use crate::http::credential::bearer;
-use crate::wire::{Code, Problem};
+use crate::http::problem::Refusal;
 
 /// One client, or one address without a key, has so large a part of the connections busy at most.
 const OF_CLIENT: usize = 4;
@@ -233,7 +234,7 @@ pub(in crate::http) async fn limit(request: Request, next: Next) -> Response {
         return next.run(request).await;
     };
     if let Err(problem) = active.connection.leave_reserve().await {
-        let mut response = problem.into_response();
+        let mut response = Refusal::from(problem).into_response();
         let close = HeaderValue::from_static("close");
         response.headers_mut().insert(CONNECTION, close);
         return response;
@@ -242,14 +243,14 @@ pub(in crate::http) async fn limit(request: Request, next: Next) -> Response {
     let may_have_key = matches!(bearer(request.headers()), Ok(Some(_)));
     let counted = active.count_for_address();
     match counted {
-        Err(problem) if !may_have_key => return problem.into_response(),
+        Err(problem) if !may_have_key => return Refusal::from(problem).into_response(),
         _ => {}
     }
     let response = next.run(request).await;
     match active.count_for_address() {
         Ok(()) => response,
         // It was not asked for its key, or had none that is known.
-        Err(problem) => problem.into_response(),
+        Err(problem) => Refusal::from(problem).into_response(),
     }
 }
 

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use axum::response::Response;
+use meshwright_wire::Status;
 use serde::Serialize;
 use utoipa::ToSchema;
 use uuid::Uuid;
@@ -12,8 +13,8 @@ use crate::http::app::App;
 use crate::http::client::Client;
 use crate::http::events::{self, EventName, Told, WatchEvent, Watching, told};
 use crate::http::parameters::StudyId;
+use crate::http::problem::Refusal;
 use crate::jobs::News;
-use crate::wire::{Problem, Status};
 
 /// The progress of a study is told so often at most.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(250);
@@ -42,7 +43,7 @@ pub(in crate::http) struct StudyProgressView {
 pub(in crate::http) async fn events(
     client: Client,
     StudyId(id): StudyId,
-) -> Result<Response, Problem> {
+) -> Result<Response, Refusal> {
     client.app.jobs.find_study(client.name(), id).await?;
     let place = events::place(&client.app, client.name())?;
     let watch = Watch {

@@ -10,6 +10,7 @@ use axum::http::StatusCode;
 use axum::http::header::HeaderMap;
 use axum::response::{IntoResponse, Response};
 use meshwright_engine::run::Run;
+use meshwright_wire::Study;
 use serde::Deserialize;
 use utoipa::IntoParams;
 
@@ -22,8 +23,8 @@ use super::edge::Edge;
 use super::page::{self, Page, USUAL_LIMIT};
 use super::parameters::{IdempotencyKey, IfNoneMatch, Parameters, StudyId};
 use super::prefer::Wait;
+use crate::http::problem::Refusal;
 use crate::jobs::{StudyFilter, StudyRecord};
-use crate::wire::{Problem, Study};
 use view::StudyView;
 
 pub(super) use events::*;
@@ -62,7 +63,7 @@ pub(super) async fn submit(
     client: Client,
     IdempotencyKey(key): IdempotencyKey,
     Document(document, memory): Document<MIB>,
-) -> Result<Response, Problem> {
+) -> Result<Response, Refusal> {
     let read = move |run: &Run| (Study::submitted(&document, run), memory);
     let (study, _memory) = aside(client.name(), read).await?;
     let study = study?;
@@ -123,7 +124,7 @@ pub(in crate::http) struct StudyListParameters {
 pub(super) async fn list(
     client: Client,
     Parameters(parameters): Parameters<StudyListParameters>,
-) -> Result<Response, Problem> {
+) -> Result<Response, Refusal> {
     let limit = page::limit(parameters.limit, USUAL_LIMIT)?;
     let (since, before) = (&parameters.submitted_since, &parameters.submitted_before);
     let filter = StudyFilter {
@@ -172,7 +173,7 @@ pub(super) async fn show(
     wait: Wait,
     StudyId(id): StudyId,
     request: HeaderMap,
-) -> Result<Response, Problem> {
+) -> Result<Response, Refusal> {
     let wait = wait.grant(&client);
     let study = match wait.patience() {
         Some(patience) => {
@@ -195,7 +196,7 @@ pub(super) async fn show(
             .short_study_text(id, LONGEST_IN_VIEW)
             .await?;
         let body = StudyView::whole(&study, document, &client.app.edge).to_json();
-        Ok::<_, Problem>(json(body))
+        Ok::<_, Refusal>(json(body))
     };
     let mut response = tag.answer(Keep::AskAgain, &request, whole).await?;
     wait.acknowledge(response.headers_mut());
@@ -223,14 +224,14 @@ pub(super) async fn document(
     client: Client,
     StudyId(id): StudyId,
     request: HeaderMap,
-) -> Result<Response, Problem> {
+) -> Result<Response, Refusal> {
     let study = client.app.jobs.find_study(client.name(), id).await?;
     let text = async {
         let bytes = client.app.jobs.study_text_bytes(study.id).await?;
         let memory = client.app.bodies.for_answer(client.name(), bytes).await?;
         let _turn = turn_to_read(client.name()).await;
         let text = client.app.jobs.study_text(study.id).await?;
-        Ok::<_, Problem>(json(memory.hold(text)))
+        Ok::<_, Refusal>(json(memory.hold(text)))
     };
     let tag = Tag::of(&["study document", &study.id.to_string()]);
     tag.answer(Keep::ForGood, &request, text).await
@@ -246,7 +247,7 @@ pub(super) async fn document(
         (status = 409, description = "The study has ended already."),
     ),
 )]
-pub(super) async fn cancel(client: Client, StudyId(id): StudyId) -> Result<Response, Problem> {
+pub(super) async fn cancel(client: Client, StudyId(id): StudyId) -> Result<Response, Refusal> {
     let study = client.app.jobs.cancel_study(client.name(), id).await?;
     let view = StudyView::of(&study, &client.app.edge);
     Ok((StatusCode::ACCEPTED, Json(view)).into_response())
@@ -262,7 +263,7 @@ pub(super) async fn cancel(client: Client, StudyId(id): StudyId) -> Result<Respo
         (status = 409, description = "The study has not ended; cancel it first."),
     ),
 )]
-pub(super) async fn delete(client: Client, StudyId(id): StudyId) -> Result<StatusCode, Problem> {
+pub(super) async fn delete(client: Client, StudyId(id): StudyId) -> Result<StatusCode, Refusal> {
     client.app.jobs.delete_study(client.name(), id).await?;
     Ok(StatusCode::NO_CONTENT)
 }

@@ -6,6 +6,9 @@ use axum::extract::Path;
 use axum::http::HeaderMap;
 use axum::response::{IntoResponse, Response};
 use meshwright_engine::run::Run;
+use meshwright_wire::{
+    Code, PopulationResults, PopulationSample, Problem, RowState, SearchState, Study, Submission,
+};
 
 use super::{MIB, over_rows, tag_of};
 use crate::compute::Part;
@@ -16,10 +19,8 @@ use crate::http::client::Client;
 use crate::http::conditional::{Keep, Tag};
 use crate::http::memory::SMALL;
 use crate::http::parameters::{IfNoneMatch, StudyId};
+use crate::http::problem::Refusal;
 use crate::jobs::StudyRecord;
-use crate::wire::{
-    Code, PopulationResults, PopulationSample, Problem, RowState, SearchState, Study, Submission,
-};
 
 /// Get what a population comes to
 ///
@@ -41,13 +42,13 @@ pub(in crate::http) async fn population(
     client: Client,
     StudyId(id): StudyId,
     request: HeaderMap,
-) -> Result<Response, Problem> {
+) -> Result<Response, Refusal> {
     let study = client.app.jobs.find_study(client.name(), id).await?;
     let tag = tag_of(&study, "population", &client.app.edge);
     let name = Arc::from(client.name());
     let made = async {
         let results = results(&client.app, name, &study).await?;
-        Ok::<_, Problem>(axum::Json(results).into_response())
+        Ok::<_, Refusal>(axum::Json(results).into_response())
     };
     let mut response = tag.answer(Keep::AskAgain, &request, made).await?;
     tell_when_to_return(study.status().has_ended(), &mut response);
@@ -134,7 +135,7 @@ pub(in crate::http) async fn design(
     client: Client,
     Path((id, row)): Path<(String, String)>,
     request: HeaderMap,
-) -> Result<Response, Problem> {
+) -> Result<Response, Refusal> {
     let StudyId(id) = StudyId::of(&id)?;
     let record = client.app.jobs.find_study(client.name(), id).await?;
     let wanted = row.parse::<u32>().ok();
@@ -145,9 +146,9 @@ pub(in crate::http) async fn design(
         };
         let Some(text) = found else {
             let detail = format!("The study has {} designs, counted from 0.", record.total);
-            return Err(Problem::new(Code::NotFound, detail));
+            return Err(Problem::new(Code::NotFound, detail).into());
         };
-        Ok(json(text))
+        Ok::<_, Refusal>(json(text))
     };
     let tag = Tag::of(&["design", &record.id.to_string(), &row]);
     tag.answer(Keep::ForGood, &request, text).await
@@ -194,13 +195,11 @@ pub(in crate::http) async fn best(
     client: Client,
     StudyId(id): StudyId,
     request: HeaderMap,
-) -> Result<Response, Problem> {
+) -> Result<Response, Refusal> {
     let record = client.app.jobs.find_study(client.name(), id).await?;
     let Some(state) = &record.search else {
-        return Err(Problem::new(
-            Code::NotFound,
-            "This study is no search; its table is at /results.",
-        ));
+        let detail = "This study is no search; its table is at /results.";
+        return Err(Problem::new(Code::NotFound, detail).into());
     };
     let state: SearchState =
         serde_json::from_str(state).map_err(|_| crate::http::problem::internal())?;
@@ -208,12 +207,12 @@ pub(in crate::http) async fn best(
         let detail = state
             .why_nothing()
             .unwrap_or_else(|| "No design of this search has been computed so far.".to_owned());
-        return Err(Problem::new(Code::ResultNotReady, detail));
+        return Err(Problem::new(Code::ResultNotReady, detail).into());
     };
     let text = async {
         let found = submission_of(&client.app, client.name(), &record, best.row as u32).await?;
         let text = found.ok_or_else(crate::http::problem::internal)?;
-        Ok::<_, Problem>(json(text))
+        Ok::<_, Refusal>(json(text))
     };
     let tag = Tag::of(&["best", &record.id.to_string(), &best.row.to_string()]);
     let mut response = tag.answer(Keep::AskAgain, &request, text).await?;

@@ -11,6 +11,8 @@ use axum::http::header::{CONTENT_TYPE, HeaderName, HeaderValue, LINK};
 use axum::response::{IntoResponse, Response};
 use futures_util::stream;
 use meshwright_engine::run::Run;
+use meshwright_wire::study_table::{CsvTable, Outline, TableRow, Told};
+use meshwright_wire::{Code, Problem, Results, RowState, StudyResults};
 use serde::de::IntoDeserializer;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -27,10 +29,9 @@ use crate::http::aside::{aside, turn_to_read};
 use crate::http::client::Client;
 use crate::http::conditional::Keep;
 use crate::http::parameters::{IfNoneMatch, StudyId};
+use crate::http::problem::Refusal;
 use crate::http::view::with_public_type;
 use crate::jobs::{DocumentLine, JobError, StudyRecord};
-use crate::wire::study_table::{CsvTable, Outline, TableRow, Told};
-use crate::wire::{Code, Problem, Results, RowState, StudyResults};
 
 /// Get the table of a study
 ///
@@ -49,7 +50,7 @@ pub(in crate::http) async fn results(
     client: Client,
     StudyId(id): StudyId,
     request: HeaderMap,
-) -> Result<Response, Problem> {
+) -> Result<Response, Refusal> {
     send(client, id, &request, StudyFile::Json).await
 }
 
@@ -78,7 +79,7 @@ pub(in crate::http) async fn file(
     client: Client,
     Path((id, file)): Path<(String, String)>,
     request: HeaderMap,
-) -> Result<Response, Problem> {
+) -> Result<Response, Refusal> {
     let form: Result<StudyFile, serde::de::value::Error> =
         StudyFile::deserialize(file.as_str().into_deserializer());
     let form = form.map_err(|_| {
@@ -96,7 +97,7 @@ pub(in crate::http) async fn old_csv(
     client: Client,
     StudyId(id): StudyId,
     request: HeaderMap,
-) -> Result<Response, Problem> {
+) -> Result<Response, Refusal> {
     let address = format!(
         "<{}/v1/studies/{id}/results/table.csv>; rel=\"successor-version\"",
         client.app.edge.public_url
@@ -191,7 +192,7 @@ async fn send(
     id: Uuid,
     request: &HeaderMap,
     form: StudyFile,
-) -> Result<Response, Problem> {
+) -> Result<Response, Refusal> {
     let study = client.app.jobs.find_study(client.name(), id).await?;
     let tag = tag_of(&study, form.word(), &client.app.edge);
     let name = Arc::from(client.name());
@@ -203,7 +204,7 @@ async fn send(
             StudyFile::Documents => documents(client.app, name, &study).await?,
         };
         let media_type = form.content_type();
-        Ok::<_, Problem>(match form {
+        Ok::<_, Refusal>(match form {
             StudyFile::Json => ([(CONTENT_TYPE, media_type)], body).into_response(),
             _ => answer::file(
                 media_type,

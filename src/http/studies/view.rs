@@ -2,6 +2,7 @@
 
 use axum::body::Bytes;
 use jiff::Timestamp;
+use meshwright_wire::{Problem, SearchState, Status, Study, view};
 use serde_json::Value;
 use serde_json::value::RawValue;
 use uuid::Uuid;
@@ -9,7 +10,6 @@ use uuid::Uuid;
 use crate::http::edge::Edge;
 use crate::http::view::with_public_type;
 use crate::jobs::StudyRecord;
-use crate::wire::{Problem, SearchState, Status, Study, view};
 
 view! {
     /// A study: how far it has come, and where to find its table.

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use jiff::{SignedDuration, Timestamp};
+use meshwright_wire::Status;
 use serde_json::{Value, json};
 use uuid::Uuid;
 
@@ -12,7 +13,6 @@ use super::rows::job_columns;
 use super::statement::{list, query_as};
 use super::{Store, StoreError, column, dialect, micros, shares};
 use crate::jobs::job::{Job, Progress};
-use crate::wire::Status;
 
 /// A word for one attempt at one job: only the latest claim may report or finish.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

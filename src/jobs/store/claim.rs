@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use jiff::Timestamp;
+use meshwright_wire::Kept;
 use sqlx::Row;
 
 use super::attempt::Lease;
@@ -14,7 +15,6 @@ use super::statement::{Connection, list, query, query_as, query_scalar};
 use super::submit::{Known, find_known};
 use super::{Store, StoreError, column, dialect, micros};
 use crate::jobs::job::Job;
-use crate::wire::Kept;
 
 /// A job that a worker is to compute.
 #[derive(Debug, Clone, PartialEq)]

@@ -8,14 +8,14 @@ use bytes::Bytes;
 use flate2::read::GzDecoder;
 use flate2::write::GzEncoder;
 use flate2::{Compression, Crc};
+use meshwright_wire::hash::sha256_hex;
+use meshwright_wire::{Code, Problem};
 use serde_json::json;
 use tracing::error;
 use uuid::Uuid;
 
 use super::statement::{Connection, list, query, query_as, query_scalar};
 use super::{Store, StoreError, dialect};
-use crate::hash::sha256_hex;
-use crate::wire::{Code, Problem};
 
 /// Documents are numbers in decimal: the highest level packs one of 38 KB to 14.3 kB in 1 ms, this one to 15.2 kB in 0.2 ms, and every
 /// job waits for it.

@@ -4,6 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use jiff::Timestamp;
+use meshwright_wire::Status;
 use uuid::Uuid;
 
 use super::documents::checked;
@@ -12,7 +13,6 @@ use super::statement::{Dialect, Record, Statement, Text, query_as, query_scalar}
 use super::{Damaged, Store, StoreError, dialect};
 use crate::jobs::job::Job;
 use crate::jobs::study::StudyRecord;
-use crate::wire::Status;
 
 /// Which jobs of a client to list. An absent part does not select.
 #[derive(Debug, Clone, Default)]

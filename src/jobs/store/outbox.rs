@@ -2,13 +2,13 @@
 //! and none tells what did not happen. How they leave is the business of `webhooks`.
 
 use jiff::Timestamp;
+use meshwright_wire::Status;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 use uuid::Uuid;
 
 use super::statement::{Connection, query, query_as};
 use super::{Store, StoreError};
-use crate::wire::Status;
 
 /// What can be told.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]

@@ -1,6 +1,8 @@
 //! Rows of the database as what they mean.
 
 use jiff::{SignedDuration, Timestamp};
+use meshwright_wire::warning::GearName;
+use meshwright_wire::{Kept, Status};
 use sqlx::Row;
 use sqlx::postgres::PgRow;
 use sqlx::sqlite::SqliteRow;
@@ -8,8 +10,6 @@ use uuid::Uuid;
 
 use crate::jobs::job::{Job, Progress};
 use crate::jobs::study::StudyRecord;
-use crate::wire::warning::GearName;
-use crate::wire::{Kept, Status};
 
 /// Reads a type from the rows of both databases by the same words.
 macro_rules! from_row {

@@ -4,6 +4,8 @@
 use std::collections::BTreeSet;
 
 use jiff::{SignedDuration, Timestamp};
+use meshwright_wire::Status;
+use meshwright_wire::warning::GearName;
 use serde_json::json;
 use uuid::Uuid;
 
@@ -12,8 +14,6 @@ use super::endings::note_study;
 use super::statement::{Connection, list, query, query_as, query_scalar};
 use super::submit::{QueueBounds, find_known, insert_jobs, insert_submissions, words};
 use super::{NewJob, Store, StoreError, column, dialect, micros, shares};
-use crate::wire::Status;
-use crate::wire::warning::GearName;
 
 /// So many jobs of studies may wait; further studies are refused.
 pub(in crate::jobs) const MOST_WAITING_DESIGNS: i64 = 250_000;

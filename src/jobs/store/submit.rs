@@ -3,6 +3,8 @@
 use std::collections::{BTreeSet, HashMap};
 
 use jiff::Timestamp;
+use meshwright_wire::Kept;
+use meshwright_wire::hash::sha256_hex;
 use serde_json::json;
 use uuid::Uuid;
 
@@ -11,9 +13,7 @@ use super::endings::tell_end;
 use super::rows::job_columns;
 use super::statement::{Connection, list, query, query_as};
 use super::{Store, StoreError, column, dialect, shares};
-use crate::hash::sha256_hex;
 use crate::jobs::job::Job;
-use crate::wire::Kept;
 
 /// A job to be queued.
 #[derive(Debug, Clone)]

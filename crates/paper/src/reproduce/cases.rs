@@ -1,9 +1,9 @@
 //! What is computed: the paper's test cases and designs, from the examples that ship with the service.
 
 use anyhow::Context;
-use meshwright::wire::{Submission, examples};
 use meshwright_engine::analysis::{Case, Method};
 use meshwright_engine::gear::{GearPair, HolePattern, SpurGear};
+use meshwright_wire::{Submission, examples};
 
 /// The share of the blank that the designs of section 5 give up.
 const REMOVED: f64 = 0.25;

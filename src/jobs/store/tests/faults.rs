@@ -2,9 +2,10 @@
 
 use std::fs;
 
+use meshwright_wire::Status;
+
 use super::*;
 use crate::jobs::store::{OpenError, StoreError};
-use crate::wire::Status;
 
 /// Leaves the connection that writes no more pages than there are.
 async fn fill_disk(store: &Store) {

@@ -1,8 +1,9 @@
 //! Lists: what they select, in what order, and how little they read for it.
 
+use meshwright_wire::Status;
+
 use super::*;
 use crate::jobs::store::{Filter, Span};
-use crate::wire::Status;
 
 #[tokio::test]
 async fn a_span_of_time_is_a_stretch_of_the_list() {

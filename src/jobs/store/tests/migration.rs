@@ -1,5 +1,6 @@
 //! A database of the version before this one is brought up to date, and loses nothing.
 
+use meshwright_wire::Status;
 use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{ConnectOptions, Connection};
 
@@ -7,7 +8,6 @@ use super::*;
 use crate::jobs::store::Filter;
 use crate::jobs::store::open::migrations;
 use crate::jobs::store::statement::Dialect;
-use crate::wire::Status;
 
 /// What the version before this one wrote.
 const BEFORE: &str = r#"

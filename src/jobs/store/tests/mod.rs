@@ -10,6 +10,7 @@ mod plans;
 mod server;
 
 use jiff::{SignedDuration, Timestamp};
+use meshwright_wire::Kept;
 use tempfile::TempDir;
 use uuid::Uuid;
 
@@ -19,7 +20,6 @@ use super::{
     Store, StoreError,
 };
 use crate::jobs::job::{Job, Progress};
-use crate::wire::Kept;
 
 const VERSION: &str = "1.0";
 const READER: Reader<'static> = Reader {

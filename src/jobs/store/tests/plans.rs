@@ -1,11 +1,12 @@
 //! How little SQLite reads for an answer.
 
+use meshwright_wire::Status;
+
 use super::*;
 use crate::jobs::store::dialect::sqlite::NEXT_WAITING;
 use crate::jobs::store::statement::Dialect;
 use crate::jobs::store::submit::WAITING_ALONE;
 use crate::jobs::store::{Filter, Membership, Span};
-use crate::wire::Status;
 
 /// The steps by which SQLite would find the jobs of a filter.
 async fn plan(store: &Store, filter: &Filter, status: Option<Status>) -> Vec<String> {

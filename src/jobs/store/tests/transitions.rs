@@ -1,11 +1,11 @@
 //! The transitions of a job.
 
+use meshwright_wire::Status;
 use uuid::Uuid;
 
 use super::*;
 use crate::jobs::store::statement::query;
 use crate::jobs::store::{Cursor, Filter};
-use crate::wire::Status;
 
 #[tokio::test]
 async fn the_job_that_came_first_is_claimed_first_and_only_once() {

@@ -1,9 +1,10 @@
 //! Whose turn it is: clients, studies and jobs alone, equal jobs, and jobs that may have brought a process down.
 
+use meshwright_wire::Status;
+use meshwright_wire::warning::GearName;
+
 use super::*;
 use crate::jobs::store::{NewRow, NewStudy, StudyOutcome};
-use crate::wire::Status;
-use crate::wire::warning::GearName;
 
 fn of_client(client: &str, input: &str) -> NewJob {
     NewJob {

@@ -178,9 +178,9 @@ fn panel(name: &str, driven: &SpurGear, kept: bool) -> Drawing {
 
 #[cfg(test)]
 mod tests {
-    use meshwright::wire::{Submission, examples};
     use meshwright_engine::gear::Vector;
     use meshwright_plot::drawing::{Placement, outline};
+    use meshwright_wire::{Submission, examples};
 
     #[test]
     fn the_outline_encloses_the_mass_of_the_solid_gear() {

@@ -3,13 +3,13 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use meshwright_wire::Status;
+use meshwright_wire::warning::GearName;
 use tokio::sync::Barrier;
 
 use super::*;
 use crate::jobs::store::{NewRow, NewStudy, StudyOutcome, Told};
 use crate::jobs::study::StudyRecord;
-use crate::wire::Status;
-use crate::wire::warning::GearName;
 
 /// Another process on the same database.
 async fn another(place: &Place) -> Store {

@@ -1,8 +1,9 @@
 //! Tables that another version has changed meanwhile.
 
+use meshwright_wire::Status;
+
 use super::*;
 use crate::jobs::store::{Filter, Migrate, OpenError, StudyFilter};
-use crate::wire::Status;
 
 async fn say(store: &Store, words: &'static str) {
     let Pool::Postgres(pool, _) = &store.writer else {

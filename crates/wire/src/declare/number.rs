@@ -1,0 +1,301 @@
+//! Numbers: bounds, units and defaults.
+
+use serde::Serializer;
+use serde_json::{Value, json};
+
+use super::{Kind, Node, ObjectReader, Place};
+use crate::problem::Code;
+use crate::units::{plain, significant};
+
+/// What stands for a number that is not given.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Preset {
+    /// Nothing: it has to be given.
+    Needed,
+    /// This value.
+    Value(f64),
+    /// So many times the module of the same gear.
+    Modules(f64),
+}
+
+/// What a declaration says of a number.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Number {
+    title: &'static str,
+    /// "1" for a pure number; empty where there is nothing to say.
+    pub(crate) unit: &'static str,
+    /// The smallest and the largest value that are accepted, in its unit.
+    pub(crate) bounds: (f64, f64),
+    /// Whether zero is accepted too where the bounds do not hold it.
+    or_zero: bool,
+    preset: Preset,
+    /// Makes a default go with the numbers that were read before it.
+    fitted: Option<fn(f64, &ObjectReader<'_>) -> f64>,
+    /// How a value below zero is refused.
+    negative: Code,
+    /// What a value below zero means elsewhere, and why it is refused.
+    meaning: Option<&'static str>,
+}
+
+/// A number of a submission, within bounds, that has to be given.
+pub(crate) const fn number(
+    title: &'static str,
+    unit: &'static str,
+    least: f64,
+    most: f64,
+) -> Number {
+    Number {
+        title,
+        unit,
+        bounds: (least, most),
+        or_zero: false,
+        preset: Preset::Needed,
+        fitted: None,
+        negative: Code::OutOfRange,
+        meaning: None,
+    }
+}
+
+impl Number {
+    /// Not given, it is this.
+    pub(crate) const fn or(self, value: f64) -> Self {
+        let preset = Preset::Value(value);
+        Self { preset, ..self }
+    }
+
+    /// Not given, it is so many times the module of its gear.
+    pub(crate) const fn or_modules(self, modules: f64) -> Self {
+        let preset = Preset::Modules(modules);
+        Self { preset, ..self }
+    }
+
+    /// Its default is `fit` of what it says and of the numbers that stand before it.
+    pub(crate) const fn fitted(self, fit: fn(f64, &ObjectReader<'_>) -> f64) -> Self {
+        let fitted = Some(fit);
+        Self { fitted, ..self }
+    }
+
+    /// Zero is accepted beside the bounds.
+    pub(crate) const fn or_zero(self) -> Self {
+        let or_zero = true;
+        Self { or_zero, ..self }
+    }
+
+    /// A value below zero is refused with a code of its own.
+    pub(crate) const fn negative_is(self, negative: Code) -> Self {
+        Self { negative, ..self }
+    }
+
+    /// A value below zero is refused as what it means elsewhere.
+    pub(crate) const fn negative_means(self, meaning: &'static str) -> Self {
+        let meaning = Some(meaning);
+        Self { meaning, ..self }
+    }
+
+    /// What stands for it where it is not given, for a gear of `module`.
+    pub(crate) fn preset(&self, module: Option<f64>) -> Option<f64> {
+        match self.preset {
+            Preset::Needed => None,
+            Preset::Value(value) => Some(value),
+            Preset::Modules(modules) => module.map(|module| significant(modules * module, 12)),
+        }
+    }
+
+    /// Checks `value`, which stands at `place`: the code, a sentence with the numbers, and the nearest value that is accepted.
+    fn check(&self, value: f64, place: &str, whole: bool) -> Result<f64, (Code, String, f64)> {
+        let (least, most) = self.bounds;
+        let is_zero = self.or_zero && value == 0.0;
+        if !is_zero && !(least..=most).contains(&value) {
+            let code = if value < 0.0 {
+                self.negative
+            } else {
+                Code::OutOfRange
+            };
+            let unit = match self.unit {
+                "" | "1" => String::new(),
+                unit => format!(" {unit}"),
+            };
+            let meaning = self.meaning.filter(|_| value < 0.0);
+            let meaning = meaning.map_or(String::new(), |meaning| format!("{meaning}; "));
+            let detail = format!(
+                "{place} is {}{unit}; {meaning}it has to {}lie between {}{unit} and {}{unit}.",
+                plain(value),
+                if self.or_zero { "be 0 or " } else { "" },
+                plain(least),
+                plain(most),
+            );
+            return Err((code, detail, self.nearest(value)));
+        }
+        if whole && value.fract() != 0.0 {
+            let detail = format!("{place} is {}; a whole number is expected.", plain(value));
+            return Err((Code::WrongType, detail, value.round()));
+        }
+        // A negative zero is as good as zero, and is echoed as it.
+        Ok(value + 0.0)
+    }
+
+    /// The accepted value nearest to one that is not.
+    fn nearest(&self, value: f64) -> f64 {
+        let (least, most) = self.bounds;
+        if self.or_zero && value < least / 2.0 {
+            0.0
+        } else {
+            value.clamp(least, most)
+        }
+    }
+
+    fn read(&self, node: &Node, place: &Place<'_>, whole: bool) -> Option<f64> {
+        let Node::Number(value) = node else {
+            let detail = format!("{place} is {}; a number is expected.", node.kind());
+            return place.wrong(Code::WrongType, detail, None);
+        };
+        match self.check(*value, &place.to_string(), whole) {
+            Ok(value) => Some(value),
+            Err((code, detail, nearest)) => place.wrong(code, detail, Some(nearest)),
+        }
+    }
+
+    fn absent(&self, reader: &mut ObjectReader<'_>, name: &'static str) -> Option<f64> {
+        if self.preset == Preset::Needed {
+            return reader.missing(name);
+        }
+        let preset = self.preset(reader.number("module_mm"))?;
+        Some(self.fitted.map_or(preset, |fit| fit(preset, reader)))
+    }
+
+    fn read_field(
+        &self,
+        reader: &mut ObjectReader<'_>,
+        name: &'static str,
+        whole: bool,
+    ) -> Option<f64> {
+        let value = match reader.get(name) {
+            Some(node) => self.read(node, &reader.place_of(name), whole),
+            None => self.absent(reader, name),
+        }?;
+        reader.note(name, value);
+        Some(value)
+    }
+
+    fn describe(&self, about: &str, whole: bool) -> Value {
+        let literal = |value: f64| {
+            let is_whole = value.fract() == 0.0 && value.abs() < 1e15;
+            if whole || is_whole {
+                json!(value as i64)
+            } else {
+                json!(value)
+            }
+        };
+        let mut schema = json!({ "type": if whole { "integer" } else { "number" } });
+        if !self.title.is_empty() {
+            schema["title"] = json!(self.title);
+        }
+        let mut said = about.to_owned();
+        if !about.is_empty() && !self.unit.is_empty() {
+            said += &format!(" Unit: {}.", self.unit);
+        }
+        match self.preset {
+            Preset::Needed => {}
+            Preset::Value(value) => schema["default"] = literal(value),
+            Preset::Modules(modules) => {
+                schema["x-default-modules"] = literal(modules);
+                said += &format!(" Default: {modules} modules.");
+            }
+        }
+        if !said.is_empty() {
+            schema["description"] = json!(said);
+        }
+        let (mut least, most) = self.bounds;
+        if self.or_zero {
+            least = least.min(0.0);
+        }
+        if least.is_finite() {
+            schema["minimum"] = literal(least);
+        }
+        if most.is_finite() {
+            schema["maximum"] = literal(most);
+        }
+        if !self.unit.is_empty() {
+            schema["x-unit"] = json!(self.unit);
+        }
+        schema
+    }
+}
+
+/// Whole numbers are read as numbers, within the bounds that their type can hold.
+macro_rules! numbers {
+    ($($number:ty, $whole:literal, $write:ident;)*) => {$(
+        impl Kind for $number {
+            type Spec = Number;
+            const MANY: [&'static str; 2] = ["numbers", "numbers"];
+
+            fn read(node: &Node, place: &Place<'_>, spec: &Number) -> Option<Self> {
+                spec.read(node, place, $whole).map(|value| value as Self)
+            }
+
+            fn read_field(reader: &mut ObjectReader<'_>, name: &'static str, spec: &Number) -> Option<Self> {
+                spec.read_field(reader, name, $whole).map(|value| value as Self)
+            }
+
+            fn absent(reader: &mut ObjectReader<'_>, name: &'static str, spec: &Number) -> Option<Self> {
+                spec.absent(reader, name).map(|value| value as Self)
+            }
+
+            fn is_needed(spec: &Number) -> bool {
+                spec.preset == Preset::Needed
+            }
+
+            fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                serializer.$write(*self)
+            }
+
+            fn describe(about: &str, spec: &Number) -> Value {
+                spec.describe(about, $whole)
+            }
+        }
+    )*};
+}
+
+numbers! {
+    f64, false, serialize_f64;
+    u32, true, serialize_u32;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gear::GearDocument;
+    use crate::submission::OUTPUT_TORQUE;
+
+    #[test]
+    fn a_value_outside_its_bounds_is_answered_with_the_nearer_bound() {
+        let teeth = GearDocument::tooth_count.spec;
+        let (code, detail, nearest) = teeth.check(-3.0, "/z", true).expect_err("negative");
+        assert_eq!((code, nearest), (Code::OutOfRange, 4.0));
+        assert!(
+            detail.contains("-3") && detail.contains("internal gears are not computed"),
+            "{detail}"
+        );
+        let (_, detail, _) = teeth.check(3.0, "/z", true).expect_err("three teeth");
+        assert!(!detail.contains("internal"), "{detail}");
+        let module = GearDocument::module_mm.spec;
+        let (_, detail, nearest) = module.check(1e308, "/m", false).expect_err("enormous");
+        assert_eq!(nearest, 50.0);
+        assert!(detail.contains("1e308 mm"), "{detail}");
+        let (code, _, nearest) = teeth.check(30.4, "/z", true).expect_err("a fraction");
+        assert_eq!((code, nearest), (Code::WrongType, 30.0));
+    }
+
+    #[test]
+    fn a_torque_is_none_or_one_that_loads_the_teeth() {
+        let check = |torque| OUTPUT_TORQUE.check(torque, "/t", false);
+        assert_eq!(check(0.0), Ok(0.0));
+        assert!(check(-0.0).is_ok_and(f64::is_sign_positive));
+        let (code, _, nearest) = check(-115.0).expect_err("reversed");
+        assert_eq!((code, nearest), (Code::TorqueNotPositive, 0.0));
+        for (torque, nearer) in [(5e-324, 0.0), (9e-7, 1e-6), (1e9, 1e8)] {
+            let (code, _, nearest) = check(torque).expect_err("out of range");
+            assert_eq!((code, nearest), (Code::OutOfRange, nearer), "{torque}");
+        }
+    }
+}

@@ -1,0 +1,218 @@
+//! One object of a document, read field by field.
+
+use std::fmt;
+
+use super::errors::Errors;
+use super::node::{Node, joined, shortened};
+use crate::problem::{Code, FieldError};
+
+/// A place in a document, and where to report what is wrong there.
+#[derive(Debug, Clone)]
+pub(crate) struct Place<'a> {
+    pub(crate) pointer: String,
+    errors: &'a Errors,
+}
+
+impl<'a> Place<'a> {
+    /// The whole document.
+    pub(crate) fn root(errors: &'a Errors) -> Self {
+        Self {
+            pointer: String::new(),
+            errors,
+        }
+    }
+
+    /// The field or item `step` of what stands here.
+    pub(crate) fn of(&self, step: &str) -> Self {
+        Self {
+            pointer: joined(&self.pointer, step),
+            errors: self.errors,
+        }
+    }
+
+    /// Reports what is wrong here. There is no value then, of whatever kind.
+    pub(crate) fn wrong<T>(
+        &self,
+        code: Code,
+        detail: impl Into<String>,
+        nearest: Option<f64>,
+    ) -> Option<T> {
+        let error = FieldError::new(&*self.pointer, code, detail);
+        self.errors.push(error.nearest(nearest));
+        None
+    }
+
+    /// Reports that something else than `node` was expected here.
+    pub(crate) fn wrong_kind<T>(&self, node: &Node, expected: &str) -> Option<T> {
+        let detail = format!("{self} is {}; expected is {expected}.", node.kind());
+        self.wrong(Code::WrongType, detail, None)
+    }
+}
+
+/// A place as a sentence names it.
+impl fmt::Display for Place<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if self.pointer.is_empty() {
+            "The document"
+        } else {
+            &self.pointer
+        })
+    }
+}
+
+/// One object of the document, and which of its fields have been asked for.
+///
+/// Every method reports what is wrong and answers `None` then; reading goes on, so that all errors are told together.
+/// What nobody asked for is refused when the reading is [`finished`](ObjectReader::finish).
+pub(crate) struct ObjectReader<'a> {
+    place: Place<'a>,
+    fields: &'a [(String, Node)],
+    known: Vec<&'static str>,
+    /// The numbers that were read so far, those that were filled in among them.
+    numbers: Vec<(&'static str, f64)>,
+    /// The fields that were refused because another one stands in their place.
+    refused: Vec<&'static str>,
+}
+
+impl<'a> ObjectReader<'a> {
+    /// Reads `node` as an object.
+    pub(crate) fn new(node: &'a Node, place: Place<'a>) -> Option<Self> {
+        let Node::Object(fields) = node else {
+            let detail = format!("{place} is {}; an object is expected.", node.kind());
+            return place.wrong(Code::WrongType, detail, None);
+        };
+        Some(Self {
+            place,
+            fields,
+            known: Vec::new(),
+            numbers: Vec::new(),
+            refused: Vec::new(),
+        })
+    }
+
+    /// Where its field `name` stands.
+    pub(crate) fn place_of(&self, name: &str) -> Place<'a> {
+        self.place.of(name)
+    }
+
+    /// The field `name`, if it is there.
+    pub(crate) fn get(&mut self, name: &'static str) -> Option<&'a Node> {
+        if !self.known.contains(&name) {
+            self.known.push(name);
+        }
+        let mut fields = self.fields.iter();
+        fields.find(|(key, _)| key == name).map(|(_, node)| node)
+    }
+
+    /// The field `name`, if it is there and not null.
+    pub(crate) fn present(&mut self, name: &'static str) -> Option<&'a Node> {
+        self.get(name).filter(|node| **node != Node::Null)
+    }
+
+    /// Remembers a number that was read or filled in.
+    pub(super) fn note(&mut self, name: &'static str, value: f64) {
+        self.numbers.push((name, value));
+    }
+
+    /// A number that was read or filled in before.
+    pub(crate) fn number(&self, name: &str) -> Option<f64> {
+        let mut numbers = self.numbers.iter();
+        numbers
+            .find(|(known, _)| *known == name)
+            .map(|(_, value)| *value)
+    }
+
+    /// Reports that the field `name` is needed.
+    pub(crate) fn missing<T>(&mut self, name: &'static str) -> Option<T> {
+        let place = self.place_of(name);
+        place.wrong(Code::MissingField, format!("{place} is needed."), None)
+    }
+
+    /// Reports that one of these fields is needed and none is there.
+    pub(super) fn missing_one_of<T>(&mut self, names: &[&'static str]) -> Option<T> {
+        // It is said once for all of them.
+        self.refused.extend(names);
+        let names = names.join(", ");
+        let detail = format!("{} needs one of {names}; it has none.", self.place);
+        self.place.wrong(Code::MissingField, detail, None)
+    }
+
+    /// Refuses two fields of which one stands in place of the other.
+    pub(super) fn refuse_both(&mut self, one: &'static str, other: &'static str) {
+        let both = self.present(one).is_some() && self.present(other).is_some();
+        if both && !self.refused.contains(&other) && !self.refused.contains(&one) {
+            self.refused.push(other);
+            let place = self.place_of(other);
+            let detail = format!("{place} stands beside {one}; only one of them can be given.");
+            place.wrong::<()>(Code::ConflictingFields, detail, None);
+        }
+    }
+
+    /// Whether the field was refused because another one stands in its place.
+    pub(super) fn is_refused(&self, name: &str) -> bool {
+        self.refused.contains(&name)
+    }
+
+    /// Reports that the object is of no kind that there is.
+    pub(crate) fn refuse_kind<T>(&mut self, node: Option<&Node>, kinds: &[&str]) -> Option<T> {
+        let (place, kinds) = (self.place_of("kind"), kinds.join(", "));
+        // Which fields belong here is not known, so none is told to be unknown.
+        self.fields = &[];
+        match node {
+            Some(node) => place.wrong_kind(node, &format!("one of {kinds}")),
+            None => {
+                let detail = format!("{place} is needed: one of {kinds}.");
+                place.wrong(Code::MissingField, detail, None)
+            }
+        }
+    }
+
+    /// Refuses the fields that nobody asked for.
+    pub(crate) fn finish(self) {
+        for (key, _) in self.fields {
+            // A document of nothing but unknown fields would be compared with the known ones for seconds.
+            if self.place.errors.is_full() {
+                return;
+            }
+            if !self.known.contains(&key.as_str()) {
+                let meant = nearest_word(key, &self.known)
+                    .map_or_else(String::new, |word| format!(" Is {word} meant?"));
+                let detail = format!(
+                    "{} is not a field here.{meant} Known are {}.",
+                    shortened(&joined(&self.place.pointer, key)),
+                    self.known.join(", "),
+                );
+                self.place
+                    .of(&shortened(key))
+                    .wrong::<()>(Code::UnknownField, detail, None);
+            }
+        }
+    }
+}
+
+/// The known word that takes the fewest edits, if they are few.
+fn nearest_word(word: &str, known: &[&'static str]) -> Option<&'static str> {
+    if word.len() > 60 {
+        return None;
+    }
+    known
+        .iter()
+        .map(|&other| (strsim::levenshtein(word, other), other))
+        .min()
+        .filter(|(edits, other)| *edits * 3 <= other.len())
+        .map(|(_, other)| other)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_misspelled_field_is_answered_with_the_one_that_is_meant() {
+        assert_eq!(
+            nearest_word("tooth_cuont", &["module_mm", "tooth_count"]),
+            Some("tooth_count")
+        );
+        assert_eq!(nearest_word("color", &["module_mm", "tooth_count"]), None);
+    }
+}

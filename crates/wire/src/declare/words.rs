@@ -1,0 +1,243 @@
+//! Words of which a field takes one, texts, and what is true or false.
+
+use serde::Serializer;
+use serde_json::{Value, json};
+
+use super::{Kind, Node, ObjectReader, Place};
+use crate::problem::Code;
+
+/// Words that a field may take, each standing for a value.
+pub(crate) trait Choice: Copy + PartialEq + 'static {
+    /// Word, value, and what it means.
+    const OPTIONS: &'static [(&'static str, Self, &'static str)];
+
+    /// The word for this value.
+    fn word(self) -> &'static str {
+        Self::OPTIONS
+            .iter()
+            .find(|(_, value, _)| *value == self)
+            .map_or("", |(word, ..)| word)
+    }
+
+    /// The value that `word` stands for.
+    fn of_word(word: &str) -> Option<Self> {
+        Self::OPTIONS
+            .iter()
+            .find(|(option, ..)| *option == word)
+            .map(|(_, value, _)| *value)
+    }
+
+    /// All words, for a sentence.
+    fn words() -> String {
+        let words: Vec<_> = Self::OPTIONS.iter().map(|(word, ..)| *word).collect();
+        words.join(", ")
+    }
+}
+
+/// What a declaration says of one of several words.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct OneWord<C> {
+    title: &'static str,
+    pub(crate) preset: Option<C>,
+}
+
+/// One of several words, that has to be given.
+pub(crate) const fn word<C>(title: &'static str) -> OneWord<C> {
+    let preset = None;
+    OneWord { title, preset }
+}
+
+impl<C: Copy> OneWord<C> {
+    /// Not given, it is this.
+    pub(crate) const fn or(self, preset: C) -> Self {
+        let preset = Some(preset);
+        Self { preset, ..self }
+    }
+
+    pub(crate) fn read(&self, node: &Node, place: &Place<'_>) -> Option<C>
+    where
+        C: Choice,
+    {
+        let word = match node {
+            Node::Text(word) => C::of_word(word),
+            _ => None,
+        };
+        word.or_else(|| place.wrong_kind(node, &format!("one of {}", C::words())))
+    }
+
+    pub(crate) fn absent(&self, reader: &mut ObjectReader<'_>, name: &'static str) -> Option<C>
+    where
+        C: Choice,
+    {
+        self.preset.or_else(|| {
+            let place = reader.place_of(name);
+            let detail = format!("{place} is needed: one of {}.", C::words());
+            place.wrong(Code::MissingField, detail, None)
+        })
+    }
+
+    pub(crate) fn describe(&self, about: &str) -> Value
+    where
+        C: Choice,
+    {
+        let meanings: Vec<_> = C::OPTIONS
+            .iter()
+            .map(|(word, _, meaning)| format!("`{word}`: {meaning}"))
+            .collect();
+        let words: Vec<_> = C::OPTIONS.iter().map(|(word, ..)| word).collect();
+        let mut schema = json!({
+            "type": "string",
+            "title": self.title,
+            "description": format!("{about} {}.", meanings.join("; ")),
+            "enum": words,
+        });
+        if let Some(preset) = self.preset {
+            schema["default"] = json!(preset.word());
+        }
+        schema
+    }
+}
+
+/// Declares the words of a type, each with what it means; the type itself, too, where it is none of the engine.
+macro_rules! words {
+    (
+        $(#[doc = $about:literal])*
+        $visibility:vis enum $choice:ident {
+            $($value:ident = $word:literal: $meaning:literal),* $(,)?
+        }
+    ) => {
+        $(#[doc = $about])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        $visibility enum $choice {
+            $(#[doc = $meaning] $value,)*
+        }
+
+        $crate::declare::words! { $choice { $($value = $word: $meaning),* } }
+    };
+
+    ($($choice:ty { $($value:ident = $word:literal: $meaning:literal),* $(,)? })*) => {$(
+        impl $crate::declare::Choice for $choice {
+            const OPTIONS: &'static [(&'static str, Self, &'static str)] =
+                &[$(($word, Self::$value, $meaning)),*];
+        }
+
+        impl $crate::declare::Kind for $choice {
+            type Spec = $crate::declare::OneWord<Self>;
+
+            fn read(
+                node: &$crate::declare::Node,
+                place: &$crate::declare::Place<'_>,
+                spec: &Self::Spec,
+            ) -> Option<Self> {
+                spec.read(node, place)
+            }
+
+            fn absent(
+                reader: &mut $crate::declare::ObjectReader<'_>,
+                name: &'static str,
+                spec: &Self::Spec,
+            ) -> Option<Self> {
+                spec.absent(reader, name)
+            }
+
+            fn usual(spec: &Self::Spec) -> Option<Self> {
+                spec.preset
+            }
+
+            fn write<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                serializer.serialize_str($crate::declare::Choice::word(*self))
+            }
+
+            fn describe(about: &str, spec: &Self::Spec) -> serde_json::Value {
+                spec.describe(about)
+            }
+        }
+    )*};
+}
+
+pub(crate) use words;
+
+/// What a declaration says of what is true or false.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Flag {
+    title: &'static str,
+    preset: bool,
+}
+
+/// True or false; not given, `preset`.
+pub(crate) const fn flag(title: &'static str, preset: bool) -> Flag {
+    Flag { title, preset }
+}
+
+impl Kind for bool {
+    type Spec = Flag;
+
+    fn read(node: &Node, place: &Place<'_>, _: &Flag) -> Option<Self> {
+        match node {
+            Node::Bool(value) => Some(*value),
+            _ => place.wrong_kind(node, "true or false"),
+        }
+    }
+
+    fn usual(spec: &Flag) -> Option<Self> {
+        Some(spec.preset)
+    }
+
+    fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_bool(*self)
+    }
+
+    fn describe(about: &str, spec: &Flag) -> Value {
+        json!({ "type": "boolean", "title": spec.title, "description": about, "default": spec.preset })
+    }
+}
+
+/// What a declaration says of a short text.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Text {
+    title: &'static str,
+    longest: usize,
+}
+
+/// A text of 1 to `longest` characters, none of them a control character.
+pub(crate) const fn text(title: &'static str, longest: usize) -> Text {
+    Text { title, longest }
+}
+
+impl Kind for String {
+    type Spec = Text;
+    const MANY: [&'static str; 2] = ["short strings", "strings"];
+
+    fn read(node: &Node, place: &Place<'_>, spec: &Text) -> Option<Self> {
+        let longest = spec.longest;
+        match node {
+            Node::Text(text) if is_short_text(text, longest) => Some(text.clone()),
+            Node::Text(_) => {
+                let detail = format!(
+                    "{place} has to have 1 to {longest} characters, none of them a control character."
+                );
+                place.wrong(Code::OutOfRange, detail, None)
+            }
+            _ => place.wrong_kind(node, "a text"),
+        }
+    }
+
+    fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self)
+    }
+
+    fn describe(about: &str, spec: &Text) -> Value {
+        let mut schema = json!({ "type": "string", "title": spec.title });
+        if !about.is_empty() {
+            schema["description"] = json!(about);
+        }
+        schema["minLength"] = json!(1);
+        schema["maxLength"] = json!(spec.longest);
+        schema
+    }
+}
+
+/// Whether a text has 1 to `longest` characters, none of them a control character.
+pub(crate) fn is_short_text(text: &str, longest: usize) -> bool {
+    (1..=longest).contains(&text.chars().count()) && !text.chars().any(char::is_control)
+}

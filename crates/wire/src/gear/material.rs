@@ -1,0 +1,30 @@
+//! An elastic material.
+
+use meshwright_engine::gear::Material;
+
+use crate::declare::{document, number};
+use crate::units::from_gpa;
+
+document! {
+    /// An isotropic elastic material. Default: steel.
+    pub struct MaterialDocument as "Material", "Material" {
+        /// Young's modulus E of teeth and blank.
+        pub(crate) youngs_modulus_gpa: f64 =
+            number("Young's modulus", "GPa", 0.1, 1_000.0).or(210.0),
+        /// Poisson's ratio of teeth and blank.
+        poisson_ratio: f64 = number("Poisson's ratio", "1", 0.0, 0.49).or(0.3),
+        /// The density, for mass and inertia only.
+        density_kg_m3: f64 = number("Density", "kg/m3", 10.0, 25_000.0).or(7850.0),
+    }
+}
+
+impl MaterialDocument {
+    /// What the engine is told.
+    pub(super) fn data(&self) -> Material {
+        Material {
+            youngs_modulus: from_gpa(self.youngs_modulus_gpa),
+            poisson_ratio: self.poisson_ratio,
+            density: self.density_kg_m3,
+        }
+    }
+}

@@ -1,0 +1,188 @@
+//! The thickness of the teeth, in the way in which a drawing says it.
+
+use meshwright_engine::gear::{Helix, MeasuredTeeth, SpurGear, Thickness};
+
+use super::GearDocument;
+use super::faults::Fault;
+use super::field::Field;
+use super::proportions::check_between;
+use crate::declare::{document, number};
+use crate::problem::Code;
+use crate::units::{Side, from_mm, from_um, plain, to_mm, to_um};
+
+document! {
+    /// A span over several teeth, between parallel planes that touch flanks.
+    pub struct SpanDocument as "SpanMeasurement", "Span measurement" {
+        /// k: the number of teeth that it is measured over.
+        pub(super) teeth: u32 = number("Number of teeth", "1", 1.0, 1_000.0),
+        /// W_k: its length, in the normal section.
+        pub(super) length_mm: f64 = number("Length", "mm", 0.05, 52_500.0),
+    }
+}
+
+document! {
+    /// A size over two balls that lie in opposite spaces, or in nearly opposite ones where the number of teeth is odd.
+    pub struct BallsDocument as "BallMeasurement", "Ball measurement" {
+        /// D_M: the diameter of a ball.
+        pub(super) ball_diameter_mm: f64 = number("Diameter of a ball", "mm", 0.05, 200.0),
+        /// M_dK: the size over both balls.
+        pub(super) over_balls_mm: f64 = number("Size over balls", "mm", 0.3, 53_000.0),
+    }
+}
+
+impl GearDocument {
+    /// What the engine would be told of the thickness, in the way in which it is said.
+    fn thickness(&self) -> Thickness {
+        let Self {
+            tooth_thickness_deviation_um: transverse,
+            tooth_thickness_deviation_normal_um: normal,
+            span_measurement: span,
+            ball_measurement: balls,
+            ..
+        } = self;
+        match (normal, span, balls) {
+            (Some(deviation), ..) => Thickness::Normal(from_um(*deviation)),
+            (_, Some(span), _) => Thickness::Span {
+                teeth: span.teeth,
+                length: from_mm(span.length_mm),
+            },
+            (.., Some(balls)) => Thickness::Balls {
+                diameter: from_mm(balls.ball_diameter_mm),
+                over: from_mm(balls.over_balls_mm),
+            },
+            _ => Thickness::Transverse(from_um(transverse.unwrap_or(0.0))),
+        }
+    }
+
+    fn measured(&self, helix: Helix) -> MeasuredTeeth {
+        MeasuredTeeth {
+            tooth_count: self.tooth_count,
+            module: from_mm(self.module_mm),
+            pressure_angle: self.pressure_angle_deg.to_radians(),
+            profile_shift: self.profile_shift,
+            helix_angle: helix.angle,
+        }
+    }
+
+    /// The deviation of the tooth thickness as a transverse arc on the reference circle, in meters; `None` where balls would stand in the base circle.
+    pub(super) fn thickness_deviation(&self, helix: Helix) -> Option<f64> {
+        self.thickness().deviation(&self.measured(helix))
+    }
+
+    /// The field that says the thickness.
+    fn thickness_field(&self) -> Field {
+        match self.thickness() {
+            Thickness::Transverse(_) => Field::of("", Self::tooth_thickness_deviation_um.given()),
+            Thickness::Normal(_) => {
+                Field::of("", Self::tooth_thickness_deviation_normal_um.given())
+            }
+            Thickness::Span { .. } => Field::of("span_measurement/", SpanDocument::length_mm),
+            Thickness::Balls { .. } => Field::of("ball_measurement/", BallsDocument::over_balls_mm),
+        }
+    }
+
+    /// What that field would say of teeth that deviate by `deviation`, a transverse arc in meters.
+    fn thickness_said(&self, deviation: f64, helix: Helix) -> Option<f64> {
+        let said = self
+            .thickness()
+            .of_deviation(&self.measured(helix), deviation)?;
+        Some(match said {
+            Thickness::Transverse(deviation) | Thickness::Normal(deviation) => to_um(deviation),
+            Thickness::Span { length, .. } => to_mm(length),
+            Thickness::Balls { over, .. } => to_mm(over),
+        })
+    }
+
+    /// The teeth are too thick or too thin, with the deviation beyond which they are not.
+    pub(super) fn thickness_fault(
+        &self,
+        helix: Helix,
+        code: Code,
+        detail: String,
+        (deviation, side): (f64, Side),
+    ) -> Fault {
+        let bound = self.thickness_said(deviation, helix);
+        let bound = bound.map(|bound| (bound, side));
+        Fault::new(self.thickness_field(), code, detail, bound)
+    }
+
+    pub(super) fn check_thickness(&self, helix: Helix) -> Result<(), Fault> {
+        const SAID: &str = "half a module to either side";
+        let half = 0.5 * from_mm(self.module_mm);
+        let field = self.thickness_field();
+        if let Thickness::Transverse(deviation) | Thickness::Normal(deviation) = self.thickness() {
+            let most = to_um(half);
+            return check_between(field, to_um(deviation), -most, most, SAID);
+        }
+        let Some(deviation) = self.thickness_deviation(helix) else {
+            let detail = format!(
+                "Balls of {} mm under a size of {} mm would stand in the base circle.",
+                plain(
+                    self.ball_measurement
+                        .as_ref()
+                        .map_or(0.0, |balls| balls.ball_diameter_mm)
+                ),
+                plain(
+                    self.ball_measurement
+                        .as_ref()
+                        .map_or(0.0, |balls| balls.over_balls_mm)
+                ),
+            );
+            let least = (-half, Side::AtLeast);
+            return Err(self.thickness_fault(helix, Code::OutOfRange, detail, least));
+        };
+        if deviation.abs() <= half {
+            return Ok(());
+        }
+        let as_cut = self.thickness_said(0.0, helix);
+        let as_cut = as_cut.map_or(String::new(), |said| {
+            format!(" Teeth as the rack cuts them have {} mm.", plain(said))
+        });
+        let detail = format!(
+            "This measure makes the teeth {} um {} than the rack leaves them, a transverse arc, more than {SAID}.{as_cut}",
+            plain(to_um(deviation.abs())),
+            if deviation < 0.0 {
+                "thinner"
+            } else {
+                "thicker"
+            },
+        );
+        let bound = if deviation < 0.0 {
+            (-half, Side::AtLeast)
+        } else {
+            (half, Side::AtMost)
+        };
+        Err(self.thickness_fault(helix, Code::OutOfRange, detail, bound))
+    }
+
+    /// Refuses a measure whose gauge touches no involute of `gear`.
+    pub(super) fn check_gauge(&self, gear: &SpurGear, helix: Helix) -> Result<(), Fault> {
+        let thickness = self.thickness();
+        let touch = match thickness {
+            Thickness::Transverse(_) | Thickness::Normal(_) => return Ok(()),
+            measured => measured.touch(&self.measured(helix)),
+        };
+        let flank = [gear.form_roll_length(), gear.tip_form_roll_length()];
+        if touch.is_some_and(|s| s >= flank[0] && s <= flank[1]) {
+            return Ok(());
+        }
+        let (field, what) = match thickness {
+            Thickness::Span { .. } => (
+                Field::of("span_measurement/", SpanDocument::teeth),
+                "The planes of the span touch",
+            ),
+            _ => (
+                Field::of("ball_measurement/", BallsDocument::ball_diameter_mm),
+                "The balls touch",
+            ),
+        };
+        let diameter = |s: f64| plain(to_mm(2.0 * gear.flank().radius(s)));
+        let detail = format!(
+            "{what} the teeth at a diameter of {} mm; their flanks reach from {} mm to {} mm.",
+            diameter(touch.unwrap_or(0.0)),
+            diameter(flank[0]),
+            diameter(flank[1])
+        );
+        Err(Fault::new(field, Code::OutOfRange, detail, None))
+    }
+}

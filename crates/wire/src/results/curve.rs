@@ -1,0 +1,151 @@
+//! The curves at one output torque, and their statistics.
+
+use meshwright_engine::analysis::at_speed::CurveDynamics;
+use meshwright_engine::analysis::curve::{LeadCure, LoadShare};
+use meshwright_engine::analysis::{Case, Curve, FaceLoad, Statistics};
+
+use super::decomposition::DecompositionDocument;
+use super::forces::CurveDynamicsDocument;
+use super::largest_where::PressureStatistics;
+use super::spectrum::SpectrumDocument;
+use super::stress::{PeakStressDocument, StressDocument};
+use super::{all, each};
+use crate::declare::answer;
+use crate::units::{or_null, significant, to_mm, to_mpa, to_um};
+
+answer! {
+    /// The curves at one output torque. All lists, those of the spectrum and of the dynamics aside, run over the same positions.
+    pub struct CurveDocument as Curve, "Curve"
+    of (case: &Case, curve: &Curve, dynamics: Option<&CurveDynamics>) with {
+        let turned = |tooth_count: u32| each(&curve.mesh_position, |eta| eta * 360.0 / f64::from(tooth_count));
+    } {
+        /// The output torque on the driven gear, in N m.
+        output_torque_n_m: f64 = curve.output_torque,
+        /// The transmitted load on the line of action, in N: the torque over the driven base radius.
+        load_n: f64 = curve.load,
+        /// The mesh position, in mesh periods, end excluded; at 0 the reference pair touches at the pitch point.
+        mesh_position: Vec<f64> = curve.mesh_position.clone(),
+        /// The rigid rotation of the driving gear, in degrees.
+        driving_angle_deg: Vec<f64> = turned(case.pair.driving().tooth_count()),
+        /// The rigid rotation of the driven gear, in degrees.
+        driven_angle_deg: Vec<f64> = turned(case.pair.driven().tooth_count()),
+        /// The static transmission error, in um, positive when load makes the driven gear lag.
+        transmission_error_um: Vec<f64> = each(&curve.transmission_error, to_um),
+        /// The tangent stiffness dF/d delta, in N/m.
+        mesh_stiffness_tangent_n_per_m: Vec<f64> = curve.mesh_stiffness_tangent.clone(),
+        /// The secant stiffness F/delta, in N/m.
+        mesh_stiffness_secant_n_per_m: Vec<f64> = curve.mesh_stiffness_secant.clone(),
+        /// The torque that the driver has to give, in N m; the load times the driving base radius where unmodified flanks touch on the line of action
+        /// alone.
+        #[serde(default)]
+        #[schema(required)]
+        driving_torque_n_m: Vec<f64> = curve.driving_torque.clone(),
+        /// The number of tooth pairs that carry load.
+        pairs_in_contact: Vec<u32> = curve.pairs_in_contact.clone(),
+        /// The largest contact pressure, in MPa; null where a sharp tip corner carries, at which it has no limit.
+        #[serde(serialize_with = "or_null")]
+        peak_contact_pressure_mpa: Vec<Option<f64>> = all(&curve.peak_contact_pressure, |pressure| pressure.map(to_mpa)),
+        /// The share of the load on each pair that ever carries any, by rising offset.
+        load_shares: Vec<LoadShareDocument> = all(&curve.load_shares, LoadShareDocument::of),
+        /// The largest stresses; absent unless the submission asks for them, for other methods than `flexible` and `three_dimensional`, and
+        /// at the torque 0.
+        stress?: StressDocument = curve.stresses.as_ref().map(StressDocument::of),
+        /// The load along the common face; absent for plane methods and at the torque 0.
+        face?: FaceDocument = curve.face.as_ref().map(FaceDocument::of),
+        /// Statistics over the span.
+        statistics: StatisticsDocument = StatisticsDocument::of(case, curve),
+        /// The order spectrum; absent for a partial span.
+        spectrum?: SpectrumDocument = curve.spectrum.as_ref().map(|spectrum| SpectrumDocument::of(case, spectrum)),
+        /// What the decomposition adds up; absent for other methods.
+        decomposition?: DecompositionDocument = curve.decomposition.as_ref().map(DecompositionDocument::of),
+        /// The motion over speed; absent unless the submission asks for it.
+        dynamics?: CurveDynamicsDocument = dynamics.map(CurveDynamicsDocument::of),
+    }
+}
+
+answer! {
+    /// The load along the common face.
+    pub struct FaceDocument as Face, "Load along the face" of (face: &FaceLoad) {
+        /// The middles of equal strips of the common face, in mm from its middle; +z is the side from which the driving gear is seen to turn
+        /// counter-clockwise.
+        z_mm: Vec<f64> = each(&face.heights, to_mm),
+        /// The load on each strip for its width, along the transverse line of action, in N/mm: one row, the mean over the positions, or a row a
+        /// position where the submission asks for them.
+        load_n_per_mm: Vec<Vec<f64>> = all(&face.load, |row| each(row, |load| load * 1e-3)),
+        /// K_Hbeta: of ten equal strips of the common face the load of the largest over their mean, the mean over the positions of each.
+        face_load_factor: f64 = face.face_load_factor,
+        /// The lead that would make K_Hbeta least.
+        cure?: LeadCureDocument = face.cure.as_ref().map(LeadCureDocument::of),
+        /// Where the load stands in the mean at each position, in mm from the middle of the common face.
+        load_centroid_mm: Vec<f64> = each(&face.load_centroid, to_mm),
+    }
+}
+
+answer! {
+    /// What would even the load along the face at this torque: add a slope and a crowning of these amounts to the `lead_modifications` of the driving gear.
+    /// Found from a few positions, and within 2 % of what a job finds for it.
+    pub struct LeadCureDocument as LeadCure, "Lead that evens the load" of (cure: &LeadCure) {
+        /// The slope to add, in um: taken off at the +z end of the face; negative adds.
+        lead_slope_um: f64 = significant(to_um(cure.slope), 4),
+        /// The crowning to add, in um; negative takes back what the leads have of it, and makes no flank hollow.
+        crowning_um: f64 = significant(to_um(cure.crowning), 4),
+        /// K_Hbeta with both.
+        face_load_factor: f64 = significant(cure.face_load_factor, 4),
+    }
+}
+
+answer! {
+    /// The share of the load that the pairs at one offset carry.
+    pub struct LoadShareDocument as LoadShare, "Load share" of (share: &LoadShare) {
+        /// 0 for the pair that passed the pitch point last, 1 for the next, -1 for the one before.
+        pair_offset: i32 = share.pair_offset,
+        /// Its share of the load, from 0 to 1.
+        share: Vec<f64> = share.share.clone(),
+    }
+}
+
+answer! {
+    /// Statistics over the span.
+    pub struct StatisticsDocument as Statistics, "Statistics" of (case: &Case, curve: &Curve) {
+        /// Whether the span is less than whole true periods.
+        partial: bool = !case.covers_whole_periods(),
+        /// Of the transmission error, in um.
+        transmission_error_um: StatisticsValues = StatisticsValues::of(&curve.transmission_error_statistics, to_um),
+        /// Of the tangent stiffness, in N/m.
+        mesh_stiffness_tangent_n_per_m: StatisticsValues =
+            StatisticsValues::of(&curve.mesh_stiffness_tangent_statistics, |value| value),
+        /// Of the contact pressure, in MPa; absent in results of versions before 0.5.
+        peak_contact_pressure_mpa?: PressureStatistics = Some(PressureStatistics::of(&case.pair, curve)),
+        /// The largest stresses, where they were asked for.
+        stress?: PeakStressDocument = curve.stresses.as_ref().map(|stresses| PeakStressDocument::of(case, stresses)),
+    }
+}
+
+answer! {
+    /// Mean, fluctuation and extremes of a curve, in its unit: of the curve between its positions too, so that they may lie outside the lists.
+    pub struct StatisticsValues as StatisticsValues, "Statistics of a curve"
+    of (statistics: &Statistics, convert: fn(f64) -> f64) {
+        /// The mean.
+        mean: f64 = convert(statistics.mean),
+        /// The root mean square of the fluctuation, the mean removed.
+        rms: f64 = convert(statistics.rms),
+        /// The largest less the smallest value.
+        peak_to_peak: f64 = convert(statistics.peak_to_peak),
+        /// The smallest value; where a pair takes up or leaves the load, of both sides.
+        #[serde(default)]
+        #[schema(required)]
+        smallest: f64 = convert(statistics.smallest),
+        /// The mesh position at which it stands.
+        #[serde(default)]
+        #[schema(required)]
+        smallest_at: f64 = significant(statistics.smallest_at, 6),
+        /// The largest value; where a pair takes up or leaves the load, of both sides.
+        #[serde(default)]
+        #[schema(required)]
+        largest: f64 = convert(statistics.largest),
+        /// The mesh position at which it stands.
+        #[serde(default)]
+        #[schema(required)]
+        largest_at: f64 = significant(statistics.largest_at, 6),
+    }
+}

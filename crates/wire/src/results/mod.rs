@@ -1,0 +1,103 @@
+//! The results document: curves over mesh position, their statistics and spectra, and the evidence for them.
+
+mod curve;
+mod decomposition;
+mod evidence;
+mod exchanged;
+mod forces;
+mod largest_where;
+mod spectrum;
+mod stress;
+mod unseen;
+
+#[cfg(test)]
+mod tests;
+
+use std::borrow::Cow;
+
+use meshwright_engine::analysis::Analysis;
+use meshwright_engine::analysis::forces::Forces;
+
+pub use curve::{
+    CurveDocument, FaceDocument, LeadCureDocument, LoadShareDocument, StatisticsDocument,
+    StatisticsValues,
+};
+pub use decomposition::{
+    BlankFitDocument, BlankHarmonicDocument, BlankSampleDocument, DecompositionDocument,
+};
+pub use evidence::{Definition, ErrorEstimateDocument, EvidenceDocument};
+pub use forces::{
+    BranchDocument, CurveDynamicsDocument, DynamicErrorDocument, ForceTableDocument,
+    OrderAmplitudesDocument, ResonanceDocument, ResonanceKindName,
+};
+pub use largest_where::{PressureStatistics, WhereDocument};
+pub use spectrum::{NamedOrderDocument, OrderKindName, SpectrumDocument};
+pub use stress::{
+    GearPeakStress, GearStressDocument, GearStressWhere, PeakStressDocument, StressDocument,
+};
+
+use super::declare::answer;
+use super::geometry::{Frequencies, PairGeometry};
+use super::problem::{Code, Problem};
+use super::submission::Submission;
+use super::units::{known, rounded_json};
+use super::warning::WarningDocument;
+
+answer! {
+    /// What a submission comes to. It is bit-identical for the same input and version.
+    pub struct Results as Results, "Results"
+    of (submission: &Submission, analysis: &Analysis, forces: Option<&Forces>) with {
+        let case = submission.case();
+        let dynamics = |i: usize| forces.and_then(|forces| forces.dynamics.get(i));
+    } {
+        /// How the curves were computed.
+        #[schema(schema_with = crate::method_schema)]
+        method: Cow<'static, str> = submission.method().into(),
+        /// The derived geometry.
+        pair: PairGeometry = PairGeometry::of(case),
+        /// The frequencies at the speed given; absent without a speed.
+        frequencies?: Frequencies = Frequencies::of_case(case),
+        /// What to know beside the numbers.
+        #[serde(deserialize_with = "known")]
+        warnings: Vec<WarningDocument> = submission.warnings(&analysis.warnings),
+        /// One curve for each output torque, in the order of the submission.
+        curves: Vec<CurveDocument> =
+            analysis.curves.iter().enumerate().map(|(i, curve)| CurveDocument::of(case, curve, dynamics(i))).collect(),
+        /// The force over mesh position and approach; absent unless the submission asks for it.
+        force_table?: ForceTableDocument = forces.map(|forces| ForceTableDocument::of(&forces.table)),
+        /// How good the numbers are, and what they mean.
+        evidence: EvidenceDocument = EvidenceDocument::of(submission, analysis),
+    }
+}
+
+impl Results {
+    /// Reads a document that this version wrote, or another one: members that it does not know are passed over.
+    ///
+    /// # Errors
+    ///
+    /// A text that is not JSON, or lacks what every version told.
+    pub fn read(document: &str) -> serde_json::Result<Self> {
+        serde_json::from_str(document)
+    }
+
+    /// The document as JSON, its numbers rounded to ten significant digits.
+    ///
+    /// # Errors
+    ///
+    /// `internal_error` if a number is not finite, which no valid case may come to.
+    pub fn to_json(&self) -> Result<String, Problem> {
+        rounded_json(self).map_err(|error| Problem::new(Code::InternalError, error.to_string()))
+    }
+}
+
+/// A small results document.
+#[cfg(test)]
+pub(crate) const STUB: &str = include_str!("../../../../tests/it/results.json");
+
+fn each(values: &[f64], convert: impl Fn(f64) -> f64) -> Vec<f64> {
+    values.iter().copied().map(convert).collect()
+}
+
+fn all<'a, F, T>(found: &'a [F], tell: impl Fn(&'a F) -> T) -> Vec<T> {
+    found.iter().map(tell).collect()
+}

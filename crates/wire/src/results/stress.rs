@@ -1,0 +1,117 @@
+//! The largest stresses of both gears, position by position.
+
+use meshwright_engine::analysis::Case;
+use meshwright_engine::analysis::stress::{GearStresses, PeakStress};
+use meshwright_engine::gear::Member;
+
+use super::all;
+use super::largest_where::WhereDocument;
+use crate::declare::answer;
+use crate::units::{to_mm, to_mpa};
+
+answer! {
+    /// The largest stresses of both gears at each position. Angles are polar ones from the centerline of tooth 0, where it stands in the middle of
+    /// the face, from 0 to 360 degrees; heights are those from the middle of the gear's own face, and absent in the plane.
+    pub struct StressDocument as Stress, "Stress" of ([driving, driven]: &[GearStresses; 2]) {
+        /// Of the driving gear.
+        driving: GearStressDocument = GearStressDocument::of(driving),
+        /// Of the driven gear.
+        driven: GearStressDocument = GearStressDocument::of(driven),
+    }
+}
+
+answer! {
+    /// The largest stresses of a gear at each position, and where they are.
+    pub struct GearStressDocument as GearStress, "Stress of a gear" of (gear: &GearStresses) with {
+        let stresses = |peaks: &[PeakStress]| all(peaks, |peak| to_mpa(peak.stress));
+        let angles = |peaks: &[PeakStress]| all(peaks, |peak| peak.angle.to_degrees());
+        let heights = |peaks: &[PeakStress]| peaks.iter().filter_map(|peak| peak.z.map(to_mm)).collect();
+    } {
+        /// The largest von Mises stress along the tensile root fillets of the teeth in mesh and their neighbors, in MPa.
+        root_mpa: Vec<f64> = stresses(&gear.root),
+        /// Where that is, in degrees.
+        root_angle_deg: Vec<f64> = angles(&gear.root),
+        /// How high that is, in mm; absent in the plane.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        root_z_mm: Vec<f64> = heights(&gear.root),
+        /// The largest first principal stress along the root fillets on both sides of all teeth in reach of the load, in MPa.
+        #[serde(default)]
+        #[schema(required)]
+        root_tension_mpa: Vec<f64> = stresses(&gear.root_tension),
+        /// Where that is, in degrees.
+        #[serde(default)]
+        #[schema(required)]
+        root_tension_angle_deg: Vec<f64> = angles(&gear.root_tension),
+        /// How high that is, in mm; absent in the plane.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        root_tension_z_mm: Vec<f64> = heights(&gear.root_tension),
+        /// The smallest one, in MPa: the largest compression, which is negative.
+        #[serde(default)]
+        #[schema(required)]
+        root_compression_mpa: Vec<f64> = stresses(&gear.root_compression),
+        /// Where that is, in degrees.
+        #[serde(default)]
+        #[schema(required)]
+        root_compression_angle_deg: Vec<f64> = angles(&gear.root_compression),
+        /// How high that is, in mm; absent in the plane.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        root_compression_z_mm: Vec<f64> = heights(&gear.root_compression),
+        /// The largest von Mises stress along the edges of the holes, in MPa; absent without holes.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        hole_mpa: Vec<f64> = stresses(&gear.holes),
+        /// Where that is, in degrees; absent without holes.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        hole_angle_deg: Vec<f64> = angles(&gear.holes),
+        /// How high that is, in mm; absent without holes, and in the plane.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        hole_z_mm: Vec<f64> = heights(&gear.holes),
+    }
+}
+
+answer! {
+    /// The largest stresses of both gears over the span.
+    pub struct PeakStressDocument as PeakStress, "Peak stress" of (case: &Case, [driving, driven]: &[GearStresses; 2]) {
+        /// Of the driving gear.
+        driving: GearPeakStress = GearPeakStress::of((case, Member::Driving), driving),
+        /// Of the driven gear.
+        driven: GearPeakStress = GearPeakStress::of((case, Member::Driven), driven),
+    }
+}
+
+answer! {
+    /// The largest stresses of a gear over the span.
+    pub struct GearPeakStress as GearPeakStress, "Peak stress of a gear" of (of: (&Case, Member), gear: &GearStresses) with {
+        let extreme = |peaks: &[PeakStress], of: fn(f64, f64) -> f64| {
+            peaks.iter().map(|peak| to_mpa(peak.stress)).reduce(of)
+        };
+    } {
+        /// The largest von Mises stress along the tensile root fillets, in MPa.
+        root_mpa: f64 = extreme(&gear.root, f64::max).unwrap_or(0.0),
+        /// The largest first principal stress along all root fillets, in MPa.
+        root_tension_mpa?: f64 = extreme(&gear.root_tension, f64::max),
+        /// The smallest one, in MPa: the largest compression, which is negative.
+        root_compression_mpa?: f64 = extreme(&gear.root_compression, f64::min),
+        /// The largest von Mises stress along the edges of the holes, in MPa; absent without holes.
+        hole_mpa?: f64 = extreme(&gear.holes, f64::max),
+        /// Where each of them stands; absent in results of versions before 0.5.
+        largest_where?: GearStressWhere = Some(GearStressWhere::of(of, gear)),
+    }
+}
+
+answer! {
+    /// Where the largest stresses of a gear stand.
+    pub struct GearStressWhere as GearStressWhere, "Places of the largest stresses of a gear" of ((case, member): (&Case, Member), gear: &GearStresses) with {
+        let stands = |peaks: &[PeakStress], on_tooth: bool| {
+            PeakStress::largest_where(case, member, peaks, on_tooth).as_ref().map(WhereDocument::of)
+        };
+    } {
+        /// Of `root_mpa`.
+        root_mpa?: WhereDocument = stands(&gear.root, true),
+        /// Of `root_tension_mpa`.
+        root_tension_mpa?: WhereDocument = stands(&gear.root_tension, true),
+        /// Of `root_compression_mpa`.
+        root_compression_mpa?: WhereDocument = stands(&gear.root_compression, true),
+        /// Of `hole_mpa`; absent without holes.
+        hole_mpa?: WhereDocument = stands(&gear.holes, false),
+    }
+}

@@ -1,0 +1,406 @@
+//! The document by hand-made curves: units, lengths, size, and the same bytes for the same numbers.
+
+use std::f64::consts::TAU;
+
+use meshwright_engine::analysis::curve::{BlankFit, BlankSample, DecompositionParts, LoadShare};
+use meshwright_engine::analysis::largest_where::LargestPressure;
+use meshwright_engine::analysis::spectrum::Spectrum;
+use meshwright_engine::analysis::stress::{GearStresses, PeakStress};
+use meshwright_engine::analysis::{
+    Case, Curve, ErrorEstimate, Evidence, SamplingError, Statistics, Warning,
+};
+use meshwright_engine::contact::PeakPlace;
+use meshwright_engine::gear::Member;
+use meshwright_engine::library::Library;
+use meshwright_engine::run::Run;
+use serde_json::{Value, json};
+
+use super::*;
+use crate::testing::{and, example, parse, with};
+use crate::warning::WarningCode;
+use crate::{examples, solve};
+
+fn submission(name: &str, speed: Option<f64>) -> Submission {
+    let turned = with(example(name), &[("/driving_speed_rpm", json!(speed))]);
+    parse(&turned).expect("valid")
+}
+
+/// Statistics about a mean, with digits down to the last bit.
+fn statistics(mean: f64, swing: f64) -> Statistics {
+    Statistics {
+        mean,
+        rms: swing / 2_f64.sqrt(),
+        peak_to_peak: 2.1 * swing,
+        smallest: mean - swing,
+        smallest_at: 1.0 / 3.0,
+        largest: mean + 1.1 * swing,
+        largest_at: 0.7,
+    }
+}
+
+/// An analysis whose curves are a mean and two cosines, with digits down to the last bit as a real one has.
+fn analysis(case: &Case) -> Analysis {
+    let positions = case.positions();
+    let eta: Vec<f64> = (0..positions)
+        .map(|i| i as f64 / f64::from(case.resolution.positions_per_mesh_period))
+        .collect();
+    let wave = |mean: f64, swing: f64| -> Vec<f64> {
+        let swung = |&eta: &f64| mean + swing * ((TAU * eta).cos() + (TAU * eta / 7.0).sin() / 3.0);
+        eta.iter().map(swung).collect()
+    };
+    let curve = |&torque: &f64| {
+        let (delta, k) = (wave(14.118e-6, 0.4e-6), wave(2.19e8, 2.4e7));
+        let load = case.pair.load(torque);
+        Curve {
+            face: None,
+            output_torque: torque,
+            load,
+            mesh_stiffness_secant: delta.iter().map(|delta| load / delta).collect(),
+            driving_torque: wave(torque, 0.01 * torque),
+            pairs_in_contact: vec![2; positions],
+            peak_contact_pressure: wave(600e6, 50e6).into_iter().map(Some).collect(),
+            largest_pressure: Some(LargestPressure {
+                pressure: 650e6,
+                mesh_position: 2.75,
+                // On the reference circles: 50 sin 20 mm.
+                place: PeakPlace {
+                    pair: 3,
+                    roll_lengths: [50e-3 * 20_f64.to_radians().sin(); 2],
+                    z: Some(-1e-3),
+                    half_width: 0.1e-3,
+                },
+            }),
+            load_shares: (-1..=2)
+                .map(|pair_offset| LoadShare {
+                    pair_offset,
+                    share: wave(0.25, 0.1),
+                })
+                .collect(),
+            transmission_error_statistics: statistics(14.118e-6, 0.4e-6),
+            mesh_stiffness_tangent_statistics: statistics(2.19e8, 2.4e7),
+            sampling_error: SamplingError {
+                mean: 0.0,
+                peak_to_peak: 0.0,
+            },
+            spectrum: case.covers_whole_periods().then(|| {
+                Spectrum::of_samples(&case.pair, case.span(), &delta, &k, case.driving_speed)
+            }),
+            decomposition: Some(DecompositionParts {
+                rigid_blank_transmission_error: delta.clone(),
+                blanks: vec![BlankFit {
+                    member: Member::Driven,
+                    interface_radius: 45.5e-3,
+                    mean: 2e-6,
+                    amplitude: 0.1e-6,
+                    phase: 1.0,
+                    higher: vec![(0.05e-6, 0.5)],
+                    samples: vec![BlankSample {
+                        mesh_position: 0.25,
+                        rotation: 2.05e-6,
+                    }],
+                }],
+            }),
+            stresses: Some([
+                GearStresses {
+                    root: peaks(&[100e6, 140e6]),
+                    root_tension: peaks(&[100e6, 150e6]),
+                    root_compression: peaks(&[-160e6, -120e6]),
+                    holes: Vec::new(),
+                },
+                GearStresses {
+                    root: peaks(&[120e6, 110e6]),
+                    root_tension: peaks(&[120e6, 110e6]),
+                    root_compression: peaks(&[-130e6, -140e6]),
+                    holes: peaks(&[30e6, 31e6]),
+                },
+            ]),
+            mesh_position: eta.clone(),
+            transmission_error: delta,
+            mesh_stiffness_tangent: k,
+        }
+    };
+    Analysis {
+        curves: case.output_torques.iter().map(curve).collect(),
+        evidence: Evidence {
+            degrees_of_freedom: 1000,
+            equilibrium_residual: 1e-13,
+            complementarity_residual: 1e-15,
+            largest_penetration: 1e-18,
+            contact_iterations: 7,
+            projection_error: Some(2e-9),
+            error_estimate: Some(ErrorEstimate {
+                mean: 1e-9,
+                peak_to_peak: 2e-9,
+                mean_stiffness: 1e5,
+            }),
+        },
+        warnings: vec![Warning::TipCornerContact {
+            member: Member::Driven,
+            largest_share: 0.125,
+        }],
+    }
+}
+
+/// The document of hand-made curves.
+fn written(submission: &Submission) -> String {
+    let results = Results::of(submission, &analysis(submission.case()), None);
+    results.to_json().expect("finite")
+}
+
+/// Stresses at half a turn.
+fn peaks(stresses: &[f64]) -> Vec<PeakStress> {
+    let peak = |&stress: &f64| PeakStress {
+        stress,
+        angle: TAU / 2.0,
+        radius: 22e-3,
+        z: Some(-2e-3),
+    };
+    stresses.iter().map(peak).collect()
+}
+
+#[test]
+fn the_document_speaks_the_units_of_its_names() {
+    let submission = submission("test-case-2", Some(600.0));
+    let text = written(&submission);
+    let document: Value = serde_json::from_str(&text).expect("JSON");
+    let curve = &document["curves"][0];
+    let near = |pointer: &str, expected: f64| {
+        let value = document
+            .pointer(pointer)
+            .and_then(Value::as_f64)
+            .expect(pointer);
+        assert!(
+            (value - expected).abs() <= 1e-9 * expected.abs(),
+            "{pointer}: {value} {expected}"
+        );
+    };
+    // The first sample is the mean and the whole swing; F = T/r_b2 with r_b2 = 50 cos 20 mm.
+    near("/curves/0/transmission_error_um/0", 14.518);
+    near("/curves/0/mesh_stiffness_tangent_n_per_m/0", 2.43e8);
+    near("/curves/0/peak_contact_pressure_mpa/0", 650.0);
+    let r_b2 = 0.05 * 20_f64.to_radians().cos();
+    near("/curves/0/load_n", 115.0 / r_b2);
+    near("/curves/0/driven_angle_deg/40", 7.2);
+    near("/curves/0/decomposition/blanks/0/interface_radius_mm", 45.5);
+    near(
+        "/curves/0/decomposition/blanks/0/phase_deg",
+        1_f64.to_degrees(),
+    );
+    near(
+        "/evidence/error_estimate/transmission_error_peak_to_peak_um",
+        2e-3,
+    );
+    near("/curves/0/stress/driving/root_mpa/1", 140.0);
+    near("/curves/0/stress/driven/hole_angle_deg/0", 180.0);
+    near("/curves/0/stress/driven/hole_z_mm/0", -2.0);
+    near("/curves/0/statistics/stress/driving/root_mpa", 140.0);
+    let pressure = "/curves/0/statistics/peak_contact_pressure_mpa";
+    let pressures = curve["peak_contact_pressure_mpa"]
+        .as_array()
+        .expect("a list");
+    let largest = pressures
+        .iter()
+        .filter_map(Value::as_f64)
+        .fold(0.0, f64::max);
+    near(&format!("{pressure}/largest"), largest);
+    for (name, expected) in [
+        ("mesh_position", 2.75),
+        ("pair_offset", 1.0),
+        ("driving_diameter_mm", 100.0),
+        ("driven_diameter_mm", 100.0),
+        ("z_mm", -1.0),
+    ] {
+        near(&format!("{pressure}/largest_where/{name}"), expected);
+    }
+    let stands = &curve["statistics"]["stress"]["driving"]["largest_where"];
+    assert_eq!(stands["root_mpa"]["mesh_position"], json!(0.025));
+    assert_eq!(stands["root_compression_mpa"]["mesh_position"], json!(0.0));
+    assert_eq!(stands["root_mpa"]["driving_diameter_mm"], json!(44.0));
+    assert_eq!(stands["root_mpa"].get("driven_diameter_mm"), None);
+    assert_eq!(stands.get("hole_mpa"), None);
+    let of_hole = &curve["statistics"]["stress"]["driven"]["largest_where"]["hole_mpa"];
+    assert_eq!(of_hole.get("pair_offset"), None);
+    near("/curves/0/statistics/stress/driven/hole_mpa", 31.0);
+    near("/curves/0/stress/driving/root_compression_mpa/0", -160.0);
+    for (name, expected) in [("tension", 150.0), ("compression", -160.0)] {
+        near(
+            &format!("/curves/0/statistics/stress/driving/root_{name}_mpa"),
+            expected,
+        );
+    }
+    for without_holes in [
+        "/stress/driving/hole_mpa",
+        "/statistics/stress/driving/hole_mpa",
+    ] {
+        assert_eq!(curve.pointer(without_holes), None);
+    }
+    near("/evidence/largest_penetration_um", 1e-12);
+    near("/warnings/0/value", 12.5);
+    // 600 rpm are 10 Hz; 50 teeth mesh at 500 Hz; the order counts turns of the driven gear, here 10 Hz too.
+    near("/frequencies/mesh_hz", 500.0);
+    near("/frequencies/period_hz", 100.0);
+    let order = curve["spectrum"]["order"][0].as_f64().expect("a number");
+    near("/curves/0/spectrum/frequency_hz/0", 10.0 * order);
+    assert_eq!(curve["decomposition"]["blanks"][0]["gear"], "driven");
+    assert_eq!(document["evidence"]["input_hash"], submission.input_hash());
+    assert_eq!(document["evidence"]["resolution"]["grid"], "standard");
+    assert_eq!(curve["statistics"]["partial"], false);
+    assert!(!text.contains("null"));
+}
+
+#[test]
+fn all_lists_of_a_curve_have_one_entry_a_position() {
+    let submission = submission("standard-pair", None);
+    let text = written(&submission);
+    let document: Value = serde_json::from_str(&text).expect("JSON");
+    let curves = document["curves"].as_array().expect("curves");
+    assert_eq!(curves.len(), 2);
+    for curve in curves {
+        for (name, list) in curve.as_object().expect("a curve") {
+            if let Some(list) = list.as_array().filter(|_| name != "load_shares") {
+                assert_eq!(list.len(), 40, "{name}");
+            }
+        }
+        for share in curve["load_shares"].as_array().expect("shares") {
+            assert_eq!(share["share"].as_array().expect("a list").len(), 40);
+        }
+        assert_eq!(
+            curve["spectrum"]["order"].as_array().expect("a list").len(),
+            20
+        );
+    }
+    assert!(document.get("frequencies").is_none());
+}
+
+#[test]
+fn the_results_of_case_3_stay_below_a_megabyte_and_a_half() {
+    let submission = submission("test-case-3", Some(1000.0));
+    let text = written(&submission);
+    assert!(text.len() < 1_500_000, "{} bytes", text.len());
+}
+
+#[test]
+fn the_same_numbers_give_the_same_bytes_and_a_number_that_is_not_finite_gives_none() {
+    let submission = submission("test-case-2", None);
+    let mut analysis = analysis(submission.case());
+    let write = |analysis: &Analysis| Results::of(&submission, analysis, None).to_json();
+    assert_eq!(write(&analysis), write(&analysis));
+    analysis.curves[0].mesh_stiffness_secant[3] = f64::INFINITY;
+    assert_eq!(
+        write(&analysis).expect_err("not finite").code,
+        Code::InternalError
+    );
+}
+
+#[test]
+fn an_interface_radius_that_is_left_to_one_gear_s_default_has_results() {
+    let mut document = example("test-case-2");
+    for radii in [
+        serde_json::json!({ "driving": null }),
+        serde_json::json!({ "driving": null, "driven": 44.5 }),
+        serde_json::json!({ "driving": null, "driven": null }),
+        serde_json::json!({}),
+    ] {
+        document["resolution"]["interface_radius_mm"] = radii;
+        let submission = parse(&document).expect("valid");
+        let written: Value = serde_json::from_str(&written(&submission)).expect("JSON");
+        let radii = &written["evidence"]["resolution"]["interface_radius_mm"];
+        assert!(radii.get("driving").is_none(), "{radii}");
+    }
+}
+
+/// Reads a document, writes it again, and holds it to its own bytes.
+fn reads_back(text: &str) -> Results {
+    let read = Results::read(text).expect("a results document");
+    assert_eq!(read.to_json().expect("finite"), text);
+    read
+}
+
+#[test]
+fn the_results_of_every_example_read_back_to_the_same_bytes() {
+    let mut read = 0;
+    for example in examples() {
+        let mut document: Value = serde_json::from_str(example.json).expect("JSON");
+        document["driving_speed_rpm"] = json!(600.0);
+        // Those that are no submission are studies.
+        if let Ok(submission) = parse(&document) {
+            reads_back(&written(&submission));
+            read += 1;
+        }
+    }
+    assert!(read > 20, "{read}");
+}
+
+#[test]
+fn computed_results_read_back_with_all_that_they_may_have() {
+    let computed = |name: &str, change: Value| {
+        let submission = parse(&and(example(name), &change)).expect("valid");
+        let results = solve(&submission, &Library::default(), &Run::unattended());
+        let results = results.expect("results");
+        reads_back(&results.to_json().expect("finite"))
+    };
+    let few = json!({ "grid": "coarse", "positions_per_mesh_period": 8 });
+    let plane = json!({ "method": "flexible", "stress": true, "resolution": few, "output_torques_n_m": [115, 0] });
+    let curve = &computed("test-case-2", plane).curves[0];
+    assert!(curve.stress.is_some() && curve.spectrum.is_some());
+    let parts = json!({ "method": "decomposition", "resolution": few });
+    assert!(
+        computed("test-case-2", parts).curves[0]
+            .decomposition
+            .is_some()
+    );
+    let faces = json!({ "output_torques_n_m": [200],
+        "resolution": { "positions_per_mesh_period": 8, "face_order": 4, "face_slices": 10 } });
+    assert!(computed("helical-pair", faces).curves[0].face.is_some());
+    let speeds = computed("run-up", json!({ "resolution": few }));
+    assert!(speeds.curves[0].dynamics.is_some() && speeds.force_table.is_some());
+}
+
+#[test]
+fn documents_of_other_versions_are_read_and_what_they_do_not_tell_is_never_written() {
+    let mut document: Value = serde_json::from_str(STUB).expect("JSON");
+    document["later"] = json!({ "of": "a later version" });
+    let known = document["curves"][0]["spectrum"]["named"][0].clone();
+    let mut unknown = known.clone();
+    unknown["kind"] = json!("of_a_later_version");
+    document["curves"][0]["spectrum"]["named"] = json!([unknown, known]);
+    document["warnings"] = json!([{ "code": "of_a_later_version", "detail": "" },
+        { "code": "zero_backlash", "detail": "" }]);
+    let read = Results::read(&document.to_string()).expect("a later one");
+    assert_eq!(
+        (read.warnings.len(), read.warnings[0].code),
+        (1, WarningCode::ZeroBacklash)
+    );
+    assert_eq!(
+        read.curves[0]
+            .spectrum
+            .as_ref()
+            .map(|spectrum| spectrum.named.len()),
+        Some(1)
+    );
+    assert!(read.to_json().is_ok());
+
+    // As version 0.3.0 wrote it.
+    for curve in document["curves"].as_array_mut().expect("curves") {
+        curve
+            .as_object_mut()
+            .expect("a curve")
+            .remove("driving_torque_n_m");
+    }
+    for gear in ["driving", "driven"] {
+        let gear = document["pair"][gear].as_object_mut().expect("a gear");
+        gear.retain(|name, _| !name.ends_with("_diameter_mm"));
+    }
+    let path = document["pair"]["path_of_contact"]
+        .as_object_mut()
+        .expect("a path");
+    for point in ["a", "b", "c", "d", "e"] {
+        let told = path.remove(&format!("point_{point}")).expect("told");
+        path.insert(point.to_owned(), told);
+    }
+    let read = Results::read(&document.to_string()).expect("an earlier one");
+    assert!(read.curves[0].driving_torque_n_m.is_empty());
+    assert_eq!(read.pair.path_of_contact.point_b.mesh_position, -0.2);
+    assert!(read.pair.driving.form_diameter_mm.is_nan());
+    assert!(read.to_json().is_err());
+}

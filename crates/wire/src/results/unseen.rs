@@ -1,0 +1,173 @@
+//! What each method leaves out.
+
+use meshwright_engine::analysis::forces::ForcesRequest;
+use meshwright_engine::analysis::{BodyFormula, Case, Formulas, Method, ToothFormula};
+use meshwright_engine::gear::{Core, SpurGear, TipEdge};
+
+/// What the method of `case` leaves out, and what `forces` do that are asked for beside the curves.
+pub(super) fn does_not_see(case: &Case, forces: Option<&ForcesRequest>) -> Vec<&'static str> {
+    const ALWAYS: [&str; 2] = [
+        "friction between the flanks",
+        "shafts, bearings and housing: both hubs are rigid and their axes fixed",
+    ];
+    const PLANE: &str = "anything that varies across the face width: misalignment, lead crowning, helix; the model is plane";
+    const ALONG_FACES: [&str; 2] = [
+        "that a sharp tip edge has no limit to its yield: within a fiftieth of a module it is taken to be blunt",
+        "how far shafts and bearings bend under the load: misalignment is what the submission says",
+    ];
+    const BEYOND_FIRST_ORDER: &str = "what the fluctuation of the holed blanks changes in the load sharing between pairs, beyond first order";
+    let plane = case.faces.is_none().then_some(PLANE);
+    let own: Vec<&str> = match case.method {
+        Method::Flexible => vec![],
+        Method::ThreeDimensional => ALONG_FACES.to_vec(),
+        Method::ThreeDimensionalProjected => ALONG_FACES
+            .into_iter()
+            .chain([BEYOND_FIRST_ORDER])
+            .collect(),
+        Method::Decomposition => vec![
+            "sidebands of the holes about the mesh orders in the transmission error: each blank's rotation is fitted by its mean and one harmonic",
+            "what the holes change in the load sharing between pairs",
+        ],
+        Method::ProjectedDecomposition => vec![BEYOND_FIRST_ORDER],
+        Method::LoadDistribution => formulas_do_not_see(case.resolution.formulas),
+    };
+    let runs = forces.is_some_and(|forces| forces.dynamics.is_some());
+    let inertia = if runs {
+        "inertia and damping, but in the dynamics: the curves are quasi-static"
+    } else {
+        "inertia and damping: the analysis is quasi-static"
+    };
+    let [friction, shafts] = ALWAYS;
+    [inertia, friction]
+        .into_iter()
+        .chain(plane)
+        .chain([shafts])
+        .chain(forces_do_not_see(forces))
+        .chain(real_teeth_do_not_see(case))
+        .chain(own)
+        .chain(stress_not_told(case))
+        .collect()
+}
+
+/// What a force table and a run-up leave out.
+fn forces_do_not_see(forces: Option<&ForcesRequest>) -> Vec<&'static str> {
+    let mut unseen = Vec::new();
+    if forces.is_some() {
+        unseen.push("the holes under the other flanks where they are, and slopes of single teeth on them: those flanks carry as the mirror image of the loaded ones");
+    }
+    if forces.is_some_and(|forces| forces.dynamics.is_some()) {
+        unseen.push("beyond one torsional degree of freedom: in the dynamics, shafts, bearings, housing and the vibrations of the gear bodies");
+        unseen.push("in the dynamics, that the gears turn unevenly: the mesh position follows the mean speed; the damping is one number, in contact and out of it");
+    }
+    unseen
+}
+
+/// Why stresses that were asked for are not all there.
+fn stress_not_told(case: &Case) -> Option<&'static str> {
+    case.stress.then_some(
+        "stress under the contact itself, and concentrated where regions of unlike thickness meet: stress tells roots and hole edges",
+    )
+}
+
+/// What is left out of modified, broken and deviating teeth, as far as the gears of `case` have them.
+fn real_teeth_do_not_see(case: &Case) -> Vec<&'static str> {
+    let gears = [case.pair.driving(), case.pair.driven()];
+    let any = |has: fn(&SpurGear) -> bool| gears.into_iter().any(has);
+    let mut unseen = Vec::new();
+    if any(|gear| !gear.data().modifications.is_empty() || !gear.deviations().is_none()) {
+        unseen
+            .push("the unloaded flanks: modifications and deviations are those of the loaded ones");
+    }
+    if any(|gear| !gear.deviations().are_teeth_alike()) {
+        unseen.push("that a tooth which stands out is thicker, and stiffer, by what it stands out: every tooth yields as drawn");
+    }
+    if case.faces.is_none() && any(|gear| gear.data().blank.web.is_some()) {
+        unseen.push("that force flows around the edges of a web: every region is in plane stress with its own thickness");
+    }
+    let by_formula = case.method == Method::LoadDistribution;
+    if by_formula && any(|gear| gear.data().blank.web.is_some()) {
+        unseen.push("webs: the bodies are as thick as their faces are wide");
+    }
+    if any(|gear| gear.data().blank.core == Core::Shaft) {
+        unseen.push("how a shaft bends and twists beside the gear that is cut on it: its section under the gear is held in the mean");
+    }
+    if by_formula && any(|gear| gear.data().blank.core == Core::Shaft) {
+        unseen.push(
+            "that a shaft in one piece with its gear gives way: the formulas take it for rigid",
+        );
+    }
+    if by_formula && any(|gear| gear.data().tip_edge != TipEdge::Sharp) {
+        unseen.push("contact on broken tip edges: a pair is taken to part where they begin");
+    }
+    if by_formula && any(|gear| gear.deviations().eccentricity.is_some()) {
+        unseen.push("what an eccentricity changes in the lines of contact: it moves the flanks along them, and their ends stay");
+    }
+    if case.output_torques.contains(&0.0) {
+        unseen.push(
+            "at the torque 0, the deformation: the flanks are rigid, and the first of them touch",
+        );
+    }
+    unseen
+}
+
+/// What the load distribution by `formulas` leaves out.
+fn formulas_do_not_see(formulas: Formulas) -> Vec<&'static str> {
+    const ALWAYS: [&str; 4] = [
+        "holes: the bodies are solid",
+        "contact off the theoretical line of action, at tip corners, and on it the way of the contact along the flank under load or relief",
+        "the body that neighboring pairs share: each pair carries a body compliance of its own",
+        "its own error: formulas have no grid, so that an error_estimate has nothing to refine",
+    ];
+    const OF_PARTS: &str = "that a wider gear is loaded on a part of its width: its teeth and body yield as if loaded on all of it; the flanks touch on the common width";
+    let own: &[&str] = match (formulas.tooth, formulas.body) {
+        (ToothFormula::WeberBanaschek, BodyFormula::Sainsot) => &[
+            OF_PARTS,
+            "Poisson's ratio and the plane state in the bodies: the fit of Sainsot, Velex and Duverger has neither",
+        ],
+        (ToothFormula::WeberBanaschek, BodyFormula::HalfPlane) => {
+            &[OF_PARTS, "bores: a body is a half plane without end"]
+        }
+        (ToothFormula::WeberBanaschek, BodyFormula::Rigid) => &[
+            OF_PARTS,
+            "the deformation of the bodies: they are rigid, as asked for",
+        ],
+        (ToothFormula::Iso6336, _) => &[
+            "width beyond the common face width",
+            "bores, fillets, and where on the flank a pair touches: one stiffness, that of the stiffest position, stands for all",
+            "how a contact stiffens with its load: the stiffness is constant",
+            "what measured stiffnesses fall short of the theory: C_M = 0.8 of ISO 6336-1 and its fall below 100 N/mm are left out",
+        ],
+    };
+    ALWAYS.iter().chain(own).copied().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::submission;
+
+    #[test]
+    fn the_load_distribution_says_what_each_of_its_formulas_does_not_see() {
+        let any = submission("test-case-2");
+        let unseen = |tooth, body| {
+            let mut case = any.case().clone();
+            case.method = Method::LoadDistribution;
+            case.resolution.formulas.tooth = tooth;
+            case.resolution.formulas.body = body;
+            does_not_see(&case, None).join("\n")
+        };
+        let (parts, whole) = (ToothFormula::WeberBanaschek, ToothFormula::Iso6336);
+        for (tooth, body, word) in [
+            (parts, BodyFormula::Sainsot, "Poisson's ratio"),
+            (parts, BodyFormula::HalfPlane, "bores"),
+            (parts, BodyFormula::Rigid, "they are rigid"),
+            (whole, BodyFormula::Sainsot, "C_M"),
+        ] {
+            let told = unseen(tooth, body);
+            assert!(told.contains(word), "{told}");
+            assert!(told.contains("holes: the bodies are solid"));
+        }
+        assert!(!unseen(parts, BodyFormula::Sainsot).contains("C_M"));
+        assert!(!unseen(whole, BodyFormula::Rigid).contains("they are rigid"));
+    }
+}

@@ -1,0 +1,282 @@
+//! What is wrong with a study wherever it stands: fields that there are not, values that no submission may have, in the
+//! base and in each change. Whether values go together is each design's own matter.
+
+use std::collections::BTreeMap;
+
+use meshwright_engine::run::Run;
+use serde_json::Value;
+
+use super::{Plan, Study};
+use crate::declare::{Errors, Node, escaped};
+use crate::pointer::Pointer;
+use crate::population::Population;
+use crate::problem::{Code, FieldError, Problem};
+use crate::search::Search;
+use crate::submission::Submission;
+
+/// Between so many designs it is asked whether anybody still waits.
+const BETWEEN_LOOKS: usize = 64;
+
+impl Study {
+    /// Reports every fault to `errors`.
+    ///
+    /// # Errors
+    ///
+    /// `stopped`, if `run` is.
+    pub(super) fn refuse_faults(&self, errors: &Errors, run: &Run) -> Result<(), Problem> {
+        self.check_constant_mass(errors);
+        self.check_base(errors);
+        if errors.count() > 0 {
+            return Ok(());
+        }
+        match &self.plan {
+            Plan::Axes(_) => self.check_axes(errors, run),
+            Plan::Designs(_) => self.check_designs(errors, run),
+            Plan::Population(population) => {
+                self.check_population(population, "/population", errors);
+                Ok(())
+            }
+            Plan::Search(search) => {
+                if let Some(population) = search.population() {
+                    self.check_population(population, "/search/population", errors);
+                }
+                self.check_search(search, errors);
+                Ok(())
+            }
+        }
+    }
+
+    /// Refuses what is wrong with a field of the base and would be wrong in every design.
+    fn check_base(&self, errors: &Errors) {
+        // Thousands of designs change the same few places.
+        let places: BTreeMap<&str, &Pointer> =
+            self.paths().map(|path| (path.text(), path)).collect();
+        let mended = |error: &FieldError| {
+            let pointer = &error.pointer;
+            let is_set = |path: &&Pointer| path.covers(pointer) || path.is_below(pointer);
+            // A list that is too long is so whatever stands in it, and no base that anybody means.
+            error.code != Code::TooLarge
+                && (self
+                    .constant_mass
+                    .as_ref()
+                    .is_some_and(|rule| rule.sets(pointer))
+                    || places.values().any(is_set))
+        };
+        for error in Submission::wrong_fields(&self.base) {
+            if !mended(&error) {
+                errors.push(FieldError {
+                    pointer: format!("/base{}", error.pointer),
+                    ..error
+                });
+            }
+        }
+    }
+
+    fn check_axes(&self, errors: &Errors, run: &Run) -> Result<(), Problem> {
+        let Plan::Axes(axes) = &self.plan else {
+            return Ok(());
+        };
+        // An axis may change a part of what an axis before it brings.
+        let mut before = self.base.clone();
+        for (i, axis) in axes.iter().enumerate() {
+            for (j, value) in axis.values.iter().enumerate() {
+                look_around(j, run)?;
+                let place = format!("/axes/{i}/values/{j}");
+                check_changes(&mut before, &[(&axis.path, value, place)], errors);
+            }
+            if errors.count() > 0 {
+                return Ok(());
+            }
+            before.put(axis.path.steps(), Node::of(&axis.values[0]));
+        }
+        Ok(())
+    }
+
+    fn check_designs(&self, errors: &Errors, run: &Run) -> Result<(), Problem> {
+        let Plan::Designs(designs) = &self.plan else {
+            return Ok(());
+        };
+        let mut submission = self.base.clone();
+        for (i, design) in designs.iter().enumerate() {
+            look_around(i, run)?;
+            let changes = design.changes.iter();
+            let changes = changes.map(|(path, value)| (path, value, place_of_change(i, path)));
+            let changes: Vec<_> = changes.collect();
+            check_changes(&mut submission, &changes, errors);
+        }
+        Ok(())
+    }
+
+    /// Refuses what would be wrong with a varied field in the middle of its law.
+    fn check_population(&self, population: &Population, at: &str, errors: &Errors) {
+        let mut submission = self.base.clone();
+        let places = population.varied().iter().zip(0..).map(|(varied, i)| {
+            let place = format!("{at}/vary/{i}/path");
+            (&varied.path, varied.told(varied.median()), place)
+        });
+        let places: Vec<_> = places.collect();
+        for (path, value, place) in &places {
+            if submission.put(path.steps(), Node::of(value)).is_none() {
+                errors.push(names_nothing(path, place));
+            }
+        }
+        for error in Submission::wrong_fields(&submission) {
+            // A field may need others beside it, which the base lacks.
+            let brought = places
+                .iter()
+                .find(|(path, ..)| path.covers(&error.pointer) || is_beside(path, &error.pointer));
+            if let Some((.., place)) = brought {
+                errors.push(FieldError {
+                    pointer: place.clone(),
+                    ..error
+                });
+            }
+        }
+    }
+
+    /// Refuses what would be wrong with a variable at an end of its range.
+    fn check_search(&self, search: &Search, errors: &Errors) {
+        for (i, end, changes) in search.ends() {
+            let path = search.path_of(i);
+            let found = match search.population_with(&self.base, &changes) {
+                Err(errors) => errors,
+                Ok(_) => match self.node_searched(&changes) {
+                    Some(node) => Submission::wrong_fields(&node),
+                    None => vec![names_nothing(path, path.text())],
+                },
+            };
+            // A field may need others beside it, which the base lacks.
+            let own = found
+                .into_iter()
+                .find(|error| path.covers(&error.pointer) || is_beside(path, &error.pointer));
+            if let Some(error) = own {
+                errors.push(FieldError {
+                    pointer: format!("/search/variables/{i}/{end}"),
+                    ..error
+                });
+            }
+        }
+    }
+
+    /// A radius that is set twice would be one of them only.
+    fn check_constant_mass(&self, errors: &Errors) {
+        let Some(rule) = &self.constant_mass else {
+            return;
+        };
+        for (place, path) in self.places() {
+            let radius = path.text();
+            if rule.sets(radius) {
+                let detail = format!(
+                    "{radius} is set by /constant_mass in every design that has holes; it cannot be changed as well."
+                );
+                errors.push(FieldError::new(place, Code::OutOfRange, detail));
+            }
+        }
+    }
+
+    /// Every place of the study that names what designs change, and what it names.
+    fn places(&self) -> Vec<(String, &Pointer)> {
+        fn numbered<'a>(
+            at: &str,
+            paths: impl Iterator<Item = &'a Pointer>,
+        ) -> Vec<(String, &'a Pointer)> {
+            let paths = paths.enumerate();
+            paths
+                .map(|(i, path)| (format!("{at}/{i}/path"), path))
+                .collect()
+        }
+        fn varied<'a>(at: &str, population: &'a Population) -> Vec<(String, &'a Pointer)> {
+            numbered(at, population.varied().iter().map(|varied| &varied.path))
+        }
+        match &self.plan {
+            Plan::Axes(axes) => numbered("/axes", axes.iter().map(|axis| &axis.path)),
+            Plan::Population(population) => varied("/population/vary", population),
+            Plan::Search(search) => {
+                let mut places = numbered("/search/variables", search.paths_of_variables());
+                if let Some(population) = search.population() {
+                    places.extend(varied("/search/population/vary", population));
+                }
+                places
+            }
+            Plan::Designs(designs) => {
+                let numbered = designs.iter().enumerate();
+                let changes = numbered.flat_map(|(i, design)| {
+                    let paths = design.changes.iter().map(|(path, _)| path);
+                    paths.map(move |path| (place_of_change(i, path), path))
+                });
+                changes.collect()
+            }
+        }
+    }
+}
+
+/// Where a design of the list names what it changes.
+fn place_of_change(design: usize, path: &Pointer) -> String {
+    format!("/designs/{design}/changes/{}", escaped(path.text()))
+}
+
+pub(super) fn look_around(round: usize, run: &Run) -> Result<(), Problem> {
+    if round.is_multiple_of(BETWEEN_LOOKS) {
+        run.check()
+            .map_err(|_| Problem::new(Code::Stopped, "Nobody waits for this study any more."))?;
+    }
+    Ok(())
+}
+
+/// Reports fields that there are not and values of the wrong type, at or below the places that the changes bring; each is
+/// told at its own place. `submission` is as before afterwards.
+fn check_changes(submission: &mut Node, changes: &[(&Pointer, &Value, String)], errors: &Errors) {
+    let mut undo = Vec::with_capacity(changes.len());
+    for (path, value, place) in changes {
+        match submission.put(path.steps(), Node::of(value)) {
+            Some(done) => undo.push(done),
+            None => {
+                errors.push(names_nothing(path, place));
+                break;
+            }
+        }
+    }
+    if undo.len() == changes.len() {
+        report_misread(submission, changes, errors);
+    }
+    for done in undo.into_iter().rev() {
+        submission.undo(done);
+    }
+}
+
+fn names_nothing(path: &Pointer, place: &str) -> FieldError {
+    let detail = format!(
+        "{} names nothing in the base: what stands above it is no object, or a list without this place.",
+        path.text()
+    );
+    FieldError::new(place, Code::UnknownField, detail)
+}
+
+/// Whether `pointer` names something in the object in which `path` names a field, or that object.
+fn is_beside(path: &Pointer, pointer: &str) -> bool {
+    let object = path
+        .text()
+        .rsplit_once('/')
+        .map_or("", |(object, _)| object);
+    pointer == object
+        || pointer
+            .rsplit_once('/')
+            .is_some_and(|(within, _)| within == object)
+}
+
+fn report_misread(submission: &Node, changes: &[(&Pointer, &Value, String)], errors: &Errors) {
+    for error in Submission::wrong_fields(submission) {
+        if !matches!(error.code, Code::UnknownField | Code::WrongType) {
+            continue;
+        }
+        let brought = changes
+            .iter()
+            .rfind(|(path, ..)| path.covers(&error.pointer));
+        if let Some((.., place)) = brought {
+            errors.push(FieldError {
+                pointer: place.clone(),
+                ..error
+            });
+        }
+    }
+}

@@ -1,0 +1,313 @@
+//! Whether the fields of a submission go together: torques, interface, span, forces and size.
+
+use meshwright_engine::analysis::Method;
+use meshwright_engine::gear::{GearPair, Member, SpurGear};
+
+use super::Purpose;
+use super::document::{Document, OUTPUT_TORQUE};
+use crate::declare::{Choice as _, Errors};
+use crate::forces::{DynamicsQuestion, ForceTableQuestion, SpeedRange, Speeds};
+use crate::problem::{Code, FieldError};
+use crate::resolution::{ContactSolverDocument, ResolutionDocument};
+use crate::units::{Side, plain, rounded_inward};
+
+/// The most positions times torques of one submission.
+pub(crate) const MOST_POSITIONS: u64 = 20_000;
+
+/// The same of the projected methods on teeth that do not deviate: they solve one mesh period, and add what holes do to it at each position.
+pub(crate) const MOST_PROJECTED_POSITIONS: u64 = 200_000;
+
+/// The most mesh periods of a run-up: of its true period, at all speeds, under all torques.
+const MOST_PERIODS_RUN: u64 = 200_000;
+
+impl Document {
+    /// Refuses torques that would deflect the teeth by more than about a quarter of a module: small displacements and a
+    /// search among neighboring flanks mean nothing there.
+    pub(super) fn check_torques(&self, pair: &GearPair, errors: &Errors) {
+        for (i, &torque) in self.output_torques_n_m.iter().enumerate() {
+            let pointer = format!("/{}/{i}", Self::output_torques_n_m.name);
+            refuse_large_torque(pair, torque, pointer, errors);
+        }
+    }
+
+    /// Refuses stresses that the method does not tell.
+    pub(super) fn check_stress(&self, errors: &Errors) {
+        if self.stress && !self.method.tells_stress() {
+            let pointer = format!("/{}", Self::stress.name);
+            let told = Method::OPTIONS.iter();
+            let told: Vec<&str> = told
+                .filter(|(_, method, _)| method.tells_stress())
+                .map(|(word, ..)| *word)
+                .collect();
+            let detail = format!(
+                "{pointer} is asked for, and the method {} does not tell it; {} do.",
+                self.method.word(),
+                told.join(" and ")
+            );
+            errors.push(FieldError::new(pointer, Code::QuantityNotTold, detail));
+        }
+    }
+
+    /// Refuses what three dimensions have no choice of.
+    pub(super) fn refuse_plane_choices(&self, errors: &Errors) {
+        let solver = matches!(
+            self.resolution.contact_solver,
+            ContactSolverDocument::AugmentedLagrangian(_)
+        );
+        if solver {
+            let pointer = format!("/resolution/{}", ResolutionDocument::contact_solver.name);
+            let detail = format!("{pointer}: three dimensions are solved by the active set alone.");
+            errors.push(FieldError::new(pointer, Code::NotInThreeDimensions, detail));
+        }
+        for (member, gear) in [
+            (Member::Driving, &self.pair.driving),
+            (Member::Driven, &self.pair.driven),
+        ] {
+            if let Some(pointer) = gear.shaft_at(&format!("/pair/{member}")) {
+                let detail = format!(
+                    "{pointer}: three dimensions are solved on a bore; the plane methods know shafts."
+                );
+                errors.push(FieldError::new(pointer, Code::NotInThreeDimensions, detail));
+            }
+        }
+    }
+
+    /// Dynamics need a table.
+    pub(super) fn fill_in_table(&mut self) {
+        if self.dynamics.is_some() {
+            self.force_table
+                .get_or_insert_with(ForceTableQuestion::usual);
+        }
+    }
+
+    /// Refuses a table of a part of the true period or of loads that cannot be, and a run-up without load or with speeds that do not rise.
+    pub(super) fn check_forces(&self, pair: &GearPair, errors: &Errors) {
+        let Some(table) = &self.force_table else {
+            return;
+        };
+        let (span, period) = (self.resolution.span_mesh_periods, pair.period());
+        if span.is_some_and(|span| span % period != 0) {
+            let pointer = format!("/resolution/{}", ResolutionDocument::span_mesh_periods.name);
+            let detail = format!(
+                "{pointer} is {}; a force table and a run-up need the true period, {period} mesh periods.",
+                span.unwrap_or(0)
+            );
+            errors.push(
+                FieldError::new(pointer, Code::OutOfRange, detail).nearest(f64::from(period)),
+            );
+        }
+        let torques = &self.output_torques_n_m;
+        let largest = torques.iter().copied().fold(0.0, f64::max);
+        let pointer = format!(
+            "/{}/{}",
+            Self::force_table.name,
+            ForceTableQuestion::largest_output_torque_n_m.name
+        );
+        match table.largest_output_torque_n_m {
+            None if largest == 0.0 => {
+                let detail = format!(
+                    "{pointer} is not given, and the largest output torque is 0; a table needs a load."
+                );
+                errors.push(FieldError::new(pointer, Code::MissingField, detail));
+            }
+            None => refuse_large_torque(pair, 2.0 * largest, pointer, errors),
+            Some(given) if self.dynamics.is_some() && given < largest => {
+                let detail = format!(
+                    "{pointer} is {} N m; a run-up at {} N m needs a table that goes at least as far.",
+                    plain(given),
+                    plain(largest)
+                );
+                errors.push(FieldError::new(pointer, Code::OutOfRange, detail).nearest(largest));
+            }
+            Some(given) => refuse_large_torque(pair, given, pointer, errors),
+        }
+        if let Some(dynamics) = &self.dynamics {
+            self.check_run_up(dynamics, pair, errors);
+        }
+    }
+
+    fn check_run_up(&self, dynamics: &DynamicsQuestion, pair: &GearPair, errors: &Errors) {
+        for (i, torque) in self.output_torques_n_m.iter().enumerate() {
+            if *torque == 0.0 {
+                let pointer = format!("/{}/{i}", Self::output_torques_n_m.name);
+                let detail = format!(
+                    "{pointer} is 0; without a load nothing holds the flanks together, and there is no run-up."
+                );
+                let nearest = OUTPUT_TORQUE.bounds.0;
+                errors.push(
+                    FieldError::new(pointer, Code::TorqueNotPositive, detail).nearest(nearest),
+                );
+            }
+        }
+        let speeds = &dynamics.driving_speed_rpm;
+        let within = format!(
+            "/{}/{}",
+            Self::dynamics.name,
+            DynamicsQuestion::driving_speed_rpm.name
+        );
+        if let Speeds::Range(range) = speeds
+            && range.to <= range.from
+        {
+            let most = SpeedRange::to.spec.bounds.1;
+            let (name, nearest) = if range.from < most {
+                (SpeedRange::to.name, (range.from + 1.0).min(most))
+            } else {
+                (SpeedRange::from.name, most - 1.0)
+            };
+            let detail = format!(
+                "{within} goes from {} to {} 1/min; speeds have to rise.",
+                plain(range.from),
+                plain(range.to)
+            );
+            let pointer = format!("{within}/{name}");
+            errors.push(FieldError::new(pointer, Code::OutOfRange, detail).nearest(nearest));
+        }
+        let each = u64::from(pair.period()) * self.output_torques_n_m.len() as u64;
+        let total = each * u64::from(speeds.count());
+        if total > MOST_PERIODS_RUN {
+            let fits = MOST_PERIODS_RUN / each;
+            let detail = format!(
+                "{} of {} at {} are {total} mesh periods; the limit is {MOST_PERIODS_RUN}. What would fit: {}.",
+                counted(u64::from(speeds.count()), "speed"),
+                counted(u64::from(pair.period()), "mesh period"),
+                counted(self.output_torques_n_m.len() as u64, "torque"),
+                counted(fits, "speed")
+            );
+            let pointer = format!("{within}/{}", SpeedRange::count.name);
+            let nearest = (fits >= 2).then_some(fits as f64);
+            errors.push(FieldError::new(pointer, Code::TooLarge, detail).nearest(nearest));
+        }
+    }
+
+    pub(super) fn check_interface(&self, pair: &GearPair, errors: &Errors) {
+        let pointer = format!(
+            "/resolution/{}",
+            ResolutionDocument::interface_radius_mm.name
+        );
+        let faults = self.resolution.interface_radius_mm.faults(pair, &pointer);
+        errors.report::<()>(Err(faults));
+    }
+
+    pub(super) fn check_span(&self, pair: &GearPair, errors: &Errors) {
+        let (Some(span), period) = (self.resolution.span_mesh_periods, pair.period()) else {
+            return;
+        };
+        if span > period && span % period != 0 {
+            let nearest =
+                (f64::from(span) / f64::from(period)).round().max(1.0) * f64::from(period);
+            let pointer = format!("/resolution/{}", ResolutionDocument::span_mesh_periods.name);
+            let detail = format!(
+                "{pointer} is {span}; the true period is {period} mesh periods, and a longer span has to be a whole multiple of it."
+            );
+            errors.push(FieldError::new(pointer, Code::OutOfRange, detail).nearest(nearest));
+        }
+    }
+
+    pub(super) fn check_size(&self, purpose: Purpose, pair: &GearPair, errors: &Errors) {
+        let most = if self.method.is_projected() && pair.is_as_drawn() {
+            MOST_PROJECTED_POSITIONS
+        } else {
+            MOST_POSITIONS
+        };
+        let (limit, said) = match purpose {
+            Purpose::Job => (most, format!("the limit is {most}")),
+            Purpose::Preview { most_positions } => (
+                most_positions,
+                format!("the limit of a preview is {most_positions}, that of POST /v1/jobs {most}"),
+            ),
+        };
+        let resolution = &self.resolution;
+        let span = u64::from(resolution.span_mesh_periods.unwrap_or(1));
+        let (positions, torques) = (
+            u64::from(resolution.positions_per_mesh_period),
+            self.output_torques_n_m.len() as u64,
+        );
+        let loads = self.force_table.as_ref().map_or(0, |table| table.loads);
+        // Of each position of a mesh period.
+        let of_table = u64::from(loads) * u64::from(pair.period());
+        let of_curves = span * torques;
+        let total = positions * (of_curves + of_table);
+        if total <= limit {
+            return;
+        }
+        let left = limit.saturating_sub(positions * of_table);
+        let fitting_positions = limit / (of_curves + of_table);
+        let fitting_torques = left / (span * positions);
+        let fitting_span = left / (positions * torques);
+        let mut ways = Vec::new();
+        let least_positions = ResolutionDocument::positions_per_mesh_period.spec.bounds.0 as u64;
+        if fitting_positions >= least_positions {
+            ways.push(format!("{fitting_positions} positions in a mesh period"));
+        }
+        if fitting_torques >= 1 {
+            ways.push(counted(fitting_torques, "torque"));
+        }
+        let (fewest_loads, _) = ForceTableQuestion::loads.spec.bounds;
+        let fitting_loads =
+            (limit / positions).saturating_sub(of_curves) / u64::from(pair.period());
+        if of_table > 0 && fitting_loads >= fewest_loads as u64 {
+            ways.push(format!("{fitting_loads} loads"));
+        }
+        if fitting_span >= 1 && of_table == 0 {
+            ways.push(format!(
+                "a span of {}",
+                counted(fitting_span, "mesh period")
+            ));
+        }
+        if ways.is_empty() {
+            ways.push("less of more than one of them".to_owned());
+        }
+        let (name, nearest) = if fitting_positions >= least_positions {
+            (
+                ResolutionDocument::positions_per_mesh_period.name,
+                Some(fitting_positions as f64),
+            )
+        } else {
+            let nearest = (fitting_span >= 1).then_some(fitting_span as f64);
+            (ResolutionDocument::span_mesh_periods.name, nearest)
+        };
+        let table = if of_table > 0 {
+            format!(
+                " and a force table of {} mesh periods at {loads} loads",
+                pair.period()
+            )
+        } else {
+            String::new()
+        };
+        let detail = format!(
+            "{} of {positions} positions at {}{table} are {total} positions; {said}. What would fit: {}.",
+            counted(span, "mesh period"),
+            counted(torques, "torque"),
+            ways.join(", or ")
+        );
+        let pointer = format!("/resolution/{name}");
+        errors.push(FieldError::new(pointer, Code::TooLarge, detail).nearest(nearest));
+    }
+}
+
+/// So many of what is called `one`, in words.
+fn counted(count: u64, one: &str) -> String {
+    format!("{count} {one}{}", if count == 1 { "" } else { "s" })
+}
+
+/// Refuses a `torque`, which stands at `pointer`, that would deflect the teeth of `pair` by more than about a quarter of a module.
+fn refuse_large_torque(pair: &GearPair, torque: f64, pointer: String, errors: &Errors) {
+    const LARGEST_DEFLECTION: f64 = 0.25;
+    // The usual mesh stiffness of steel gears, 14 N/(mm um), in proportion to Young's modulus.
+    const USUAL_STIFFNESS: f64 = 14e9 / 210e9;
+    let modulus = |gear: &SpurGear| gear.material().youngs_modulus;
+    let softer = modulus(pair.driving()).min(modulus(pair.driven()));
+    let module = pair.driving().data().rack.module;
+    let largest_load =
+        LARGEST_DEFLECTION * module * USUAL_STIFFNESS * softer * pair.common_face_width();
+    let largest = largest_load * pair.driven().base_radius();
+    if torque > largest {
+        let nearest = rounded_inward(largest, Side::AtMost, 0);
+        let detail = format!(
+            "{pointer} is {} N m, which would deflect these teeth by more than about a quarter of a module; at most {} N m.",
+            plain(torque),
+            plain(nearest)
+        );
+        errors.push(FieldError::new(pointer, Code::OutOfRange, detail).nearest(nearest));
+    }
+}

@@ -1,0 +1,73 @@
+//! The document of a submission.
+
+use meshwright_engine::analysis::Method;
+
+use crate::declare::{
+    List, Number, Text, absent, document, flag, list, nested, number, text, word, words,
+};
+use crate::forces::{DynamicsQuestion, ForceTableQuestion};
+use crate::pair::PairDocument;
+use crate::problem::Code;
+use crate::resolution::ResolutionDocument;
+
+/// The most output torques of one submission.
+pub(crate) const MOST_TORQUES: usize = 60;
+
+/// The most tags of a job or a study, and the most characters of one.
+pub(crate) const MOST_TAGS: (usize, usize) = (16, 64);
+
+words! {
+    /// The rows in which the load along the face is told.
+    pub(crate) enum FaceRows {
+        Mean = "mean": "the mean over the positions",
+        Positions = "positions": "every position",
+    }
+}
+
+document! {
+    /// What is asked: a gear pair, torques, and how to compute. Unknown fields are refused.
+    pub(crate) struct Document as "Submission", "Submission" {
+        /// How the curves are computed.
+        pub(super) method: Method = word("Method"),
+        /// The gears.
+        pub(super) pair: PairDocument = nested(""),
+        /// The torques T on the driven gear, each of which gives a curve; 0 is the limit of light load, the kinematic error of the flanks.
+        /// The load on the line of action is T over the driven base radius; one that would deflect the teeth by more than about a quarter
+        /// of a module is refused.
+        pub(super) output_torques_n_m: Vec<f64> = list("Output torques", OUTPUT_TORQUE, MOST_TORQUES)
+            .of("torques in N m", "torques", "fit in one submission")
+            .not_empty(Code::OutOfRange, "give a torque")
+            .unique("repeats a torque; each gives one curve"),
+        /// The speed that turns orders into frequencies. It changes nothing else: the analysis is quasi-static.
+        pub(super) driving_speed_rpm: Option<f64> = absent(
+            number("Speed of the driving gear", "1/min", 1e-3, 1e6),
+            "no frequencies beside the orders",
+        ),
+        /// Whether the largest von Mises stress at the tensile root fillets and at the edges of the holes is told too, position by position, and
+        /// where it is. The methods `flexible` and `three_dimensional` tell it; with another one it is refused.
+        pub(super) stress: bool = flag("Stress", false),
+        /// The rows in which three dimensions tell the load along the face.
+        pub(super) face_load: FaceRows = word("Load along the face").or(FaceRows::Mean),
+        /// Whether results have a table of the force between the gears over mesh position and approach, for run-ups and other programs. It is
+        /// computed over the true period, and its positions times its loads count as positions of the submission.
+        pub(super) force_table: Option<ForceTableQuestion> = absent(nested("ForceTableRequest"), "no table"),
+        /// Whether each curve has the motion of the gears over speed: run up and down, with resonances, contact loss and jumps. It needs a
+        /// force table, and the usual one stands in where none is asked for.
+        pub(super) dynamics: Option<DynamicsQuestion> = absent(nested("DynamicsRequest"), "no run-up"),
+        /// How finely and by which rules.
+        pub(super) resolution: ResolutionDocument = nested("Resolution").or_defaults(),
+        /// Short strings to find the job by. They do not change the result.
+        pub(super) tags: Vec<String> = TAGS,
+    }
+}
+
+/// A torque on the driven gear.
+pub(crate) const OUTPUT_TORQUE: Number = number("Output torque", "N m", 1e-6, 1e8)
+    .or_zero()
+    .negative_is(Code::TorqueNotPositive);
+
+/// Short strings to find jobs and studies by.
+pub(crate) const TAGS: List<Text> = list("Tags", text("Tag", MOST_TAGS.1), MOST_TAGS.0)
+    .of("short strings", "tags", "are kept")
+    .too_many_is(Code::OutOfRange)
+    .or_empty();

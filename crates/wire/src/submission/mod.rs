@@ -1,0 +1,269 @@
+//! A submission: what is asked, checked once, with every default filled in.
+
+use meshwright_engine::analysis::spectrum::RotationSpeed;
+use meshwright_engine::analysis::forces::{ForcesRequest, MORE_POSITIONS};
+use meshwright_engine::analysis::{Case, Faces, Method, Warning};
+use meshwright_engine::assembly::FaceResolution;
+
+mod checks;
+mod document;
+
+pub(super) use checks::{MOST_POSITIONS, MOST_PROJECTED_POSITIONS};
+#[cfg(test)]
+pub(super) use document::OUTPUT_TORQUE;
+pub(super) use document::{MOST_TAGS, MOST_TORQUES, TAGS};
+
+pub(super) use document::Document;
+use document::FaceRows;
+
+use super::declare::{
+    Choice, Document as _, EACH, Errors, Kind, Node, ObjectReader, Place, utoipa_schema, word,
+};
+use super::forces::DynamicsQuestion;
+use super::pair::PairDocument;
+use super::problem::{FieldError, Problem};
+use super::resolution::ResolutionDocument;
+use super::size::{MOST_VALUES, refuse_many_values};
+use super::warning::WarningDocument;
+use crate::hash::sha256_hex;
+
+/// The version of the solver, which a result belongs to.
+pub const SOLVER_VERSION: &str = concat!("meshwright ", env!("CARGO_PKG_VERSION"));
+
+/// The version of the document of a submission: one more with every field that it gains, in whichever part. A process that reads only
+/// earlier ones leaves the job to others instead of refusing what it does not know.
+pub const DOCUMENT_VERSION: i64 = 3;
+
+/// What is asked: a gear pair, torques, and how to compute.
+///
+/// A value of this type can be computed: its gears can be made and mesh, and the work is within the limits.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Submission {
+    document: Document,
+    case: Case,
+    forces: Option<ForcesRequest>,
+}
+
+impl serde::Serialize for Submission {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.document.write(serializer)
+    }
+}
+
+impl utoipa::PartialSchema for Submission {
+    fn schema() -> utoipa::openapi::RefOr<utoipa::openapi::Schema> {
+        <Document as utoipa::PartialSchema>::schema()
+    }
+}
+
+impl utoipa::ToSchema for Submission {
+    fn name() -> std::borrow::Cow<'static, str> {
+        Document::name()
+    }
+
+    fn schemas(schemas: &mut Vec<(String, utoipa::openapi::RefOr<utoipa::openapi::Schema>)>) {
+        Document::schemas(schemas);
+    }
+}
+
+/// The schema of the word of a method.
+pub fn method_schema() -> utoipa::openapi::RefOr<utoipa::openapi::Schema> {
+    utoipa_schema(Method::describe(
+        "How the curves are computed.",
+        &word("Method"),
+    ))
+}
+
+/// What a submission is for, which decides how large it may be.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Purpose {
+    /// A job, which is queued.
+    Job,
+    /// A preview, for which a request waits.
+    Preview {
+        /// The most positions times torques.
+        most_positions: u64,
+    },
+}
+
+impl Document {
+    /// The submission, if all that it says goes together.
+    fn checked(mut self, purpose: Purpose, errors: &Errors) -> Option<Submission> {
+        let solid = if self.method.sees_faces() {
+            self.refuse_plane_choices(errors);
+            Some(self.pair.to_solid_pair(errors)?)
+        } else {
+            self.pair
+                .refuse_three_dimensions(self.method.word(), errors);
+            None
+        };
+        let pair = match &solid {
+            Some(solid) => solid.section().clone(),
+            None => self.pair.to_pair(errors)?,
+        };
+        self.check_stress(errors);
+        self.check_torques(&pair, errors);
+        self.check_interface(&pair, errors);
+        self.check_span(&pair, errors);
+        self.resolution
+            .span_mesh_periods
+            .get_or_insert(pair.period());
+        self.fill_in_table();
+        self.check_forces(&pair, errors);
+        self.check_size(purpose, &pair, errors);
+        let faces = solid.map(|pair| Faces {
+            pair,
+            resolution: FaceResolution {
+                face_order: self.resolution.face_order as usize,
+                ..FaceResolution::STANDARD
+            },
+            slices: self.resolution.face_slices as usize,
+            at_each_position: self.face_load == FaceRows::Positions,
+            cure: true,
+        });
+        let case = Case {
+            pair,
+            faces,
+            method: self.method,
+            output_torques: self.output_torques_n_m.clone(),
+            resolution: self.resolution.data(),
+            stress: self.stress,
+            driving_speed: self
+                .driving_speed_rpm
+                .map(|speed| RotationSpeed(speed / 60.0)),
+        };
+        let forces = self.force_table.as_ref().map(|table| ForcesRequest {
+            table: table.data(),
+            dynamics: self.dynamics.as_ref().map(DynamicsQuestion::data),
+        });
+        Some(Submission {
+            document: self,
+            case,
+            forces,
+        })
+    }
+}
+
+impl Submission {
+    /// Reads and checks a submission.
+    ///
+    /// # Errors
+    ///
+    /// A [`Problem`]: `malformed_json` (400) where the text is not JSON; else 422 with every field that is wrong, its
+    /// JSON pointer, and the nearest value that would do.
+    pub fn parse(document: &[u8]) -> Result<Self, Problem> {
+        refuse_many_values(document, MOST_VALUES)?;
+        Self::of_node(&Node::parse(document)?)
+    }
+
+    /// Reads and checks a submission that is taken apart already.
+    pub(super) fn of_node(node: &Node) -> Result<Self, Problem> {
+        Self::of_node_with(node, |_, _, _| Some(()))
+    }
+
+    /// The same, once `finish` has made of the pair what cannot be written down beforehand. What prevents that it reports.
+    pub(super) fn of_node_with(
+        node: &Node,
+        finish: impl FnOnce(&mut PairDocument, Method, &Errors) -> Option<()>,
+    ) -> Result<Self, Problem> {
+        let errors = Errors::default();
+        let document = Document::read(node, &Place::root(&errors), &EACH);
+        let document = document.filter(|_| errors.count() == 0);
+        let read = document.and_then(|mut document| {
+            finish(&mut document.pair, document.method, &errors)?;
+            document.checked(Purpose::Job, &errors)
+        });
+        errors.settle(read)
+    }
+
+    /// What is wrong with the fields of a submission, each by itself.
+    pub fn field_errors(document: &[u8]) -> Vec<FieldError> {
+        let node = refuse_many_values(document, MOST_VALUES).and_then(|()| Node::parse(document));
+        match node {
+            Ok(node) => Self::wrong_fields(&node),
+            Err(problem) => problem.errors,
+        }
+    }
+
+    /// What is wrong with the fields of a submission, each by itself. Whether they go together is not looked at.
+    pub(super) fn wrong_fields(node: &Node) -> Vec<FieldError> {
+        let errors = Errors::default();
+        Document::read(node, &Place::root(&errors), &EACH);
+        errors.into_errors()
+    }
+
+    /// Reads what is left of `reader`, and checks it.
+    pub(super) fn read(
+        reader: ObjectReader<'_>,
+        purpose: Purpose,
+        errors: &Errors,
+    ) -> Option<Self> {
+        let document = Document::read_whole(reader)?;
+        if errors.count() > 0 {
+            return None;
+        }
+        document.checked(purpose, errors)
+    }
+
+    /// What the engine is asked.
+    pub fn case(&self) -> &Case {
+        &self.case
+    }
+
+    /// What to know of the document itself: what of it is not taken as it is written. Then the warnings of the engine.
+    pub(super) fn warnings(&self, of_engine: &[Warning]) -> Vec<WarningDocument> {
+        let own = self.document.pair.digits_taken().into_iter();
+        own.chain(of_engine.iter().map(WarningDocument::of))
+            .collect()
+    }
+
+    /// What the engine is asked beside the curves.
+    pub fn forces(&self) -> Option<&ForcesRequest> {
+        self.forces.as_ref()
+    }
+
+    /// The document with every default filled in.
+    pub fn canonical_json(&self) -> String {
+        serde_json::to_string(&self.document).expect("a submission is words and finite numbers")
+    }
+
+    /// SHA-256, in hexadecimal, of what decides the result: the canonical document without its tags, and the solver's
+    /// version.
+    pub fn input_hash(&self) -> String {
+        let untagged = Document {
+            tags: Vec::new(),
+            ..self.document.clone()
+        };
+        let text =
+            serde_json::to_string(&untagged).expect("a submission is words and finite numbers");
+        sha256_hex(format!("{SOLVER_VERSION}\0{text}"))
+    }
+
+    /// Positions times torques, those of the force table included.
+    pub fn positions_total(&self) -> u64 {
+        let per_period = u64::from(self.case.resolution.positions_per_mesh_period);
+        let of_table = self.forces.as_ref().map_or(0, |forces| {
+            let positions = u64::from(self.case.pair.period() * MORE_POSITIONS) * per_period;
+            u64::from(forces.table.loads) * positions
+        });
+        self.case.positions() as u64 * self.case.output_torques.len() as u64 + of_table
+    }
+
+    /// The method's word.
+    pub fn method(&self) -> &'static str {
+        self.case.method.word()
+    }
+
+    /// The tags.
+    pub fn tags(&self) -> &[String] {
+        &self.document.tags
+    }
+
+    /// How it is computed, with every default filled in.
+    pub(super) fn resolution(&self) -> &ResolutionDocument {
+        &self.document.resolution
+    }
+}
+
+#[cfg(test)]
+mod tests;

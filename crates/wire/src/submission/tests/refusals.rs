@@ -1,0 +1,248 @@
+//! Each kind of bad value, and what is told of it.
+
+use serde::Deserialize;
+use serde_json::{Value, json};
+
+use super::case_2;
+use crate::Code;
+use crate::testing::{echo, fault, parse, put, refused, with};
+
+/// A value that is refused: where it is sent, and what is told.
+#[derive(Deserialize)]
+struct Refused {
+    at: String,
+    value: Value,
+    told_at: String,
+    code: Code,
+    /// Whether a value that would do is told.
+    nearest: bool,
+}
+
+#[test]
+fn every_kind_of_bad_value_is_refused_with_its_place_and_a_value_that_works() {
+    let cases: Vec<Refused> = serde_json::from_str(include_str!("refused.json")).expect("JSON");
+    for case in cases {
+        let mut document = case_2();
+        put(&mut document, &case.at, case.value.clone());
+        let problem = parse(&document).expect_err(&case.at);
+        let said = format!("{} {}: {problem:?}", case.at, case.value);
+        assert_eq!(problem.status, 422, "{said}");
+        let error = &problem.errors[0];
+        assert_eq!(
+            (&error.pointer, error.code),
+            (&case.told_at, case.code),
+            "{said}"
+        );
+        assert_eq!(error.nearest.is_some(), case.nearest, "{said}");
+        assert!(
+            !error.detail.contains("NaN") && !error.detail.contains("inf"),
+            "{said}"
+        );
+    }
+}
+
+#[test]
+fn the_nearest_values_together_make_a_submission() {
+    let changes: &[&[(&str, Value)]] = &[
+        &[
+            ("/pair/driving/tooth_count", json!(12)),
+            ("/pair/driving/blank/bore_radius_mm", json!(30)),
+        ],
+        &[
+            ("/pair/driven/blank/holes/radius_mm", json!(20)),
+            ("/pair/driven/addendum_mm", json!(3.9)),
+        ],
+        &[
+            ("/pair/driven/blank/holes/circle_radius_mm", json!(12)),
+            ("/output_torques_n_m/0", json!(-1)),
+        ],
+        &[
+            ("/pair/driven/blank/holes/circle_radius_mm", json!(5000)),
+            ("/pair/driven/tip_relief/amount_um", json!(-1)),
+        ],
+        &[
+            ("/resolution/positions_per_mesh_period", json!(400)),
+            ("/resolution/span_mesh_periods", json!(500)),
+        ],
+        &[("/pair/center_distance_mm", json!(1e9))],
+    ];
+    for change in changes {
+        let mut document = with(case_2(), change);
+        assert!(parse(&document).is_err());
+        // What the first answer cannot know, because it needs a whole pair, comes with a later one.
+        for _ in 0..4 {
+            let Err(problem) = parse(&document) else {
+                break;
+            };
+            for error in &problem.errors {
+                let nearest = error
+                    .nearest
+                    .unwrap_or_else(|| panic!("{change:?}: {error:?}"));
+                put(&mut document, &error.pointer, json!(nearest));
+            }
+        }
+        assert!(
+            parse(&document).is_ok(),
+            "{change:?}: {:?}",
+            parse(&document)
+        );
+    }
+}
+
+#[test]
+fn the_wrong_fields_of_both_gears_are_told_together() {
+    let wrong = [
+        ("/pair/driving/tooth_count", json!(3)),
+        ("/pair/driven/face_width_mm", json!("wide")),
+        ("/resolution/grids", json!("fine")),
+        ("/method", json!(7)),
+    ];
+    let document = with(case_2(), &wrong);
+    let problem = parse(&document).expect_err("four fields");
+    let mut pointers: Vec<_> = problem.errors.iter().map(|error| &*error.pointer).collect();
+    pointers.sort_unstable();
+    assert_eq!(
+        pointers,
+        [
+            "/method",
+            "/pair/driven/face_width_mm",
+            "/pair/driving/tooth_count",
+            "/resolution/grids"
+        ]
+    );
+
+    let wrong = [
+        ("/pair/driving/blank/bore_radius_mm", json!(50)),
+        ("/pair/driven/blank/holes/radius_mm", json!(15)),
+    ];
+    let problem = parse(&with(case_2(), &wrong)).expect_err("both gears");
+    assert_eq!(problem.errors.len(), 2, "{problem:?}");
+}
+
+#[test]
+fn what_is_too_large_is_told_with_what_would_fit() {
+    let mut document = case_2();
+    document["output_torques_n_m"] = json!([1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]);
+    document["resolution"] = json!({ "positions_per_mesh_period": 400 });
+    let problem = parse(&document).expect_err("24,000 positions");
+    assert_eq!(problem.code, Code::TooLarge);
+    for part in [
+        "24000",
+        "20000",
+        "333 positions",
+        "10 torques",
+        "4 mesh periods",
+    ] {
+        assert!(problem.detail.contains(part), "{part}: {}", problem.detail);
+    }
+    assert_eq!(problem.errors[0].nearest, Some(333.0));
+}
+
+#[test]
+fn a_run_up_is_refused_where_it_has_no_table_or_no_load_and_the_nearest_will_do() {
+    let speeds = json!({ "from": 0, "to": 20_000, "count": 400 });
+    let run_up = with(
+        case_2(),
+        &[("/dynamics", json!({ "driving_speed_rpm": speeds }))],
+    );
+    assert!(parse(&run_up).is_ok());
+    let speeds = json!({ "driving_speed_rpm": { "from": 0, "to": 100, "count": 4000 } });
+    let torques: Vec<u32> = (1..=20).collect();
+    let many = [
+        ("/dynamics", speeds),
+        ("/output_torques_n_m", json!(torques)),
+        ("/resolution", json!({ "positions_per_mesh_period": 8 })),
+    ];
+    for (changes, place, code, _) in refused! {
+        vec![("/output_torques_n_m", json!([115, 0]))] => "/output_torques_n_m/1", TorqueNotPositive;
+        vec![("/resolution", json!({ "span_mesh_periods": 2 }))] => "/resolution/span_mesh_periods", OutOfRange;
+        vec![("/force_table", json!({ "largest_output_torque_n_m": 50 }))]
+            => "/force_table/largest_output_torque_n_m", OutOfRange;
+        vec![("/resolution", json!({ "positions_per_mesh_period": 400 }))]
+            => "/resolution/positions_per_mesh_period", TooLarge;
+        many.to_vec() => "/dynamics/driving_speed_rpm/count", TooLarge;
+    } {
+        let mut document = with(run_up.clone(), &changes);
+        let nearest = fault(&document, place, code).nearest;
+        let nearest = nearest.expect("a nearest value");
+        put(&mut document, place, json!(nearest));
+        let again = parse(&document);
+        assert!(again.is_ok(), "{nearest:?}: {again:?}");
+    }
+}
+
+#[test]
+fn a_run_up_may_be_one_speed() {
+    let of = |speed: serde_json::Value| {
+        with(
+            case_2(),
+            &[("/dynamics", json!({ "driving_speed_rpm": speed }))],
+        )
+    };
+    let submission = parse(&of(json!(3000))).expect("valid");
+    assert_eq!(
+        echo(&submission)["dynamics"]["driving_speed_rpm"],
+        json!(3000.0)
+    );
+    let request = submission.forces().expect("asked for");
+    assert_eq!(request.dynamics.as_ref().expect("asked for").speeds, [50.0]);
+    for (speed, code) in [
+        (json!(-1), Code::OutOfRange),
+        (json!(2e6), Code::OutOfRange),
+        (json!("fast"), Code::WrongType),
+        (json!([1, 2]), Code::WrongType),
+    ] {
+        fault(&of(speed), "/dynamics/driving_speed_rpm", code);
+    }
+}
+
+#[test]
+fn a_table_of_too_many_positions_is_refused_with_the_loads_that_fit() {
+    let mut document = case_2();
+    put(
+        &mut document,
+        "/resolution",
+        json!({ "positions_per_mesh_period": 400 }),
+    );
+    // Five mesh periods: 20,000 / 400 = 5 of the curve and 9 loads of 5.
+    let mut with = |loads: u32| {
+        put(&mut document, "/force_table", json!({ "loads": loads }));
+        parse(&document)
+    };
+    let problem = with(10).expect_err("too large");
+    let detail = &problem.errors[0].detail;
+    assert!(detail.contains(", or 9 loads"), "{detail}");
+    assert!(with(9).is_ok());
+}
+
+#[test]
+fn a_run_up_brings_the_usual_table_and_both_count() {
+    let mut document = case_2();
+    let alone = parse(&document).expect("valid").positions_total();
+    put(
+        &mut document,
+        "/dynamics",
+        json!({ "driving_speed_rpm": { "from": 0, "to": 20_000 } }),
+    );
+    let submission = parse(&document).expect("valid");
+    let echo = echo(&submission);
+    assert_eq!(
+        echo["force_table"],
+        json!({ "loads": 12, "largest_output_torque_n_m": null })
+    );
+    assert_eq!(
+        echo["dynamics"],
+        json!({ "driving_speed_rpm": { "from": 0.0, "to": 20_000.0, "count": 400 }, "damping_ratio": 0.05,
+                "driving_inertia_kg_m2": null, "driven_inertia_kg_m2": null, "sweep": "both" })
+    );
+    assert_eq!(
+        parse(&echo).expect("valid").canonical_json(),
+        submission.canonical_json()
+    );
+    // Twelve loads at twice 40 positions of 5 mesh periods.
+    assert_eq!(submission.positions_total(), alone + 12 * 400);
+    let request = submission.forces().expect("asked for");
+    let speeds = &request.dynamics.as_ref().expect("asked for").speeds;
+    assert_eq!((speeds.len(), speeds[0]), (400, 0.0));
+    assert!((speeds[399] - 20_000.0 / 60.0).abs() < 1e-9);
+}
