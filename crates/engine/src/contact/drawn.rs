@@ -6,11 +6,10 @@
 use std::sync::Arc;
 
 use super::facing::{Facing, View, nearer_tip};
+use super::looks::{Carrying, Looks};
 use super::memo::Memo;
-use super::model::PairModel;
-use super::pair_cells::PairCells;
+use super::pair_cells::{PairCells, PairFlanks};
 use super::patch::Extent;
-use super::penetration::Looks;
 use super::placement::Placement;
 use crate::gear::Member;
 
@@ -34,33 +33,6 @@ struct Laid {
     load: u64,
     cells_per_patch: usize,
     extent: Extent,
-}
-
-/// From which cell to which one a contact may carry, in steps: a little more than it does.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) struct Carrying {
-    from: usize,
-    to: usize,
-}
-
-impl Carrying {
-    /// Looks are shared between contacts that end within as many cells of each other.
-    const STEP: usize = 16;
-
-    fn of(active: &[bool]) -> Self {
-        let first = active.iter().position(|carries| *carries);
-        let last = active.iter().rposition(|carries| *carries);
-        let step = Self::STEP;
-        Self {
-            from: first.map_or(0, |first| first / step * step),
-            to: last.map_or(0, |last| (last + 1).next_multiple_of(step)),
-        }
-    }
-
-    /// Whether the cell `i` may carry.
-    pub(super) fn holds(self, i: usize) -> bool {
-        (self.from..self.to).contains(&i)
-    }
 }
 
 /// The flanks of one pair as drawn, with what was found of them; shared between threads.
@@ -108,15 +80,15 @@ impl DrawnFlanks {
         size_of::<Self>() + self.facings.bytes() + self.cells.bytes() + self.looks.bytes()
     }
 
-    /// The pair of `model` at `phase`, told on the gear whose tip is nearer.
-    pub(super) fn pair(&self, model: &PairModel, phase: f64) -> DrawnPair {
-        self.pair_on(model, phase, nearer_tip(&model.pair, phase))
+    /// The pair of `flanks` at `phase`, told on the gear whose tip is nearer.
+    pub(super) fn pair(&self, flanks: &PairFlanks<'_>, phase: f64) -> DrawnPair {
+        self.pair_on(flanks, phase, nearer_tip(flanks.pair, phase))
     }
 
-    /// The pair of `model` at `phase`, told on the flank of `seat`.
-    pub(super) fn pair_on(&self, model: &PairModel, phase: f64, seat: Member) -> DrawnPair {
+    /// The pair of `flanks` at `phase`, told on the flank of `seat`.
+    pub(super) fn pair_on(&self, flanks: &PairFlanks<'_>, phase: f64, seat: Member) -> DrawnPair {
         let facing = self.facings.get((phase.to_bits(), seat), |_| {
-            Facing::drawn_on(&model.pair, phase, seat)
+            Facing::drawn_on(flanks.pair, phase, seat)
         });
         DrawnPair {
             phase,
@@ -128,16 +100,16 @@ impl DrawnFlanks {
     /// The cells of `pair`, laid so far; `None` where there is no room for any.
     pub(super) fn cells(
         &self,
-        model: &PairModel,
+        flanks: &PairFlanks<'_>,
         pair: &DrawnPair,
         load: f64,
         extent: Extent,
     ) -> Arc<Option<PairCells>> {
-        self.cells.get(laid(model, pair, load, extent), |_| {
+        self.cells.get(laid(flanks, pair, load, extent), |_| {
             let facing = pair.facing()?;
             PairCells::new(
-                model,
-                &view(model, pair.phase, facing),
+                flanks,
+                &view(flanks, pair.phase, facing),
                 facing,
                 load,
                 extent,
@@ -149,35 +121,35 @@ impl DrawnFlanks {
     /// `least` is the least gap of all pairs.
     pub(super) fn looks(
         &self,
-        model: &PairModel,
+        flanks: &PairFlanks<'_>,
         (pair, facing): (&DrawnPair, &Facing),
         ((cells, load, extent), carrying): ((&PairCells, f64, Extent), &[bool]),
         (least, reach): (f64, f64),
     ) -> Arc<Looks> {
         let steps = ((reach - least).max(LEAST_REACH).ln() / REACH_STEP.ln()).ceil() as i32;
         let carrying = Carrying::of(carrying);
-        let spec = (laid(model, pair, load, extent), steps, carrying);
+        let spec = (laid(flanks, pair, load, extent), steps, carrying);
         self.looks.get(spec, |_| {
             let reach = least + REACH_STEP.powi(steps);
-            let view = view(model, pair.phase, facing);
-            Looks::new(model, &view, facing, (cells, carrying), reach)
+            let view = view(flanks, pair.phase, facing);
+            Looks::new(flanks, &view, facing, (cells, carrying), reach)
         })
     }
 }
 
-fn laid(model: &PairModel, pair: &DrawnPair, load: f64, extent: Extent) -> Laid {
+fn laid(flanks: &PairFlanks<'_>, pair: &DrawnPair, load: f64, extent: Extent) -> Laid {
     Laid {
         phase: pair.phase.to_bits(),
         seat: pair.seat,
         load: load.to_bits(),
-        cells_per_patch: model.cells_per_patch,
+        cells_per_patch: flanks.cells_per_patch,
         extent,
     }
 }
 
-fn view<'a>(model: &'a PairModel, phase: f64, facing: &Facing) -> View<'a> {
+fn view<'a>(flanks: &PairFlanks<'a>, phase: f64, facing: &Facing) -> View<'a> {
     View {
-        placement: Placement::drawn(&model.pair, phase),
+        placement: Placement::drawn(flanks.pair, phase),
         seat: facing.seat,
     }
 }

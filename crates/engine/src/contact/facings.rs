@@ -185,7 +185,7 @@ impl<'a> Facings<'a> {
     /// Looks at pair `n` as drawn; the δ at which it touches, without end where flanks do not face each other.
     fn look_at(&mut self, n: i64) -> f64 {
         let model = self.made.model;
-        let drawn = model.drawn.pair(model, self.fraction - n as f64);
+        let drawn = model.drawn_pair(self.fraction - n as f64);
         let touch = drawn.facing().map_or(f64::INFINITY, Facing::touch);
         if touch < f64::INFINITY {
             self.found.push((n, touch));
@@ -248,7 +248,7 @@ impl<'a> Facings<'a> {
         let model = self.made.model;
         let phase = self.fraction - n as f64;
         if self.as_drawn {
-            let drawn = model.drawn.pair(model, phase);
+            let drawn = model.drawn_pair(phase);
             let hollows = &drawn.facing()?.hollows;
             let touches = hollows.iter().map(|hollow| hollow.touch).collect();
             return Some(Near {
@@ -275,7 +275,7 @@ impl<'a> Facings<'a> {
             ahead: shift - laid,
             away: None,
             touches: Vec::new(),
-            drawn: model.drawn.pair_on(model, phase + laid, seat),
+            drawn: model.drawn_pair_on(phase + laid, seat),
         };
         self.find_touches(&mut near, period)?;
         if self.runout > LOOKED_AT || near.is_inclined_to_mate_tip(self.made, period) {
@@ -316,7 +316,7 @@ impl<'a> Facings<'a> {
             let model = self.made.model;
             let seat = near.drawn.seat.other();
             let mut on_other = Near {
-                drawn: model.drawn.pair_on(model, near.drawn.phase, seat),
+                drawn: model.drawn_pair_on(near.drawn.phase, seat),
                 ..near.clone()
             };
             if self.find_touches(&mut on_other, period).is_some()

@@ -2,8 +2,8 @@
 
 use std::ops::RangeInclusive;
 
-use super::cells::{MeshContact, PairContact};
 use super::facing::Facing;
+use super::mesh_contact::{MeshContact, PairContact};
 use super::model::PositionError;
 use crate::gear::{GearPair, Member, PairDeviations};
 

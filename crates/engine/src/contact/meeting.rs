@@ -32,6 +32,11 @@ pub(super) struct Push<T = f64> {
 }
 
 impl Placement<'_> {
+    /// How the flanks push at `place` on the flank of `seat`, which sees `sight`.
+    pub(super) fn push(&self, seat: Member, place: &FlankPlace, sight: &Sight) -> Push {
+        Push::new(seat, place.normal, sight.normal, self.weights)
+    }
+
     /// How the flanks meet at `place` on the flank of `seat`, which sees `sight`.
     pub(super) fn meeting(&self, seat: Member, place: &FlankPlace, sight: &Sight) -> Meeting {
         let push = self.push(seat, place, sight);

@@ -11,8 +11,8 @@
 //!   them, and what their solution says of the mesh,
 //! - [`stage`]: one fraction of the mesh period, from laying the cells to a solution that nothing penetrates,
 //! - `light`: what is left of it as the load vanishes,
-//! - `peak`: where flanks press hardest,
-//! - `penetration`: the look over the whole flanks that proves it,
+//! - `peak`: where flanks press hardest; [`mesh_contact`]: what a solved contact tells,
+//! - `looks` and `penetration`: the look over the whole flanks that proves that nothing penetrates,
 //! - [`positions`]: many positions of one load, in parallel,
 //! - [`face`]: the same along faces of helical, misaligned or uneven gears, slice by slice,
 //! - [`model`]: what all of this is asked of,
@@ -46,8 +46,10 @@ mod factor;
 pub mod flank_table;
 pub mod half_plane;
 mod light;
+mod looks;
 mod meeting;
 mod memo;
+pub mod mesh_contact;
 pub mod model;
 pub mod pair_cells;
 pub mod patch;
@@ -61,11 +63,10 @@ mod wide;
 
 pub use active_set::solve_active_set;
 pub use augmented_lagrangian::{AugmentedLagrangian, default_penalty, solve_augmented_lagrangian};
-pub use cells::{
-    ContactCells, FlankLoad, MeshCells, MeshContact, PairContact, PairInfluence, PairLoads,
-};
+pub use cells::ContactCells;
 pub(crate) use corner::tip_softness;
 pub use light::light_contact;
+pub use mesh_contact::{FlankLoad, MeshCells, MeshContact, PairContact, PairInfluence, PairLoads};
 pub use model::{ContactSolver, GearModel, MadePair, PairModel, PositionError, WarmStart};
 pub use peak::PeakPlace;
 pub use problem::{ContactError, ContactProblem, ContactQuantity, ContactSolution};

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use super::compliances::Compliances;
-use super::drawn::DrawnFlanks;
+use super::drawn::{DrawnFlanks, DrawnPair};
 use super::flank_table::FlankTable;
 use super::meeting::Standing;
-use super::stage::Stage;
-use super::{ContactError, MeshCells, MeshContact};
+use super::pair_cells::PairFlanks;
+use super::problem::ContactError;
 use crate::gear::{GearPair, Member, PairDeviations};
 use crate::ring::body::Coupling;
 use crate::run::Run;
@@ -108,36 +108,6 @@ pub struct MadePair<'a> {
 }
 
 impl<'a> MadePair<'a> {
-    /// The contact at mesh position `eta` under `load`, summed up pair by pair.
-    ///
-    /// # Errors
-    ///
-    /// [`PositionError`].
-    pub fn contact(
-        self,
-        eta: f64,
-        load: f64,
-        warm: &mut WarmStart,
-    ) -> Result<MeshContact, PositionError> {
-        let mut stage = Stage::new(self, eta, load)?;
-        let (contact, ()) = stage.contact(eta.floor() as i64, warm, |_, _| ())?;
-        Ok(contact)
-    }
-
-    /// The contact at mesh position `eta` under `load`, cell by cell.
-    ///
-    /// # Errors
-    ///
-    /// [`PositionError`].
-    pub fn cells(
-        self,
-        eta: f64,
-        load: f64,
-        warm: &mut WarmStart,
-    ) -> Result<MeshCells, PositionError> {
-        Stage::new(self, eta, load)?.cells(eta.floor() as i64, warm)
-    }
-
     /// How its pair `n` stands at the mesh position `eta`, the driven gear lagging by `lag`, from where a pair of a phase was laid on a seat.
     pub(super) fn standing(self, eta: f64, n: i64, lag: f64, laid: (Member, f64)) -> Standing<'a> {
         Standing::new((&self.model.pair, self.deviations), eta, n, lag, laid)
@@ -173,6 +143,25 @@ impl PairModel {
             compliances: Arc::default(),
             ..self.clone()
         }
+    }
+
+    /// Its flanks as drawn.
+    pub(super) fn flanks(&self) -> PairFlanks<'_> {
+        PairFlanks {
+            pair: &self.pair,
+            tables: self.gears.each_ref().map(|gear| &*gear.flank),
+            cells_per_patch: self.cells_per_patch,
+        }
+    }
+
+    /// Its pair at `phase`, told on the gear whose tip is nearer.
+    pub(super) fn drawn_pair(&self, phase: f64) -> DrawnPair {
+        self.drawn.pair(&self.flanks(), phase)
+    }
+
+    /// Its pair at `phase`, told on the flank of `seat`.
+    pub(super) fn drawn_pair_on(&self, phase: f64, seat: Member) -> DrawnPair {
+        self.drawn.pair_on(&self.flanks(), phase, seat)
     }
 
     /// How far apart coupled teeth of either gear stand at most.

@@ -6,9 +6,19 @@ use super::facing::{Facing, View};
 use super::factor::dot;
 use super::flank_table::{FlankPoint, FlankTable};
 use super::half_plane::{Entries, near_compliance};
-use super::model::PairModel;
 use super::patch::{Cell, Extent, Patch};
 use crate::fem::dense;
+use crate::gear::GearPair;
+
+/// The flanks of a pair as drawn, and what cells are laid on.
+#[derive(Clone, Copy)]
+pub(super) struct PairFlanks<'a> {
+    pub(super) pair: &'a GearPair,
+    /// Those of the driving and the driven gear.
+    pub(super) tables: [&'a FlankTable; 2],
+    /// Cells in one patch.
+    pub(super) cells_per_patch: usize,
+}
 
 /// The cells of one pair as drawn, some part of a mesh period after it passed the pitch point.
 #[derive(Debug)]
@@ -24,18 +34,18 @@ pub struct PairCells {
 impl PairCells {
     /// Lays cells on the flanks of `facing` for `load`; `None` where there is no room for one.
     pub(super) fn new(
-        model: &PairModel,
+        flanks: &PairFlanks<'_>,
         view: &View<'_>,
         facing: &Facing,
         load: f64,
         extent: Extent,
     ) -> Option<Self> {
-        let patch = Patch::new(view, facing, load, model.cells_per_patch, extent);
+        let patch = Patch::new(view, facing, load, flanks.cells_per_patch, extent);
         if patch.cells.is_empty() {
             return None;
         }
         let stretches: Vec<[f64; 2]> = patch.stretches().collect();
-        let (held, shapes) = compliance(model, &patch, (&patch.cells, &stretches), Entries::Lower);
+        let (held, shapes) = compliance(flanks, &patch, (&patch.cells, &stretches), Entries::Lower);
         Some(Self {
             patch,
             held,
@@ -79,7 +89,7 @@ impl PairCells {
 
 /// What unit forces on the cells of `patch` do to `cells` on the `stretches`, with the interfaces held, and W V of each gear at these cells.
 pub(super) fn compliance(
-    model: &PairModel,
+    flanks: &PairFlanks<'_>,
     patch: &Patch,
     (cells, stretches): (&[Cell], &[[f64; 2]]),
     entries: Entries,
@@ -87,7 +97,7 @@ pub(super) fn compliance(
     let loaded: Vec<[f64; 2]> = patch.stretches().collect();
     let mut held = near_compliance(&patch.near_fields, stretches, &loaded, entries);
     let shapes = [0, 1].map(|gear| {
-        let flank = &model.gears[gear].flank;
+        let flank = flanks.tables[gear];
         let (here, there) = (
             points(cells, flank, gear),
             points(&patch.cells, flank, gear),

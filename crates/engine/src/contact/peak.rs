@@ -1,7 +1,5 @@
 //! Where flanks press hardest on each other.
 
-use super::face::SliceLoad;
-
 /// The place of the largest pressure of a mesh at one position. Lengths are in meters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PeakPlace {
@@ -13,18 +11,4 @@ pub struct PeakPlace {
     pub z: Option<f64>,
     /// Half the width of the contact there along the flank; 0 where no kink of a flank is seen.
     pub half_width: f64,
-}
-
-impl PeakPlace {
-    /// That of the first of `slices` under the largest pressure, which is `largest`.
-    pub(super) fn of_slices(slices: &[SliceLoad], largest: Option<f64>) -> Option<Self> {
-        let mut slices = slices.iter();
-        let slice = slices.find(|slice| slice.pressure.is_some() && slice.pressure == largest)?;
-        Some(Self {
-            pair: slice.pair,
-            roll_lengths: slice.roll_lengths,
-            z: Some(slice.z),
-            half_width: slice.half_width,
-        })
-    }
 }

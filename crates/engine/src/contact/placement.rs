@@ -7,7 +7,6 @@ use std::f64::consts::PI;
 
 use nalgebra::{SimdBool, Vector2};
 
-use super::meeting::Push;
 use super::wide::Numbers;
 use crate::gear::{
     GearPair, Member, PairDeviations, SpurGear, Vector, radial, tangential, teeth_on,
@@ -24,7 +23,7 @@ pub struct Placement<'a> {
     /// The angle of each tooth's centerline.
     angles: [f64; 2],
     /// How much the normal of either flank counts ([`weights`]).
-    weights: [f64; 2],
+    pub(super) weights: [f64; 2],
     /// What deviates, and the teeth that stand there; nothing of a pair as drawn.
     made: Option<(&'a PairDeviations, [usize; 2])>,
 }
@@ -184,11 +183,6 @@ impl<'a> Placement<'a> {
     /// The gears.
     pub(super) fn gears(&self) -> &'a GearPair {
         self.pair
-    }
-
-    /// How the flanks push at `place` on the flank of `seat`, which sees `sight`.
-    pub(super) fn push(&self, seat: Member, place: &FlankPlace, sight: &Sight) -> Push {
-        Push::new(seat, place.normal, sight.normal, self.weights)
     }
 
     /// What is missing from the involute of `member` at the roll length `s`, and its slope.

@@ -6,14 +6,16 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
-use super::cells::{ContactCells, Laid, MeshCells, MeshContact, Want};
+use super::cells::{ContactCells, Laid, Want};
 use super::compliances::{Known, StatedCells};
 use super::drawn::DrawnPair;
 use super::facings::{Facings, Near};
+use super::looks::Found;
 use super::meeting::Standing;
+use super::mesh_contact::{MeshCells, MeshContact};
 use super::model::{MadePair, PositionError, WarmStart};
 use super::patch::Extent;
-use super::penetration::{Found, Look, found};
+use super::penetration::{Look, found};
 use super::{ContactProblem, ContactSolution};
 
 /// Pairs are solved together whose gap is within this much of what load brings together: a little more than touch.
@@ -47,6 +49,38 @@ const DEEP: f64 = 1e-3;
 
 /// What pairs want beside the cells that they are given at first.
 type Wanted = BTreeMap<i64, Extent>;
+
+impl MadePair<'_> {
+    /// The contact at mesh position `eta` under `load`, summed up pair by pair.
+    ///
+    /// # Errors
+    ///
+    /// [`PositionError`].
+    pub fn contact(
+        self,
+        eta: f64,
+        load: f64,
+        warm: &mut WarmStart,
+    ) -> Result<MeshContact, PositionError> {
+        let mut stage = Stage::new(self, eta, load)?;
+        let (contact, ()) = stage.contact(eta.floor() as i64, warm, |_, _| ())?;
+        Ok(contact)
+    }
+
+    /// The contact at mesh position `eta` under `load`, cell by cell.
+    ///
+    /// # Errors
+    ///
+    /// [`PositionError`].
+    pub fn cells(
+        self,
+        eta: f64,
+        load: f64,
+        warm: &mut WarmStart,
+    ) -> Result<MeshCells, PositionError> {
+        Stage::new(self, eta, load)?.cells(eta.floor() as i64, warm)
+    }
+}
 
 impl<'a> Stage<'a> {
     /// The mesh of `made` at the mesh position `eta` and whole mesh periods from there, under `load`.
@@ -188,7 +222,9 @@ impl<'a> Stage<'a> {
         let model = self.made.model;
         let place = (self.facings.fraction(), period);
         let standing: Standing<'_> = near.standing(self.made, place, touch)?;
-        let cells = model.drawn.cells(model, &near.drawn, self.load, extent);
+        let cells = model
+            .drawn
+            .cells(&model.flanks(), &near.drawn, self.load, extent);
         let laid = Laid::new(near, extent, cells, &standing, touch)?;
         if self.facings.are_as_drawn() {
             self.laid.push(laid.clone());
@@ -242,7 +278,9 @@ impl<'a> Stage<'a> {
                 let drawn = (laid.cells(), self.load, laid.extent);
                 let pair = (&laid.drawn, laid.drawn.facing()?);
                 let carrying = &solution.active[range];
-                let looks = model.drawn.looks(model, pair, (drawn, carrying), as_drawn);
+                let looks = model
+                    .drawn
+                    .looks(&model.flanks(), pair, (drawn, carrying), as_drawn);
                 let place = (self.facings.fraction(), cells.period);
                 Some(Look::new(looks, laid, self.made, place))
             })

@@ -16,7 +16,7 @@ use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatRef, Par};
 
 use super::compliance::half_space;
-use super::slice::{Place, Slice};
+use super::slice::{Carried, Place, Slice};
 use crate::contact::{ContactError, PositionError};
 use crate::fem::dense::Cholesky;
 
@@ -59,18 +59,6 @@ struct Point {
     /// The force that it stands for, and how that grows with the depth.
     force: f64,
     growth: f64,
-}
-
-/// The load on one slice.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Carried {
-    /// Normal to the flanks, in N, and how it rises with the load.
-    pub(super) force: f64,
-    pub(super) rise: f64,
-    /// The same, weighed with the arms about the driven axis.
-    pub(super) weighed: f64,
-    /// The part of the slice that is loaded, from its beginning (−1) to its end (1).
-    pub(super) part: [f64; 2],
 }
 
 /// The forces on the slices, and the gaps that are left.

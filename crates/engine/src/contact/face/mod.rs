@@ -550,6 +550,20 @@ fn beyond(delta: f64, touch: f64) -> f64 {
     delta + BEYOND * (delta - touch).abs()
 }
 
+impl PeakPlace {
+    /// That of the first of `slices` under the largest pressure, which is `largest`.
+    fn of_slices(slices: &[SliceLoad], largest: Option<f64>) -> Option<Self> {
+        let mut slices = slices.iter();
+        let slice = slices.find(|slice| slice.pressure.is_some() && slice.pressure == largest)?;
+        Some(Self {
+            pair: slice.pair,
+            roll_lengths: slice.roll_lengths,
+            z: Some(slice.z),
+            half_width: slice.half_width,
+        })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use std::sync::Arc;

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use super::FaceModel;
-use super::balance::Carried;
 use super::spring::Spring;
 use crate::contact::facing::{Facing, View};
 use crate::contact::half_plane::{hertz, logarithm_factor};
@@ -39,6 +38,18 @@ pub(super) struct Place {
     /// The gap along the normal, the spring not pressed.
     pub(super) gap: f64,
     pub(super) spring: Arc<Spring>,
+}
+
+/// The load on one slice.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Carried {
+    /// Normal to the flanks, in N, and how it rises with the load.
+    pub(super) force: f64,
+    pub(super) rise: f64,
+    /// The same, weighed with the arms about the driven axis.
+    pub(super) weighed: f64,
+    /// The part of the slice that is loaded, from its beginning (−1) to its end (1).
+    pub(super) part: [f64; 2],
 }
 
 /// The load for which slices are made.

@@ -1,0 +1,106 @@
+//! What a solved contact tells: of the mesh, of each pair, and cell by cell.
+
+use faer::Mat;
+
+use super::patch::Patch;
+use super::peak::PeakPlace;
+use super::problem::{ContactProblem, ContactSolution};
+use crate::gear::Member;
+
+/// The contact of one tooth pair.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PairContact {
+    /// The pair n.
+    pub pair: i64,
+    /// The share w·p/F of the load.
+    pub share: f64,
+    /// How much more the driven gear would have to lag for the pair to touch, in meters along the line of action; `None` where it carries or
+    /// this is not known.
+    pub clearance: Option<f64>,
+    /// The gear whose tip touches off the path of contact, if one does.
+    pub tip_corner: Option<Member>,
+    /// The gear whose fillet the contact reaches, if it does: it is followed on the flanks only.
+    pub fillet: Option<Member>,
+}
+
+/// The contact of the whole mesh at one position and load.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeshContact {
+    /// δ in meters.
+    pub transmission_error: f64,
+    /// dF/dδ in N/m with the active set held.
+    pub stiffness: f64,
+    /// What the driver has to give: the torque on the driving gear over r_b1. It is F where all contact is on unmodified flanks on the line of
+    /// action; elsewhere arms differ.
+    pub driving_load: f64,
+    /// The pairs that came near, by n.
+    pub pairs: Vec<PairContact>,
+    /// The largest pressure in Pa; `None` where a sharp corner carries, at which it has no limit.
+    pub peak_pressure: Option<f64>,
+    /// Where that is; `None` without one, and without load.
+    pub peak_place: Option<PeakPlace>,
+    /// |Σ arm·p − F|/F, the arms by cross product about the driven axis.
+    pub equilibrium: f64,
+    /// The largest |p_j g_j| in N m.
+    pub complementarity: f64,
+    /// The largest penetration over the whole flanks of all pairs in reach, in meters.
+    pub penetration: f64,
+    /// Linear systems that the contact solver solved.
+    pub iterations: u32,
+}
+
+/// The contact of the whole mesh cell by cell: where the cells lie, the problem stated on them and its solution.
+///
+/// Cells are numbered patch after patch.
+#[derive(Debug, Clone)]
+pub struct MeshCells {
+    /// The pairs n that come near, and their patches.
+    pub patches: Vec<(i64, Patch)>,
+    /// Compliance, gaps and arms of the cells.
+    pub problem: ContactProblem,
+    /// Forces, gaps and transmission error.
+    pub solution: ContactSolution,
+}
+
+/// How δ follows what the teeth of one pair deviate by, in meters for a meter: the derivative while the same cells touch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PairInfluence {
+    /// The pair n.
+    pub pair: i64,
+    /// Its driving and its driven tooth.
+    pub teeth: [usize; 2],
+    /// By the cumulative pitch deviation of either ([`crate::gear::ToothDeviations`]).
+    pub by_pitch: [f64; 2],
+    /// By the profile slope deviation of either.
+    pub by_profile_slope: [f64; 2],
+}
+
+/// What a contact loads the interfaces of one tooth pair with.
+#[derive(Debug, Clone)]
+pub struct PairLoads {
+    /// The pair, numbered from the reference pair of the period.
+    pub pair: i64,
+    /// Vᵀp of the driving and of the driven tooth, one column for each set of forces.
+    pub loads: [Mat<f64>; 2],
+}
+
+/// What a contact presses one tooth with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FlankLoad {
+    /// The tooth.
+    pub tooth: usize,
+    /// The forces in N on the unknowns of its flank ([`crate::ring::tooth::ToothSubstructure`]).
+    pub forces: Vec<f64>,
+}
+
+impl MeshContact {
+    /// About how much memory it holds.
+    pub fn bytes(&self) -> usize {
+        size_of::<Self>() + self.pairs.len() * size_of::<PairContact>()
+    }
+
+    /// The number of pairs that carry load.
+    pub fn loaded_pairs(&self) -> u32 {
+        self.pairs.iter().filter(|pair| pair.share > 0.0).count() as u32
+    }
+}
