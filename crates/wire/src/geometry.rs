@@ -1,7 +1,7 @@
 //! The pair as its drawing makes it: what follows from the submission without any load.
 
 use meshwright_engine::analysis::Case;
-use meshwright_engine::analysis::spectrum::RotationSpeed;
+use meshwright_engine::analysis::RotationSpeed;
 use meshwright_engine::gear::{GearPair, Member, SolidGear, SolidPair};
 
 use super::declare::answer;

@@ -1,6 +1,5 @@
 //! What is asked: a pair, the torques and how to compute.
 
-use super::spectrum::RotationSpeed;
 use crate::assembly::FaceResolution;
 use crate::contact::ContactSolver;
 use crate::gear::{GearPair, Member, SolidPair};
@@ -129,6 +128,10 @@ impl Faces {
         }
     }
 }
+
+/// A speed of rotation, in revolutions per second.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RotationSpeed(pub f64);
 
 /// A pair under load, and how to compute it.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,7 +1,7 @@
 //! From a pair to its curves: the methods, their results and spectra.
 //!
 //! Read in this order: [`case`] (what is asked), `plan` (what will be computed of it), `setup` (what the methods work with), `flexible`, `pair_contacts`,
-//! `decomposition`, `projected`, `three_dimensional` and `load_distribution` (the methods), `first_order` (what holes change, in the plane and along faces), `light` (torque 0, alike for all), [`stress`] (at roots and holes; along faces `face_stress`) and [`fields`] (everywhere; along faces [`face_fields`]), [`contact_pattern`] (over the flanks), `between` (a curve between its positions), `curve_parts` and [`curve`], [`largest_where`] (where its largest values stand), [`evidence`], [`warning`],
+//! `decomposition`, `projected`, `three_dimensional` and `load_distribution` (the methods), `first_order` (what holes change, in the plane and along faces), `light` (torque 0, alike for all), [`stress`] (at roots and holes; along faces `face_stress`) and [`fields`] (everywhere; along faces [`face_fields`]), [`contact_pattern`] (over the flanks), `between` (a curve between its positions), `curve_parts` and [`curve`] with its `statistics`, [`largest_where`] (where its largest values stand), [`evidence`], [`warning`],
 //! [`error`] and [`spectrum`] (what comes out), `answer` (all of it); `analyze` (who carries out the plan), `estimate` (what it costs); [`forces`] (tables of force), [`at_speed`] (motion).
 
 mod analyze;
@@ -31,18 +31,20 @@ mod plan;
 mod projected;
 mod setup;
 pub mod spectrum;
+mod statistics;
 pub mod stress;
 mod three_dimensional;
 pub mod warning;
 
 pub use analyze::{analyze, pair_model};
 pub use answer::Analysis;
-pub use case::{Case, Faces, Method, Resolution, StiffnessRule};
-pub use curve::{Curve, FaceLoad, SamplingError, Statistics};
+pub use case::{Case, Faces, Method, Resolution, RotationSpeed, StiffnessRule};
+pub use curve::{Curve, FaceLoad};
 pub use error::AnalysisError;
 pub use estimate::{Estimate, estimate};
 pub use evidence::{ErrorEstimate, Evidence};
 pub use orders::{OrderCause, OrderKind};
+pub use statistics::{SamplingError, Statistics};
 pub use warning::{FEW_POSITIONS, PLANE_RIM, PLANE_WEB, Warning, warnings};
 
 pub use crate::contact::ContactSolver;

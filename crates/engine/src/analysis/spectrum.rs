@@ -2,14 +2,10 @@
 
 use realfft::RealFftPlanner;
 
-use super::Case;
 use super::between::Sections;
+use super::case::{Case, RotationSpeed};
 use super::orders::{KnownOrder, OrderKind, Orders};
 use crate::gear::GearPair;
-
-/// A speed of rotation, in revolutions per second.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RotationSpeed(pub f64);
 
 /// A line of the spectrum that has a name.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,6 +1,6 @@
 //! A submission: what is asked, checked once, with every default filled in.
 
-use meshwright_engine::analysis::spectrum::RotationSpeed;
+use meshwright_engine::analysis::RotationSpeed;
 use meshwright_engine::analysis::forces::{ForcesRequest, MORE_POSITIONS};
 use meshwright_engine::analysis::{Case, Faces, Method, Warning};
 use meshwright_engine::assembly::FaceResolution;

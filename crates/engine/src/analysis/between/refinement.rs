@@ -1,16 +1,8 @@
 //! Further positions, where they tell most of a curve.
 
-use super::sections::{Section, Sections};
+use super::sections::{Section, Sections, tolerance};
 use super::{Sample, Span};
 use crate::analysis::Case;
-
-/// What the positions between are to tell of δ: its extremes to this part of its peak-to-peak, and no better than so many meters.
-const TOLERANCE: (f64, f64) = (1e-3, 5e-10);
-
-/// The tolerance for this peak-to-peak.
-pub(super) fn tolerance(peak_to_peak: f64) -> f64 {
-    (TOLERANCE.0 * peak_to_peak).max(TOLERANCE.1)
-}
 
 /// Away from the extremes δ may be off by so many tolerances: what is left of that in mean, rms and harmonics is far less.
 const ELSEWHERE: f64 = 5.0;

@@ -4,10 +4,9 @@ use std::ops::Range;
 
 use super::cubic::Cubic;
 use super::events::events;
-use super::refinement::tolerance;
 use super::{Sample, Span};
 use crate::analysis::Case;
-use crate::analysis::curve::{SamplingError, Statistics};
+use crate::analysis::statistics::{SamplingError, Statistics};
 use crate::quadrature::gauss_legendre_panels;
 
 /// Samples from beyond either end of a curve that closes, so that its first and last sections have neighbors too.
@@ -25,6 +24,14 @@ const JUMP: f64 = 1e-5;
 
 /// Both sides of an event meet within twice this part of the way between its neighbors, if they are near enough to be believed.
 const NEARBY: f64 = 0.1;
+
+/// What the positions between are to tell of δ: its extremes to this part of its peak-to-peak, and no better than so many meters.
+const TOLERANCE: (f64, f64) = (1e-3, 5e-10);
+
+/// The tolerance for this peak-to-peak.
+pub(super) fn tolerance(peak_to_peak: f64) -> f64 {
+    (TOLERANCE.0 * peak_to_peak).max(TOLERANCE.1)
+}
 
 /// δ and k over a whole span.
 #[derive(Debug, Clone)]
