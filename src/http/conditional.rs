@@ -5,7 +5,7 @@ use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
 use meshwright_wire::hash::sha256_hex_of;
 
-use super::packing::takes_gzip;
+use super::accepts::takes_gzip;
 
 /// How long an answer may be kept by who asked for it.
 #[derive(Debug, Clone, Copy)]

@@ -22,10 +22,11 @@ use serde::Deserialize;
 use utoipa::{IntoParams, IntoResponses};
 use uuid::Uuid;
 
+use super::accepts::takes_gzip;
 use super::client::Client;
 use super::conditional::{Keep, Tag};
 use super::memory::Held;
-use super::packing::{packed, takes_gzip};
+use super::packing::packed;
 use super::parameters::{IfNoneMatch, JobId, Parameters, invalid};
 use super::problem::{Refusal, internal, of_missing_results};
 use crate::compute::PreviewError;

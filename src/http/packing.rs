@@ -5,10 +5,7 @@ use std::mem::take;
 
 use axum::body::{Body, BodyDataStream, Bytes};
 use axum::extract::Request;
-use axum::http::HeaderMap;
-use axum::http::header::{
-    ACCEPT_ENCODING, CONTENT_ENCODING, CONTENT_LENGTH, CONTENT_TYPE, HeaderValue, VARY,
-};
+use axum::http::header::{CONTENT_ENCODING, CONTENT_LENGTH, CONTENT_TYPE, HeaderValue, VARY};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use flate2::Compression;
@@ -16,6 +13,7 @@ use flate2::write::GzEncoder;
 use futures_util::{StreamExt, stream};
 use http_body::Body as _;
 
+use super::accepts::takes_gzip;
 use super::aside::aside;
 use super::conditional::tag_as_packed;
 use super::memory::Counted;
@@ -122,24 +120,6 @@ async fn next_piece(
     Ok((last, None))
 }
 
-/// Whether the client says that it unpacks gzip.
-pub(super) fn takes_gzip(request: &HeaderMap) -> bool {
-    let values = request.get_all(ACCEPT_ENCODING).iter();
-    let mut codings = values
-        .filter_map(|value| value.to_str().ok())
-        .flat_map(|value| value.split(','));
-    codings.any(|coding| {
-        let (name, parameters) = coding.split_once(';').unwrap_or((coding, ""));
-        let refused = parameters.trim().strip_prefix("q=").is_some_and(|weight| {
-            weight
-                .trim()
-                .parse::<f32>()
-                .is_ok_and(|weight| weight <= 0.0)
-        });
-        name.trim().eq_ignore_ascii_case("gzip") && !refused
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use std::io::Read;
@@ -151,19 +131,6 @@ mod tests {
         let mut decoder = flate2::read::GzDecoder::new(bytes);
         decoder.read_to_end(&mut plain).unwrap();
         plain
-    }
-
-    #[test]
-    fn gzip_is_sent_to_those_who_name_it_and_do_not_refuse_it() {
-        let takes = |accepted: &str| {
-            takes_gzip(&HeaderMap::from_iter([(
-                ACCEPT_ENCODING,
-                HeaderValue::from_str(accepted).unwrap(),
-            )]))
-        };
-        assert!(takes("gzip") && takes("br, GZIP;q=0.5") && takes("gzip ; q=1"));
-        assert!(!takes("gzip;q=0") && !takes("br") && !takes("") && !takes("gzip;q=0.0, br"));
-        assert!(!takes_gzip(&HeaderMap::new()));
     }
 
     #[tokio::test]

@@ -5,11 +5,11 @@ use axum::http::header::{CONTENT_ENCODING, CONTENT_LOCATION, CONTENT_TYPE, Heade
 use axum::response::{IntoResponse, Response};
 use meshwright_wire::Problem;
 
+use super::accepts::takes_gzip;
 use super::app::App;
 use super::aside::aside;
 use super::client::Client;
 use super::conditional::{Keep, Tag};
-use super::packing::takes_gzip;
 use super::parameters::{IfNoneMatch, JobId};
 use super::problem::{Refusal, of_missing_results};
 use crate::jobs::{Document, Job, JobError};

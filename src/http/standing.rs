@@ -12,9 +12,10 @@ use axum::response::{IntoResponse, Response};
 use flate2::Compression;
 use meshwright_wire::hash::sha256_hex;
 
+use super::accepts::takes_gzip;
 use super::conditional::{Keep, Tag};
 use super::memory::Counted;
-use super::packing::{packed, takes_gzip};
+use super::packing::packed;
 
 /// An answer in both forms.
 #[derive(Debug)]

@@ -22,6 +22,14 @@ pub fn methods() -> impl Iterator<Item = &'static str> {
     Method::OPTIONS.iter().map(|(word, ..)| *word)
 }
 
+/// Whether the method of this name sees the faces.
+pub(crate) fn sees_faces(name: &Node) -> bool {
+    let mut methods = Method::OPTIONS.iter();
+    methods.any(|(word, method, _)| {
+        matches!(name, Node::Text(name) if name == word) && method.sees_faces()
+    })
+}
+
 words! {
     Method {
         Flexible = "flexible": "both whole gears flexible, the reference (section 2 of the paper)",

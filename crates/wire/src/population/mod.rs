@@ -21,7 +21,7 @@ use super::draw::Accuracy;
 use super::gear::{DeviationsDocument, GearDocument};
 use super::pair::PairDocument;
 use super::pointer::Pointer;
-use super::search::sees_faces;
+use super::resolution::sees_faces;
 use super::units::significant;
 use document::GearAccuracy;
 pub(super) use document::PopulationDocument;

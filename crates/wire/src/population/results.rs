@@ -16,7 +16,7 @@ use super::{GEARS, Population, Source};
 use crate::declare::Node;
 use crate::draw::Accuracy;
 use crate::refusals::{RefusalState, Refusals};
-use crate::search::sees_faces;
+use crate::resolution::sees_faces;
 use crate::status::Status;
 use crate::study::Study;
 use crate::study_table::{Of, QUANTITIES, RowState, Summary};

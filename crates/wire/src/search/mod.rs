@@ -10,17 +10,17 @@ mod state;
 #[cfg(test)]
 mod tests;
 
-use meshwright_engine::analysis::Method;
 use meshwright_sample::REPLICATES;
 use meshwright_sample::points::{Points, Sampling};
 use meshwright_search::driver::Problem as Space;
 use meshwright_search::space::Axis;
 use serde_json::{Map, Value, json};
 
-use super::declare::{Choice as _, Errors, Node, Place};
+use super::declare::{Errors, Node, Place};
 use super::pointer::Pointer;
 use super::population::Population;
 use super::problem::{Code, FieldError};
+use super::resolution::sees_faces;
 use super::study_table::Quantity;
 use super::units::significant;
 
@@ -414,12 +414,4 @@ pub(super) fn confirming(method: Option<&Node>) -> Vec<(Pointer, Value)> {
     ];
     let named = |(path, value)| Some((Pointer::parse(path).ok()?, value));
     changes.into_iter().filter_map(named).collect()
-}
-
-/// Whether the method of this name sees the faces.
-pub(crate) fn sees_faces(name: &Node) -> bool {
-    let mut methods = Method::OPTIONS.iter();
-    methods.any(|(word, method, _)| {
-        matches!(name, Node::Text(name) if name == word) && method.sees_faces()
-    })
 }
