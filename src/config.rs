@@ -10,7 +10,7 @@ use jsonwebtoken::Algorithm;
 
 use crate::compute::{Cores, PreviewRules};
 use crate::http::{AccessRules, Bounds, KeysRule};
-use crate::jobs::{Keep, Migrate, Pace, Place, Rules};
+use crate::jobs::{DatabaseAddress, Keep, Migrate, Pace, Rules};
 use crate::machine;
 use crate::tokens::{self, Claim, ClaimValue, IssuerUrl, TokenRules};
 use crate::webhooks::HookTarget;
@@ -35,7 +35,7 @@ pub struct Config {
         hide_env_values = true,
         value_name = "FILE or ADDRESS"
     )]
-    pub database: Place,
+    pub database: DatabaseAddress,
 
     /// Who brings the tables of the database up to date: this process when it starts, or `meshwright migrate` only.
     #[arg(long, env = "MESHWRIGHT_MIGRATE", value_enum, default_value = "auto")]

@@ -18,7 +18,7 @@ use crate::http::{
     Access, App, BodyMemory, Edge, KeysRule, Outlines, Readings, Server, router, router_of_metrics,
 };
 use crate::jobs::store::lock::{DatabaseLock, LockError};
-use crate::jobs::{Clock, Jobs, Keeper, Migrate, OpenError, Place, Store, Workers};
+use crate::jobs::{Clock, DatabaseAddress, Jobs, Keeper, Migrate, OpenError, Store, Workers};
 use crate::tokens::Tokens;
 use crate::webhooks::{Deliveries, HookRules, Webhooks};
 
@@ -61,7 +61,7 @@ pub struct Service {
 #[derive(Debug, thiserror::Error)]
 #[error("cannot use the database {place}")]
 pub struct UnusableDatabase {
-    place: Place,
+    place: DatabaseAddress,
     #[source]
     cause: OpenError,
 }
@@ -78,7 +78,7 @@ impl UnusableDatabase {
 /// # Errors
 ///
 /// [`UnusableDatabase`].
-pub async fn open(place: &Place, migrate: Migrate) -> Result<Store, UnusableDatabase> {
+pub async fn open(place: &DatabaseAddress, migrate: Migrate) -> Result<Store, UnusableDatabase> {
     let opened = Store::open_as(place, migrate).await;
     opened.map_err(|cause| UnusableDatabase {
         place: place.clone(),
@@ -220,7 +220,7 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
 /// # Errors
 ///
 /// [`UnusableDatabase`], or that the database belongs to another process.
-pub async fn migrate(place: &Place) -> anyhow::Result<()> {
+pub async fn migrate(place: &DatabaseAddress) -> anyhow::Result<()> {
     let _alone = match place.file() {
         Some(path) => Some(DatabaseLock::take(path).map_err(|error| unusable(place, error))?),
         None => None,
@@ -232,7 +232,7 @@ pub async fn migrate(place: &Place) -> anyhow::Result<()> {
 
 /// A database that cannot even be opened is as unusable as one that SQLite does not read: to start again does not help. One that
 /// another process serves is free when that ends.
-fn unusable(place: &Place, error: LockError) -> anyhow::Error {
+fn unusable(place: &DatabaseAddress, error: LockError) -> anyhow::Error {
     match error {
         LockError::Taken(_) => error.into(),
         LockError::Open { error, .. } => UnusableDatabase {

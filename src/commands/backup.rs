@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context, bail};
 
-use crate::jobs::{Place, Store};
+use crate::jobs::{DatabaseAddress, Store};
 
 /// Copy the database, while the service runs or not.
 #[derive(Debug, clap::Args)]
@@ -18,7 +18,7 @@ pub(crate) struct Backup {
         hide_env_values = true,
         value_name = "FILE"
     )]
-    database: Place,
+    database: DatabaseAddress,
     /// Where the copy goes; nothing is there yet.
     target: PathBuf,
 }

@@ -7,7 +7,7 @@ use anyhow::{Context, bail};
 use jiff::Timestamp;
 
 use crate::config::lasting;
-use crate::jobs::{KeyRecord, Migrate, Place, Role, Store};
+use crate::jobs::{DatabaseAddress, KeyRecord, Migrate, Role, Store};
 use crate::keys::{Key, is_client_name};
 use crate::serve::open;
 
@@ -23,7 +23,7 @@ pub(crate) struct Keys {
         value_name = "FILE or ADDRESS",
         global = true
     )]
-    database: Place,
+    database: DatabaseAddress,
     #[command(subcommand)]
     what: What,
 }

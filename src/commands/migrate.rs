@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use anyhow::Context;
 
-use crate::jobs::Place;
+use crate::jobs::DatabaseAddress;
 use crate::serve::migrate;
 
 /// Bring the tables of the database up to date.
@@ -18,7 +18,7 @@ pub(crate) struct Migrate {
         hide_env_values = true,
         value_name = "FILE or ADDRESS"
     )]
-    database: Place,
+    database: DatabaseAddress,
 }
 
 impl Migrate {

@@ -116,7 +116,7 @@ impl Budget {
     }
 
     /// Waits for a part: a place among those who do, and what is answered.
-    fn queue(&self, client: &str, amount: u64) -> (Place, oneshot::Receiver<Part>) {
+    fn queue(&self, client: &str, amount: u64) -> (Queued, oneshot::Receiver<Part>) {
         let (answer, part) = oneshot::channel();
         let amount = amount.min(self.0.most).min(self.0.most_of_client);
         let mut state = self.0.state();
@@ -132,7 +132,7 @@ impl Budget {
         drop(state);
         Shared::grant(&self.0);
         let shared = Arc::clone(&self.0);
-        (Place { shared, number }, part)
+        (Queued { shared, number }, part)
     }
 
     /// How much `client` holds.
@@ -152,12 +152,12 @@ impl Budget {
 }
 
 /// A place among those who wait: who gives up waiting keeps nobody else from his part.
-struct Place {
+struct Queued {
     shared: Arc<Shared>,
     number: u64,
 }
 
-impl Drop for Place {
+impl Drop for Queued {
     fn drop(&mut self) {
         if self.shared.state().waiting.remove(&self.number).is_some() {
             Shared::grant(&self.shared);

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 use utoipa::ToSchema;
 
-use super::aside::aside;
+use super::blocking::blocking;
 use super::client::Client;
 use super::document::Document;
 use super::headers::Made;
@@ -77,7 +77,7 @@ pub(super) async fn submit(
     IdempotencyKey(key): IdempotencyKey,
     document: Document<4>,
 ) -> Result<Response, Refusal> {
-    let read = aside(client.name(), move |_| read(&document)).await??;
+    let read = blocking(client.name(), move |_| read(&document)).await??;
     let jobs = read.into_iter().enumerate().map(|(i, submission)| {
         let key = key.as_ref().map(|key| key_within(key, i));
         let client = &client;

@@ -20,7 +20,7 @@ use utoipa::openapi::{
 use super::app::App;
 use super::events::ProgressView;
 use super::problem::Refusal;
-use super::standing::{Folder, Standing, files};
+use super::static_files::{Folder, StaticFile, files};
 use super::studies::StudyProgressView;
 
 /// What stands before the paths.
@@ -302,7 +302,7 @@ pub(super) fn server(public_url: &str) -> Server {
 
 /// The document at /openapi.json and the page at /docs, which needs nothing from elsewhere.
 pub(super) fn routes_of_docs(openapi: &OpenApi) -> Router<App> {
-    let json = Standing::document("application/json", finished(openapi).to_string());
+    let json = StaticFile::document("application/json", finished(openapi).to_string());
     let json = Arc::new(json);
     let description = get(move |request: HeaderMap| async move { json.answer(&request).await });
     Router::new()

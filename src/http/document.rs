@@ -20,7 +20,7 @@ use utoipa::IntoResponses;
 use utoipa::openapi::{RefOr, Response};
 
 use super::app::App;
-use super::aside::aside;
+use super::blocking::blocking;
 use super::client::ClientName;
 use super::problem::Refusal;
 use crate::compute::Part;
@@ -143,7 +143,7 @@ impl FromRequest<App> for ModelDocument {
         let limit = MODEL_MIB * 1024 * 1024;
         let bytes = app.bodies.for_bytes(&client, limit).await?;
         let unpack = move |_: &Run| unpacked(&body, limit).map(Cow::into_owned);
-        let model = aside(&client, unpack).await?;
+        let model = blocking(&client, unpack).await?;
         let refuse =
             |refused: Refused| Problem::new(Code::ModelRefused, refused.to_string().trim_end());
         let model = model.map_err(refuse)?;

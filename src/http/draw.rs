@@ -4,7 +4,7 @@ use axum::Json;
 use meshwright_wire::draw::DrawDocument;
 use meshwright_wire::{Draw, DrawnDeviations};
 
-use super::aside::aside;
+use super::blocking::blocking;
 use super::client::Onlooker;
 use super::document::Document;
 use super::problem::Refusal;
@@ -27,7 +27,7 @@ pub(super) async fn draw(
     onlooker: Onlooker,
     Document(document, _memory): Document,
 ) -> Result<Json<DrawnDeviations>, Refusal> {
-    let made = aside(onlooker.name(), move |_| {
+    let made = blocking(onlooker.name(), move |_| {
         Draw::parse(&document).and_then(|draw| draw.drawn())
     });
     Ok(Json(made.await??))

@@ -10,7 +10,7 @@ use utoipa::IntoParams;
 use uuid::Uuid;
 
 use super::answer::{json, tell_when_to_return};
-use super::aside::turn_to_read;
+use super::blocking::turn_to_read;
 use super::client::Client;
 use super::conditional::{Keep, Tag};
 use super::page::{self, LARGEST_LIMIT, Page, USUAL_LIMIT};

@@ -6,7 +6,7 @@ use axum::response::Response;
 use meshwright_wire::{PairOutline, Submission};
 
 use super::answer::json;
-use super::aside::aside;
+use super::blocking::blocking;
 use super::client::Onlooker;
 use super::document::Document;
 use super::pictures;
@@ -32,7 +32,7 @@ pub(super) async fn outline(
     Document(document, _memory): Document,
 ) -> Result<Response, Refusal> {
     let as_picture = wants_picture(&request);
-    let made = aside(onlooker.name(), move |_| {
+    let made = blocking(onlooker.name(), move |_| {
         let submission = Submission::parse(&document)?;
         let pair = &submission.case().pair;
         if as_picture {

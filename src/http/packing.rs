@@ -14,7 +14,7 @@ use futures_util::{StreamExt, stream};
 use http_body::Body as _;
 
 use super::accepts::takes_gzip;
-use super::aside::aside;
+use super::blocking::blocking;
 use super::conditional::tag_as_packed;
 use super::memory::Counted;
 use super::problem::{Refusal, internal};
@@ -74,7 +74,7 @@ fn gains(response: &Response) -> bool {
 /// Packs a body that is there already.
 async fn packed_whole(body: Body) -> Option<Bytes> {
     let bytes = axum::body::to_bytes(body, usize::MAX).await.ok()?;
-    let packed = aside(NOBODY, move |_| packed(&bytes, Compression::fast())).await;
+    let packed = blocking(NOBODY, move |_| packed(&bytes, Compression::fast())).await;
     packed.ok()?.ok()
 }
 
@@ -107,7 +107,7 @@ async fn next_piece(
 ) -> Result<(Vec<u8>, Option<(BodyDataStream, Encoder)>), axum::Error> {
     while let Some(chunk) = stream.next().await {
         let chunk = chunk?;
-        let written = aside(NOBODY, move |_| encoder.write_all(&chunk).map(|()| encoder)).await;
+        let written = blocking(NOBODY, move |_| encoder.write_all(&chunk).map(|()| encoder)).await;
         encoder = written
             .map_err(axum::Error::new)?
             .map_err(axum::Error::new)?;

@@ -12,12 +12,12 @@ use serde_json::Value;
 use utoipa::ToSchema;
 
 use super::app::App;
-use super::aside::aside;
 use super::batch::MOST_IN_BATCH;
+use super::blocking::blocking;
 use super::client::Onlooker;
 use super::document::Document;
 use super::problem::Refusal;
-use super::standing::Standing;
+use super::static_files::StaticFile;
 use crate::compute::PreviewRules;
 use crate::jobs::Rules;
 use crate::webhooks::most_webhooks;
@@ -41,7 +41,7 @@ pub(super) async fn validate(
     Document(document, _memory): Document,
 ) -> Result<Json<Validation>, Refusal> {
     // The estimate divides both gears into elements.
-    let validation = aside(onlooker.name(), move |_| {
+    let validation = blocking(onlooker.name(), move |_| {
         Submission::parse(&document).map(|it| meshwright_wire::validate(&it))
     });
     Ok(Json(validation.await??))
@@ -78,13 +78,13 @@ pub(super) struct Examples {
     responses((status = 200, description = "The examples.", body = Examples)),
 )]
 pub(super) async fn examples(request: HeaderMap) -> Response {
-    static EXAMPLES: LazyLock<Standing> = LazyLock::new(|| {
+    static EXAMPLES: LazyLock<StaticFile> = LazyLock::new(|| {
         let items = meshwright_wire::examples()
             .iter()
             .map(Example::of)
             .collect();
         let json = serde_json::to_vec(&Examples { items }).expect("examples are plain data");
-        Standing::document("application/json", json)
+        StaticFile::document("application/json", json)
     });
     EXAMPLES.answer(&request).await
 }

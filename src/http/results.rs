@@ -7,7 +7,7 @@ use meshwright_wire::Problem;
 
 use super::accepts::takes_gzip;
 use super::app::App;
-use super::aside::aside;
+use super::blocking::blocking;
 use super::client::Client;
 use super::conditional::{Keep, Tag};
 use super::parameters::{IfNoneMatch, JobId};
@@ -75,7 +75,7 @@ pub(super) async fn text_of(client: &str, document: Document) -> Result<String, 
     let text = if document.packed_bytes() <= SMALL {
         document.text()
     } else {
-        aside(client, move |_| document.text()).await?
+        blocking(client, move |_| document.text()).await?
     };
     Ok(text.map_err(JobError::from)?)
 }

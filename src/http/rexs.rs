@@ -10,7 +10,7 @@ use serde_json::Value;
 use utoipa::{IntoParams, ToSchema};
 
 use super::answer::file;
-use super::aside::aside;
+use super::blocking::blocking;
 use super::client::{Client, Onlooker};
 use super::document::ModelDocument;
 use super::parameters::{JobId, Parameters};
@@ -99,7 +99,7 @@ pub(super) async fn read(
         drop(memory);
         view
     };
-    Ok(Json(aside(onlooker.name(), read).await??))
+    Ok(Json(blocking(onlooker.name(), read).await??))
 }
 
 fn model_view(model: &[u8], parameters: &ModelParameters) -> Result<ModelView, Problem> {
@@ -235,7 +235,7 @@ pub(super) async fn write(client: Client, JobId(id): JobId) -> Result<Response, 
     };
     let date = job.submitted_at.strftime("%Y-%m-%dT%H:%M:%S+00:00");
     let date = date.to_string();
-    let written = aside(client.name(), move |_| {
+    let written = blocking(client.name(), move |_| {
         let submission = Submission::parse(submission.as_bytes())?;
         let results: Option<Value> = match document {
             None => None,

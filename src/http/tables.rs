@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 use utoipa::{IntoParams, ToSchema};
 
 use super::answer::file;
-use super::aside::aside;
+use super::blocking::blocking;
 use super::client::Client;
 use super::conditional::{Keep, Tag};
 use super::parameters::{IfNoneMatch, JobId, Parameters};
@@ -275,7 +275,7 @@ pub(super) async fn table(
         let memory = client.app.bodies.for_answer(client.name(), most).await?;
         let document = client.app.jobs.document_of(&job, &stored).await?;
         let name = format!("{id}-{file}");
-        let made = aside(client.name(), move |_| {
+        let made = blocking(client.name(), move |_| {
             make(&document, wanted, torque, &name)
         });
         memory.hold_body(made.await??).await

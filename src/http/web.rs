@@ -12,7 +12,7 @@ use meshwright_wire::{Code, Problem};
 
 use super::app::App;
 use super::problem::Refusal;
-use super::standing::{Folder, files};
+use super::static_files::{Folder, files};
 
 static FILES: LazyLock<Folder> = LazyLock::new(|| Folder::of(files::PAGE));
 

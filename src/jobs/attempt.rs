@@ -19,8 +19,8 @@ use uuid::Uuid;
 
 use super::job::{Job, Progress};
 use super::live::Entered;
-use super::shop::{Shop, Threads};
 use super::store::{Came, Claim, Damaged, End, Ended, Packed, Started, StoreError};
+use super::worker_context::{Threads, WorkerContext};
 use crate::compute::{Budget, Solve, message_of};
 use crate::spans::{self, Span};
 
@@ -57,13 +57,13 @@ type Told = (usize, Outcome, SignedDuration);
 const LOOK_AFTER: Duration = Duration::from_millis(50);
 
 impl Attempt {
-    fn of(shop: &Shop, job: Job) -> Self {
+    fn of(context: &WorkerContext, job: Job) -> Self {
         info!(job = %job.id, client = job.client, attempt = job.attempt, method = job.method, "job started");
         let claim = Claim {
             id: job.id,
             attempt: job.attempt,
         };
-        let entered = shop.jobs.live.enter(job.id, job.progress);
+        let entered = context.jobs.live.enter(job.id, job.progress);
         Self {
             job,
             claim,
@@ -75,7 +75,7 @@ impl Attempt {
 /// A job to compute: its id and client, how much of its results is kept, its submission, and its handle.
 type Work = (Uuid, String, Kept, Result<String, Damaged>, Run);
 
-impl Shop {
+impl WorkerContext {
     /// Has claimed jobs computed, and watches over them: heartbeat, time limit, shutdown. Gives back how often a
     /// worker had been told of jobs when the last of these had ended, and nobody knew yet.
     pub(super) async fn compute(&self, started: Vec<Started>, threads: &Threads) -> u64 {

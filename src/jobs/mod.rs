@@ -15,11 +15,11 @@ mod others;
 mod queue;
 mod resource;
 mod searches;
-mod shop;
 pub(crate) mod store;
 mod studies;
 mod study;
 mod worker;
+mod worker_context;
 
 pub use clock::Clock;
 pub use error::JobError;
@@ -29,11 +29,11 @@ pub use live::{Changes, News};
 pub(crate) use queue::KEY_LIFETIME;
 pub use queue::{Jobs, Member, Rules};
 pub use resource::{Listed, Submitted};
-pub use shop::Pace;
 pub use store::{
-    BackupError, Cursor, Damaged, Depth, Document, DocumentLine, EventKind, Filter, KeyRecord,
-    Membership, Migrate, NoCursor, OpenError, Place, Removed, Role, Space, Span, Store, StoreError,
-    StudyFilter,
+    BackupError, Cursor, Damaged, DatabaseAddress, Depth, Document, DocumentLine, EventKind,
+    Filter, KeyRecord, Membership, Migrate, NoCursor, OpenError, Removed, Role, Space, Span, Store,
+    StoreError, StudyFilter,
 };
 pub use study::StudyRecord;
 pub use worker::{StartError, Workers};
+pub use worker_context::Pace;

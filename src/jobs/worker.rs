@@ -11,8 +11,8 @@ use tracing::{error, info, warn};
 use uuid::Uuid;
 
 use super::queue::Jobs;
-use super::shop::{Pace, Shop, Threads};
 use super::store::{Claimed, Lease, Lost, Reader, Started, StoreError};
+use super::worker_context::{Pace, Threads, WorkerContext};
 use crate::compute::{Cores, NoThreads, Solve};
 
 /// So much of a core is claimed at once, in microseconds by the rough estimate: many jobs of a millisecond, some members of a
@@ -43,23 +43,23 @@ impl Workers {
         pace: Pace,
         in_order: bool,
     ) -> Result<Self, StartError> {
-        let shop = Arc::new(Shop { jobs, solve, pace });
+        let context = Arc::new(WorkerContext { jobs, solve, pace });
         let lost = if in_order {
             Lost::InOrder
         } else {
             Lost::Process
         };
-        let lost = if shop.jobs.store.is_shared() {
+        let lost = if context.jobs.store.is_shared() {
             // What another process runs is its own as long as it reports.
-            shop.over(&[])
+            context.over(&[])
         } else {
             lost
         };
-        shop.recover(lost).await.map_err(StartError::Database)?;
-        let mut workers = Self::hire(Arc::clone(&shop), count)?;
+        context.recover(lost).await.map_err(StartError::Database)?;
+        let mut workers = Self::hire(Arc::clone(&context), count)?;
         workers
             .tasks
-            .spawn(async move { shop.watch_studies().await });
+            .spawn(async move { context.watch_studies().await });
         Ok(workers)
     }
 
@@ -75,22 +75,22 @@ impl Workers {
         count: usize,
         pace: Pace,
     ) -> Result<Self, StartError> {
-        Self::hire(Arc::new(Shop { jobs, solve, pace }), count)
+        Self::hire(Arc::new(WorkerContext { jobs, solve, pace }), count)
     }
 
-    fn hire(shop: Arc<Shop>, count: usize) -> Result<Self, StartError> {
+    fn hire(context: Arc<WorkerContext>, count: usize) -> Result<Self, StartError> {
         let alive = Arc::new(AtomicUsize::new(0));
         let mut tasks = JoinSet::new();
         for worker in 0..count {
             let alive = Alive::new(&alive);
-            let shop = Arc::clone(&shop);
+            let context = Arc::clone(&context);
             let threads = Threads::of(worker, Cores::here().for_each_of(count))?;
             tasks.spawn(async move {
                 let _alive = alive;
-                shop.work(&threads).await;
+                context.work(&threads).await;
             });
         }
-        tasks.spawn(async move { shop.watch_leases().await });
+        tasks.spawn(async move { context.watch_leases().await });
         Ok(Self { tasks, alive })
     }
 
@@ -136,7 +136,7 @@ impl Drop for Alive {
     }
 }
 
-impl Shop {
+impl WorkerContext {
     /// One worker: job after job until the stop.
     async fn work(&self, threads: &Threads) {
         let stop = self.jobs.stop();
@@ -288,7 +288,7 @@ mod tests {
     use super::super::clock::Clock;
     use super::super::job::Job;
     use super::super::queue::{Member, Rules};
-    use super::super::store::{Place, Store};
+    use super::super::store::{DatabaseAddress, Store};
     use super::*;
     use crate::testing::RESULTS;
 
@@ -342,7 +342,7 @@ mod tests {
         async fn new() -> Self {
             let recorder = Box::leak(Box::new(PrometheusBuilder::new().build_recorder()));
             let folder = tempfile::tempdir().unwrap();
-            let place = Place::File(folder.path().join("jobs.db"));
+            let place = DatabaseAddress::File(folder.path().join("jobs.db"));
             let store = Store::open(&place).await.unwrap();
             let stop = CancellationToken::new();
             Self {

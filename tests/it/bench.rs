@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use meshwright::compute::Solve;
 use meshwright::config::Config;
-use meshwright::jobs::{Clock, Place};
+use meshwright::jobs::{Clock, DatabaseAddress};
 use meshwright::serve::{Compute, Service, World, serve};
 use meshwright::webhooks::HookRules;
 use meshwright_engine::run::Run;
@@ -29,7 +29,7 @@ pub(crate) fn results() -> Results {
 }
 
 /// The usual configuration, with one worker, few places and a free port.
-pub(crate) fn config(database: &Place) -> Config {
+pub(crate) fn config(database: &DatabaseAddress) -> Config {
     #[derive(clap::Parser)]
     struct Arguments {
         #[command(flatten)]
@@ -147,7 +147,7 @@ impl Bench {
     }
 
     /// A service like this one on the database at `place`.
-    pub(crate) async fn another_on(&self, place: Place) -> anyhow::Result<Service> {
+    pub(crate) async fn another_on(&self, place: DatabaseAddress) -> anyhow::Result<Service> {
         let config = Config {
             database: place,
             ..self.config.clone()

@@ -6,7 +6,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use meshwright::jobs::Place;
+use meshwright::jobs::DatabaseAddress;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use meshwright_wire::{Submission, solve};
@@ -52,7 +52,7 @@ struct Tally {
     ready: Vec<Duration>,
 }
 
-async fn round(seed: u64, jobs: u64, kills: u32, database: &Place) -> Tally {
+async fn round(seed: u64, jobs: u64, kills: u32, database: &DatabaseAddress) -> Tally {
     let mut chance = Chance(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
     let client = meshwright::client()
         .timeout(Duration::from_secs(20))

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use meshwright::jobs::Place;
+use meshwright::jobs::DatabaseAddress;
 use reqwest::Client;
 use serde_json::{Value, json};
 use sqlx::sqlite::SqliteConnectOptions;
@@ -76,7 +76,7 @@ async fn a_full_disk_stops_nothing_for_longer_than_it_is_full() {
         return;
     };
     let process = Process::start_with(
-        &Place::File(disk.folder.join("meshwright.db")),
+        &DatabaseAddress::File(disk.folder.join("meshwright.db")),
         &["--keep-gb", "0"],
     );
     let client = meshwright::client()
@@ -230,7 +230,7 @@ async fn a_database_that_cannot_be_written_is_refused_with_a_reason_and_an_exit_
         return;
     };
     let path = disk.folder.join("meshwright.db");
-    Process::start(&Place::File(path.clone())).kill();
+    Process::start(&DatabaseAddress::File(path.clone())).kill();
     let remounted = Command::new("mount")
         .args(["-o", "remount,ro"])
         .arg(&disk.folder)

@@ -9,7 +9,7 @@ use std::process::Command;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use meshwright::jobs::Place;
+use meshwright::jobs::DatabaseAddress;
 use reqwest::Client;
 use rustix::process::Signal;
 use serde_json::{Value, json};
@@ -44,7 +44,7 @@ const SUCCESSFUL: &str = "select count(*) from jobs where status = 'successful'"
 
 /// The processes, and the database that they share.
 struct Fleet {
-    place: Place,
+    place: DatabaseAddress,
     workers: Vec<Process>,
     apis: Vec<Process>,
     bases: Bases,
@@ -66,13 +66,13 @@ fn told<'a>(role: &'a str, lease: &'a str) -> [&'a str; 8] {
     ]
 }
 
-fn start(place: &Place, role: &str, lease: &str) -> Process {
+fn start(place: &DatabaseAddress, role: &str, lease: &str) -> Process {
     Process::start_with(place, &told(role, lease))
 }
 
 impl Fleet {
     fn start(address: &str, workers: usize, apis: usize, lease: &str) -> Self {
-        let place = Place::Postgres(address.to_owned());
+        let place = DatabaseAddress::Postgres(address.to_owned());
         let apis = (0..apis).map(|_| start(&place, "api", lease)).collect();
         let workers = (0..workers)
             .map(|_| start(&place, "worker", lease))
@@ -81,12 +81,12 @@ impl Fleet {
     }
 
     /// One process that does everything.
-    fn alone(place: Place) -> Self {
+    fn alone(place: DatabaseAddress) -> Self {
         let process = start(&place, "all", "30s");
         Self::of(place, vec![process], Vec::new(), "30s")
     }
 
-    fn of(place: Place, apis: Vec<Process>, workers: Vec<Process>, lease: &str) -> Self {
+    fn of(place: DatabaseAddress, apis: Vec<Process>, workers: Vec<Process>, lease: &str) -> Self {
         let bases = apis.iter().map(|api| api.base.clone()).collect();
         Self {
             workers,
@@ -149,7 +149,7 @@ impl Fleet {
     }
 
     async fn connect(&self) -> PgConnection {
-        let Place::Postgres(address) = &self.place else {
+        let DatabaseAddress::Postgres(address) = &self.place else {
             unreachable!("a fleet has a server")
         };
         server::connect(address).await
@@ -273,7 +273,7 @@ async fn calm(fleet: &Fleet, count: u64) -> f64 {
 
 async fn calm_on_a_file(count: u64) -> f64 {
     let folder = tempfile::tempdir().unwrap();
-    let fleet = Fleet::alone(Place::File(folder.path().join("meshwright.db")));
+    let fleet = Fleet::alone(DatabaseAddress::File(folder.path().join("meshwright.db")));
     let rate = calm(&fleet, count).await;
     println!("{count} jobs, one process on a file, 1 worker: {rate:.1} a second");
     rate
@@ -390,7 +390,7 @@ async fn a_dismissal_that_takes_long_keeps_no_lost_job_waiting() {
 }
 
 /// The median time of a small job from its submission to its answer, one after the other, in milliseconds.
-async fn to_and_fro(place: &Place) -> f64 {
+async fn to_and_fro(place: &DatabaseAddress) -> f64 {
     const JOBS: u32 = 200;
     let process = Process::start(place);
     let client = meshwright::client().build().unwrap();
@@ -421,8 +421,8 @@ async fn to_and_fro(place: &Place) -> f64 {
 #[ignore = "a measurement; tests/fleet runs it"]
 async fn a_job_takes_a_little_longer_to_and_fro_than_on_a_file() {
     let folder = tempfile::tempdir().unwrap();
-    let file = Place::File(folder.path().join("meshwright.db"));
-    let server = Place::Postgres(server::database().await);
+    let file = DatabaseAddress::File(folder.path().join("meshwright.db"));
+    let server = DatabaseAddress::Postgres(server::database().await);
     for round in 0..2 {
         let (on_file, on_server) = (to_and_fro(&file).await, to_and_fro(&server).await);
         println!(
@@ -613,7 +613,11 @@ async fn a_worker_cut_off_from_the_server_gives_up_its_job_and_works_again_when_
     let address = server::database().await;
     let mut fleet = Fleet::start(&address, 0, 1, "1s");
     let way = Way::to(&address).await;
-    let cut_off = start(&Place::Postgres(way.address.clone()), "worker", "1s");
+    let cut_off = start(
+        &DatabaseAddress::Postgres(way.address.clone()),
+        "worker",
+        "1s",
+    );
 
     // A job that nobody ends before the test does.
     let mut long = job(0);
@@ -664,7 +668,11 @@ async fn results_whose_connection_dies_are_written_by_another_one_within_the_lea
     let mut fleet = Fleet::start(&address, 0, 1, "6s");
     // The connection dies when the results are said on it, before anything is locked; nobody is told.
     let way = Way::with_fatal(&address, Some("insert into documents")).await;
-    let half_open = start(&Place::Postgres(way.address.clone()), "worker", "6s");
+    let half_open = start(
+        &DatabaseAddress::Postgres(way.address.clone()),
+        "worker",
+        "6s",
+    );
     let submitted = fleet.submit(1);
     fleet
         .until("select count(*) from jobs where status <> 'accepted'", 1)

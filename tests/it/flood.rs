@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use jiff::Timestamp;
-use meshwright::jobs::{KeyRecord, Place, Role, Store};
+use meshwright::jobs::{DatabaseAddress, KeyRecord, Role, Store};
 use meshwright::keys::Key;
 use tempfile::TempDir;
 use tokio::io::AsyncWriteExt;
@@ -31,7 +31,7 @@ pub(crate) async fn shared_by(clients: [&str; 2]) -> (TempDir, Process, [String;
 }
 
 /// Makes a key, as `meshwright keys create` does.
-pub(crate) async fn make_key(database: &Place, client: &str) -> String {
+pub(crate) async fn make_key(database: &DatabaseAddress, client: &str) -> String {
     let store = Store::open(database).await.unwrap();
     let key = Key::random().unwrap();
     let record = KeyRecord {

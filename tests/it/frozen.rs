@@ -4,7 +4,7 @@
 use std::fs;
 use std::time::{Duration, Instant};
 
-use meshwright::jobs::Place;
+use meshwright::jobs::DatabaseAddress;
 use reqwest::Client;
 use rustix::process::{Pid, Signal, kill_process};
 
@@ -76,7 +76,7 @@ async fn ask(client: &Client, process: &Process, torque: f64) -> [(u16, Duration
 async fn whichever_table_is_locked_ready_says_so() {
     let address = server::database().await;
     let client = meshwright::client().timeout(ANSWERED).build().unwrap();
-    let process = Process::start(&Place::Postgres(address.clone()));
+    let process = Process::start(&DatabaseAddress::Postgres(address.clone()));
     let mut lock = server::connect(&address).await;
     // But for those that are looked at when a process begins.
     let tables: Vec<String> = sqlx::query_scalar(
@@ -101,7 +101,7 @@ async fn whichever_table_is_locked_ready_says_so() {
 async fn a_server_that_answers_nothing_holds_up_no_request_and_no_end() {
     let (address, folder) = tokio::task::spawn_blocking(server::start).await.unwrap();
     let address = server::database_of(&address, "frozen").await;
-    let place = Place::Postgres(address.clone());
+    let place = DatabaseAddress::Postgres(address.clone());
     let client = meshwright::client().timeout(ANSWERED).build().unwrap();
     let mut process = Process::start(&place);
 

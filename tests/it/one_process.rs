@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
-use meshwright::jobs::Place;
+use meshwright::jobs::DatabaseAddress;
 use meshwright_wire::examples;
 use serde_json::{Value, json};
 use sqlx::Connection;
@@ -59,7 +59,11 @@ async fn links_of_both_kinds_lead_to_the_same_lock() {
     std::os::unix::fs::symlink(database, &symbolic).unwrap();
     std::fs::hard_link(database, &hard).unwrap();
     for path in [symbolic, hard] {
-        let refusal = bench.another_on(Place::File(path)).await.err().unwrap();
+        let refusal = bench
+            .another_on(DatabaseAddress::File(path))
+            .await
+            .err()
+            .unwrap();
         assert!(refusal.to_string().contains("another process"), "{refusal}");
     }
 }

@@ -3,7 +3,7 @@
 
 use std::time::Instant;
 
-use meshwright::jobs::Place;
+use meshwright::jobs::DatabaseAddress;
 use reqwest::Client;
 use serde_json::{Value, json};
 
@@ -55,7 +55,7 @@ async fn listed(process: &Process, client: &Client, study: &Value) -> usize {
 }
 
 /// A study of so many designs, from its submission to its cancellation. It says what that took.
-async fn live_and_die(place: &Place, designs: u32) {
+async fn live_and_die(place: &DatabaseAddress, designs: u32) {
     let client = meshwright::client().build().unwrap();
     let process = Process::start_with(place, &["--workers", "1"]);
     let study = population(designs);
@@ -121,6 +121,14 @@ async fn a_population_is_listed_streamed_and_cancelled() {
 #[ignore = "takes some minutes; tests/fleet runs it"]
 async fn a_hundred_thousand_designs_are_listed_streamed_and_cancelled() {
     let folder = tempfile::tempdir().unwrap();
-    live_and_die(&Place::File(folder.path().join("meshwright.db")), 100_000).await;
-    live_and_die(&Place::Postgres(server::database().await), 100_000).await;
+    live_and_die(
+        &DatabaseAddress::File(folder.path().join("meshwright.db")),
+        100_000,
+    )
+    .await;
+    live_and_die(
+        &DatabaseAddress::Postgres(server::database().await),
+        100_000,
+    )
+    .await;
 }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use reqwest::Client;
 use serde_json::Value;
 
-use meshwright::jobs::Place;
+use meshwright::jobs::DatabaseAddress;
 
 use crate::bench::{Asked, Said};
 use crate::stores;
@@ -19,23 +19,27 @@ pub(crate) struct Process {
 }
 
 impl Process {
-    pub(crate) fn start(database: &Place) -> Self {
+    pub(crate) fn start(database: &DatabaseAddress) -> Self {
         Self::start_with(database, &[])
     }
 
     /// The same with more arguments.
-    pub(crate) fn start_with(database: &Place, arguments: &[&str]) -> Self {
+    pub(crate) fn start_with(database: &DatabaseAddress, arguments: &[&str]) -> Self {
         let program = Command::new(env!("CARGO_BIN_EXE_meshwright"));
         Self::spawn(program, database, arguments)
     }
 
     /// The same of another program.
-    pub(crate) fn start_program(program: &str, database: &Place, arguments: &[&str]) -> Self {
+    pub(crate) fn start_program(
+        program: &str,
+        database: &DatabaseAddress,
+        arguments: &[&str],
+    ) -> Self {
         Self::spawn(Command::new(program), database, arguments)
     }
 
     /// The same with so many descriptors.
-    pub(crate) fn start_with_descriptors(database: &Place, descriptors: u32) -> Self {
+    pub(crate) fn start_with_descriptors(database: &DatabaseAddress, descriptors: u32) -> Self {
         let mut shell = Command::new("sh");
         let limited = format!("ulimit -n {descriptors}; exec \"$0\" \"$@\"");
         shell.args(["-c", &limited, env!("CARGO_BIN_EXE_meshwright")]);
@@ -43,13 +47,13 @@ impl Process {
     }
 
     /// The same on a host of its own, a network namespace.
-    pub(crate) fn start_on(host: &str, database: &Place, arguments: &[&str]) -> Self {
+    pub(crate) fn start_on(host: &str, database: &DatabaseAddress, arguments: &[&str]) -> Self {
         let mut program = Command::new("ip");
         program.args(["netns", "exec", host, env!("CARGO_BIN_EXE_meshwright")]);
         Self::spawn(program, database, arguments)
     }
 
-    fn spawn(mut program: Command, database: &Place, arguments: &[&str]) -> Self {
+    fn spawn(mut program: Command, database: &DatabaseAddress, arguments: &[&str]) -> Self {
         let mut child = program
             .args(["serve", "--listen", "127.0.0.1:0", "--database"])
             .arg(stores::address(database))

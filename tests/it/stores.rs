@@ -1,6 +1,6 @@
 //! The store that the suites run on: files of SQLite, or databases of a PostgreSQL.
 
-use meshwright::jobs::Place;
+use meshwright::jobs::DatabaseAddress;
 use sqlx::sqlite::SqlitePool;
 use tempfile::TempDir;
 use tokio::sync::Mutex;
@@ -16,19 +16,19 @@ pub(crate) fn on_postgres() -> bool {
 }
 
 /// A database without anything in it: a file in `folder`, or one of the server.
-pub(crate) async fn place(folder: &TempDir) -> Place {
+pub(crate) async fn place(folder: &TempDir) -> DatabaseAddress {
     if on_postgres() {
-        Place::Postgres(server::database().await)
+        DatabaseAddress::Postgres(server::database().await)
     } else {
-        Place::File(folder.path().join("meshwright.db"))
+        DatabaseAddress::File(folder.path().join("meshwright.db"))
     }
 }
 
 /// What the command line calls it.
-pub(crate) fn address(place: &Place) -> String {
+pub(crate) fn address(place: &DatabaseAddress) -> String {
     match place {
-        Place::File(path) => path.to_str().unwrap().to_owned(),
-        Place::Postgres(address) => address.clone(),
+        DatabaseAddress::File(path) => path.to_str().unwrap().to_owned(),
+        DatabaseAddress::Postgres(address) => address.clone(),
     }
 }
 
@@ -42,15 +42,15 @@ pub(crate) fn arguments() -> &'static [&'static str] {
 }
 
 /// The number that a query gives.
-pub(crate) async fn number(place: &Place, query: &'static str) -> i64 {
+pub(crate) async fn number(place: &DatabaseAddress, query: &'static str) -> i64 {
     match place {
-        Place::File(path) => {
+        DatabaseAddress::File(path) => {
             let address = format!("sqlite://{}", path.display());
             let file = SqlitePool::connect(&address).await.unwrap();
             let number = sqlx::query_scalar(query);
             number.fetch_one(&file).await.unwrap()
         }
-        Place::Postgres(address) => {
+        DatabaseAddress::Postgres(address) => {
             let number = sqlx::query_scalar(query);
             let mut connection = server::connect(address).await;
             number.fetch_one(&mut connection).await.unwrap()
@@ -59,10 +59,10 @@ pub(crate) async fn number(place: &Place, query: &'static str) -> i64 {
 }
 
 /// Bytes of a database.
-pub(crate) async fn bytes(place: &Place) -> u64 {
+pub(crate) async fn bytes(place: &DatabaseAddress) -> u64 {
     let bytes = match place {
-        Place::File(path) => std::fs::metadata(path).unwrap().len().try_into(),
-        Place::Postgres(_) => {
+        DatabaseAddress::File(path) => std::fs::metadata(path).unwrap().len().try_into(),
+        DatabaseAddress::Postgres(_) => {
             Ok(number(place, "select pg_database_size(current_database())").await)
         }
     };
@@ -70,8 +70,8 @@ pub(crate) async fn bytes(place: &Place) -> u64 {
 }
 
 /// Has all leases run out, as they do while nobody reports; on SQLite the next process does not wait for that.
-pub(crate) async fn pass_a_lease(place: &Place) {
-    if let Place::Postgres(address) = place {
+pub(crate) async fn pass_a_lease(place: &DatabaseAddress) {
+    if let DatabaseAddress::Postgres(address) = place {
         let mut connection = server::connect(address).await;
         for statement in [
             "update jobs set lease_until = 1 where status = 'running'",
@@ -86,8 +86,8 @@ pub(crate) async fn pass_a_lease(place: &Place) {
 }
 
 /// Has leases run by the clock that a test gives, which on SQLite they do anyway.
-pub(crate) async fn give_clock(place: &Place) {
-    if let Place::Postgres(address) = place {
+pub(crate) async fn give_clock(place: &DatabaseAddress) {
+    if let DatabaseAddress::Postgres(address) = place {
         server::give_clock(address).await;
     }
 }

@@ -6,7 +6,9 @@ use std::time::Duration;
 
 use jiff::Timestamp;
 use meshwright::compute::Solve;
-use meshwright::jobs::{Clock, Filter, Job, Jobs, Member, Pace, Place, Rules, Store, Workers};
+use meshwright::jobs::{
+    Clock, DatabaseAddress, Filter, Job, Jobs, Member, Pace, Rules, Store, Workers,
+};
 use meshwright_wire::{Code, Problem, Results, Status, Submission};
 use tempfile::TempDir;
 use tokio_util::sync::CancellationToken;
@@ -71,11 +73,11 @@ fn rules() -> Rules {
     }
 }
 
-async fn open(place: &Place) -> Store {
+async fn open(place: &DatabaseAddress) -> Store {
     Store::open(place).await.unwrap()
 }
 
-async fn jobs(clock: Clock) -> (Jobs, CancellationToken, (Place, TempDir)) {
+async fn jobs(clock: Clock) -> (Jobs, CancellationToken, (DatabaseAddress, TempDir)) {
     let folder = tempfile::tempdir().unwrap();
     let place = stores::place(&folder).await;
     let stop = CancellationToken::new();

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use meshwright::jobs::Place;
+use meshwright::jobs::DatabaseAddress;
 use reqwest::Client;
 use serde_json::{Value, json};
 use tokio::sync::Mutex;
@@ -44,7 +44,7 @@ struct Version {
 
 /// What goes on while versions come and go.
 struct Service {
-    place: Place,
+    place: DatabaseAddress,
     bases: Bases,
     client: Client,
     studies: Vec<(String, String)>,
@@ -120,7 +120,7 @@ async fn versions_follow_each_other_forwards_and_back_under_load_and_nothing_fai
     let next = PathBuf::from(std::env::var_os("MESHWRIGHT_NEXT").expect("a program"));
     let next = next.to_str().unwrap();
     let mut service = Service {
-        place: Place::Postgres(server::database().await),
+        place: DatabaseAddress::Postgres(server::database().await),
         bases: Arc::new(Mutex::new(Vec::new())),
         client: meshwright::client()
             .timeout(Duration::from_secs(20))

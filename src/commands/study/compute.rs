@@ -14,7 +14,9 @@ use super::folder::ResultFolder;
 use super::tables::numbers;
 use crate::commands::serve::signal;
 use crate::compute::Cores;
-use crate::jobs::{Clock, Jobs, Member, Migrate, Pace, Place, Rules, StudyRecord, Workers};
+use crate::jobs::{
+    Clock, DatabaseAddress, Jobs, Member, Migrate, Pace, Rules, StudyRecord, Workers,
+};
 use crate::serve::open;
 
 /// What the substructures that designs share may take.
@@ -55,7 +57,7 @@ async fn compute_on_database(
     let database =
         database.with_context(|| format!("nothing can be written in {}", beside.display()))?;
     let store = open(
-        &Place::File(database.path().join("study.db")),
+        &DatabaseAddress::File(database.path().join("study.db")),
         Migrate::Auto,
     )
     .await?;

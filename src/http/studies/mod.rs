@@ -15,7 +15,7 @@ use serde::Deserialize;
 use utoipa::IntoParams;
 
 use super::answer::{self, json, tell_when_to_return};
-use super::aside::{aside, turn_to_read};
+use super::blocking::{blocking, turn_to_read};
 use super::client::Client;
 use super::conditional::{Keep, Tag};
 use super::document::Document;
@@ -65,7 +65,7 @@ pub(super) async fn submit(
     Document(document, memory): Document<MIB>,
 ) -> Result<Response, Refusal> {
     let read = move |run: &Run| (Study::submitted(&document, run), memory);
-    let (study, _memory) = aside(client.name(), read).await?;
+    let (study, _memory) = blocking(client.name(), read).await?;
     let study = study?;
     let submitted = client
         .app

@@ -14,7 +14,7 @@ use super::{MIB, over_rows, tag_of};
 use crate::compute::Part;
 use crate::http::answer::{json, tell_when_to_return};
 use crate::http::app::App;
-use crate::http::aside::aside;
+use crate::http::blocking::blocking;
 use crate::http::client::Client;
 use crate::http::conditional::{Keep, Tag};
 use crate::http::memory::SMALL;
@@ -77,7 +77,7 @@ async fn results(
         };
         let sample = over_rows(app, &client, record.id, sample, add).await?;
         let (id, status) = (record.id, record.status());
-        let (part, is_last) = aside(&client, move |_| {
+        let (part, is_last) = blocking(&client, move |_| {
             (sample.results(Some(id), status), sample.has_all_torques())
         })
         .await?;
@@ -112,7 +112,7 @@ async fn document(
         drop((text, bytes));
         (study, memory)
     };
-    let (study, memory) = aside(client, read).await?;
+    let (study, memory) = blocking(client, read).await?;
     Ok((study?, memory))
 }
 
@@ -163,7 +163,7 @@ async fn submission_of(
 ) -> Result<Option<String>, Problem> {
     let (study, memory) = document(app, client, record).await?;
     if !study.is_search() {
-        return aside(client, move |_| {
+        return blocking(client, move |_| {
             let _memory = memory;
             study.submission_of(row as usize)
         })
@@ -171,7 +171,7 @@ async fn submission_of(
     }
     // What a search asked for stands in its rows.
     let rows = app.jobs.study_rows(record.id, u64::from(row), 1).await?;
-    aside(client, move |_| {
+    blocking(client, move |_| {
         let row = rows.first()?;
         study.submission_searched(&row.label, &row.changes)
     })

@@ -25,7 +25,7 @@ use super::tag_of;
 use super::view::why_failed;
 use crate::http::answer::{self, tell_when_to_return};
 use crate::http::app::App;
-use crate::http::aside::{aside, turn_to_read};
+use crate::http::blocking::{blocking, turn_to_read};
 use crate::http::client::Client;
 use crate::http::conditional::Keep;
 use crate::http::parameters::{IfNoneMatch, StudyId};
@@ -267,7 +267,7 @@ impl Outlines {
                 told: outline.told(),
                 best: outline.front(),
             };
-            aside(client, front).await
+            blocking(client, front).await
         };
         cell.get_or_try_init(make).await?;
         Ok(cell)
@@ -336,7 +336,7 @@ pub(super) async fn over_rows<T: Send + 'static>(
         }
         let before = read;
         read += rows.len() as u64;
-        let added = aside(client, move |_| {
+        let added = blocking(client, move |_| {
             (before..)
                 .zip(&rows)
                 .for_each(|(place, row)| add(&mut made, place, row));
@@ -428,7 +428,7 @@ async fn page(
         return Ok(None);
     }
     let (count, words) = (rows.len() as u64, Arc::clone(writer));
-    let text = aside(client, move |_| words.write(read, rows)).await?;
+    let text = blocking(client, move |_| words.write(read, rows)).await?;
     Ok(Some((memory.hold(text).0, count)))
 }
 
@@ -478,7 +478,7 @@ async fn lines(
     let Some(last) = found.last().map(|line| line.position) else {
         return Ok(None);
     };
-    let text = aside(client, move |_| {
+    let text = blocking(client, move |_| {
         found.iter().map(line).collect::<Result<String, _>>()
     });
     Ok(Some((memory.hold(text.await??).0, last)))

@@ -5,14 +5,14 @@ use std::path::{Path, PathBuf};
 use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{ConnectOptions, Connection};
 
-use super::{Place, Store};
+use super::{DatabaseAddress, Store};
 
 /// Why there is no backup.
 #[derive(Debug, thiserror::Error)]
 pub enum BackupError {
     /// The database is no file.
     #[error("{0} is copied by PostgreSQL's own pg_dump")]
-    NoFile(Place),
+    NoFile(DatabaseAddress),
     /// A file is there already.
     #[error("{} is there already; nothing was written", .0.display())]
     Exists(PathBuf),
@@ -34,8 +34,8 @@ impl Store {
     /// # Errors
     ///
     /// [`BackupError`].
-    pub async fn backup(database: &Place, target: &Path) -> Result<(), BackupError> {
-        let Place::File(database) = database else {
+    pub async fn backup(database: &DatabaseAddress, target: &Path) -> Result<(), BackupError> {
+        let DatabaseAddress::File(database) = database else {
             return Err(BackupError::NoFile(database.clone()));
         };
         if target.exists() {

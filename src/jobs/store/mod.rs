@@ -19,15 +19,16 @@
 //!                      \------------------+------> dismissed   cancel
 //! ```
 
+mod address;
 mod attempt;
 mod backup;
 mod claim;
+mod database_files;
 pub(crate) mod dialect;
 mod documents;
 mod end;
 mod endings;
 mod error;
-mod ground;
 mod health;
 mod keys;
 mod lists;
@@ -35,7 +36,6 @@ pub(crate) mod lock;
 mod news;
 mod open;
 pub(crate) mod outbox;
-mod place;
 mod private;
 mod retention;
 pub(crate) mod rows;
@@ -53,10 +53,11 @@ use std::sync::Arc;
 use jiff::SignedDuration;
 use uuid::Uuid;
 
-use ground::Ground;
+use database_files::DatabaseFiles;
 use health::Health;
 use statement::Pool;
 
+pub use address::DatabaseAddress;
 pub use backup::BackupError;
 pub use documents::{Damaged, Document};
 pub use error::StoreError;
@@ -64,7 +65,6 @@ pub use keys::{KeyRecord, Role};
 pub use lists::{Cursor, Depth, Filter, Membership, NoCursor, Span, StudyFilter};
 pub use open::{Migrate, OpenError};
 pub use outbox::EventKind;
-pub use place::Place;
 pub use retention::{Removed, Space};
 pub use study_tables::DocumentLine;
 
@@ -83,12 +83,12 @@ pub(super) use submit::{NewJob, Outcome, QueueBounds};
 /// finding the file locked; readers see the last commit meanwhile. PostgreSQL takes many; there both pools are one.
 #[derive(Debug, Clone)]
 pub struct Store {
-    place: Place,
+    place: DatabaseAddress,
     writer: Pool,
     pub(crate) readers: Pool,
     health: Arc<Health>,
     /// What its file stands on, if it is one.
-    ground: Option<Ground>,
+    files: Option<DatabaseFiles>,
     /// This process, among those that work on the same database. Another one at each start.
     process: Uuid,
 }
@@ -107,7 +107,7 @@ impl Store {
 
     /// Whether other processes may work on the same database.
     pub fn is_shared(&self) -> bool {
-        matches!(self.place, Place::Postgres(_))
+        matches!(self.place, DatabaseAddress::Postgres(_))
     }
 }
 

@@ -16,13 +16,13 @@ use tokio::time::timeout;
 use tracing::{info, warn};
 use uuid::Uuid;
 
+use super::database_files::DatabaseFiles;
 use super::error::{may_pass, primary_code};
-use super::ground::Ground;
 use super::health::Health;
 use super::lock::beside;
 use super::private::open_or_make;
 use super::statement::{Dialect, LONGEST_STATEMENT, Pool, Renewal};
-use super::{Place, Store, StoreError};
+use super::{DatabaseAddress, Store, StoreError};
 
 /// The files of the folder `migrations`: their numbers, what they are called, and their statements.
 mod files {
@@ -186,7 +186,7 @@ impl Store {
     /// # Errors
     ///
     /// [`OpenError`].
-    pub async fn open(place: &Place) -> Result<Self, OpenError> {
+    pub async fn open(place: &DatabaseAddress) -> Result<Self, OpenError> {
         Self::open_as(place, Migrate::Auto).await
     }
 
@@ -195,24 +195,24 @@ impl Store {
     /// # Errors
     ///
     /// [`OpenError`].
-    pub async fn open_as(place: &Place, migrate: Migrate) -> Result<Self, OpenError> {
+    pub async fn open_as(place: &DatabaseAddress, migrate: Migrate) -> Result<Self, OpenError> {
         let (writer, readers) = match place {
-            Place::File(path) => open_file(path, migrate).await?,
-            Place::Postgres(address) => open_server(address, migrate).await?,
+            DatabaseAddress::File(path) => open_file(path, migrate).await?,
+            DatabaseAddress::Postgres(address) => open_server(address, migrate).await?,
         };
         let mut store = Self {
             place: place.clone(),
             writer,
             readers,
             health: Health::new(),
-            ground: None,
+            files: None,
             process: Uuid::now_v7(),
         };
         store.look_for_damage().await?;
         store.probe().await?;
         // By now there is a journal, too.
         if let Some(path) = place.file() {
-            store.ground = Some(Ground::of(path).map_err(sqlx::Error::Io)?);
+            store.files = Some(DatabaseFiles::of(path).map_err(sqlx::Error::Io)?);
         }
         store.watch_writing();
         Ok(store)

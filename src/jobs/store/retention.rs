@@ -8,7 +8,7 @@ use uuid::Uuid;
 use super::documents::forget_document;
 use super::rows::job_columns;
 use super::statement::{Pool, query, query_as, query_scalar};
-use super::{Place, Store, StoreError, dialect};
+use super::{DatabaseAddress, Store, StoreError, dialect};
 use crate::jobs::job::Job;
 
 /// So many jobs are removed in one commit.
@@ -154,7 +154,7 @@ impl Store {
 
     /// Bytes of the journal. That of a server is none of ours.
     pub fn journal_bytes(&self) -> u64 {
-        let Place::File(path) = &self.place else {
+        let DatabaseAddress::File(path) = &self.place else {
             return 0;
         };
         let mut name = path.as_os_str().to_owned();

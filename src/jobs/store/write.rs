@@ -4,7 +4,7 @@ use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::ground::Ground;
+use super::database_files::DatabaseFiles;
 use super::health::Health;
 use super::statement::{Connection, Pool, Text, query};
 use super::{Store, StoreError, dialect};
@@ -34,7 +34,7 @@ impl Store {
         let begun = begin_with(
             &self.writer,
             &self.health,
-            self.ground.as_ref(),
+            self.files.as_ref(),
             dialect::begin_relaxed(),
             Some(dialect::commit_relaxed()),
         );
@@ -47,7 +47,7 @@ impl Store {
 
     /// Begins a transaction that writes.
     pub(crate) async fn begin(&self) -> Result<Write, StoreError> {
-        let begun = begin(&self.writer, &self.health, self.ground.as_ref()).await;
+        let begun = begin(&self.writer, &self.health, self.files.as_ref()).await;
         if let Err(error) = &begun {
             self.health.found(Err(error));
         }
@@ -83,8 +83,8 @@ impl Store {
     ///
     /// [`StoreError`] if not.
     pub async fn look(&self) -> Result<(), StoreError> {
-        if let Some(ground) = &self.ground {
-            ground.check_room().map_err(sqlx::Error::Io)?;
+        if let Some(files) = &self.files {
+            files.check_room().map_err(sqlx::Error::Io)?;
         }
         let probe = tokio::time::timeout(LOOKING, self.probe()).await;
         probe.unwrap_or_else(|_| Err(sqlx::Error::PoolTimedOut.into()))
@@ -93,7 +93,7 @@ impl Store {
     /// Watches over the writing: where it failed it is tried again, until the store is dropped or closed.
     pub(super) fn watch_writing(&self) {
         let (health, writer) = (Arc::downgrade(&self.health), self.writer.clone());
-        let ground = self.ground.clone();
+        let files = self.files.clone();
         let mut fault = self.health.fault.subscribe();
         tokio::spawn(async move {
             loop {
@@ -115,18 +115,18 @@ impl Store {
                 if writer.is_closed() {
                     return;
                 }
-                try_out(&writer, &held, ground.as_ref()).await;
+                try_out(&writer, &held, files.as_ref()).await;
             }
         });
     }
 }
 
-async fn try_out(writer: &Pool, health: &Arc<Health>, ground: Option<&Ground>) {
+async fn try_out(writer: &Pool, health: &Arc<Health>, files: Option<&DatabaseFiles>) {
     let tried = async {
-        if let Some(ground) = ground {
-            ground.check_room().map_err(sqlx::Error::Io)?;
+        if let Some(files) = files {
+            files.check_room().map_err(sqlx::Error::Io)?;
         }
-        let mut write = begin(writer, health, ground).await?;
+        let mut write = begin(writer, health, files).await?;
         query(dialect::probe()).execute(&mut *write).await?;
         write.commit().await
     };
@@ -140,20 +140,20 @@ async fn try_out(writer: &Pool, health: &Arc<Health>, ground: Option<&Ground>) {
 async fn begin(
     writer: &Pool,
     health: &Arc<Health>,
-    ground: Option<&Ground>,
+    files: Option<&DatabaseFiles>,
 ) -> Result<Write, StoreError> {
-    begin_with(writer, health, ground, dialect::begin(), None).await
+    begin_with(writer, health, files, dialect::begin(), None).await
 }
 
 async fn begin_with(
     writer: &Pool,
     health: &Arc<Health>,
-    ground: Option<&Ground>,
+    files: Option<&DatabaseFiles>,
     words: Text,
     relaxed: Option<Text>,
 ) -> Result<Write, StoreError> {
-    if let Some(ground) = ground {
-        ground.check_names().map_err(sqlx::Error::Io)?;
+    if let Some(files) = files {
+        files.check_names().map_err(sqlx::Error::Io)?;
     }
     let mut connection = writer.acquire().await?;
     // In plain SQL, because the driver's count of open transactions survives an error that SQLite's does not.

@@ -89,7 +89,7 @@ async fn a_host_that_is_cut_off_and_returns_loses_no_job_and_doubles_none() {
     .unwrap();
     let address = server::database_of(&server, "fleet").await;
     let mut fleet = Fleet::start(&address, 0, 2, "2s");
-    let from_afar = Place::Postgres(address.replace("127.0.0.1", &format!("{PREFIX}.1")));
+    let from_afar = DatabaseAddress::Postgres(address.replace("127.0.0.1", &format!("{PREFIX}.1")));
     for host in 1..=3 {
         let (name, _) = names(host);
         let worker = Process::start_on(&name, &from_afar, &told("worker", "2s"));

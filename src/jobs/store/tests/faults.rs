@@ -93,13 +93,19 @@ async fn what_is_no_database_is_refused_and_not_touched() {
         b"short",
     ] {
         fs::write(&path, content).unwrap();
-        let refused = Store::open(&Place::File(path.clone())).await.unwrap_err();
+        let refused = Store::open(&DatabaseAddress::File(path.clone()))
+            .await
+            .unwrap_err();
         assert!(matches!(refused, OpenError::NotADatabase), "{refused:?}");
         assert_eq!(fs::read(&path).unwrap(), content);
     }
     // An empty file is what many programs make first.
     fs::write(&path, b"").unwrap();
-    assert!(Store::open(&Place::File(path.clone())).await.is_ok());
+    assert!(
+        Store::open(&DatabaseAddress::File(path.clone()))
+            .await
+            .is_ok()
+    );
 }
 
 #[tokio::test]
@@ -113,7 +119,9 @@ async fn a_database_that_was_cut_off_is_refused() {
     let whole = fs::read(&path).unwrap();
     for kept in [whole.len() / 2, 5000, 200] {
         fs::write(&path, &whole[..kept]).unwrap();
-        let refused = Store::open(&Place::File(path.clone())).await.unwrap_err();
+        let refused = Store::open(&DatabaseAddress::File(path.clone()))
+            .await
+            .unwrap_err();
         assert!(
             matches!(refused, OpenError::Damaged(_) | OpenError::NotADatabase),
             "{kept}: {refused:?}"
@@ -131,7 +139,11 @@ async fn a_database_that_was_cut_off_is_refused() {
         );
     }
     fs::write(&path, &whole).unwrap();
-    assert!(Store::open(&Place::File(path.clone())).await.is_ok());
+    assert!(
+        Store::open(&DatabaseAddress::File(path.clone()))
+            .await
+            .is_ok()
+    );
 }
 
 #[tokio::test]
@@ -146,7 +158,9 @@ async fn pages_of_garbage_are_found_at_the_start() {
     let middle = bytes.len() / 2;
     bytes[middle..middle + 16_384].fill(0x5a);
     fs::write(&path, &bytes).unwrap();
-    let refused = Store::open(&Place::File(path.clone())).await.unwrap_err();
+    let refused = Store::open(&DatabaseAddress::File(path.clone()))
+        .await
+        .unwrap_err();
     assert!(matches!(refused, OpenError::Damaged(_)), "{refused:?}");
 }
 

@@ -51,7 +51,9 @@ async fn a_backup_is_whole_while_others_write_and_takes_no_place() {
     Store::backup(&database, &target).await.unwrap();
     write.rollback().await.unwrap();
 
-    let copy = Store::open(&Place::File(target.clone())).await.unwrap();
+    let copy = Store::open(&DatabaseAddress::File(target.clone()))
+        .await
+        .unwrap();
     assert!(copy.submission(job.id).await.unwrap().is_some());
     let found = copy.find(CLIENT, job.id).await.unwrap().unwrap();
     let text = copy

@@ -52,7 +52,9 @@ async fn jobs_results_studies_and_keys_survive_the_upgrade() {
         .unwrap();
     connection.close().await.unwrap();
 
-    let store = Store::open(&Place::File(path.clone())).await.unwrap();
+    let store = Store::open(&DatabaseAddress::File(path.clone()))
+        .await
+        .unwrap();
     let jobs = store.list(CLIENT, &Filter::default(), 9).await.unwrap();
     let states: Vec<Status> = jobs.iter().map(|job| job.status).collect();
     assert_eq!(

@@ -16,8 +16,8 @@ use uuid::Uuid;
 
 use super::statement::{Pool, query, query_as, query_scalar};
 use super::{
-    Came, Claim, End, Ended, Lease, Lost, NewJob, Outcome, Packed, Place, QueueBounds, Reader,
-    Store, StoreError,
+    Came, Claim, DatabaseAddress, End, Ended, Lease, Lost, NewJob, Outcome, Packed, QueueBounds,
+    Reader, Store, StoreError,
 };
 use crate::jobs::job::{Job, Progress};
 
@@ -89,8 +89,8 @@ async fn open(folder: &TempDir) -> Store {
     Store::open(&place(folder)).await.unwrap()
 }
 
-fn place(folder: &TempDir) -> Place {
-    Place::File(folder.path().join("jobs.db"))
+fn place(folder: &TempDir) -> DatabaseAddress {
+    DatabaseAddress::File(folder.path().join("jobs.db"))
 }
 
 /// The connection that writes a file.

@@ -22,9 +22,9 @@ mod turns;
 mod upgrades;
 
 /// A database whose leases run by the clock that a test gives.
-async fn store() -> (Store, Place) {
+async fn store() -> (Store, DatabaseAddress) {
     let address = server::database().await;
-    let place = Place::Postgres(address.clone());
+    let place = DatabaseAddress::Postgres(address.clone());
     let store = Store::open(&place).await.unwrap();
     server::give_clock(&address).await;
     (store, place)

@@ -5,7 +5,7 @@ use crate::jobs::store::OpenError;
 use crate::jobs::store::statement::Pool;
 
 async fn open(address: &str, settings: &str) -> Result<Store, OpenError> {
-    Store::open(&Place::Postgres(format!("{address}?{settings}"))).await
+    Store::open(&DatabaseAddress::Postgres(format!("{address}?{settings}"))).await
 }
 
 /// What the server says of all our connections.

@@ -12,7 +12,7 @@ use crate::jobs::store::{NewRow, NewStudy, StudyOutcome, Told};
 use crate::jobs::study::StudyRecord;
 
 /// Another process on the same database.
-async fn another(place: &Place) -> Store {
+async fn another(place: &DatabaseAddress) -> Store {
     Store::open(place).await.unwrap()
 }
 
@@ -225,7 +225,7 @@ async fn a_worker_that_is_gone_is_found_though_its_process_reports_of_others() {
 #[tokio::test]
 async fn leases_run_by_the_clock_of_the_database() {
     let address = server::database().await;
-    let place = Place::Postgres(address);
+    let place = DatabaseAddress::Postgres(address);
     let (early, late) = (another(&place).await, another(&place).await);
     queued(&early, 1, "a").await;
     // The clock of one process says 1970, that of the other one a century later; neither is asked.
@@ -453,7 +453,7 @@ async fn what_one_process_does_another_one_hears() {
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 4)]
 async fn processes_that_start_together_make_the_tables_once() {
-    let place = Place::Postgres(server::database().await);
+    let place = DatabaseAddress::Postgres(server::database().await);
     let opened = (0..4).map(|_| {
         let place = place.clone();
         tokio::spawn(async move { Store::open(&place).await.unwrap() })
@@ -492,7 +492,7 @@ async fn a_password_stands_in_no_error() {
         "postgres://me:secret@127.0.0.1:none/gears",
         "postgres://me:secret@nowhere.invalid/gears",
     ] {
-        let error = Store::open(&Place::Postgres(address.to_owned()))
+        let error = Store::open(&DatabaseAddress::Postgres(address.to_owned()))
             .await
             .unwrap_err();
         let debugged = format!("{error:?}");

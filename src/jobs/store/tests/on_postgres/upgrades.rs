@@ -116,7 +116,7 @@ async fn a_later_version_that_this_one_can_work_beside_does_not_shut_it_out() {
 #[tokio::test]
 async fn who_serves_needs_no_right_to_change_tables() {
     let address = server::database().await;
-    let place = Place::Postgres(address.clone());
+    let place = DatabaseAddress::Postgres(address.clone());
     let role = format!("serving_{}", std::process::id());
     let mut owner = server::connect(&address).await;
     let words = format!(
@@ -126,7 +126,8 @@ async fn who_serves_needs_no_right_to_change_tables() {
         .execute(&mut owner)
         .await
         .unwrap();
-    let serving = Place::Postgres(address.replacen("meshwright@", &format!("{role}@"), 1));
+    let serving =
+        DatabaseAddress::Postgres(address.replacen("meshwright@", &format!("{role}@"), 1));
     let refused = Store::open_as(&serving, Migrate::Never).await.unwrap_err();
     assert!(matches!(refused, OpenError::Older), "{refused:?}");
 

@@ -9,14 +9,14 @@ use sqlx::postgres::PgConnectOptions;
 
 /// Where the database is: a file of SQLite, or a server of PostgreSQL.
 #[derive(Clone, PartialEq, Eq)]
-pub enum Place {
+pub enum DatabaseAddress {
     /// A file, served by one process; `sqlite:` may stand before its path.
     File(PathBuf),
     /// A database of a server, `postgres://user:password@host:port/name`, on which several processes work.
     Postgres(String),
 }
 
-impl Place {
+impl DatabaseAddress {
     /// The file, if it is one.
     pub fn file(&self) -> Option<&Path> {
         match self {
@@ -26,7 +26,7 @@ impl Place {
     }
 }
 
-impl FromStr for Place {
+impl FromStr for DatabaseAddress {
     type Err = Infallible;
 
     // What is wrong with an address is told when it is used: a parser of arguments repeats what it does not understand,
@@ -45,13 +45,13 @@ impl FromStr for Place {
     }
 }
 
-impl From<&Path> for Place {
+impl From<&Path> for DatabaseAddress {
     fn from(path: &Path) -> Self {
         Self::File(path.to_owned())
     }
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for DatabaseAddress {
     /// Without user and password.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -69,7 +69,7 @@ impl fmt::Display for Place {
     }
 }
 
-impl fmt::Debug for Place {
+impl fmt::Debug for DatabaseAddress {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Display::fmt(self, f)
     }
@@ -81,14 +81,14 @@ mod tests {
 
     #[test]
     fn a_database_is_a_file_or_a_server_and_no_password_is_shown() {
-        let place = |text: &str| text.parse::<Place>().unwrap();
+        let place = |text: &str| text.parse::<DatabaseAddress>().unwrap();
         for (text, file) in [
             ("./a.db", "./a.db"),
             ("sqlite:a.db", "a.db"),
             ("sqlite://a.db", "a.db"),
             ("sqlite:///var/a.db", "/var/a.db"),
         ] {
-            assert_eq!(place(text), Place::File(file.into()));
+            assert_eq!(place(text), DatabaseAddress::File(file.into()));
         }
         for (text, shown) in [
             (

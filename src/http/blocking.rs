@@ -27,7 +27,7 @@ pub(super) async fn turn_to_read(client: &str) -> Part {
 }
 
 /// Does work for `client` where it holds nobody up. The work is told to stop when nobody waits for it any more.
-pub(super) async fn aside<T: Send + 'static>(
+pub(super) async fn blocking<T: Send + 'static>(
     client: &str,
     work: impl FnOnce(&Run) -> T + Send + 'static,
 ) -> Result<T, Problem> {
@@ -89,7 +89,7 @@ mod tests {
     async fn work_stops_when_nobody_waits_for_it() {
         let (begun, begins) = mpsc::channel();
         let (ended, ends) = mpsc::channel();
-        let work = aside("anybody", move |run: &Run| {
+        let work = blocking("anybody", move |run: &Run| {
             begun.send(()).unwrap();
             while run.check().is_ok() {
                 std::thread::yield_now();

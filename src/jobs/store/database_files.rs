@@ -12,7 +12,7 @@ const LEAST_ROOM: u64 = 1 << 20;
 
 /// The file of a database, as it was when something had been written to it.
 #[derive(Debug, Clone)]
-pub(super) struct Ground {
+pub(super) struct DatabaseFiles {
     path: PathBuf,
     /// It, and the journal beside it.
     files: [(PathBuf, Identity); 2],
@@ -23,7 +23,7 @@ type Identity = (u64, u64);
 #[cfg(not(unix))]
 type Identity = ();
 
-impl Ground {
+impl DatabaseFiles {
     pub(super) fn of(path: &Path) -> Result<Self> {
         // The journal stands beside the file, wherever a link to that stands.
         let journal = beside(&path.canonicalize()?, "-wal");

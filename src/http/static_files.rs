@@ -19,14 +19,14 @@ use super::packing::packed;
 
 /// An answer in both forms.
 #[derive(Debug)]
-pub(super) struct Standing {
+pub(super) struct StaticFile {
     media_type: &'static str,
     plain: Bytes,
     packed: Bytes,
     hash: OnceLock<String>,
 }
 
-impl Standing {
+impl StaticFile {
     /// A document that is made when the program starts.
     pub(super) fn document(media_type: &'static str, plain: impl Into<Bytes>) -> Self {
         let plain = plain.into();
@@ -68,12 +68,12 @@ pub(super) type File = (&'static str, &'static [u8], &'static [u8]);
 
 /// A folder of files.
 #[derive(Debug)]
-pub(super) struct Folder(BTreeMap<&'static str, Standing>);
+pub(super) struct Folder(BTreeMap<&'static str, StaticFile>);
 
 impl Folder {
     pub(super) fn of(files: &'static [File]) -> Self {
         let file = |&(name, plain, packed): &File| {
-            let answer = Standing {
+            let answer = StaticFile {
                 media_type: media_type(name),
                 plain: Bytes::from_static(plain),
                 packed: Bytes::from_static(packed),
@@ -85,7 +85,7 @@ impl Folder {
     }
 
     /// The file of this name.
-    pub(super) fn find(&self, name: &str) -> Option<&Standing> {
+    pub(super) fn find(&self, name: &str) -> Option<&StaticFile> {
         self.0.get(name)
     }
 }

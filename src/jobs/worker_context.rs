@@ -43,13 +43,13 @@ impl Pace {
 }
 
 /// What every worker has in common.
-pub(super) struct Shop {
+pub(super) struct WorkerContext {
     pub(super) jobs: Jobs,
     pub(super) solve: Solve,
     pub(super) pace: Pace,
 }
 
-impl Shop {
+impl WorkerContext {
     /// A lease that is given now.
     pub(super) fn lease(&self) -> Lease {
         Lease {
