@@ -1,7 +1,7 @@
 //! Where everything is kept: a file of SQLite, or a server of PostgreSQL on which several processes work, behind one type.
 //! All SQL of the service stands in this folder.
 //!
-//! In reading order: where the database [is](place), how a [statement] is said to either kind and where the two
+//! In reading order: where the database [is](address), how a [statement] is said to either kind and where the two
 //! [differ](dialect); how the database is [opened](open), how it is [written](write) and what can go wrong with it
 //! ([`StoreError`]); what a row is (`rows`); the transitions of a job: it is submitted (`submit`), claimed in its turn
 //! (`claim`, `shares`), attempted (`attempt`), and ends otherwise (`end`); those of a study (`studies`); what is read:
