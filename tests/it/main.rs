@@ -43,6 +43,7 @@ mod either_store {
     pub(crate) mod webhooks;
 }
 
+mod circles;
 mod contract;
 mod disk;
 mod fleet;

@@ -7,7 +7,7 @@ use super::plan::{Pass, Plan};
 use crate::assembly::FaceYieldSpec;
 use crate::assembly::blank::blank_grid;
 use crate::assembly::interface::{harmonics, interface_radius, orders_of_blank};
-use crate::assembly::pair::cells_per_patch;
+use crate::assembly::pair_spec::cells_per_patch;
 use crate::contact::facing::Facing;
 use crate::contact::{ContactSolver, default_penalty};
 use crate::gear::{Core, Member, gcd};

@@ -9,79 +9,15 @@ use super::flank_ends::FlankEnds;
 use super::flank_fit::{FlankFit, smoothed, smoothed_rows};
 use super::flank_polynomials::{OWN_DEGREE, up_the_flank};
 use super::holed::{HoledChange, SeenWeb, condensed_unknowns};
-use super::{MakeAll, PartError, Parts};
+use super::{FaceResolution, PartError};
 use crate::fem::axial::AxialBasis;
 use crate::fem::dense::{entries, symmetrize};
 use crate::gear::SolidGear;
-use crate::grid::{GridLevel, ToothGrid};
+use crate::grid::ToothGrid;
 use crate::ring::solid::gear::{ClassAnswers, answers, between_teeth};
 use crate::ring::solid::tooth::{SolidTooth, flank_compliance_alone};
 use crate::ring::teeth::FARTHEST_COUPLED;
 use crate::run::Run;
-
-/// The width in modules from which a face has all of its polynomials, and the degree that any has.
-const WIDE: f64 = 2.0;
-const LEAST_ORDER: usize = 3;
-
-/// How finely the yield of a face is resolved.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct FaceResolution {
-    /// The degree P of the polynomials across the face.
-    pub face_order: usize,
-    /// The degree of those across a web or a hub.
-    pub web_order: usize,
-    /// The orders of its outer circle in which holes of a web are seen.
-    pub web_harmonics: usize,
-    /// How fine the sections of teeth are.
-    pub sections: GridLevel,
-}
-
-impl FaceResolution {
-    /// For results: oblique line loads within half a percent.
-    pub const STANDARD: Self = Self {
-        face_order: 8,
-        web_order: 4,
-        web_harmonics: 14,
-        sections: GridLevel::Standard,
-    };
-
-    /// For first looks: within a percent.
-    pub const DRAFT: Self = Self {
-        face_order: 6,
-        web_order: 3,
-        web_harmonics: 10,
-        sections: GridLevel::Standard,
-    };
-
-    /// The same at a grid `level` that stands to the standard one as these do: sections, orders across the face and around webs together.
-    pub fn at(self, level: GridLevel) -> Self {
-        let finer = |count: usize, step: usize| match level {
-            GridLevel::Coarse => count.saturating_sub(step),
-            GridLevel::Standard => count,
-            GridLevel::Fine => count + step,
-        };
-        Self {
-            face_order: finer(self.face_order, 2).max(LEAST_ORDER),
-            web_order: finer(self.web_order, 1).max(2),
-            web_harmonics: finer(self.web_harmonics, 4).max(6),
-            sections: level,
-        }
-    }
-
-    /// What a face of so many `modules` is resolved by: one that is narrower than its teeth are high has no polynomials finer than their grid.
-    pub(super) fn of_width(self, modules: f64) -> Self {
-        let order = (self.face_order as f64 * (modules / WIDE).min(1.0)).ceil() as usize;
-        Self {
-            face_order: order.max(LEAST_ORDER),
-            ..self
-        }
-    }
-
-    /// The degree of the pieces across a rim that is broken at the faces of its web: what half of the whole face asks for.
-    pub fn piece_order(self) -> usize {
-        self.face_order / 2 + 1
-    }
-}
 
 /// What the yield of a face depends on.
 #[derive(Debug, Clone, PartialEq)]
@@ -159,14 +95,13 @@ impl FaceYieldSpec {
         Stack::new(&self.gear, self.resolution)
     }
 
-    /// Makes it of `parts`.
+    /// Makes it of what its [`Stack`] yields, `plain`.
     ///
     /// # Errors
     ///
     /// As [`FaceYield::of`].
-    pub fn make<P: Parts + ?Sized>(&self, parts: &P, run: &Run) -> Result<FaceYield, PartError> {
+    pub fn make(&self, plain: Arc<PlainFace>, run: &Run) -> Result<FaceYield, PartError> {
         let stack = self.stack();
-        let plain = parts.plain_face(&stack, run)?;
         let section = self.gear.section();
         let holes = match &plain.web {
             Some(web) => Some(HoledChange::new(&stack, section, web, run)?),
@@ -251,7 +186,8 @@ impl FaceYield {
     ///
     /// [`PartError`] if a part cannot be divided or condensed, or if the work is stopped.
     pub fn of(gear: &SolidGear, resolution: FaceResolution, run: &Run) -> Result<Self, PartError> {
-        FaceYieldSpec::new(gear, resolution).make(&MakeAll, run)
+        let spec = FaceYieldSpec::new(gear, resolution);
+        spec.make(Arc::new(PlainFace::new(&spec.stack(), run)?), run)
     }
 
     /// What the flank of one tooth alone yields: a sector of the gear from `inner_radius` outward whose sides are free and whose inner
@@ -437,6 +373,7 @@ mod tests {
     use super::*;
     use crate::gear::spur::tests::paper_gear;
     use crate::gear::{Helix, HolePattern, Hub, Web};
+    use crate::grid::GridLevel;
     use crate::grid::ToothGrid as PlaneGrid;
     use crate::ring::blank::BlankSubstructure;
     use crate::ring::body::Coupling;

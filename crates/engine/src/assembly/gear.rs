@@ -2,9 +2,7 @@
 
 use std::sync::Arc;
 
-use rayon::prelude::*;
-
-use super::{AssemblyError, BlankSpec, PartError, Parts, Teeth, TeethSpec};
+use super::{BlankSpec, PartError, Teeth, TeethSpec};
 use crate::contact::GearModel;
 use crate::gear::{Member, SpurGear};
 use crate::grid::{BlankGrid, GridLevel, ToothGrid};
@@ -99,7 +97,7 @@ impl GearSpec {
     }
 
     /// The blanks of which it is made: its own, and the solid one that its highest orders find, where they do.
-    fn blanks(&self) -> Vec<BlankSpec> {
+    pub(super) fn blanks(&self) -> Vec<BlankSpec> {
         let Some(carrier) = &self.carrier else {
             return Vec::new();
         };
@@ -108,7 +106,7 @@ impl GearSpec {
     }
 
     /// Joins `teeth` with the `blanks` of [`GearSpec::blanks`].
-    fn join(
+    pub(super) fn join(
         &self,
         teeth: &Teeth,
         blanks: &[Arc<BlankSubstructure>],
@@ -152,72 +150,4 @@ impl Carrier {
         };
         Ok(Arc::new(coupling?))
     }
-}
-
-/// Makes the gears that are `wanted` of what `parts` provides, in parallel; a part that they share is asked for once.
-///
-/// # Errors
-///
-/// [`AssemblyError`].
-pub fn make_gears<P: Parts + ?Sized>(
-    wanted: &[WantedGear],
-    parts: &P,
-    run: &Run,
-) -> Result<Vec<Arc<Gear>>, AssemblyError> {
-    let teeth: Vec<_> = wanted
-        .iter()
-        .map(|gear| (gear.member, gear.spec.teeth.clone()))
-        .collect();
-    let blanks: Vec<_> = wanted
-        .iter()
-        .flat_map(|gear| {
-            gear.spec
-                .blanks()
-                .into_iter()
-                .map(|blank| (gear.member, blank))
-        })
-        .collect();
-    // No part needs another. Teeth come first: they take longest.
-    let (teeth, blanks) = rayon::join(
-        || made(&teeth, |spec| parts.teeth(spec, run)),
-        || made(&blanks, |spec| parts.blank(spec, run)),
-    );
-    let mut blanks = blanks?.into_iter();
-    let blanks: Vec<Vec<_>> = wanted
-        .iter()
-        .map(|gear| blanks.by_ref().take(gear.spec.blanks().len()).collect())
-        .collect();
-    (wanted, teeth?, blanks)
-        .into_par_iter()
-        .with_max_len(1)
-        .map(|(gear, teeth, blanks)| {
-            let joined = gear.spec.join(&teeth, &blanks, run);
-            joined.map(Arc::new).map_err(|error| error.of(gear.member))
-        })
-        .collect()
-}
-
-/// The parts of `wanted`, in its order, made by `make` in parallel; equal ones are made once, for the gear that comes first.
-fn made<S: PartialEq + Sync, P: Send + Sync>(
-    wanted: &[(Member, S)],
-    make: impl Fn(&S) -> Result<Arc<P>, PartError> + Sync,
-) -> Result<Vec<Arc<P>>, AssemblyError> {
-    let mut distinct: Vec<&(Member, S)> = Vec::new();
-    let mut places = Vec::with_capacity(wanted.len());
-    for part in wanted {
-        let known = distinct.iter().position(|known| known.1 == part.1);
-        places.push(known.unwrap_or(distinct.len()));
-        if known.is_none() {
-            distinct.push(part);
-        }
-    }
-    let parts: Vec<Arc<P>> = distinct
-        .par_iter()
-        .with_max_len(1)
-        .map(|(member, spec)| make(spec).map_err(|error| error.of(*member)))
-        .collect::<Result<_, _>>()?;
-    Ok(places
-        .into_iter()
-        .map(|place| parts[place].clone())
-        .collect())
 }

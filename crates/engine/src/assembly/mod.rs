@@ -1,7 +1,7 @@
 //! From the drawings of two gears to a pair that is ready for contact.
 //!
 //! In reading order: [`interface`] (the circle on which teeth and blank meet), [`teeth`] (all teeth of a gear down to it),
-//! [`blank`] (what carries them), [`gear`] (both joined), [`pair`] (two gears and the rules of their contact);
+//! [`blank`] (what carries them), [`gear`] (both joined), [`pair_spec`] and `pair` (two gears and the rules of their contact);
 //! along faces [`face_yield`] (what carries the teeth and what holes change: `carrier`, `holed`; how it becomes polynomials: `flank_fit`, `half_space`, `flank_ends`), [`face_roots`] and [`face_holes`] (how it is stressed at its roots and at its holes), [`face_inside`] (how all of it moves);
 //! beside them [`cut`] (a gear parted at that circle again) and [`inside`] (what goes on in a gear whose flanks are loaded).
 //!
@@ -11,8 +11,10 @@
 pub mod blank;
 mod carrier;
 pub mod cut;
+mod error;
 pub mod face_holes;
 pub mod face_inside;
+mod face_resolution;
 pub mod face_roots;
 pub mod face_yield;
 mod flank_ends;
@@ -24,20 +26,23 @@ mod half_space;
 mod holed;
 pub mod inside;
 pub mod interface;
-pub mod pair;
+mod pair;
+pub mod pair_spec;
 mod parts;
 pub mod teeth;
 
 pub use blank::BlankSpec;
 pub use carrier::Stack;
 pub use cut::CutGear;
+pub use error::{AssemblyError, PartError};
 pub use face_holes::FaceHoles;
 pub use face_inside::FaceInside;
+pub use face_resolution::FaceResolution;
 pub use face_roots::FaceRoots;
-pub use face_yield::{FaceResolution, FaceYield, FaceYieldSpec, PlainFace};
+pub use face_yield::{FaceYield, FaceYieldSpec, PlainFace};
 pub use flank_forces::FlankForces;
-pub use gear::{Carrier, Gear, GearGrids, GearSpec, WantedGear, make_gears};
+pub use gear::{Carrier, Gear, GearGrids, GearSpec, WantedGear};
 pub use inside::{Inside, Probes};
-pub use pair::{Blanks, Modeling, PairSpec};
-pub use parts::{AssemblyError, ContactsSpec, FlanksSpec, MakeAll, PartError, Parts};
+pub use pair_spec::{Blanks, ContactsSpec, FlanksSpec, Modeling, PairSpec};
+pub use parts::{MakeAll, Parts, make_gears};
 pub use teeth::{Teeth, TeethSpec};

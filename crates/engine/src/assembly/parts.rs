@@ -2,20 +2,22 @@
 
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use super::carrier::Stack;
 use super::face_holes::FaceHoles;
 use super::face_roots::FaceRoots;
 use super::face_yield::{FaceYield, FaceYieldSpec, PlainFace};
-use super::{BlankSpec, Gear, PairSpec, Teeth, TeethSpec, WantedGear, make_gears};
+use super::pair_spec::{ContactsSpec, FlanksSpec, PairSpec};
+use super::{AssemblyError, BlankSpec, Gear, PartError, Teeth, TeethSpec, WantedGear};
+
 use crate::contact::compliances::Compliances;
 use crate::contact::drawn::DrawnFlanks;
 use crate::contact::positions::{PositionsError, contacts};
 use crate::contact::{MeshContact, PairModel};
-use crate::fem::FemError;
-use crate::gear::{GearPair, Member, PairDeviations};
-use crate::grid::GridError;
+use crate::gear::Member;
 use crate::ring::blank::BlankSubstructure;
-use crate::run::{Run, Stopped};
+use crate::run::Run;
 
 /// Who provides parts: whoever makes them all ([`MakeAll`]), or keeps what others have made ([`crate::library::Library`]).
 ///
@@ -65,7 +67,8 @@ pub trait Parts: Sync {
     ///
     /// [`PartError`].
     fn face_yield(&self, spec: &FaceYieldSpec, run: &Run) -> Result<Arc<FaceYield>, PartError> {
-        spec.make(self, run).map(Arc::new)
+        let plain = self.plain_face(&spec.stack(), run)?;
+        spec.make(plain, run).map(Arc::new)
     }
 
     /// How the roots of a solid gear are stressed, of which `spec` says all but the holes.
@@ -126,67 +129,70 @@ pub struct MakeAll;
 
 impl Parts for MakeAll {}
 
-/// What the contact of flanks depends on, whatever carries their teeth and however each of these deviates.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FlanksSpec {
-    /// The pair as drawn, without its blanks.
-    pub pair: GearPair,
-    /// The teeth of the driving and of the driven gear.
-    pub teeth: [TeethSpec; 2],
+/// Makes the gears that are `wanted` of what `parts` provides, in parallel; a part that they share is asked for once.
+///
+/// # Errors
+///
+/// [`AssemblyError`].
+pub fn make_gears<P: Parts + ?Sized>(
+    wanted: &[WantedGear],
+    parts: &P,
+    run: &Run,
+) -> Result<Vec<Arc<Gear>>, AssemblyError> {
+    let teeth: Vec<_> = wanted
+        .iter()
+        .map(|gear| (gear.member, gear.spec.teeth.clone()))
+        .collect();
+    let blanks: Vec<_> = wanted
+        .iter()
+        .flat_map(|gear| {
+            gear.spec
+                .blanks()
+                .into_iter()
+                .map(|blank| (gear.member, blank))
+        })
+        .collect();
+    // No part needs another. Teeth come first: they take longest.
+    let (teeth, blanks) = rayon::join(
+        || made(&teeth, |spec| parts.teeth(spec, run)),
+        || made(&blanks, |spec| parts.blank(spec, run)),
+    );
+    let mut blanks = blanks?.into_iter();
+    let blanks: Vec<Vec<_>> = wanted
+        .iter()
+        .map(|gear| blanks.by_ref().take(gear.spec.blanks().len()).collect())
+        .collect();
+    (wanted, teeth?, blanks)
+        .into_par_iter()
+        .with_max_len(1)
+        .map(|(gear, teeth, blanks)| {
+            let joined = gear.spec.join(&teeth, &blanks, run);
+            joined.map(Arc::new).map_err(|error| error.of(gear.member))
+        })
+        .collect()
 }
 
-/// What the contacts of a pair at some positions depend on.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ContactsSpec {
-    /// The transmitted load F in N.
-    pub load: f64,
-    /// The mesh positions η.
-    pub positions: Vec<f64>,
-    /// The drawn pair.
-    pub pair: PairSpec,
-    /// What its teeth deviate by.
-    pub deviations: PairDeviations,
-}
-
-/// Why a part could not be made.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum PartError {
-    /// Its grid could not be laid.
-    #[error(transparent)]
-    Grid(#[from] GridError),
-    /// It could not be condensed.
-    #[error(transparent)]
-    Fem(#[from] FemError),
-    /// The caller stopped the work.
-    #[error(transparent)]
-    Stopped(#[from] Stopped),
-}
-
-/// Why a gear could not be made.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum AssemblyError {
-    /// A part of it could not.
-    #[error("a part of the {member} gear could not be made")]
-    Part {
-        /// The gear.
-        member: Member,
-        /// Why.
-        #[source]
-        error: PartError,
-    },
-    /// The caller stopped the work.
-    #[error(transparent)]
-    Stopped(#[from] Stopped),
-}
-
-impl PartError {
-    /// The same of `member`.
-    pub(crate) fn of(self, member: Member) -> AssemblyError {
-        match self {
-            Self::Stopped(stopped) | Self::Fem(FemError::Stopped(stopped)) => {
-                AssemblyError::Stopped(stopped)
-            }
-            error => AssemblyError::Part { member, error },
+/// The parts of `wanted`, in its order, made by `make` in parallel; equal ones are made once, for the gear that comes first.
+fn made<S: PartialEq + Sync, P: Send + Sync>(
+    wanted: &[(Member, S)],
+    make: impl Fn(&S) -> Result<Arc<P>, PartError> + Sync,
+) -> Result<Vec<Arc<P>>, AssemblyError> {
+    let mut distinct: Vec<&(Member, S)> = Vec::new();
+    let mut places = Vec::with_capacity(wanted.len());
+    for part in wanted {
+        let known = distinct.iter().position(|known| known.1 == part.1);
+        places.push(known.unwrap_or(distinct.len()));
+        if known.is_none() {
+            distinct.push(part);
         }
     }
+    let parts: Vec<Arc<P>> = distinct
+        .par_iter()
+        .with_max_len(1)
+        .map(|(member, spec)| make(spec).map_err(|error| error.of(*member)))
+        .collect::<Result<_, _>>()?;
+    Ok(places
+        .into_iter()
+        .map(|place| parts[place].clone())
+        .collect())
 }

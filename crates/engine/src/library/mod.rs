@@ -134,7 +134,9 @@ impl Parts for Library {
     }
 
     fn face_yield(&self, spec: &FaceYieldSpec, run: &Run) -> Result<Arc<FaceYield>, PartError> {
-        self.0.yields.made(spec, || spec.make(self, run))
+        self.0.yields.made(spec, || {
+            spec.make(self.plain_face(&spec.stack(), run)?, run)
+        })
     }
 
     fn face_roots(&self, spec: &Stack, run: &Run) -> Result<Arc<FaceRoots>, PartError> {

@@ -1,0 +1,118 @@
+//! What a pair of gears ready for contact depends on.
+
+use super::gear::GearSpec;
+use super::interface::interface_radius;
+use super::teeth::TeethSpec;
+use crate::contact::ContactSolver;
+use crate::gear::{GearPair, Member, PairDeviations};
+use crate::grid::GridLevel;
+
+/// Which blanks take part in a model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Blanks {
+    /// Both, as drawn.
+    Flexible,
+    /// Those without holes; holed ones are rigid inside R_w (paper: wh).
+    HoledRigid,
+    /// As [`Blanks::HoledRigid`], but the holed blank of one gear takes part.
+    OnlyHoledOf(Member),
+}
+
+impl Blanks {
+    /// Whether the blank of `member` takes part if it has holes.
+    fn take_holed(self, member: Member) -> bool {
+        match self {
+            Self::Flexible => true,
+            Self::HoledRigid => false,
+            Self::OnlyHoledOf(other) => other == member,
+        }
+    }
+}
+
+/// How a pair is modeled.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Modeling {
+    /// The grid level.
+    pub level: GridLevel,
+    /// The interface radii R_w asked for, in meters; `None` for the default of the gear. A gear without holes has its default.
+    pub interface_radii: [Option<f64>; 2],
+    /// How far apart, in teeth, loaded teeth of one gear are coupled.
+    pub farthest: usize,
+    /// The contact solver.
+    pub solver: ContactSolver,
+}
+
+/// What a model of a pair depends on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PairSpec {
+    pub(super) gears: [GearSpec; 2],
+    pub(super) flanks: GearPair,
+    pub(super) level: GridLevel,
+    pub(super) solver: ContactSolver,
+}
+
+impl PairSpec {
+    /// `pair` with those of its blanks that take part.
+    pub fn new(pair: &GearPair, blanks: Blanks, modeling: &Modeling) -> Self {
+        let &Modeling {
+            level,
+            interface_radii,
+            farthest,
+            solver,
+        } = modeling;
+        let gears = Member::BOTH.map(|member| {
+            let gear = pair.gear(member);
+            let radius = interface_radius(gear, interface_radii[member.index()]);
+            if gear.holes().is_empty() || blanks.take_holed(member) {
+                GearSpec::on_own_blank(gear, radius, level, farthest)
+            } else {
+                GearSpec::on_rigid_blank(gear, radius, level)
+            }
+        });
+        Self {
+            gears,
+            flanks: pair.without_blanks().as_drawn(),
+            level,
+            solver,
+        }
+    }
+
+    /// What its contact depends on but for the blanks.
+    pub(super) fn drawn(&self) -> FlanksSpec {
+        FlanksSpec {
+            pair: self.flanks.clone(),
+            teeth: self.gears.each_ref().map(|gear| gear.teeth.clone()),
+        }
+    }
+}
+
+/// What the contact of flanks depends on, whatever carries their teeth and however each of these deviates.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FlanksSpec {
+    /// The pair as drawn, without its blanks.
+    pub pair: GearPair,
+    /// The teeth of the driving and of the driven gear.
+    pub teeth: [TeethSpec; 2],
+}
+
+/// What the contacts of a pair at some positions depend on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactsSpec {
+    /// The transmitted load F in N.
+    pub load: f64,
+    /// The mesh positions η.
+    pub positions: Vec<f64>,
+    /// The drawn pair.
+    pub pair: PairSpec,
+    /// What its teeth deviate by.
+    pub deviations: PairDeviations,
+}
+
+/// Contact cells in one patch.
+pub(crate) fn cells_per_patch(level: GridLevel) -> usize {
+    match level {
+        GridLevel::Coarse => 24,
+        GridLevel::Standard => 40,
+        GridLevel::Fine => 80,
+    }
+}
