@@ -11,7 +11,7 @@ use bytes::Buf;
 use flate2::Compression;
 use flate2::read::GzDecoder;
 use futures_util::stream;
-use meshwright_engine::analysis::{self, Case, Method};
+use meshwright_engine::analysis::{self, Case, FaceHoles, Model};
 use meshwright_engine::gear::Member;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
@@ -263,10 +263,10 @@ impl Done {
         let case = submission.case();
         // What is shown along faces is solved by the whole method, whichever the job had.
         let whole = Case {
-            method: case
-                .faces
-                .as_ref()
-                .map_or(case.method, |_| Method::ThreeDimensional),
+            model: match &case.model {
+                Model::Faces(faces, _) => Model::Faces(faces.clone(), FaceHoles::Whole),
+                other => other.clone(),
+            },
             ..case.clone()
         };
         let seconds = analysis::estimate(&whole, None).seconds;
@@ -332,7 +332,7 @@ fn of_look(error: PreviewError) -> Problem {
 /// The bytes that the grids of both gears take until they are written and packed, and those of the packed file.
 fn grid_bytes(submission: &Submission) -> [u64; 2] {
     let case = submission.case();
-    if case.faces.is_some() {
+    if case.faces().is_some() {
         let teeth = Member::BOTH.map(|member| u64::from(case.pair.gear(member).tooth_count()));
         return VOLUME_BYTES.map(|bytes| bytes * (teeth[0] + teeth[1]));
     }

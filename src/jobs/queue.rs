@@ -499,7 +499,7 @@ impl NewJob {
 /// engine's own estimate is better, and takes a tenth of a job; for fair shares the order of magnitude is enough.
 pub(super) fn rough_cost(submission: &Submission, is_known_as_drawn: bool) -> u64 {
     // The closed form of the load distribution needs no grid.
-    let (as_drawn, per_position) = match submission.case().method {
+    let (as_drawn, per_position) = match submission.case().method() {
         Method::LoadDistribution => (200, 5),
         Method::ThreeDimensional => (4_000_000, 5_000),
         Method::ThreeDimensionalProjected => (4_000_000, 50),

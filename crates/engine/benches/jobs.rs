@@ -21,7 +21,7 @@ use meshwright_engine::run::Run;
 
 #[path = "../tests/cases/mod.rs"]
 mod cases;
-use cases::{case, gear, holed, standard_pair, study_design, test_case};
+use cases::{case, gear, holed, model_by, standard_pair, study_design, test_case};
 
 const METHODS: [(Method, &str); 4] = [
     (Method::Flexible, "flexible"),
@@ -296,14 +296,14 @@ fn helical(web: bool, hole_circle: Option<f64>) -> Case {
     let pair = SolidPair::new(gears, leads, center_distance, Alignment::default());
     let pair = pair.expect("meshes");
     let mut case = case(pair.section().clone(), &[100.0]);
-    case.method = Method::ThreeDimensional;
-    case.faces = Some(Faces {
+    let faces = Faces {
         pair,
         resolution: FaceResolution::STANDARD,
         slices: SLICES,
         at_each_position: false,
         cure: false,
-    });
+    };
+    case.model = Model::Faces(faces, FaceHoles::Whole);
     case
 }
 
@@ -340,7 +340,7 @@ fn faces(criterion: &mut Criterion) {
         });
     }
     for (case, name) in &cases[1..] {
-        let moved = holes(31.2e-3, case.method);
+        let moved = holes(31.2e-3, case.method());
         group.bench_function(format!("{name}, holes moved"), |bencher| {
             bencher.iter_batched_ref(
                 || {

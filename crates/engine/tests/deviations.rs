@@ -4,7 +4,7 @@ mod cases;
 
 use std::f64::consts::PI;
 
-use cases::{Made, case, gear};
+use cases::{Made, case, gear, model_by};
 use meshwright_engine::analysis::{Method, analyze, pair_model};
 use meshwright_engine::contact::{MeshContact, light_contact};
 use meshwright_engine::gear::{
@@ -269,7 +269,7 @@ fn formulas_on_the_line_of_contact_see_deviations_as_rigid_flanks_do() {
         direction: 0.7,
     });
     let mut case = case(pair(driving, gear(31, 8e-3)), &[0.0, 1e-6]);
-    case.method = Method::LoadDistribution;
+    case.model = model_by(Method::LoadDistribution, &case.model);
     case.resolution.span_mesh_periods = Some(25);
     case.resolution.positions_per_mesh_period = 10;
     let analysis = analyze(&case, &Library::default(), &Run::unattended()).expect("curves");
@@ -303,7 +303,7 @@ fn every_method_sees_what_teeth_deviate() {
     let pair = pair(gear(25, 8e-3), driven);
     let curve = |method| {
         let mut case = case(pair.clone(), &[0.0, 40.0]);
-        case.method = method;
+        case.model = model_by(method, &case.model);
         case.resolution.span_mesh_periods = Some(24);
         case.resolution.positions_per_mesh_period = 8;
         let analysis = analyze(&case, &Library::default(), &Run::unattended()).expect("curves");

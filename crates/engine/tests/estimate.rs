@@ -2,7 +2,7 @@
 
 mod cases;
 
-use cases::{along_faces, case, gear, helical, holed, test_case};
+use cases::{along_faces, case, gear, helical, holed, model_by, test_case};
 use meshwright_engine::analysis::{Case, ContactSolver, Method, estimate};
 use meshwright_engine::assembly::FaceResolution;
 use meshwright_engine::contact::face::SLICES;
@@ -72,7 +72,7 @@ fn an_estimate_is_within_a_factor_of_two_of_what_was_measured() {
     let mut fine = largest(16, 1);
     fine.resolution.grid = GridLevel::Fine;
     let mut decomposed = largest(16, 20);
-    decomposed.method = Method::Decomposition;
+    decomposed.model = model_by(Method::Decomposition, &decomposed.model);
     let mut stressed = active_set.clone();
     stressed.stress = true;
     let mut kidneys = along_faces(kidneys(), (FaceResolution::STANDARD, SLICES), &[1.4]);

@@ -2,11 +2,12 @@
 
 mod cases;
 
+use meshwright_engine::analysis::{Model, SectionHoles};
 use std::sync::Arc;
 use std::time::Instant;
 
 use cases::{along_faces, drawn, gear, helical};
-use meshwright_engine::analysis::{Analysis, Case, Method, analyze};
+use meshwright_engine::analysis::{Analysis, Case, analyze};
 use meshwright_engine::assembly::{FaceResolution, FaceYield};
 use meshwright_engine::contact::face::{FaceContact, FaceModel, FlankYield, SLICES};
 use meshwright_engine::gear::{
@@ -210,8 +211,7 @@ fn a_straight_gear_is_stiffer_than_the_plane_has_it_by_the_strain_along_its_face
     let pair = reference_pair(0.0, [Vec::new(), Vec::new()], |_| ());
     let solid = case(pair, &[100.0], 16);
     let plane = Case {
-        faces: None,
-        method: Method::Flexible,
+        model: Model::Section(SectionHoles::Whole),
         ..solid.clone()
     };
     let mean = |case: &Case| solve(case).curves[0].transmission_error_statistics.mean;
@@ -235,8 +235,7 @@ fn a_narrow_straight_pair_is_in_plane_stress() {
         let pair = reference_pair(0.0, [Vec::new(), Vec::new()], narrow);
         let solid = case(pair, &[100.0 * width / 20e-3], 8);
         let plane = Case {
-            faces: None,
-            method: Method::Flexible,
+            model: Model::Section(SectionHoles::Whole),
             ..solid.clone()
         };
         let mean = |case: &Case| solve(case).curves[0].transmission_error_statistics.mean;

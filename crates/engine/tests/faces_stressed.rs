@@ -2,6 +2,7 @@
 
 mod cases;
 
+use meshwright_engine::analysis::{Model, SectionHoles};
 use std::collections::HashMap;
 
 use cases::{along_faces, gear, helical, holed};
@@ -9,7 +10,7 @@ use faer::linalg::solvers::Solve as _;
 use faer::sparse::{SparseColMat, Triplet};
 use faer::{Mat, Side};
 use meshwright_engine::analysis::stress::{GearStresses, PeakStress};
-use meshwright_engine::analysis::{Case, Curve, Method, analyze};
+use meshwright_engine::analysis::{Case, Curve, analyze};
 use meshwright_engine::assembly::{FaceResolution, FaceRoots};
 use meshwright_engine::contact::face::SLICES;
 use meshwright_engine::fem::surface::SurfaceStress;
@@ -384,8 +385,7 @@ fn a_narrow_straight_pair_is_stressed_as_in_plane_stress() {
         };
         let along = alike(data, 0.0, None, 0.5);
         let plane = Case {
-            method: Method::Flexible,
-            faces: None,
+            model: Model::Section(SectionHoles::Whole),
             ..along.clone()
         };
         let ((curve, found), (flat, expected)) = (solve(&along), solve(&plane));

@@ -5,7 +5,7 @@ mod cases;
 use std::f64::consts::PI;
 use std::sync::{Arc, LazyLock, Mutex};
 
-use cases::{case, gear, helical, holed, pair, relieved, standard_pair, test_case};
+use cases::{case, gear, helical, holed, model_by, pair, relieved, standard_pair, test_case};
 use meshwright_engine::analysis::at_speed::{
     CurveDynamics, DynamicsRequest, dynamics, equivalent_mass,
 };
@@ -187,7 +187,7 @@ fn face_model(faces: &Faces) -> FaceModel {
 fn along_faces_a_table_holds_where_it_was_not_computed() {
     for beta in [0.0, 0.3] {
         let case = along_faces(beta);
-        let model = face_model(case.faces.as_ref().expect("along its faces"));
+        let model = face_model(case.faces().expect("along its faces"));
         let direct = |eta: f64, load: f64| {
             let found = model.contacts(load, &[eta], &Run::unattended());
             found.expect("a contact")[0].mesh.transmission_error
@@ -205,7 +205,7 @@ fn along_faces_a_table_holds_where_it_was_not_computed() {
 fn along_faces_the_other_flanks_are_those_of_the_mirror_image() {
     // In a mirror beside the axis right-handed teeth are left-handed; what stands at z stays there, what opens across the plane of the axes closes.
     let case = along_faces(0.3);
-    let faces = case.faces.as_ref().expect("along its faces");
+    let faces = case.faces().expect("along its faces");
     let of_mirror = {
         let gears = Member::BOTH.map(|member| {
             let gear = faces.pair.gear(member);
@@ -312,7 +312,7 @@ fn the_torque_on_the_driver_follows_from_the_energy_of_the_table() {
 /// The table of a pair by formulas on the line of contact, which under no load are its geometry to the first order.
 fn formula_table(pair: GearPair, per_period: u32) -> ForceTable {
     let mut case = case(pair, &[20.0]);
-    case.method = Method::LoadDistribution;
+    case.model = model_by(Method::LoadDistribution, &case.model);
     case.resolution.positions_per_mesh_period = per_period;
     table(&case)
 }
@@ -554,7 +554,7 @@ fn without_holes_and_relief_at_any_torque_a_run_up_ends_and_is_finite() {
     for torque in [5.0, 300.0] {
         let driven = holed(gear(50, 15e-3), 5, 32e-3, 9e-3, 0.1);
         let mut case = case(pair(gear(50, 15e-3), driven, 100.5e-3), &[torque]);
-        case.method = Method::ProjectedDecomposition;
+        case.model = model_by(Method::ProjectedDecomposition, &case.model);
         let found = run_up(&case, 30_000.0, 61);
         for branch in [&found.run_up.up, &found.run_up.down] {
             let branch = branch.as_ref().expect("asked for");
@@ -628,7 +628,7 @@ fn a_tooth_that_stands_out_hides_no_order_of_the_mesh() {
     data.deviations.cumulative_pitch = vec![0.0; 50];
     data.deviations.cumulative_pitch[0] = 3e-6;
     let mut case = case(pair(data, gear(50, 16e-3), 100.5e-3), &[60.0]);
-    case.method = Method::LoadDistribution;
+    case.model = model_by(Method::LoadDistribution, &case.model);
     case.resolution.positions_per_mesh_period = 10;
     let (_, told) = told_at_speed(&case, &[500.0, 2000.0, 8000.0], None);
     let critical = told.run_up.natural_frequency / 50.0 * 60.0;
@@ -660,7 +660,7 @@ fn a_tooth_that_stands_out_hides_no_order_of_the_mesh() {
 #[test]
 fn a_run_up_beyond_its_force_table_says_by_how_much() {
     let mut case = test_case(2);
-    case.method = Method::LoadDistribution;
+    case.model = model_by(Method::LoadDistribution, &case.model);
     let speeds = [4000.0, 4600.0, 5200.0, 5800.0];
     let beyond = |analysis: &Analysis| {
         let mut all = analysis.warnings.iter();
@@ -753,7 +753,7 @@ fn progress(work: impl FnOnce(&Run)) -> (u64, u64) {
 #[test]
 fn all_that_is_announced_is_done_and_no_more() {
     let coarse = |mut case: Case, method: Method| {
-        case.method = method;
+        case.model = model_by(method, &case.model);
         case.output_torques = vec![0.0, 40.0, 20.0];
         case.resolution.positions_per_mesh_period = 8;
         case.resolution.span_mesh_periods = Some(2);
@@ -781,7 +781,7 @@ fn all_that_is_announced_is_done_and_no_more() {
     }
     for method in [Method::ThreeDimensional, Method::ThreeDimensionalProjected] {
         let mut case = coarse(along_faces(0.0), method);
-        case.faces.as_mut().expect("along its faces").cure = true;
+        faces_of(&mut case).cure = true;
         case.resolution.error_estimate = true;
         let (done, all) = progress(|run| {
             analyze(&case, &Library::default(), run).expect("curves");

@@ -2,7 +2,7 @@
 
 mod cases;
 
-use cases::{case, gear, pair};
+use cases::{case, gear, model_by, pair};
 use meshwright_engine::analysis::{
     Analysis, BodyFormula, Case, Curve, FormulaQuantity, Formulas, Method, PlaneState,
     StiffnessRule, ToothFormula, Warning, analyze,
@@ -41,7 +41,7 @@ fn solve(case: &Case) -> Analysis {
 
 fn asked(pair: GearPair, formulas: Formulas, output_torque: f64) -> Case {
     let mut case = case(pair, &[output_torque]);
-    case.method = Method::LoadDistribution;
+    case.model = model_by(Method::LoadDistribution, &case.model);
     case.resolution.formulas = formulas;
     case
 }

@@ -5,7 +5,9 @@ mod cases;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Barrier};
 
-use cases::{along_faces, case, gear, helical, holed, pair, relieved, study_design, test_case};
+use cases::{
+    along_faces, case, gear, helical, holed, model_by, pair, relieved, study_design, test_case,
+};
 use meshwright_engine::analysis::{
     Analysis, Case, ContactSolver, Curve, Method, Warning, analyze, pair_model,
 };
@@ -478,7 +480,7 @@ fn a_library_provides_what_is_made_without_one() {
         assert!(
             made == solve_from(&Library::default(), &case),
             "{:?}",
-            case.method
+            case.method()
         );
     }
 }
@@ -548,7 +550,7 @@ const COARSE: (FaceResolution, usize) = (
 /// The same by a few positions of its true period of ten mesh periods, with holes at `radius` that matter, or without any.
 fn along_its_faces_in_turn(hole_circle: Option<f64>) -> Case {
     let mut case = along_its_faces();
-    let faces = case.faces.as_mut().expect("along its faces");
+    let faces = faces_of(&mut case);
     let solid = |beta: f64, holes: Option<f64>| {
         let mut data = gear(40, 20e-3);
         data.blank.web = Some(Web {
@@ -693,7 +695,7 @@ fn along_faces_a_moved_hole_costs_one_web() {
     };
     let solve = |circle: f64| {
         let mut case = along_its_faces_in_turn(Some(circle));
-        case.method = Method::ThreeDimensionalProjected;
+        case.model = model_by(Method::ThreeDimensionalProjected, &case.model);
         solve_from(&library, &case)
     };
     let one = solve(28e-3);
@@ -720,7 +722,7 @@ fn with_tip_edges(edge: TipEdge, method: Method) -> Vec<f64> {
     } else {
         case(pair.section().clone(), &[60.0])
     };
-    case.method = method;
+    case.model = model_by(method, &case.model);
     case.resolution.positions_per_mesh_period = 24;
     solve_from(&Library::default(), &case)
         .curves
@@ -792,7 +794,7 @@ fn a_library_changes_no_digit_whether_it_is_cold_warm_too_small_or_absent() {
             assert!(
                 solve_from(&library, case) == *cold,
                 "{:?} from {capacity} bytes: {:?}",
-                case.method,
+                case.method(),
                 library.usage()
             );
         }
@@ -845,7 +847,7 @@ fn jobs_at_once_on_one_library_get_the_results_that_each_gets_alone() {
                 .collect()
         });
         for ((case, together), alone) in cases.iter().zip(&together).zip(&alone) {
-            assert!(together == alone, "{:?} in {capacity} bytes", case.method);
+            assert!(together == alone, "{:?} in {capacity} bytes", case.method());
         }
     }
 }

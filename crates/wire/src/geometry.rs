@@ -11,7 +11,7 @@ answer! {
     /// The derived geometry of a pair.
     pub struct PairGeometry as PairGeometry, "Pair geometry" of (case: &Case) with {
         let pair = &case.pair;
-        let faces = case.faces.as_ref().map(|faces| &faces.pair);
+        let faces = case.faces().map(|faces| &faces.pair);
         let rack = &pair.driving().data().rack;
         let width = faces.map_or(pair.common_face_width(), SolidPair::common_face_width);
         let normal = faces.map_or(1.0, |pair| pair.base_helix_angle().cos());
@@ -102,7 +102,7 @@ answer! {
     /// The derived geometry of a gear.
     pub struct GearGeometry as GearGeometry, "Gear geometry" of (case: &Case, member: Member) with {
         let (pair, gear) = (&case.pair, case.pair.gear(member));
-        let solid = case.faces.as_ref().map(|faces| faces.pair.gear(member));
+        let solid = case.faces().map(|faces| faces.pair.gear(member));
         // What rounding leaves of holes that balance each other has no direction.
         let noise = 1e-12 * gear.mass() * gear.tip_radius();
         let normal = solid.map_or(1.0, |solid| solid.helix_angle_at(gear.tip_radius()).cos());

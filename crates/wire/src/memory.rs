@@ -27,7 +27,7 @@ pub fn memory_above(submission: &Submission, limit_mb: u64) -> Option<u64> {
         .into_iter()
         .map(|member| case.pair.gear(member).tooth_count())
         .sum();
-    let usual = case.faces.is_none()
+    let usual = case.faces().is_none()
         && teeth <= USUAL_TEETH
         && case.resolution.grid != GridLevel::Fine
         && !case.resolution.error_estimate;
@@ -57,11 +57,11 @@ impl Asked {
         let loaded = case.output_torques.iter().filter(|torque| **torque != 0.0);
         Self {
             gears: Member::BOTH.map(|member| case.pair.gear(member).as_drawn()),
-            faces: case.faces.as_ref().map(|faces| {
+            faces: case.faces().map(|faces| {
                 let gears = Member::BOTH.map(|member| faces.pair.gear(member).as_drawn());
                 (gears, faces.resolution, faces.slices)
             }),
-            method: case.method,
+            method: case.method(),
             resolution: case.resolution,
             positions: case.positions(),
             torques: case.output_torques.len(),

@@ -189,12 +189,16 @@ impl ResolutionDocument {
             },
             blank_positions: self.blank_positions,
             interface_radii: self.interface_radius_mm.data(),
-            formulas: Formulas {
-                tooth: self.load_distribution.tooth,
-                body: self.load_distribution.body,
-                plane_state: self.load_distribution.plane_state,
-            },
             error_estimate: self.error_estimate,
+        }
+    }
+
+    /// The formulas of the load distribution.
+    pub(super) fn formulas(&self) -> Formulas {
+        Formulas {
+            tooth: self.load_distribution.tooth,
+            body: self.load_distribution.body,
+            plane_state: self.load_distribution.plane_state,
         }
     }
 

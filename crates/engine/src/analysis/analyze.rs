@@ -1,6 +1,7 @@
 //! From a case to its answer: the methods carry out their plan.
 
-use super::case::{Case, Method};
+use super::case::Case;
+use super::case::{Model, SectionHoles};
 use super::evidence::{ErrorEstimate, Evidence};
 use super::plan::{Pass, Plan};
 use super::setup::Setup;
@@ -83,14 +84,14 @@ fn passed(
     run: &Run,
 ) -> Result<Analysis, AnalysisError> {
     let in_plane = |solve| coupled_as_needed(case, pass, parts, run, solve);
-    let mut analysis = match case.method {
-        Method::Flexible => in_plane(flexible::solve),
-        Method::Decomposition => in_plane(decomposition::solve),
-        Method::ProjectedDecomposition => in_plane(projected::solve),
-        Method::ThreeDimensional | Method::ThreeDimensionalProjected => {
-            three_dimensional::solve(case, pass, parts, run)
+    let mut analysis = match &case.model {
+        Model::Section(SectionHoles::Whole) => in_plane(flexible::solve),
+        Model::Section(SectionHoles::Fitted) => in_plane(decomposition::solve),
+        Model::Section(SectionHoles::FirstOrder) => in_plane(projected::solve),
+        Model::Faces(faces, holes) => {
+            three_dimensional::solve((case, faces, *holes), pass, parts, run)
         }
-        Method::LoadDistribution => load_distribution::solve(case, pass, run),
+        Model::Formulas(formulas) => load_distribution::solve(case, *formulas, pass, run),
     }?;
     warn_of_pressures(&mut analysis.warnings, case, &analysis.curves);
     Ok(analysis)

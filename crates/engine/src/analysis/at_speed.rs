@@ -60,7 +60,7 @@ pub fn equivalent_mass(case: &Case, inertias: [Option<f64>; 2]) -> f64 {
 
 /// The polar inertia of a gear as drawn, in kg m².
 fn own_inertia(case: &Case, member: Member) -> f64 {
-    match &case.faces {
+    match case.faces() {
         Some(faces) => faces.pair.gear(member).polar_inertia(),
         None => case.pair.gear(member).polar_inertia(),
     }
@@ -91,10 +91,7 @@ fn natural_frequency_of_rims(
 fn rotor(case: &Case, member: Member, own: f64, beside: f64) -> Rotor {
     let gear = case.pair.gear(member);
     let blank = &gear.data().blank;
-    let hub = case
-        .faces
-        .as_ref()
-        .and_then(|of| of.pair.gear(member).hub());
+    let hub = case.faces().and_then(|of| of.pair.gear(member).hub());
     let (bore, root) = (blank.bore_radius, gear.root_radius());
     let mut edges = vec![bore, root];
     edges.extend(

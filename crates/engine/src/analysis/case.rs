@@ -82,8 +82,6 @@ pub struct Resolution {
     pub blank_positions: u32,
     /// The interface radius R_w of each gear that has holes, in meters; `None` for its default.
     pub interface_radii: [Option<f64>; 2],
-    /// The formulas of the load distribution.
-    pub formulas: Formulas,
     /// Whether to add a second, finer run that tells the discretization error.
     pub error_estimate: bool,
 }
@@ -101,6 +99,51 @@ pub struct Faces {
     pub at_each_position: bool,
     /// Whether the lead is looked for that would even the load along the face.
     pub cure: bool,
+}
+
+/// How a pair is modeled.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Model {
+    /// Elastic gears in their transverse section.
+    Section(SectionHoles),
+    /// Elastic gears along their faces.
+    Faces(Faces, FaceHoles),
+    /// Formulas for what gears yield, on the theoretical lines of contact: eqs. 4 and 5. They see no holes.
+    Formulas(Formulas),
+}
+
+/// What holes do to the contact of a section.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SectionHoles {
+    /// All that they do: section 2 of the paper.
+    Whole,
+    /// What they change at first order about blanks that are alike all around.
+    FirstOrder,
+    /// How they let a rigid rim turn, fitted to a sinusoid: section 3 of the paper.
+    Fitted,
+}
+
+/// What holes do to the contact along faces.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FaceHoles {
+    /// All that they do.
+    Whole,
+    /// What they change at first order about blanks that are alike all around.
+    FirstOrder,
+}
+
+impl Model {
+    /// The method that it is.
+    pub fn method(&self) -> Method {
+        match self {
+            Self::Section(SectionHoles::Whole) => Method::Flexible,
+            Self::Section(SectionHoles::FirstOrder) => Method::ProjectedDecomposition,
+            Self::Section(SectionHoles::Fitted) => Method::Decomposition,
+            Self::Faces(_, FaceHoles::Whole) => Method::ThreeDimensional,
+            Self::Faces(_, FaceHoles::FirstOrder) => Method::ThreeDimensionalProjected,
+            Self::Formulas(_) => Method::LoadDistribution,
+        }
+    }
 }
 
 /// A place in a curve, and the contact that tells of it.
@@ -138,10 +181,8 @@ pub struct RotationSpeed(pub f64);
 pub struct Case {
     /// The pair: a plane one, or the transverse section.
     pub pair: GearPair,
-    /// The pair along its faces, for the method that sees them.
-    pub faces: Option<Faces>,
-    /// The method.
-    pub method: Method,
+    /// How it is modeled.
+    pub model: Model,
     /// Output torques T on the driven gear, in newton meters; positive.
     pub output_torques: Vec<f64>,
     /// How to compute.
@@ -153,6 +194,19 @@ pub struct Case {
 }
 
 impl Case {
+    /// The method by which it is computed.
+    pub fn method(&self) -> Method {
+        self.model.method()
+    }
+
+    /// The pair along its faces, where these are seen.
+    pub fn faces(&self) -> Option<&Faces> {
+        match &self.model {
+            Model::Faces(faces, _) => Some(faces),
+            Model::Section(_) | Model::Formulas(_) => None,
+        }
+    }
+
     /// The mesh periods that are computed.
     pub fn span(&self) -> u32 {
         self.resolution
@@ -168,20 +222,22 @@ impl Case {
     /// The pair as it is drawn, where teeth deviate and a spectrum tells what the order of holes comes to: what the holes alone make of it. By the same
     /// method, which takes at most as long again; along faces by the one that takes holes to the first order, where a contact is dear.
     pub(super) fn holes_alone(&self) -> Option<Self> {
-        let is_told = self.covers_whole_periods() && self.method.sees_holes();
+        let is_told = self.covers_whole_periods() && self.method().sees_holes();
         if !is_told || self.pair.is_as_drawn() || self.holed().is_empty() {
             return None;
         }
         Some(Self {
             pair: self.pair.as_drawn(),
-            faces: self.faces.as_ref().map(|faces| Faces {
-                pair: faces.pair.as_drawn(),
-                cure: false,
-                ..faces.clone()
-            }),
-            method: match self.method {
-                Method::ThreeDimensional => Method::ThreeDimensionalProjected,
-                other => other,
+            model: match &self.model {
+                Model::Faces(faces, _) => {
+                    let faces = Faces {
+                        pair: faces.pair.as_drawn(),
+                        cure: false,
+                        ..faces.clone()
+                    };
+                    Model::Faces(faces, FaceHoles::FirstOrder)
+                }
+                other => other.clone(),
             },
             resolution: Resolution {
                 span_mesh_periods: None,
@@ -274,19 +330,17 @@ impl Case {
 #[cfg(test)]
 pub(in crate::analysis) mod tests {
     use super::*;
-    use crate::analysis::{BodyFormula, PlaneState, ToothFormula};
 
-    /// `pair` by `method` under one torque, on the coarse grid, with so many positions a mesh period.
+    /// `pair` as `model` has it under one torque, on the coarse grid, with so many positions a mesh period.
     pub(in crate::analysis) fn plain(
         pair: GearPair,
-        method: Method,
+        model: Model,
         output_torque: f64,
         positions_per_mesh_period: u32,
     ) -> Case {
         Case {
             pair,
-            faces: None,
-            method,
+            model,
             output_torques: vec![output_torque],
             resolution: Resolution {
                 positions_per_mesh_period,
@@ -297,11 +351,6 @@ pub(in crate::analysis) mod tests {
                 stiffness: StiffnessRule::Tangent,
                 blank_positions: 16,
                 interface_radii: [None; 2],
-                formulas: Formulas {
-                    tooth: ToothFormula::WeberBanaschek,
-                    body: BodyFormula::Sainsot,
-                    plane_state: PlaneState::Stress,
-                },
                 error_estimate: false,
             },
             stress: false,

@@ -86,8 +86,7 @@ pub fn contact_pattern(
     run: &Run,
 ) -> Result<Option<ContactPattern>, AnalysisError> {
     faer::set_global_parallelism(faer::Par::Seq);
-    let faces = case.faces.as_ref();
-    let Some(faces) = &faces.map(|faces| faces.at(case.resolution.grid)) else {
+    let Some(faces) = &case.faces().map(|faces| faces.at(case.resolution.grid)) else {
         return Ok(None);
     };
     let model = face_model(faces, &yields(faces, parts, run)?);

@@ -1,7 +1,8 @@
 //! What a case will cost, known before it is computed.
 
 use super::at_speed::{run_up_seconds, usual_stiffness};
-use super::case::{Case, Faces, Method};
+use super::case::Model;
+use super::case::{Case, Faces};
 use super::forces::{ForcesRequest, TablePlan};
 use super::plan::{Pass, Plan};
 use crate::assembly::FaceYieldSpec;
@@ -59,10 +60,10 @@ pub fn estimate(case: &Case, forces: Option<&ForcesRequest>) -> Estimate {
         memory: BASE_MEMORY as u64,
         ..Estimate::default()
     };
-    match &case.faces {
-        _ if case.method == Method::LoadDistribution => {}
-        Some(faces) => add_faces(&mut estimate, &plan, faces),
-        None => add_gears(&mut estimate, &plan),
+    match &case.model {
+        Model::Formulas(_) => {}
+        Model::Faces(faces, _) => add_faces(&mut estimate, &plan, faces),
+        Model::Section(_) => add_gears(&mut estimate, &plan),
     }
     add_contacts(&mut estimate, &plan);
     if let Some(forces) = forces {
@@ -81,13 +82,13 @@ fn add_contacts(estimate: &mut Estimate, plan: &Plan) {
     let case = &plan.asked;
     let positions = (case.positions() * case.output_torques.len()) as u64;
     estimate.memory += (POSITION_MEMORY * positions as f64) as u64;
-    estimate.seconds += match &case.faces {
-        _ if case.method == Method::LoadDistribution => SECONDS[0] / 10.0 * plan.solutions() as f64,
-        Some(faces) => {
+    estimate.seconds += match &case.model {
+        Model::Formulas(_) => SECONDS[0] / 10.0 * plan.solutions() as f64,
+        Model::Faces(faces, _) => {
             estimate.memory += 8 * (positions * faces.slices as u64);
             along_faces(plan, faces)
         }
-        None => plan.passes.iter().map(|pass| in_plane(plan, pass)).sum(),
+        Model::Section(_) => plan.passes.iter().map(|pass| in_plane(plan, pass)).sum(),
     };
 }
 

@@ -69,8 +69,7 @@ fn of_gears<T: Send>(
     told: impl Fn(&[MovedParts], &Faces, Member, Place) -> T + Sync,
 ) -> Result<Option<Fields<T>>, AnalysisError> {
     faer::set_global_parallelism(faer::Par::Seq);
-    let faces = case.faces.as_ref();
-    let Some(faces) = &faces.map(|faces| faces.at(case.resolution.grid)) else {
+    let Some(faces) = &case.faces().map(|faces| faces.at(case.resolution.grid)) else {
         return Ok(None);
     };
     let yields = yields(faces, parts, run)?;

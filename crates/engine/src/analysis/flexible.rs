@@ -135,7 +135,7 @@ pub(super) fn solved<T: Send>(
 #[cfg(test)]
 mod tests {
     use crate::analysis::case::tests::plain;
-    use crate::analysis::{Method, analyze};
+    use crate::analysis::{Model, SectionHoles, analyze};
     use crate::contact::facing::tests::undercut_pair;
     use crate::grid::GridLevel;
     use crate::library::Library;
@@ -144,7 +144,12 @@ mod tests {
     #[test]
     fn the_corner_of_an_undercut_flank_takes_up_load_before_its_path_of_contact_begins() {
         let case = |grid| {
-            let mut case = plain(undercut_pair(), Method::Flexible, 8.0, 40);
+            let mut case = plain(
+                undercut_pair(),
+                Model::Section(SectionHoles::Whole),
+                8.0,
+                40,
+            );
             case.resolution.grid = grid;
             case
         };

@@ -2,10 +2,11 @@
 
 use super::analyze::{answered, carried_out};
 use super::at_speed::{CurveDynamics, DynamicsRequest, dynamics};
+use super::case::Model;
 use super::curve::Curve;
 use super::plan::Plan;
 use super::warning::warn_of_motions;
-use super::{Analysis, AnalysisError, Case, Faces, StiffnessRule};
+use super::{Analysis, AnalysisError, Case, StiffnessRule};
 use crate::assembly::Parts;
 use crate::dynamics::{FlankRows, ForceTable, Ladder};
 use crate::run::Run;
@@ -150,7 +151,7 @@ fn rows_case(case: &Case, loads: &[f64]) -> Case {
     rows.resolution.span_mesh_periods = None;
     rows.resolution.error_estimate = false;
     rows.resolution.stiffness = StiffnessRule::Tangent;
-    if let Some(faces) = &mut rows.faces {
+    if let Model::Faces(faces, _) = &mut rows.model {
         faces.cure = false;
     }
     rows
@@ -173,15 +174,13 @@ impl OtherFlank {
         let pair = rows.pair.mirror_image();
         let per_period = f64::from(rows.resolution.positions_per_mesh_period);
         let later = pair.other_flanks_later() * per_period;
-        let faces = rows.faces.clone().map(|faces| Faces {
-            pair: faces.pair.turned_over(),
-            ..faces
-        });
         let mut mirrored = Case {
             pair,
-            faces,
             ..rows.clone()
         };
+        if let Model::Faces(faces, _) = &mut mirrored.model {
+            faces.pair = faces.pair.turned_over();
+        }
         // So that the positions of the mirror image are those of the table.
         mirrored.resolution.first_position = later.fract() / per_period;
         Self {

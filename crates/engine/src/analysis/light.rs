@@ -1,12 +1,13 @@
 //! Curves at torque 0: the limit as the load vanishes, in which nothing is elastic. All methods agree on it but the load distribution, which sees
 //! contact on the line of contact alone.
 
+use super::case::Model;
 use rayon::prelude::*;
 
 use super::between::{Refinement, Sample, Sections};
 use super::case::Place;
 use super::curve_parts::CurveParts;
-use super::{AnalysisError, Case, Curve, Method, load_distribution};
+use super::{AnalysisError, Case, Curve, load_distribution};
 use crate::contact::face::FaceModel;
 use crate::contact::{MeshContact, light_contact};
 use crate::load_distribution::PairFormulas;
@@ -28,10 +29,12 @@ pub(super) fn with_torque_zero(
 
 fn curve(case: &Case, is_refined: bool) -> Result<Curve, AnalysisError> {
     let deviations = case.pair.deviations();
-    let formulas = (case.method == Method::LoadDistribution)
-        .then(|| PairFormulas::new(&case.pair, case.resolution.formulas));
-    let rigid = case.faces.as_ref();
-    let rigid = rigid
+    let formulas = match &case.model {
+        Model::Formulas(formulas) => Some(PairFormulas::new(&case.pair, *formulas)),
+        Model::Section(_) | Model::Faces(..) => None,
+    };
+    let rigid = case
+        .faces()
         .map(|faces| FaceModel::rigid(faces.pair.clone(), faces.at(case.resolution.grid).slices));
     let contact = |&eta: &f64| -> Result<MeshContact, AnalysisError> {
         let contact = match (&formulas, &rigid) {

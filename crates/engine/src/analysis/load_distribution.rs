@@ -9,12 +9,17 @@ use super::plan::{Pass, Sweep};
 use super::warning::warnings;
 use super::{Analysis, AnalysisError, Evidence};
 use crate::contact::{MeshContact, PeakPlace};
-use crate::load_distribution::{PairFormulas, Shared, rise, share, touch};
+use crate::load_distribution::{Formulas, PairFormulas, Shared, rise, share, touch};
 use crate::run::Run;
 
-/// Computes `case` by the load distribution.
-pub(super) fn solve(case: &Case, plan: &Pass, run: &Run) -> Result<Analysis, AnalysisError> {
-    let formulas = PairFormulas::new(&case.pair, case.resolution.formulas);
+/// Computes `case` by the load distribution of these `formulas`.
+pub(super) fn solve(
+    case: &Case,
+    formulas: Formulas,
+    plan: &Pass,
+    run: &Run,
+) -> Result<Analysis, AnalysisError> {
+    let formulas = PairFormulas::new(&case.pair, formulas);
     let told = &plan.told;
     let mut evidence = Evidence::new(0);
     let mut curves = Vec::with_capacity(case.output_torques.len());

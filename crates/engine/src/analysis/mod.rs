@@ -38,7 +38,9 @@ pub mod warning;
 
 pub use analyze::{analyze, pair_model};
 pub use answer::Analysis;
-pub use case::{Case, Faces, Method, Resolution, RotationSpeed, StiffnessRule};
+pub use case::{
+    Case, FaceHoles, Faces, Method, Model, Resolution, RotationSpeed, SectionHoles, StiffnessRule,
+};
 pub use curve::{Curve, FaceLoad};
 pub use error::AnalysisError;
 pub use estimate::{Estimate, estimate};

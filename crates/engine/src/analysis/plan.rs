@@ -4,6 +4,7 @@
 use super::AnalysisError;
 use super::between::{Refinement, Sample, Sections, most_further};
 use super::case::{Case, Method, StiffnessRule};
+use super::case::{FaceHoles, Model, SectionHoles};
 use super::first_order::Checks;
 use crate::assembly::Blanks;
 use crate::contact::positions::stages;
@@ -76,8 +77,8 @@ impl Plan {
         if !loaded.output_torques.is_empty() {
             levels.push(level);
             // Formulas have no grid to refine.
-            if case.resolution.error_estimate && case.method != Method::LoadDistribution {
-                levels.push(if case.method.sees_faces() {
+            if case.resolution.error_estimate && case.method() != Method::LoadDistribution {
+                levels.push(if case.method().sees_faces() {
                     compared_along_faces(level)
                 } else {
                     level.neighbor()
@@ -119,18 +120,18 @@ impl Pass {
             StiffnessRule::Tangent => None,
             StiffnessRule::TorqueStep { fraction } => Some(fraction),
         };
-        let (blanks, positions, step) = match case.method {
-            Method::Flexible | Method::ThreeDimensional => {
+        let (blanks, positions, step) = match case.model {
+            Model::Section(SectionHoles::Whole) | Model::Faces(_, FaceHoles::Whole) => {
                 (Blanks::Flexible, case.mesh_positions(), by_rule)
             }
-            Method::Decomposition => (
+            Model::Section(SectionHoles::Fitted) => (
                 Blanks::HoledRigid,
                 case.repeating_positions(),
                 by_rule.or(Some(TORQUE_STEP)),
             ),
-            Method::ProjectedDecomposition
-            | Method::ThreeDimensionalProjected
-            | Method::LoadDistribution => (Blanks::Flexible, case.repeating_positions(), by_rule),
+            Model::Section(SectionHoles::FirstOrder)
+            | Model::Faces(_, FaceHoles::FirstOrder)
+            | Model::Formulas(_) => (Blanks::Flexible, case.repeating_positions(), by_rule),
         };
         let told = Sweep {
             blanks,
@@ -138,12 +139,12 @@ impl Pass {
             positions,
             step,
         };
-        let is_cured = answers && case.faces.as_ref().is_some_and(|faces| faces.cure);
+        let is_cured = answers && case.faces().is_some_and(|faces| faces.cure);
         Self {
             level,
             rigid: Sweep {
                 blanks: Blanks::HoledRigid,
-                positions: if case.method == Method::ProjectedDecomposition {
+                positions: if case.model == Model::Section(SectionHoles::FirstOrder) {
                     told.positions.clone()
                 } else {
                     Vec::new()
@@ -151,13 +152,13 @@ impl Pass {
                 step: None,
                 further: 0,
             },
-            samples: if case.method == Method::Decomposition {
+            samples: if case.model == Model::Section(SectionHoles::Fitted) {
                 let of = |member| (member, samples(case, member, told.step));
                 case.holed().into_iter().map(of).collect()
             } else {
                 Vec::new()
             },
-            checks: if case.method.is_projected() {
+            checks: if case.method().is_projected() {
                 Checks::of(case)
             } else {
                 Checks::NONE
@@ -167,7 +168,7 @@ impl Pass {
             } else {
                 Vec::new()
             },
-            stress: answers && case.stress && case.method.tells_stress(),
+            stress: answers && case.stress && case.method().tells_stress(),
             told,
         }
     }

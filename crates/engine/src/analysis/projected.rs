@@ -240,8 +240,8 @@ fn yielded(model: &PairModel, members: &[Member], pairs: &[PairLoads], period: i
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::Method;
     use crate::analysis::case::tests::plain;
+    use crate::analysis::{Model, SectionHoles};
     use crate::assembly::MakeAll;
     use crate::contact::{Stage, WarmStart};
     use crate::gear::spur::tests::paper_gear;
@@ -261,7 +261,7 @@ mod tests {
         .holes();
         let gear = SpurGear::new(data).expect("a gear that can be made");
         let pair = GearPair::new(gear.clone(), gear, 100.5e-3).expect("a pair that meshes");
-        plain(pair, Method::ProjectedDecomposition, 115.0, 8)
+        plain(pair, Model::Section(SectionHoles::FirstOrder), 115.0, 8)
     }
 
     #[test]

@@ -1,12 +1,13 @@
 //! The methods that see the faces: both whole gears in three dimensions, contact along moving lines; at every position, or over one mesh
 //! period with what holes change added at first order.
 
+use super::case::FaceHoles;
 use std::sync::Arc;
 
 use faer::Mat;
 
 use super::between::{Sample, Sections};
-use super::case::{Faces, Method, Place};
+use super::case::{Faces, Place};
 use super::curve::{FaceLoad, LeadCure};
 use super::curve_parts::CurveParts;
 use super::evidence::Evidence;
@@ -27,17 +28,11 @@ const TOLD: f64 = 0.005;
 
 /// Computes `case` along its faces at the grid level of `plan`.
 pub(super) fn solve(
-    case: &Case,
+    (case, asked, holes): (&Case, &Faces, FaceHoles),
     plan: &Pass,
     parts: &dyn Parts,
     run: &Run,
 ) -> Result<Analysis, AnalysisError> {
-    let Some(asked) = &case.faces else {
-        return Err(AnalysisError::Discretization {
-            member: Member::Driving,
-            reason: "nothing is said of its extent along the axis".to_owned(),
-        });
-    };
     let faces = &asked.at(plan.level);
     let yields = yields(faces, parts, run)?;
     let degrees_of_freedom = yields.iter().map(|of| of.degrees_of_freedom()).sum();
@@ -51,14 +46,14 @@ pub(super) fn solve(
     let stress = stress.transpose()?;
     for &output_torque in &case.output_torques {
         let load = case.pair.load(output_torque);
-        let solved = match case.method {
-            Method::ThreeDimensionalProjected => {
+        let solved = match holes {
+            FaceHoles::FirstOrder => {
                 let solved = pair.projected(load, &plan.told)?;
                 pair.checked(load, solved)?
             }
-            _ => pair.whole(load, &plan.told)?,
+            FaceHoles::Whole => pair.whole(load, &plan.told)?,
         };
-        let is_projected = case.method == Method::ThreeDimensionalProjected;
+        let is_projected = holes == FaceHoles::FirstOrder;
         let after = if is_projected {
             case.contacts_repeat_after()
         } else {
@@ -214,9 +209,10 @@ impl<'a> OfFaces<'a> {
 
     /// The lead that evens the load on the pair that was `solved` for, where it is looked for.
     fn even_lead(&self, load: f64, solved: &Solved) -> Result<Option<EvenLead>, AnalysisError> {
-        let model = match self.case.method {
-            Method::ThreeDimensionalProjected => &self.round,
-            _ => &self.whole,
+        let model = if self.case.method().is_projected() {
+            &self.round
+        } else {
+            &self.whole
         };
         let deltas = solved.contacts.iter();
         let deltas = deltas.map(|contact| contact.mesh.transmission_error);

@@ -1,6 +1,7 @@
 //! What a reader of a result should know beside the numbers.
 
 use super::at_speed::CurveDynamics;
+use super::case::Model;
 use super::{Case, Curve, Method, Statistics};
 use crate::contact::MeshContact;
 use crate::dynamics::ForceTable;
@@ -190,13 +191,13 @@ pub fn warnings(case: &Case) -> Vec<Warning> {
             warnings.push(Warning::ThinLigament { member, ligament });
         }
         // The method of closed forms takes no web into its numbers.
-        if case.method != Method::LoadDistribution && case.faces.is_none() {
+        if case.method() != Method::LoadDistribution && case.faces().is_none() {
             warnings.extend(web_outside_plane(gear, member));
         }
     }
     let widths = [pair.driving().face_width(), pair.driven().face_width()];
     let ratio = widths[0].max(widths[1]) / pair.common_face_width();
-    if ratio > LIKE_WIDTHS && case.faces.is_none() {
+    if ratio > LIKE_WIDTHS && case.faces().is_none() {
         warnings.push(Warning::FaceWidthsDiffer { ratio });
     }
     if !case.covers_whole_periods() {
@@ -209,13 +210,13 @@ pub fn warnings(case: &Case) -> Vec<Warning> {
     if case.covers_whole_periods() && positions < FEW_POSITIONS {
         warnings.push(Warning::FewPositions { positions });
     }
-    if case.method == Method::LoadDistribution {
+    if let Model::Formulas(formulas) = case.model {
         if !case.holed().is_empty() {
             warnings.push(Warning::HolesNotSeen);
         }
         let torques = case.output_torques.iter().copied();
         let least = torques.fold(f64::INFINITY, f64::min);
-        let outside = out_of_range(pair, case.resolution.formulas, least);
+        let outside = out_of_range(pair, formulas, least);
         warnings.extend(outside.into_iter().map(Warning::FormulaRange));
     }
     warnings

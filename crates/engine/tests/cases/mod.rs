@@ -3,8 +3,8 @@
 #![allow(dead_code, reason = "each test and benchmark uses some of these")]
 
 use meshwright_engine::analysis::{
-    BodyFormula, Case, ContactSolver, Faces, Formulas, Method, PlaneState, Resolution,
-    StiffnessRule, ToothFormula,
+    BodyFormula, Case, ContactSolver, FaceHoles, Faces, Formulas, Method, Model, PlaneState,
+    Resolution, SectionHoles, StiffnessRule, ToothFormula,
 };
 use meshwright_engine::assembly::FaceResolution;
 use meshwright_engine::contact::{MeshContact, PairModel, PositionError, WarmStart};
@@ -138,8 +138,7 @@ impl Made {
 pub(crate) fn case(pair: GearPair, output_torques: &[f64]) -> Case {
     Case {
         pair,
-        faces: None,
-        method: Method::Flexible,
+        model: Model::Section(SectionHoles::Whole),
         output_torques: output_torques.to_vec(),
         resolution: Resolution {
             positions_per_mesh_period: 40,
@@ -150,11 +149,6 @@ pub(crate) fn case(pair: GearPair, output_torques: &[f64]) -> Case {
             stiffness: StiffnessRule::Tangent,
             blank_positions: 16,
             interface_radii: [None; 2],
-            formulas: Formulas {
-                tooth: ToothFormula::WeberBanaschek,
-                body: BodyFormula::Sainsot,
-                plane_state: PlaneState::Stress,
-            },
             error_estimate: false,
         },
         stress: false,
@@ -171,19 +165,48 @@ pub(crate) fn helical(data: GearData, beta: f64, web_offset: f64) -> SolidGear {
 /// The pair along its faces.
 pub(crate) fn along_faces(
     pair: SolidPair,
-    (resolution, slices): (FaceResolution, usize),
+    (resolution, slices): (FaceResolution, SectionHoles, usize),
     output_torques: &[f64],
 ) -> Case {
+    let section = pair.section().clone();
+    let faces = Faces {
+        pair,
+        resolution,
+        slices,
+        at_each_position: false,
+        cure: false,
+    };
     Case {
-        method: Method::ThreeDimensional,
-        faces: Some(Faces {
-            pair: pair.clone(),
-            resolution,
-            slices,
-            at_each_position: false,
-            cure: false,
+        model: Model::Faces(faces, FaceHoles::Whole),
+        ..case(section, output_torques)
+    }
+}
+
+/// The pair of `case` along its faces, to change.
+pub(crate) fn faces_of(case: &mut Case) -> &mut Faces {
+    match &mut case.model {
+        Model::Faces(faces, _) => faces,
+        Model::Section(_) | Model::Formulas(_) => panic!("nothing is said of the faces"),
+    }
+}
+
+/// What a case with the model `known` is modeled by to be computed by `method`; formulas are those that the service presets.
+pub(crate) fn model_by(method: Method, known: &Model) -> Model {
+    let along_faces = |holes| match known {
+        Model::Faces(faces, _) => Model::Faces(faces.clone(), holes),
+        Model::Section(_) | Model::Formulas(_) => panic!("nothing is said of the faces"),
+    };
+    match method {
+        Method::Flexible => Model::Section(SectionHoles::Whole),
+        Method::Decomposition => Model::Section(SectionHoles::Fitted),
+        Method::ProjectedDecomposition => Model::Section(SectionHoles::FirstOrder),
+        Method::ThreeDimensional => along_faces(FaceHoles::Whole),
+        Method::ThreeDimensionalProjected => along_faces(FaceHoles::FirstOrder),
+        Method::LoadDistribution => Model::Formulas(Formulas {
+            tooth: ToothFormula::WeberBanaschek,
+            body: BodyFormula::Sainsot,
+            plane_state: PlaneState::Stress,
         }),
-        ..case(pair.section().clone(), output_torques)
     }
 }
 

@@ -21,7 +21,7 @@ fn a_run_that_is_told_to_stop_solves_hardly_a_position_more() {
         Method::ProjectedDecomposition,
     ] {
         let mut case = case(pair.clone(), &[torque]);
-        case.method = method;
+        case.model = model_by(method, &case.model);
         let stop = Arc::new(AtomicBool::new(false));
         let seen = Arc::new(AtomicU64::new(0));
         let (flag, count) = (stop.clone(), seen.clone());
@@ -63,7 +63,7 @@ fn results_do_not_depend_on_the_number_of_threads_nor_on_the_run() {
         Method::ProjectedDecomposition,
     ] {
         let mut case = case(pair.clone(), &[torque, 20.0]);
-        case.method = method;
+        case.model = model_by(method, &case.model);
         let on = |threads: usize| -> Analysis {
             let pool = rayon::ThreadPoolBuilder::new()
                 .num_threads(threads)

@@ -1,7 +1,9 @@
 //! What each method leaves out.
 
 use meshwright_engine::analysis::forces::ForcesRequest;
-use meshwright_engine::analysis::{BodyFormula, Case, Formulas, Method, ToothFormula};
+use meshwright_engine::analysis::{
+    BodyFormula, Case, FaceHoles, Formulas, Model, SectionHoles, ToothFormula,
+};
 use meshwright_engine::gear::{Core, SpurGear, TipEdge};
 
 /// What the method of `case` leaves out, and what `forces` do that are asked for beside the curves.
@@ -16,20 +18,20 @@ pub(super) fn does_not_see(case: &Case, forces: Option<&ForcesRequest>) -> Vec<&
         "how far shafts and bearings bend under the load: misalignment is what the submission says",
     ];
     const BEYOND_FIRST_ORDER: &str = "what the fluctuation of the holed blanks changes in the load sharing between pairs, beyond first order";
-    let plane = case.faces.is_none().then_some(PLANE);
-    let own: Vec<&str> = match case.method {
-        Method::Flexible => vec![],
-        Method::ThreeDimensional => ALONG_FACES.to_vec(),
-        Method::ThreeDimensionalProjected => ALONG_FACES
+    let plane = case.faces().is_none().then_some(PLANE);
+    let own: Vec<&str> = match &case.model {
+        Model::Section(SectionHoles::Whole) => vec![],
+        Model::Faces(_, FaceHoles::Whole) => ALONG_FACES.to_vec(),
+        Model::Faces(_, FaceHoles::FirstOrder) => ALONG_FACES
             .into_iter()
             .chain([BEYOND_FIRST_ORDER])
             .collect(),
-        Method::Decomposition => vec![
+        Model::Section(SectionHoles::Fitted) => vec![
             "sidebands of the holes about the mesh orders in the transmission error: each blank's rotation is fitted by its mean and one harmonic",
             "what the holes change in the load sharing between pairs",
         ],
-        Method::ProjectedDecomposition => vec![BEYOND_FIRST_ORDER],
-        Method::LoadDistribution => formulas_do_not_see(case.resolution.formulas),
+        Model::Section(SectionHoles::FirstOrder) => vec![BEYOND_FIRST_ORDER],
+        Model::Formulas(formulas) => formulas_do_not_see(*formulas),
     };
     let runs = forces.is_some_and(|forces| forces.dynamics.is_some());
     let inertia = if runs {
@@ -81,10 +83,10 @@ fn real_teeth_do_not_see(case: &Case) -> Vec<&'static str> {
     if any(|gear| !gear.deviations().are_teeth_alike()) {
         unseen.push("that a tooth which stands out is thicker, and stiffer, by what it stands out: every tooth yields as drawn");
     }
-    if case.faces.is_none() && any(|gear| gear.data().blank.web.is_some()) {
+    if case.faces().is_none() && any(|gear| gear.data().blank.web.is_some()) {
         unseen.push("that force flows around the edges of a web: every region is in plane stress with its own thickness");
     }
-    let by_formula = case.method == Method::LoadDistribution;
+    let by_formula = matches!(case.model, Model::Formulas(_));
     if by_formula && any(|gear| gear.data().blank.web.is_some()) {
         unseen.push("webs: the bodies are as thick as their faces are wide");
     }
@@ -143,6 +145,8 @@ fn formulas_do_not_see(formulas: Formulas) -> Vec<&'static str> {
 
 #[cfg(test)]
 mod tests {
+    use meshwright_engine::analysis::PlaneState;
+
     use super::*;
     use crate::testing::submission;
 
@@ -151,9 +155,11 @@ mod tests {
         let any = submission("test-case-2");
         let unseen = |tooth, body| {
             let mut case = any.case().clone();
-            case.method = Method::LoadDistribution;
-            case.resolution.formulas.tooth = tooth;
-            case.resolution.formulas.body = body;
+            case.model = Model::Formulas(Formulas {
+                tooth,
+                body,
+                plane_state: PlaneState::Stress,
+            });
             does_not_see(&case, None).join("\n")
         };
         let (parts, whole) = (ToothFormula::WeberBanaschek, ToothFormula::Iso6336);

@@ -78,12 +78,12 @@ impl Needs {
                 .forces()
                 .is_none_or(|forces| forces.dynamics.is_none())
                 .then(|| "the submission has to ask for it by /base/dynamics".to_owned()),
-            Self::Method(tells) => (!tells(case.method)).then(|| {
+            Self::Method(tells) => (!tells(case.method())).then(|| {
                 let told = Method::OPTIONS.iter().filter(|(_, method, _)| tells(*method));
                 let told: Vec<&str> = told.map(|(word, ..)| *word).collect();
                 format!(
                     "the method {} does not tell it; {} would",
-                    case.method.word(),
+                    case.method().word(),
                     told.join(", ")
                 )
             }),

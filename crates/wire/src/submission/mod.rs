@@ -3,6 +3,7 @@
 use meshwright_engine::analysis::RotationSpeed;
 use meshwright_engine::analysis::forces::{ForcesRequest, MORE_POSITIONS};
 use meshwright_engine::analysis::{Case, Faces, Method, Warning};
+use meshwright_engine::analysis::{FaceHoles, Model, SectionHoles};
 use meshwright_engine::assembly::FaceResolution;
 
 mod checks;
@@ -111,7 +112,7 @@ impl Document {
         self.fill_in_table();
         self.check_forces(&pair, errors);
         self.check_size(purpose, &pair, errors);
-        let faces = solid.map(|pair| Faces {
+        let faces = |pair| Faces {
             pair,
             resolution: FaceResolution {
                 face_order: self.resolution.face_order as usize,
@@ -120,11 +121,20 @@ impl Document {
             slices: self.resolution.face_slices as usize,
             at_each_position: self.face_load == FaceRows::Positions,
             cure: true,
-        });
+        };
+        let model = match (self.method, solid) {
+            (Method::ThreeDimensionalProjected, Some(solid)) => {
+                Model::Faces(faces(solid), FaceHoles::FirstOrder)
+            }
+            (_, Some(solid)) => Model::Faces(faces(solid), FaceHoles::Whole),
+            (Method::LoadDistribution, None) => Model::Formulas(self.resolution.formulas()),
+            (Method::Decomposition, None) => Model::Section(SectionHoles::Fitted),
+            (Method::ProjectedDecomposition, None) => Model::Section(SectionHoles::FirstOrder),
+            (_, None) => Model::Section(SectionHoles::Whole),
+        };
         let case = Case {
             pair,
-            faces,
-            method: self.method,
+            model,
             output_torques: self.output_torques_n_m.clone(),
             resolution: self.resolution.data(),
             stress: self.stress,
@@ -251,7 +261,7 @@ impl Submission {
 
     /// The method's word.
     pub fn method(&self) -> &'static str {
-        self.case.method.word()
+        self.case.method().word()
     }
 
     /// The tags.

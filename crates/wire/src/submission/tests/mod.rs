@@ -97,7 +97,7 @@ fn the_hash_knows_what_decides_the_result_and_no_tags() {
 #[test]
 fn the_choices_of_the_resolution_reach_the_engine() {
     use meshwright_engine::analysis::{
-        BodyFormula, ContactSolver, PlaneState, StiffnessRule, ToothFormula,
+        BodyFormula, ContactSolver, Model, PlaneState, StiffnessRule, ToothFormula,
     };
     let mut document = least();
     document["method"] = json!("load_distribution");
@@ -122,7 +122,9 @@ fn the_choices_of_the_resolution_reach_the_engine() {
         case.resolution.stiffness,
         StiffnessRule::TorqueStep { fraction: 0.01 }
     );
-    let formulas = case.resolution.formulas;
+    let Model::Formulas(formulas) = case.model else {
+        panic!("the model")
+    };
     assert_eq!(
         (formulas.tooth, formulas.body, formulas.plane_state),
         (
