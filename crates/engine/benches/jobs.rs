@@ -6,7 +6,7 @@ use criterion::{BatchSize, Bencher, Criterion, criterion_group, criterion_main};
 use meshwright_benches::group;
 use meshwright_engine::analysis::at_speed::{DynamicsRequest, dynamics};
 use meshwright_engine::analysis::forces::{ForceTableRequest, force_table};
-use meshwright_engine::analysis::{Case, Faces, Method, analyze, pair_model};
+use meshwright_engine::analysis::{Case, FaceHoles, Faces, Method, Model, analyze, pair_model};
 use meshwright_engine::assembly::FaceResolution;
 use meshwright_engine::assembly::interface::default_interface_radius;
 use meshwright_engine::assembly::{Parts, TeethSpec};
@@ -52,7 +52,7 @@ fn pairs() -> [(Case, &'static str); 4] {
 
 fn by(case: &Case, method: Method) -> Case {
     Case {
-        method,
+        model: model_by(method, &case.model),
         ..case.clone()
     }
 }

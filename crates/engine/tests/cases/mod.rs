@@ -165,7 +165,7 @@ pub(crate) fn helical(data: GearData, beta: f64, web_offset: f64) -> SolidGear {
 /// The pair along its faces.
 pub(crate) fn along_faces(
     pair: SolidPair,
-    (resolution, slices): (FaceResolution, SectionHoles, usize),
+    (resolution, slices): (FaceResolution, usize),
     output_torques: &[f64],
 ) -> Case {
     let section = pair.section().clone();

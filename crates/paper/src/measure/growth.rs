@@ -1,7 +1,7 @@
 //! One thing varied at a time: tooth count, hole count, positions, torques.
 
 use anyhow::Context;
-use meshwright_engine::analysis::{Case, Method, pair_model};
+use meshwright_engine::analysis::{Case, SectionHoles, pair_model};
 use meshwright_engine::gear::{BlankRegion, GearData, GearPair, HolePattern, SpurGear};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
@@ -87,10 +87,10 @@ const TORQUES: [u32; 6] = [1, 2, 5, 10, 15, 20];
 const SPAN: u32 = 5;
 
 /// Test case 2 by these methods, where positions or torques vary.
-const METHODS: [(Method, &str); 3] = [
-    (Method::Flexible, "flexible"),
-    (Method::Decomposition, "decomposition"),
-    (Method::ProjectedDecomposition, "projected"),
+const METHODS: [(SectionHoles, &str); 3] = [
+    (SectionHoles::Whole, "flexible"),
+    (SectionHoles::Fitted, "decomposition"),
+    (SectionHoles::FirstOrder, "projected"),
 ];
 
 /// Measures them all, telling `progress` what comes next.
@@ -125,7 +125,7 @@ pub(super) fn measured(progress: &dyn Fn(&str)) -> anyhow::Result<Vec<Growth>> {
 fn over(
     varied: Varied,
     counts: &[u32],
-    case: impl Fn(Method, u32) -> Case,
+    case: impl Fn(SectionHoles, u32) -> Case,
 ) -> anyhow::Result<Growth> {
     let series = METHODS
         .into_iter()
@@ -202,13 +202,9 @@ fn over_holes() -> anyhow::Result<Growth> {
         cold(&case)
     };
     let series = [
-        ("flexible, true period", None, Method::Flexible),
-        ("flexible, 5 mesh periods", Some(SPAN), Method::Flexible),
-        (
-            "projected, true period",
-            None,
-            Method::ProjectedDecomposition,
-        ),
+        ("flexible, true period", None, SectionHoles::Whole),
+        ("flexible, 5 mesh periods", Some(SPAN), SectionHoles::Whole),
+        ("projected, true period", None, SectionHoles::FirstOrder),
     ];
     let series = series.into_iter().map(|(name, span, method)| {
         TimeSeries::over(name, &HOLE_COUNTS, |count| of(count, span, method))

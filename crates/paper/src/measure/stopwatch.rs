@@ -65,7 +65,7 @@ pub(super) fn cold(case: &Case) -> anyhow::Result<f64> {
 /// If it cannot be computed.
 pub(super) fn answer(case: &Case, library: &Library) -> anyhow::Result<Analysis> {
     analyze(case, library, &Run::unattended())
-        .with_context(|| format!("the {} method failed", method_name(case.method)))
+        .with_context(|| format!("the {} method failed", method_name(case.method())))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! What is computed: the paper's test cases and designs, from the examples that ship with the service.
 
 use anyhow::Context;
-use meshwright_engine::analysis::{Case, Method};
+use meshwright_engine::analysis::{Case, Model, SectionHoles};
 use meshwright_engine::gear::{GearPair, HolePattern, SpurGear};
 use meshwright_wire::{Submission, examples};
 
@@ -33,10 +33,10 @@ pub(crate) fn example(name: &str) -> anyhow::Result<Case> {
     Ok(case)
 }
 
-/// `case` by another method.
-pub(crate) fn by(case: &Case, method: Method) -> Case {
+/// `case` in its section, by the method that makes this of its holes.
+pub(crate) fn by(case: &Case, holes: SectionHoles) -> Case {
     Case {
-        method,
+        model: Model::Section(holes),
         ..case.clone()
     }
 }

@@ -3,18 +3,23 @@
 use std::time::Instant;
 
 use anyhow::Context;
-use meshwright_engine::analysis::{Analysis, Case, Curve, Method, analyze};
+use meshwright_engine::analysis::{Analysis, Case, Curve, Method, Model, SectionHoles, analyze};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 
 use super::cases;
 
 /// The methods of Table 2, and ours beside them.
-pub(super) const METHODS: [Method; 3] = [
-    Method::Flexible,
-    Method::Decomposition,
-    Method::ProjectedDecomposition,
+pub(super) const METHODS: [SectionHoles; 3] = [
+    SectionHoles::Whole,
+    SectionHoles::Fitted,
+    SectionHoles::FirstOrder,
 ];
+
+/// The name of the method that makes this of the holes of a section.
+pub(super) fn name_of(holes: SectionHoles) -> &'static str {
+    method_name(Model::Section(holes).method())
+}
 
 /// The name of a method in legends and tables.
 pub(crate) fn method_name(method: Method) -> &'static str {
@@ -122,9 +127,7 @@ impl Computed {
                 let times: Vec<String> = METHODS
                     .iter()
                     .zip(&test_case.answers)
-                    .map(|(method, answer)| {
-                        format!("{} {:.2} s", method_name(*method), answer.seconds)
-                    })
+                    .map(|(method, answer)| format!("{} {:.2} s", name_of(*method), answer.seconds))
                     .collect();
                 progress(&format!("Test case {number}: {}.", times.join(", ")));
                 Ok(test_case)
@@ -180,7 +183,7 @@ impl Computed {
 
 fn answer(case: &Case, library: &Library) -> anyhow::Result<Analysis> {
     analyze(case, library, &Run::unattended())
-        .with_context(|| format!("the {} method failed", method_name(case.method)))
+        .with_context(|| format!("the {} method failed", method_name(case.method())))
 }
 
 fn only_curve(case: &Case, library: &Library) -> anyhow::Result<Curve> {
@@ -256,15 +259,15 @@ pub(super) fn design(
     Ok(Design {
         name: name.into(),
         kept,
-        flexible: curves(Method::Flexible)?,
-        decomposition: curves(Method::Decomposition)?,
+        flexible: curves(SectionHoles::Whole)?,
+        decomposition: curves(SectionHoles::Fitted)?,
         case,
     })
 }
 
 /// Test case 2 by decomposition with the interface at each of [`INTERFACES`].
 fn interfaces() -> anyhow::Result<Vec<(f64, Curve)>> {
-    let mut case = cases::by(&cases::example("test-case-2")?, Method::Decomposition);
+    let mut case = cases::by(&cases::example("test-case-2")?, SectionHoles::Fitted);
     let library = Library::default();
     INTERFACES
         .into_iter()
@@ -283,10 +286,7 @@ fn sweep_cases() -> anyhow::Result<[(&'static str, Case); 3]> {
         // Forty torques of a holed pair: a case for the method that solves the contact over one mesh period.
         (
             "test case 2, projected",
-            cases::by(
-                &cases::example("test-case-2")?,
-                Method::ProjectedDecomposition,
-            ),
+            cases::by(&cases::example("test-case-2")?, SectionHoles::FirstOrder),
         ),
     ])
 }

@@ -4,7 +4,7 @@ use meshwright_engine::analysis::Curve;
 use meshwright_engine::analysis::spectrum::harmonics;
 use meshwright_plot::Color;
 
-use super::super::computed::{METHODS, TestCase, line, method_name};
+use super::super::computed::{METHODS, TestCase, line, name_of};
 use super::{Illustration, over_revolution};
 use meshwright_plot::{Axis, Chart, Figure, Look, PALETTE, Panel, Series};
 
@@ -162,7 +162,7 @@ fn closer(test_case: &TestCase, quantity: Quantity, ends: (f64, f64)) -> Chart {
                 .zip(repeated)
                 .map(|(i, value)| (i as f64 * step, value * quantity.scale()))
                 .collect();
-            Series::new(method_name(method), COLORS[i], LINES[i], points)
+            Series::new(name_of(method), COLORS[i], LINES[i], points)
         })
         .collect();
     let axis = Axis::linear("mesh position η in mesh periods", 0.0, span);

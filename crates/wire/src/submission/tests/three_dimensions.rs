@@ -201,7 +201,7 @@ fn a_helical_pair_has_the_sections_of_the_standard() {
     // r_a = r + h_a + x m_n: the shift is in normal modules.
     assert!((driving.tip_radius() - (50e-3 / cos + 2e-3 + 0.4e-3)).abs() < 1e-15);
     assert!((driven.tip_radius() - 55.2e-3).abs() < 1e-15);
-    let faces = submission.case().faces.as_ref().expect("along its faces");
+    let faces = submission.case().faces().expect("along its faces");
     assert_eq!(
         faces
             .pair
