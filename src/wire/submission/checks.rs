@@ -59,17 +59,6 @@ impl Document {
             let detail = format!("{pointer}: three dimensions are solved by the active set alone.");
             errors.push(FieldError::new(pointer, Code::NotInThreeDimensions, detail));
         }
-        for (member, gear) in [
-            (Member::Driving, &self.pair.driving),
-            (Member::Driven, &self.pair.driven),
-        ] {
-            if let Some(pointer) = gear.shaft_at(&format!("/pair/{member}")) {
-                let detail = format!(
-                    "{pointer}: three dimensions are solved on a bore; the plane methods know shafts."
-                );
-                errors.push(FieldError::new(pointer, Code::NotInThreeDimensions, detail));
-            }
-        }
     }
 
     /// Dynamics need a table.
