@@ -973,7 +973,7 @@ fn a_helical_pinion_of_one_piece_with_its_shaft_is_computed_along_its_face() {
     let place = r#"<attribute id="u_coordinate_on_shaft""#;
     let model = text
         .replacen(&angle("0.0"), &angle("10.0"), 1)
-        .replacen(&angle("0.0"), &angle("-10.0"), 1)
+        .replacen(&angle("-0.0"), &angle("-10.0"), 1)
         .replacen("60.5", "61.4", 1)
         .replacen(place, &format!("{none}{place}"), 1);
     let read = taken_of(model.as_bytes());
@@ -983,7 +983,7 @@ fn a_helical_pinion_of_one_piece_with_its_shaft_is_computed_along_its_face() {
     let library = Library::with_capacity(64 << 20);
     let computed = |changes: &[(&str, Value)]| {
         let quick =
-            json!({ "positions_per_mesh_period": 4, "span_mesh_periods": 1, "grid": "coarse" });
+            json!({ "positions_per_mesh_period": 8, "span_mesh_periods": 1, "grid": "coarse" });
         let quick = testing::with(read.submission.clone(), &[("/resolution", quick)]);
         let submission = parse(&testing::with(quick, changes)).expect("valid");
         let solved = solve(&submission, &library, &Run::unattended()).expect("computed");

@@ -1,7 +1,7 @@
 //! Whether the fields of a submission go together: torques, interface, span, forces and size.
 
 use meshwright_engine::analysis::Method;
-use meshwright_engine::gear::{GearPair, Member, SpurGear};
+use meshwright_engine::gear::{GearPair, SpurGear};
 
 use super::Purpose;
 use super::document::{Document, OUTPUT_TORQUE};

@@ -56,7 +56,7 @@ impl SolidShaft<'_> {
                 }
             }
             let joined = match &carried {
-                None => self.from_axis(order, &k),
+                None => self.around_axis(order, &k),
                 Some(below) => {
                     let place = |i: usize| if i < size { i } else { 2 * size + i };
                     for j in 0..kept {
@@ -90,44 +90,42 @@ impl SolidShaft<'_> {
     /// What is held of `order`.
     fn held(&self, order: i64) -> Vec<Held> {
         let [none, one, i] = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(re, im)| c64::new(re, im));
-        let at_ends = self.body.axial.heights().map(|z| self.body.axial.values(z));
-        // At each end alone.
+        let [minus, plus] = self.body.axial.heights().map(|z| self.body.axial.values(z));
+        let mean = |components: [c64; 3], power: i32, shares: [f64; 2]| Held {
+            components,
+            power,
+            along: minus
+                .iter()
+                .zip(&plus)
+                .map(|(f, g)| shares[0] * f + shares[1] * g)
+                .collect(),
+        };
+        // Both ends together and against each other, which a thin disc does not do alike.
         let both = |components: [c64; 3], power: i32| {
-            at_ends.clone().map(|along| Held {
-                components,
-                power,
-                along,
-            })
+            [[1.0, 1.0], [-1.0, 1.0]].map(|shares| mean(components, power, shares))
         };
         match order {
             0 => {
-                let [minus, plus] = match self.torque_at {
+                let shares = match self.torque_at {
                     FaceEnds::Both => [0.5, 0.5],
                     FaceEnds::Minus => [1.0, 0.0],
                     FaceEnds::Plus => [0.0, 1.0],
                 };
-                let ends = at_ends[0].iter().zip(&at_ends[1]);
-                let rotation = Held {
-                    components: [none, one, none],
-                    power: 1,
-                    along: ends.map(|(f, g)| minus * f + plus * g).collect(),
-                };
-                let mut held = vec![rotation];
+                let mut held = vec![mean([none, one, none], 1, shares)];
                 held.extend(both([none, none, one], 0));
                 held
             }
             // A shift along x is u_r = cos φ, u_t = −sin φ: 1 and i.
-            1 => {
-                let mut held = Vec::from(both([one, -i, none], 0));
-                held.extend(both([none, none, one], 1));
-                held
-            }
+            1 => [both([one, -i, none], 0), both([none, none, one], 1)]
+                .into_iter()
+                .flatten()
+                .collect(),
             _ => Vec::new(),
         }
     }
 
     /// `k` of the innermost element, on what its circles can do where the first is the axis: points of it move as one.
-    fn from_axis(&self, order: i64, k: &Mat<c64>) -> Mat<c64> {
+    fn around_axis(&self, order: i64, k: &Mat<c64>) -> Mat<c64> {
         let (size, functions) = (self.body.size(), self.body.axial.len());
         let [one, i] = [(1.0, 0.0), (0.0, 1.0)].map(|(re, im)| c64::new(re, im));
         let moves: &[(usize, c64)] = match order {
@@ -271,6 +269,42 @@ mod tests {
                 (at_middle / expected - 1.0).abs() < 1e-4,
                 "{torque_at:?}: {at_middle:e} {expected:e}"
             );
+        }
+    }
+
+    #[test]
+    fn a_shaft_holds_as_well_in_a_turning_frame_as_in_a_still_one_however_thin_and_long() {
+        // Even pulls in each direction, and a torque.
+        for (width, degree, twist) in [(16e-3, 14, 9.0), (0.01e-3, 4, 9.0), (0.6, 14, 0.3)] {
+            let half = width / 2.0;
+            let axial = AxialBasis::new(&[-half, half], degree);
+            let m = axial.len();
+            for order in 0..4 {
+                let yields = |twist: f64| {
+                    let body = Revolution {
+                        material: &Material::STEEL,
+                        twist,
+                        axial: &axial,
+                        radii: [0.0, RADIUS],
+                    };
+                    let torque_at = FaceEnds::Plus;
+                    let stiffness = SolidShaft { body, torque_at }.on_outer(order);
+                    let mut load = Mat::<c64>::zeros(3 * m, 3);
+                    for (z, w) in axial.rule(30) {
+                        let turn = c64::new(0.0, order as f64 * twist * z).exp() * w;
+                        for (p, f) in axial.values(z).into_iter().enumerate() {
+                            (0..3).for_each(|c| load[(c * m + p, c)] += turn * f);
+                        }
+                    }
+                    let factor = Cholesky::new(stiffness.expect("definite")).expect("definite");
+                    factor.half_solve_in_place(load.as_mut());
+                    [0, 1, 2].map(|c| load.col(c).norm_l2().powi(2))
+                };
+                for (still, turning) in yields(0.0).into_iter().zip(yields(twist)) {
+                    let off = turning / still - 1.0;
+                    assert!(off.abs() < 1e-4, "{width} {order}: {still:e} {turning:e}");
+                }
+            }
         }
     }
 
