@@ -11,7 +11,7 @@ const USUAL_HELIX = 15;
 const MEMBERS = ["driving", "driven"];
 
 /** Fields that plane methods refuse, by the ends of their pointers. */
-const NEED_SOLID = /\/(helix_angle_deg|axial_offset_mm|misalignment_um|lead_modifications|hub|web\/offset_mm|lead_slope_um)$/;
+const NEED_SOLID = /\/(helix_angle_deg|axial_offset_mm|misalignment_um|lead_modifications|hub|web\/offset_mm|shaft\/torque_at|lead_slope_um)$/;
 /** What the methods in three dimensions have no choice of. */
 const CHOSEN_IN_PLANE = "contact_solver";
 
@@ -25,7 +25,8 @@ export const needsThird = (pointer) => NEED_SOLID.test(pointer);
 export const kindOfTeeth = (angle) => (angle ? "helical" : "straight");
 
 const secant = (angle) => 1 / Math.cos(((angle ?? 0) * Math.PI) / 180);
-const isGiven = (value) => value !== undefined && value !== null && value !== 0 && !(Array.isArray(value) && value.length === 0);
+/** A torque that enters at both ends is what the plane has. */
+const isGiven = (value) => value !== undefined && value !== null && value !== 0 && value !== "both" && !(Array.isArray(value) && value.length === 0);
 
 /** Lengths that go with the helix angle: how much by for each unit that its secant grows, and what each is called. */
 function withHelix(design) {
@@ -113,6 +114,6 @@ export const needsSolid = (design) => pointersNeeding(design).length > 0;
 
 /** The fields of the design that plane methods refuse. */
 function pointersNeeding(design) {
-  const ofGear = (member) => ["lead_modifications", "blank/hub", "blank/web/offset_mm", "tooth_deviations/lead_slope_um"].map((name) => `/pair/${member}/${name}`);
+  const ofGear = (member) => ["lead_modifications", "blank/hub", "blank/web/offset_mm", "blank/shaft/torque_at", "tooth_deviations/lead_slope_um"].map((name) => `/pair/${member}/${name}`);
   return [HELIX, "/pair/axial_offset_mm", "/pair/misalignment_um", ...MEMBERS.flatMap(ofGear)].filter((pointer) => isGiven(design.get(pointer)));
 }

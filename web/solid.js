@@ -69,9 +69,9 @@ function slotLine({ circle_radius_mm: R, slot }, angle) {
 }
 
 /**
- * The rings of a blank from its bore to `rim`: `{ radii, heights }`, where the first of hub and web that covers a radius decides, and else the face.
+ * The rings of a blank from its bore, or the axis of its shaft, to `rim`: `{ radii, heights }`, where the first of hub and web that covers a radius decides, and else the face.
  */
-export function ringsOf({ bore_radius_mm: bore, web, hub }, face, rim) {
+export function ringsOf({ bore_radius_mm: bore = 0, web, hub }, face, rim) {
   const around = (offset, width) => [(offset ?? 0) - width / 2, (offset ?? 0) + width / 2];
   const whole = [-face / 2, face / 2];
   const parts = [...(hub ? [[bore, hub.outer_radius_mm, around(hub.offset_mm, hub.width_mm)]] : []), ...(web ? [[web.inner_radius_mm, web.outer_radius_mm, around(web.offset_mm, web.thickness_mm)]] : [])];
@@ -159,8 +159,9 @@ export function surfaceOf(outline, gear, twist, mid) {
     for (const hole of inside) surface.wall(hole, heights, true);
     // Where a ring is wider than its neighbor its wall is seen.
     const before = rings[i - 1]?.heights;
-    if (!before) surface.wall(circle(radii[0]), heights, true);
-    else {
+    if (!before) {
+      if (radii[0] > 0) surface.wall(circle(radii[0]), heights, true);
+    } else {
       const wall = (from, to, inward) => to - from > 1e-6 && surface.wall(circle(radii[0]), [from, to], inward);
       wall(heights[0], Math.min(before[0], heights[1]), true);
       wall(Math.max(before[1], heights[0]), heights[1], true);

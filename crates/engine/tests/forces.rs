@@ -5,7 +5,9 @@ mod cases;
 use std::f64::consts::PI;
 use std::sync::{Arc, LazyLock, Mutex};
 
-use cases::{case, gear, helical, holed, model_by, pair, relieved, standard_pair, test_case};
+use cases::{
+    case, faces_of, gear, helical, holed, model_by, pair, relieved, standard_pair, test_case,
+};
 use meshwright_engine::analysis::at_speed::{
     CurveDynamics, DynamicsRequest, dynamics, equivalent_mass,
 };

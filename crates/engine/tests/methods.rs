@@ -6,7 +6,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Barrier};
 
 use cases::{
-    along_faces, case, gear, helical, holed, model_by, pair, relieved, study_design, test_case,
+    along_faces, case, faces_of, gear, helical, holed, model_by, pair, relieved, study_design,
+    test_case,
 };
 use meshwright_engine::analysis::{
     Analysis, Case, ContactSolver, Curve, Method, Warning, analyze, pair_model,

@@ -1,8 +1,6 @@
 //! The outline of a pair, for those who draw it: teeth, holes, webs, circles and the line of action, in one frame.
 
-use meshwright_engine::gear::{
-    Core, GearPair, Hole, HoleShape, Member, Vector, Web, radial, tangential,
-};
+use meshwright_engine::gear::{GearPair, Hole, HoleShape, Member, Vector, Web, radial, tangential};
 
 use super::declare::answer;
 use super::geometry::{PathOfContact, PathPoint};
@@ -55,7 +53,7 @@ answer! {
         /// The radius of the bore, in mm: 0 of a gear that is cut on its shaft.
         bore_radius_mm: f64 = to_mm(gear.data().blank.open_radius()),
         /// The radius of the shaft on which the gear is cut, in mm.
-        shaft_radius_mm?: f64 = (gear.data().blank.core == Core::Shaft).then(|| to_mm(gear.bore_radius())),
+        shaft_radius_mm?: f64 = gear.data().blank.shaft().map(|_| to_mm(gear.bore_radius())),
         /// The holes.
         holes: Vec<HoleOutline> = gear.holes().iter().map(HoleOutline::of).collect(),
         /// The web, where the blank has one that is not as thick as the face is wide.

@@ -11,7 +11,7 @@ use crate::assembly::interface::{harmonics, interface_radius, orders_of_blank};
 use crate::assembly::pair_spec::cells_per_patch;
 use crate::contact::facing::Facing;
 use crate::contact::{ContactSolver, default_penalty};
-use crate::gear::{Core, Member, gcd};
+use crate::gear::{Member, gcd};
 use crate::grid::{GridLevel, ToothGrid};
 use crate::ring::shaft::orders_of_edge;
 
@@ -285,7 +285,7 @@ fn of_gear(case: &Case, member: Member, pass: &Pass) -> Estimate {
             + 2.0 * met * rows.min(32.0) * PATTERNS
             + 5.0 * couplings * (2.0 * PATTERNS).powi(2))
         + 3e3 * (tooth_nodes + blank_nodes) as f64) as u64;
-    if gear.data().blank.core == Core::Shaft {
+    if gear.data().blank.shaft().is_some() {
         let edge = orders_of_edge(&blank).unknowns() as f64;
         estimate.memory += (8.0 * 2.0 * edge * (edge + met)) as u64;
     }

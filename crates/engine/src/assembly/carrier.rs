@@ -7,10 +7,11 @@ use super::{FaceResolution, PartError};
 use crate::fem::FemError;
 use crate::fem::axial::AxialBasis;
 use crate::fem::dense::Cholesky;
-use crate::gear::{Layer, SolidGear};
+use crate::gear::{FaceEnds, Layer, SolidGear};
 use crate::grid::GridLevel;
 use crate::ring::solid::joint::{carried, trace};
 use crate::ring::solid::revolution::{Revolution, last_of};
+use crate::ring::solid::shaft::SolidShaft;
 use crate::run::Run;
 
 /// The orders that the interface circle carries: fields of the teeth fall to e^−this on their way to it.
@@ -27,7 +28,7 @@ const HOLED_PART: f64 = 0.75;
 const HOLE_DECAY: f64 = 3.25;
 const MOST_HOLE_ORDERS: usize = 24;
 
-/// The parts of a gear from its root circle to its bore, each with its functions along the axis: all that its yield depends on, but
+/// The parts of a gear from its root circle to its bore or its axis, each with its functions along the axis: all that its yield depends on, but
 /// for the holes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stack {
@@ -37,7 +38,7 @@ pub struct Stack {
     pub(crate) face: AxialBasis,
     /// Where the teeth meet what carries them.
     pub(crate) interface_radius: f64,
-    /// From the rim to the bore.
+    /// From the rim to the bore, or through the shaft to the axis.
     pub(crate) layers: Vec<Layer>,
     /// The functions across each; those of the rim are those of the face.
     pub(crate) across: Vec<AxialBasis>,
@@ -54,6 +55,7 @@ impl Stack {
         let (root, module) = (section.root_radius(), gear.normal_rack().module);
         let resolution = resolution.of_width(gear.face_width() / module);
         let mut layers = gear.layers();
+        layers.extend(gear.shaft());
         let mut across = functions_across(gear, &layers, resolution);
         let interface_above = |radius: f64| (root - module).max(f64::midpoint(root, radius));
         let mut interface_radius = interface_above(layers[0].inner_radius);
@@ -76,6 +78,14 @@ impl Stack {
                 across[0] = AxialBasis::new(&layers[0].heights, resolution.face_order);
                 across.insert(0, across[0].clone());
             }
+        }
+        // A shaft that is as wide as what stands on it goes on inside as this does.
+        if let [.., above, shaft] = layers.as_slice()
+            && gear.shaft().is_some()
+            && above.heights == shaft.heights
+        {
+            let last = across.len() - 1;
+            across[last] = across[last - 1].clone();
         }
         let face = across[0].clone();
         Self {
@@ -121,19 +131,41 @@ impl Stack {
             return Ok(None);
         }
         let body = self.layer(index);
-        let below = self.below(index, order, body.twist)?;
-        body.on_outer(order as i64, below.as_ref()).map(Some)
+        let order = order as i64;
+        if let Some(torque_at) = self.shaft().filter(|_| index + 1 == self.layers.len()) {
+            return SolidShaft { body, torque_at }.on_outer(order).map(Some);
+        }
+        let below = self.below(index, order as usize, body.twist)?;
+        body.on_outer(order, below.as_ref()).map(Some)
     }
 
-    /// Layer `index` below the rim, without holes: it stands still, while the rim turns.
+    /// The ends through which the torque enters the shaft, if the gear is of one piece with it: that is the last layer.
+    fn shaft(&self) -> Option<FaceEnds> {
+        self.gear.section().data().blank.shaft()
+    }
+
+    /// The number of layers around the bore or the shaft.
+    pub(crate) fn layers_around(&self) -> usize {
+        self.layers.len() - usize::from(self.shaft().is_some())
+    }
+
+    /// Layer `index` below the rim, without holes: it stands still, while the rim turns; a shaft that is the rim gone on turns with it.
     pub(crate) fn layer(&self, index: usize) -> Revolution<'_> {
         let layer = &self.layers[index];
         Revolution {
             material: self.gear.section().material(),
-            twist: 0.0,
+            twist: self.twist(index),
             axial: &self.across[index],
             radii: [layer.inner_radius, layer.outer_radius],
         }
+    }
+
+    /// The turn per length of the frame of a layer below the rim.
+    fn twist(&self, index: usize) -> f64 {
+        if index == self.layers_around() && index == 1 && self.across[1] == self.face {
+            return self.gear.twist();
+        }
+        0.0
     }
 
     /// What carries `order` on the inner circle of layer `index`, on the functions across that layer, whose frame turns by `twist`.
@@ -147,6 +179,7 @@ impl Stack {
             return Ok(None);
         };
         let (lower, upper) = (&self.across[index + 1], &self.across[index]);
+        let twist = twist - self.twist(index + 1);
         carried(&under, lower, upper, order as i64, twist).map(Some)
     }
 }
@@ -223,7 +256,9 @@ impl Carrier {
                 }
                 // A part as wide as the rim is the rim itself.
                 let inner = match stack.layers.get(1) {
-                    Some(next) if next.heights == stack.layers[0].heights => {
+                    Some(next)
+                        if stack.layers_around() > 1 && next.heights == stack.layers[0].heights =>
+                    {
                         let rim = stack.rim(next.inner_radius);
                         let below = stack.below(1, order, rim.twist)?;
                         return Ok((rim.on_outer(order as i64, below.as_ref())?, None));
@@ -282,13 +317,15 @@ mod tests {
     use super::*;
     use crate::fem::prism::Law3;
     use crate::gear::spur::tests::paper_gear;
-    use crate::gear::{Helix, Material, Web};
+    use crate::gear::{Core, Helix, Material, Web};
     use crate::quadrature::gauss_legendre;
 
-    /// A web of so much thickness from a radius of 16 to 33 mm, its middle at +4 mm under a face of 20 mm; under it a ring as wide as the face, or none.
-    fn stack(thickness: f64, bore_radius: f64) -> Stack {
+    /// A web of so much thickness from a radius of 16 to 33 mm, its middle at +4 mm under a face of 20 mm; under it a ring as wide as the face, or none, on
+    /// a bore or a shaft of the radius.
+    fn stack(thickness: f64, radius: f64, core: Core) -> Stack {
         let mut data = paper_gear(40);
-        data.blank.bore_radius = bore_radius;
+        data.blank.bore_radius = radius;
+        data.blank.core = core;
         data.blank.web = Some(Web {
             inner_radius: 16e-3,
             outer_radius: 33e-3,
@@ -326,8 +363,12 @@ mod tests {
     }
 
     /// The same of second-order elements in the plane of the axis, of nine nodes each, small about the corners between web and ring.
-    fn by_elements(thickness: f64, bore: f64, order: usize) -> [f64; 3] {
+    fn by_elements(thickness: f64, radius: f64, core: Core, order: usize) -> [f64; 3] {
         let (inner, outer) = (16e-3, 33e-3);
+        let torque_at = match core {
+            Core::Bore => None,
+            Core::Shaft { torque_at } => Some(torque_at),
+        };
         let faces = [4e-3 - thickness / 2.0, 4e-3 + thickness / 2.0];
         // Lines of nodes: corners and middles.
         let lines = |pieces: &[(f64, f64, usize, [bool; 2])]| {
@@ -342,8 +383,11 @@ mod tests {
             all
         };
         let mut radial = vec![(inner, outer, 10, [true, false])];
-        if bore < inner {
-            radial.insert(0, (bore, inner, 6, [false, true]));
+        if radius < inner {
+            radial.insert(0, (radius, inner, 6, [false, true]));
+        }
+        if torque_at.is_some() {
+            radial.insert(0, (0.0, radius, 8, [false, true]));
         }
         let radii = lines(&radial);
         let heights = lines(&[
@@ -351,9 +395,10 @@ mod tests {
             (faces[0], faces[1], 6, [true, true]),
             (faces[1], 10e-3, 6, [true, false]),
         ]);
-        let mut numbers = vec![None; radii.len() * heights.len()];
+        let mut numbers = vec![[None; 3]; radii.len() * heights.len()];
         let at = |i: usize, j: usize| i * heights.len() + j;
         let mut count = 0;
+        let n = order as f64;
         let mut elements = Vec::new();
         for i in (0..radii.len() - 1).step_by(2) {
             for j in (0..heights.len() - 1).step_by(2) {
@@ -365,15 +410,24 @@ mod tests {
         }
         for &(i, j) in &elements {
             for (a, b) in (0..9).map(|k| (k / 3, k % 3)) {
-                // The bore is held.
-                if i + a > 0 && numbers[at(i + a, j + b)].is_none() {
-                    numbers[at(i + a, j + b)] = Some(count);
-                    count += 1;
+                let node = &mut numbers[at(i + a, j + b)];
+                if node.iter().any(Option::is_some) {
+                    continue;
                 }
+                // The bore is held. Points of the axis move as one: along it in order 0, across it in order 1.
+                let moves: &[(usize, usize, f64)] = match (i + a, torque_at, order) {
+                    (0, None, _) | (0, _, 2..) => &[],
+                    (0, _, 0) => &[(2, 0, 1.0)],
+                    (0, _, 1) => &[(0, 0, 1.0), (1, 0, -1.0)],
+                    _ => &[(0, 0, 1.0), (1, 1, 1.0), (2, 2, 1.0)],
+                };
+                for &(component, ahead, share) in moves {
+                    node[component] = Some((count + ahead, share));
+                }
+                count += moves.last().map_or(0, |(_, ahead, _)| ahead + 1);
             }
         }
         let law = Law3::new(&Material::STEEL);
-        let n = order as f64;
         let shape = |x: f64| {
             [
                 [x * (x - 1.0) / 2.0, x - 0.5],
@@ -381,9 +435,30 @@ mod tests {
                 [x * (x + 1.0) / 2.0, x + 0.5],
             ]
         };
-        let mut k = Mat::<f64>::zeros(3 * count, 3 * count);
-        let mut even = Mat::<f64>::zeros(3 * count, 3);
+        let mut k = Mat::<f64>::zeros(count, count);
+        let mut even = Mat::<f64>::zeros(count, 3);
         let rule = gauss_legendre(3);
+        // The means that a shaft holds: which, by which share of each end, of which components, by which power of the radius.
+        let along = [0.0, 0.0, 1.0];
+        let each = |first: usize, components: [f64; 3], power: i32| {
+            let shares = [[1.0, 0.0], [0.0, 1.0]];
+            [0, 1].map(|end| (first + end, shares[end], components, power))
+        };
+        let means: Vec<(usize, [f64; 2], [f64; 3], i32)> = match (torque_at, order) {
+            (Some(torque_at), 0) => {
+                let shares = match torque_at {
+                    FaceEnds::Both => [0.5, 0.5],
+                    FaceEnds::Minus => [1.0, 0.0],
+                    FaceEnds::Plus => [0.0, 1.0],
+                };
+                let shifts = each(1, along, 0);
+                [vec![(0, shares, [0.0, 1.0, 0.0], 1)], shifts.to_vec()].concat()
+            }
+            (Some(_), 1) => [each(0, [1.0, -1.0, 0.0], 0), each(2, along, 1)].concat(),
+            _ => Vec::new(),
+        };
+        let held_count = means.iter().map(|of| of.0 + 1).max().unwrap_or(0);
+        let mut held = Mat::<f64>::zeros(count, held_count);
         for &(i, j) in &elements {
             let half = [
                 0.5 * (radii[i + 2] - radii[i]),
@@ -423,43 +498,76 @@ mod tests {
                 }
             }
             let number = |k: usize| numbers[at(i + k / 3, j + k % 3)];
-            for (a, b) in (0..81).map(|k| (k / 9, k % 9)) {
-                let Some((one, other)) = number(a).zip(number(b)) else {
-                    continue;
-                };
-                for (c, d) in (0..9).map(|k| (k / 3, k % 3)) {
-                    k[(3 * one + c, 3 * other + d)] += own[(3 * a + c, 3 * b + d)];
+            for (a, b) in (0..27 * 27).map(|k| (k / 27, k % 27)) {
+                let of = number(a / 3)[a % 3].zip(number(b / 3)[b % 3]);
+                if let Some(((one, s), (other, t))) = of {
+                    k[(one, other)] += s * t * own[(a, b)];
+                }
+            }
+            let ends = [j == 0, j + 3 == heights.len()];
+            for (mean, shares, components, power) in &means {
+                let at_ends = [0, 1]
+                    .into_iter()
+                    .filter(|end| ends[*end] && radii[i + 1] < radius);
+                for (end, (x, w)) in at_ends.flat_map(|end| rule.iter().map(move |of| (end, of))) {
+                    let r = radii[i + 1] + half[0] * x;
+                    for (a, [f, _]) in shape(*x).into_iter().enumerate() {
+                        for c in 0..3 {
+                            if let Some((at, share)) = number(3 * a + 2 * end)[c] {
+                                let weight = w * half[0] * r.powi(power + 1) * shares[end];
+                                held[(at, *mean)] += weight * f * share * components[c];
+                            }
+                        }
+                    }
                 }
             }
             if i + 3 == radii.len() {
                 // Simpson's rule.
                 for (b, part) in [1.0 / 3.0, 4.0 / 3.0, 1.0 / 3.0].into_iter().enumerate() {
-                    let node = number(6 + b).expect("it is free");
                     for c in 0..3 {
-                        even[(3 * node + c, c)] += part * half[1];
+                        let (at, _) = number(6 + b)[c].expect("it is free");
+                        even[(at, c)] += part * half[1];
                     }
                 }
             }
         }
-        Cholesky::new(k)
+        // With means of their own stiffness, of any size, and then such forces on these that they stand still.
+        if held_count > 0 {
+            let means = &held * held.transpose();
+            let scale = k.norm_max() / means.norm_max();
+            k += means * faer::Scale(scale);
+        }
+        let factor = Cholesky::new(k).expect("definite");
+        factor.half_solve_in_place(even.as_mut());
+        factor.half_solve_in_place(held.as_mut());
+        let mut forces = held.transpose() * &even;
+        Cholesky::new(held.transpose() * &held)
             .expect("definite")
-            .half_solve_in_place(even.as_mut());
-        [0, 1, 2].map(|c| even.col(c).norm_l2().powi(2))
+            .half_solve_in_place(forces.as_mut());
+        [0, 1, 2].map(|c| even.col(c).norm_l2().powi(2) - forces.col(c).norm_l2().powi(2))
     }
 
     #[test]
     fn a_web_on_a_wider_ring_yields_as_in_elements_of_both() {
-        for (thickness, bore) in [(2.5e-3, 16e-3), (2.5e-3, 12e-3), (5e-3, 12e-3)] {
-            let stack = stack(thickness, bore);
+        let shaft = |torque_at| Core::Shaft { torque_at };
+        for (thickness, radius, core) in [
+            (2.5e-3, 16e-3, Core::Bore),
+            (2.5e-3, 12e-3, Core::Bore),
+            (5e-3, 12e-3, Core::Bore),
+            (5e-3, 12e-3, shaft(FaceEnds::Both)),
+            (5e-3, 16e-3, shaft(FaceEnds::Minus)),
+            (2.5e-3, 12e-3, shaft(FaceEnds::Plus)),
+        ] {
+            let stack = stack(thickness, radius, core);
             for order in 0..=2 {
-                let (found, expected) =
-                    (yields(&stack, order), by_elements(thickness, bore, order));
+                let found = yields(&stack, order);
+                let expected = by_elements(thickness, radius, core, order);
                 for (c, (found, expected)) in found.iter().zip(expected).enumerate() {
                     // Polynomials stiffen the corner between web and ring: by a hundredth of how far it tilts, and less of the rest.
                     let off = found / expected - 1.0;
                     assert!(
                         (-0.013..0.002).contains(&off),
-                        "{thickness} {bore} {order} {c}: {found} {expected}"
+                        "{thickness} {radius} {core:?} {order} {c}: {found} {expected}"
                     );
                 }
             }

@@ -14,6 +14,17 @@ pub enum FaceEnds {
     Plus,
 }
 
+impl FaceEnds {
+    /// The same of a face that is seen from its other side.
+    pub(super) fn turned_over(self) -> Self {
+        match self {
+            Self::Both => Self::Both,
+            Self::Minus => Self::Plus,
+            Self::Plus => Self::Minus,
+        }
+    }
+}
+
 /// One modification of the leads of a gear as a drawing gives it; several add up. Lengths are in meters; what is removed is positive.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LeadModification {
@@ -120,11 +131,7 @@ impl LeadModification {
             } => Self::EndRelief {
                 amount: *amount,
                 length: *length,
-                ends: match ends {
-                    FaceEnds::Both => FaceEnds::Both,
-                    FaceEnds::Minus => FaceEnds::Plus,
-                    FaceEnds::Plus => FaceEnds::Minus,
-                },
+                ends: ends.turned_over(),
             },
             Self::Table { places, removed } => Self::Table {
                 places: places.iter().rev().map(|z| 0.0 - z).collect(),

@@ -102,7 +102,7 @@ impl SolidGear {
         let thickness = blank.web.map_or(0.0, |web| web.thickness);
         let within = web.min(hub.outer_radius);
         let [inner, outer] = [
-            ring(blank.bore_radius, within, hub.width - self.face_width()),
+            ring(blank.open_radius(), within, hub.width - self.face_width()),
             ring(within, hub.outer_radius, hub.width - thickness),
         ];
         [inner[0] + outer[0], inner[1] + outer[1]]

@@ -272,6 +272,7 @@ impl SolidGear {
             ..hub
         });
         Self {
+            section: self.section.turned_over(),
             web_offset: 0.0 - self.web_offset,
             hub,
             ..self.clone()
@@ -300,7 +301,7 @@ impl SolidGear {
         [-half, half]
     }
 
-    /// What is below the root circle, from outside to the bore, in parts of unlike width.
+    /// What is below the root circle, from outside to the bore or the radius of the shaft, in parts of unlike width.
     pub fn layers(&self) -> Vec<Layer> {
         let blank = &self.section.data().blank;
         let (bore, root) = (blank.bore_radius, self.section.root_radius());
@@ -341,6 +342,18 @@ impl SolidGear {
             }
         }
         layers
+    }
+
+    /// What is inside the radius of the shaft of a gear that is of one piece with it: as wide as its hub, or as the face.
+    pub fn shaft(&self) -> Option<Layer> {
+        let blank = &self.section.data().blank;
+        blank.shaft().map(|_| Layer {
+            inner_radius: 0.0,
+            outer_radius: blank.bore_radius,
+            heights: self
+                .hub
+                .map_or(self.face_heights(), |hub| around(hub.offset, hub.width)),
+        })
     }
 
     fn check_layers(&self) -> Result<(), SolidGearError> {
@@ -466,7 +479,7 @@ fn in_normal_section(error: GearError, cos: f64) -> GearError {
 mod tests {
     use super::*;
     use crate::gear::spur::tests::paper_gear;
-    use crate::gear::{Involute, radial, tangential};
+    use crate::gear::{Core, FaceEnds, Involute, radial, tangential};
     use std::f64::consts::{FRAC_PI_2, PI};
 
     /// The gear of the references: 40 teeth, normal module 2 mm, 20 degrees.
@@ -584,6 +597,39 @@ mod tests {
             assert!(near(layer.heights[0], low) && near(layer.heights[1], high));
         }
         assert_eq!(helical(20.0).layers().len(), 1);
+    }
+
+    #[test]
+    fn a_gear_of_one_piece_with_its_shaft_has_the_mass_of_the_disc_inside_and_is_turned_over_with_its_ends()
+     {
+        let hub = Hub {
+            outer_radius: 20e-3,
+            width: 30e-3,
+            offset: 2e-3,
+        };
+        for (hub, width) in [(None, 20e-3), (Some(hub), 30e-3)] {
+            let bored = webbed(0.0, hub).expect("can be made");
+            let mut data = paper_gear(40);
+            data.blank = bored.section().data().blank.clone();
+            data.blank.core = Core::Shaft {
+                torque_at: FaceEnds::Minus,
+            };
+            let solid = SolidGear::new(data, Helix::right(0.35), 0.0, hub).expect("can be made");
+            let radius = solid.section().bore_radius();
+            let disc = solid.section().material().density * PI * radius.powi(2) * width;
+            let [more, turns] = [
+                solid.mass() - bored.mass(),
+                solid.polar_inertia() - bored.polar_inertia(),
+            ];
+            assert!((more / disc - 1.0).abs() < 1e-12, "{more} {disc}");
+            assert!((turns / (disc * radius.powi(2) / 2.0) - 1.0).abs() < 1e-10);
+            let shaft = solid.shaft().expect("a shaft");
+            assert_eq!([shaft.inner_radius, shaft.outer_radius], [0.0, radius]);
+            assert!((shaft.heights[1] - shaft.heights[0] - width).abs() < 1e-15);
+            let blank = |gear: &SolidGear| gear.section().data().blank.shaft();
+            assert_eq!(blank(&solid.turned_over()), Some(FaceEnds::Plus));
+            assert_eq!(bored.shaft().map(|shaft| shaft.heights), None);
+        }
     }
 
     #[test]

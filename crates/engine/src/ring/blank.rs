@@ -69,7 +69,7 @@ impl BlankSubstructure {
         let (right, left) = &grid.side_nodes;
         let (edge, held) = match core {
             Core::Bore => (&[][..], grid.bore_nodes.as_slice()),
-            Core::Shaft => (grid.bore_nodes.as_slice(), &[][..]),
+            Core::Shaft { .. } => (grid.bore_nodes.as_slice(), &[][..]),
         };
         let kept: Vec<u32> = right
             .iter()
@@ -106,7 +106,7 @@ impl BlankSubstructure {
                 };
                 (sector.ring_stiffness(&harmonics, run)?, rows, None)
             }
-            Core::Shaft => {
+            Core::Shaft { .. } => {
                 let angles: Vec<f64> = edge
                     .iter()
                     .map(|node| {

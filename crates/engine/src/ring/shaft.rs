@@ -217,12 +217,13 @@ impl ShaftSection {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gear::{Core, HolePattern};
+    use crate::gear::{Core, FaceEnds, HolePattern};
     use crate::grid::GridLevel;
     use crate::ring::blank::BlankSubstructure;
 
     fn on_shaft(grid: &BlankGrid, outer: f64, largest: usize) -> BlankSubstructure {
-        let plate = (Core::Shaft, &Material::STEEL, 20e-3);
+        let torque_at = FaceEnds::Both;
+        let plate = (Core::Shaft { torque_at }, &Material::STEEL, 20e-3);
         let orders = Harmonics { largest };
         let made =
             BlankSubstructure::with_recovery(grid, outer, plate, orders, &[], &Run::unattended());

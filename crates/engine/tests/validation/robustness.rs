@@ -10,7 +10,7 @@ use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 
-use crate::support::{case, gear, holed, paper_case, relieved, solve};
+use crate::support::{case, gear, holed, model_by, paper_case, relieved, solve};
 
 #[test]
 fn a_run_that_is_told_to_stop_solves_hardly_a_position_more() {

@@ -313,6 +313,8 @@ fn needs_faces(pair: &Value) -> bool {
         Value::Null => false,
         Value::Array(list) => !list.is_empty(),
         Value::Number(number) => number.as_f64() != Some(0.0),
+        // A torque that enters at both ends of a shaft is what a plane has.
+        Value::String(word) => word != "both",
         _ => true,
     };
     let of_pair = ["helix_angle_deg", "axial_offset_mm", "misalignment_um"];
@@ -321,6 +323,7 @@ fn needs_faces(pair: &Value) -> bool {
         "/tooth_deviations/lead_slope_um",
         "/blank/hub",
         "/blank/web/offset_mm",
+        "/blank/shaft/torque_at",
     ];
     of_pair.iter().any(|name| said(&pair[*name]))
         || ["driving", "driven"].iter().any(|gear| {

@@ -27,11 +27,13 @@ document! {
 
 document! {
     /// A shaft in one piece with the gear. What holds the gear acts on the section of the shaft: the torque rises with the radius, as torsion leaves it, and
-    /// a force is even. The transmission error refers to the mean rotation of that section, and its mean displacement is none.
+    /// a force is even. The transmission error refers to the mean rotation of that section, and its mean displacement is none. In three dimensions that is the
+    /// section at both ends of the face, or of the hub where it has one: the torque enters there, and neither is displaced nor tilted in the mean.
     pub struct ShaftDocument as "Shaft", "Shaft" {
         /// The radius of the shaft: at least 5 % of the root radius, and a module below it. Holes and web lie outside of it.
         pub(super) radius_mm: f64 = number("Radius of the shaft", "mm", 0.02, 25_000.0),
-        /// Through which ends of the face the torque enters, half of it each where it is both. A plane knows both only.
+        /// Through which ends of the face the torque enters, half of it each where it is both: through one of them the gear twists under its teeth, and these
+        /// carry more there. A plane knows both only.
         pub(super) torque_at: FaceEnds = word("Where the torque enters").or(FaceEnds::Both),
     }
 }
@@ -97,8 +99,10 @@ impl BlankDocument {
     pub(super) fn data(&self) -> BlankRegion {
         BlankRegion {
             bore_radius: from_mm(self.core_field().1),
-            core: match self.shaft {
-                Some(_) => Core::Shaft,
+            core: match &self.shaft {
+                Some(shaft) => Core::Shaft {
+                    torque_at: shaft.torque_at,
+                },
                 None => Core::Bore,
             },
             holes: self.holes.data(),

@@ -90,12 +90,6 @@ impl GearDocument {
             .collect()
     }
 
-    /// The shaft on which it is cut at `pointer`, which is not told along the axis.
-    pub(crate) fn shaft_at(&self, pointer: &str) -> Option<String> {
-        let shaft = self.blank.shaft.as_ref();
-        shaft.map(|_| format!("{pointer}/blank/{}", BlankDocument::shaft.name))
-    }
-
     /// What is wrong with a gear along its axis.
     fn solid_faults(&self, pointer: &str, error: &SolidGearError) -> Vec<FieldError> {
         let mm = |value: f64| plain(to_mm(value));
@@ -150,7 +144,7 @@ impl GearDocument {
                     least + 0.01 * (largest - least)
                 };
                 let detail = format!(
-                    "The hub ends at {} mm; it has to end between the bore at {} mm and {} mm.",
+                    "The hub ends at {} mm; it has to end between the bore, or the shaft, at {} mm and {} mm.",
                     mm(outer_radius),
                     mm(least),
                     mm(largest)

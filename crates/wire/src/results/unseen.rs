@@ -4,7 +4,7 @@ use meshwright_engine::analysis::forces::ForcesRequest;
 use meshwright_engine::analysis::{
     BodyFormula, Case, FaceHoles, Formulas, Model, SectionHoles, ToothFormula,
 };
-use meshwright_engine::gear::{Core, SpurGear, TipEdge};
+use meshwright_engine::gear::{SpurGear, TipEdge};
 
 /// What the method of `case` leaves out, and what `forces` do that are asked for beside the curves.
 pub(super) fn does_not_see(case: &Case, forces: Option<&ForcesRequest>) -> Vec<&'static str> {
@@ -90,10 +90,10 @@ fn real_teeth_do_not_see(case: &Case) -> Vec<&'static str> {
     if by_formula && any(|gear| gear.data().blank.web.is_some()) {
         unseen.push("webs: the bodies are as thick as their faces are wide");
     }
-    if any(|gear| gear.data().blank.core == Core::Shaft) {
-        unseen.push("how a shaft bends and twists beside the gear that is cut on it: its section under the gear is held in the mean");
+    if any(|gear| gear.data().blank.shaft().is_some()) {
+        unseen.push("how a shaft bends and twists beside the gear that is cut on it: its section under the gear, along faces those at both ends, is held in the mean");
     }
-    if by_formula && any(|gear| gear.data().blank.core == Core::Shaft) {
+    if by_formula && any(|gear| gear.data().blank.shaft().is_some()) {
         unseen.push(
             "that a shaft in one piece with its gear gives way: the formulas take it for rigid",
         );

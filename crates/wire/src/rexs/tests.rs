@@ -966,6 +966,47 @@ fn a_gear_without_a_bore_sits_on_the_section_of_its_shaft() {
 }
 
 #[test]
+fn a_helical_pinion_of_one_piece_with_its_shaft_is_computed_along_its_face() {
+    let text = std::str::from_utf8(model!("bore-from-shaft-sections.rexs")).expect("UTF-8");
+    let angle = |angle: &str| said("helix_angle_reference_diameter", "deg", angle);
+    let none = said("inner_diameter", "mm", "0");
+    let place = r#"<attribute id="u_coordinate_on_shaft""#;
+    let model = text
+        .replacen(&angle("0.0"), &angle("10.0"), 1)
+        .replacen(&angle("-0.0"), &angle("-10.0"), 1)
+        .replacen("60.5", "61.4", 1)
+        .replacen(place, &format!("{none}{place}"), 1);
+    let read = taken_of(model.as_bytes());
+    assert_eq!(field(&read, "/method"), "three_dimensional");
+    let shaft = "/pair/driving/blank/shaft";
+    assert_eq!(field(&read, shaft), json!({ "radius_mm": 12.0 }));
+    let library = Library::with_capacity(64 << 20);
+    let computed = |changes: &[(&str, Value)]| {
+        let quick =
+            json!({ "positions_per_mesh_period": 8, "span_mesh_periods": 1, "grid": "coarse" });
+        let quick = testing::with(read.submission.clone(), &[("/resolution", quick)]);
+        let submission = parse(&testing::with(quick, changes)).expect("valid");
+        let solved = solve(&submission, &library, &Run::unattended()).expect("computed");
+        let curve = &solved.curves[0];
+        let face = curve.face.as_ref().expect("along faces");
+        (
+            curve.statistics.transmission_error_um.mean,
+            face.face_load_factor,
+        )
+    };
+    let on_shaft = computed(&[]);
+    let at_one_end = computed(&[(shaft, json!({ "radius_mm": 12.0, "torque_at": "plus" }))]);
+    let bored = computed(&[("/pair/driving/blank", json!({ "bore_radius_mm": 12.0 }))]);
+    // A rigid bore holds more than a shaft, and this more where the torque leaves it at both ends: the teeth bend and press, and the body turns, by φ = T/(4 π G b)
+    // (1/R² − 1/r²) around a bore and (4/(3 R²) − 1/r²) around a shaft, and T b/(12 G J) more.
+    assert!(
+        bored.0 < on_shaft.0 && on_shaft.0 < at_one_end.0,
+        "{bored:?} {on_shaft:?} {at_one_end:?}"
+    );
+    assert_ne!(at_one_end.1, on_shaft.1);
+}
+
+#[test]
 fn a_gear_without_a_material_has_that_of_its_shaft() {
     let aluminium = taken_of(model!("material-on-shafts-aluminium.rexs"));
     for gear in ["driving", "driven"] {

@@ -1,7 +1,7 @@
 //! Whether the fields of a submission go together: torques, interface, span, forces and size.
 
 use meshwright_engine::analysis::Method;
-use meshwright_engine::gear::{GearPair, Member, SpurGear};
+use meshwright_engine::gear::{GearPair, SpurGear};
 
 use super::Purpose;
 use super::document::{Document, OUTPUT_TORQUE};
@@ -58,17 +58,6 @@ impl Document {
             let pointer = format!("/resolution/{}", ResolutionDocument::contact_solver.name);
             let detail = format!("{pointer}: three dimensions are solved by the active set alone.");
             errors.push(FieldError::new(pointer, Code::NotInThreeDimensions, detail));
-        }
-        for (member, gear) in [
-            (Member::Driving, &self.pair.driving),
-            (Member::Driven, &self.pair.driven),
-        ] {
-            if let Some(pointer) = gear.shaft_at(&format!("/pair/{member}")) {
-                let detail = format!(
-                    "{pointer}: three dimensions are solved on a bore; the plane methods know shafts."
-                );
-                errors.push(FieldError::new(pointer, Code::NotInThreeDimensions, detail));
-            }
         }
     }
 

@@ -571,7 +571,9 @@ mod tests {
     use super::*;
     use crate::assembly::{FaceResolution, FaceYield, FaceYieldSpec, MakeAll, Parts};
     use crate::gear::spur::tests::paper_gear;
-    use crate::gear::{Alignment, Helix, HolePattern, LeadModification, SolidGear, Web};
+    use crate::gear::{
+        Alignment, Core, FaceEnds, Helix, HolePattern, LeadModification, SolidGear, Web,
+    };
     use crate::ring::teeth::FARTHEST_COUPLED;
 
     #[test]
@@ -630,6 +632,79 @@ mod tests {
             assert!((found / mean - 1.0).abs() < 0.01, "{found}");
             assert!((found_factor / factor - 1.0).abs() < 0.02, "{found_factor}");
         }
+    }
+
+    #[test]
+    fn a_pinion_carries_more_at_the_end_through_which_its_torque_enters() {
+        // 20/60 straight teeth of module 2, 40 mm wide, the pinion of one piece with a shaft of 14 mm.
+        let (width, radius, run) = (40e-3, 14e-3, Run::unattended());
+        let gear = |teeth: u32, bore_radius: f64, core: Core| {
+            let mut data = paper_gear(teeth);
+            data.face_width = width;
+            (data.blank.bore_radius, data.blank.core) = (bore_radius, core);
+            SolidGear::new(data, Helix::STRAIGHT, 0.0, None).expect("a gear that can be made")
+        };
+        let resolution = FaceResolution {
+            face_order: 6,
+            ..FaceResolution::DRAFT
+        };
+        let wheel = gear(60, 30e-3, Core::Bore);
+        let yields =
+            |gear: &SolidGear| Arc::new(FaceYield::of(gear, resolution, &run).expect("definite"));
+        let of_wheel = yields(&wheel);
+        let solved = [FaceEnds::Both, FaceEnds::Minus, FaceEnds::Plus].map(|torque_at| {
+            let pinion = gear(20, radius, Core::Shaft { torque_at });
+            let yields: [Arc<dyn FlankYield>; 2] = [yields(&pinion), of_wheel.clone()];
+            let leads = [Vec::new(), Vec::new()];
+            let sections = [&pinion, &wheel].map(|gear| gear.section().reference_radius());
+            let a = sections[0] + sections[1];
+            let gears = [pinion, wheel.clone()];
+            let pair = SolidPair::new(gears, leads, a, Alignment::default()).expect("meshes");
+            let load = width * 200e3;
+            let model = FaceModel::new(pair, yields, SLICES, FARTHEST_COUPLED);
+            let positions: Vec<f64> = (0..8).map(|i| f64::from(i) / 8.0).collect();
+            let contacts = model.contacts(load, &positions, &run).expect("balances");
+            let mut strips = [0.0; 10];
+            let mut delta = 0.0;
+            for contact in &contacts {
+                delta += contact.mesh.transmission_error / 8.0;
+                let of_one = contact.strips(width, 10).into_iter();
+                strips
+                    .iter_mut()
+                    .zip(of_one)
+                    .for_each(|(all, one)| *all += one);
+            }
+            (delta, strips, even::face_load_factor(&strips))
+        });
+        let [both, minus, plus] = &solved;
+        let all: f64 = plus.1.iter().sum();
+        assert!((minus.0 / plus.0 - 1.0).abs() < 1e-6);
+        for (one, other) in plus.1.iter().zip(minus.1.iter().rev()) {
+            assert!((one - other).abs() < 1e-5 * all, "{one} {other}");
+        }
+        for (one, other) in both.1.iter().zip(both.1.iter().rev()) {
+            assert!((one - other).abs() < 1e-5 * all, "{one} {other}");
+        }
+        // Towards the end at +z, by the twist of the pinion alone: ISO 6336-1 (2006), 7.4 has 0.7 × 0.023 (b/d)² µm for 1 N/mm; by the stiffness c_γβ, and half
+        // of it as it is linear and as the ends carry on, K_Hβ = 1 + 0.0161 × 0.85 c_γα/2 with c_γα some 20 N/(mm µm).
+        let by_iso = 0.0161 * 0.85 * 20.0 / 2.0;
+        let found = plus.2 - both.2;
+        assert!(
+            (0.7 * by_iso..2.0 * by_iso).contains(&found),
+            "{found} {by_iso}"
+        );
+        assert!(plus.1[9] > plus.1[0]);
+        // The teeth stand back by T b/(4 G J) more, J that of a cylinder between the shaft and the tips.
+        let section = gear(20, radius, Core::Bore).section().clone();
+        let torque = width * 200e3 * section.flank().base_radius();
+        let turned = (plus.0 - both.0) / section.flank().base_radius();
+        let modulus = section.material().youngs_modulus / 2.6;
+        let [most, least] = [radius, section.tip_radius()]
+            .map(|of| torque * width / (4.0 * modulus * std::f64::consts::FRAC_PI_2 * of.powi(4)));
+        assert!(
+            (least..most).contains(&turned),
+            "{least:e} {turned:e} {most:e}"
+        );
     }
 
     /// A gear somewhere between two others.

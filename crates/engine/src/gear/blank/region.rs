@@ -3,6 +3,7 @@
 use super::HolePattern;
 use super::hole::{Hole, HoleShape};
 use super::moments::Moments;
+use crate::gear::lead::FaceEnds;
 
 /// A ring of its own thickness within a blank. Lengths are in meters.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,7 +24,10 @@ pub enum Core {
     Bore,
     /// A shaft in one piece with the blank: it is solid to the axis, and what holds the gear is even over the section of the shaft, or a torque that rises with
     /// the radius.
-    Shaft,
+    Shaft {
+        /// The ends of the face through which the torque enters, half of it each where it is both. A plane knows both only.
+        torque_at: FaceEnds,
+    },
 }
 
 /// What carries the teeth: the bore or the shaft, the holes, and a web, if there is one. Elsewhere the blank
@@ -83,7 +87,28 @@ impl BlankRegion {
     pub fn open_radius(&self) -> f64 {
         match self.core {
             Core::Bore => self.bore_radius,
-            Core::Shaft => 0.0,
+            Core::Shaft { .. } => 0.0,
+        }
+    }
+
+    /// The ends of the face through which the torque enters its shaft; `None` on a bore.
+    pub fn shaft(&self) -> Option<FaceEnds> {
+        match self.core {
+            Core::Bore => None,
+            Core::Shaft { torque_at } => Some(torque_at),
+        }
+    }
+
+    /// The same blank seen from its other side.
+    pub(in crate::gear) fn turned_over(&self) -> Self {
+        Self {
+            core: match self.core {
+                Core::Bore => Core::Bore,
+                Core::Shaft { torque_at } => Core::Shaft {
+                    torque_at: torque_at.turned_over(),
+                },
+            },
+            ..self.clone()
         }
     }
 

@@ -116,6 +116,11 @@ impl SpurGear {
         })
     }
 
+    /// The same section with its blank seen from the other side of the face.
+    pub(in crate::gear) fn turned_over(&self) -> Self {
+        self.on_blank(self.data.blank.turned_over())
+    }
+
     /// The same gear with hole 0 at the angle 0.
     pub fn with_holes_unturned(&self) -> Self {
         self.on_blank(self.data.blank.turned(-self.hole_angle()))

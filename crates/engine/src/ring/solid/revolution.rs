@@ -27,6 +27,8 @@ const TOLD_BY_RADIUS: f64 = 0.12;
 const GROWTH: f64 = 0.4;
 /// The least number of elements in the depth of a layer.
 const LEAST_ELEMENTS: f64 = 3.0;
+/// That of a layer which goes to the axis, where fields rise with powers of the radius.
+const LEAST_TO_AXIS: f64 = 6.0;
 
 /// A layer: a ring whose section in the plane of the axis is a rectangle.
 #[derive(Debug, Clone)]
@@ -210,7 +212,7 @@ impl Revolution<'_> {
     }
 
     /// The radii of its elements for `order`.
-    fn elements(&self, order: i64) -> Vec<f64> {
+    pub(super) fn elements(&self, order: i64) -> Vec<f64> {
         self.division(order, self.at_corners(), f64::INFINITY)
     }
 
@@ -230,9 +232,18 @@ impl Revolution<'_> {
             let by_order = SIZE_BY_FADING * radius / (1.0 + order.unsigned_abs() as f64);
             by_order.min(at_corners)
         };
-        let largest = depth / LEAST_ELEMENTS;
+        let least = if inner == 0.0 {
+            LEAST_TO_AXIS
+        } else {
+            LEAST_ELEMENTS
+        };
+        let largest = depth / least;
         let size = |r: f64| {
-            let from_inner = fading(inner) + GROWTH * (r - inner);
+            // About the axis nothing fades but what comes from outside.
+            let from_inner = match inner {
+                0.0 => f64::INFINITY,
+                _ => fading(inner) + GROWTH * (r - inner),
+            };
             let from_outer = fading(outer) + GROWTH * (outer - r);
             from_inner.min(from_outer).min(largest).min(by_radius * r)
         };
@@ -245,7 +256,7 @@ impl Revolution<'_> {
             counts.push(counts[i] + step / size(f64::midpoint(radius(i), radius(i + 1))));
         }
         // What is a whole number but for roundings is that number, so that similar layers have as many.
-        let count = (counts[STEPS] - 1e-9).ceil().max(LEAST_ELEMENTS) as usize;
+        let count = (counts[STEPS] - 1e-9).ceil().max(least) as usize;
         let mut radii: Vec<f64> = (0..=count)
             .map(|k| {
                 let wanted = counts[STEPS] * k as f64 / count as f64;
@@ -259,7 +270,12 @@ impl Revolution<'_> {
     }
 
     /// The stiffness of one element on its inner circle, its middle and its outer circle.
-    fn element(&self, order: i64, [from, to]: [f64; 2], axial: &AxialMatrices) -> Mat<c64> {
+    pub(super) fn element(
+        &self,
+        order: i64,
+        [from, to]: [f64; 2],
+        axial: &AxialMatrices,
+    ) -> Mat<c64> {
         let law = Law3::new(self.material);
         let (n, functions) = (order as f64, self.axial.len());
         let i = |x: f64| nalgebra::Complex::new(0.0, x);

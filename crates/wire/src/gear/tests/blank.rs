@@ -1,6 +1,6 @@
 //! Blanks: patterns of holes, angles, slots and webs.
 
-use meshwright_engine::gear::{Core, Hole, HoleShape};
+use meshwright_engine::gear::{Core, FaceEnds, Hole, HoleShape};
 use serde_json::{Value, json};
 
 use super::{fault, faults, mended, near, told};
@@ -123,7 +123,15 @@ fn a_pattern_says_where_and_how_its_holes_are_in_one_way() {
 fn a_gear_that_is_cut_on_its_shaft_says_the_shaft_instead_of_the_bore() {
     let on_shaft = |radius: f64| json!({ "blank": { "shaft": { "radius_mm": radius } } });
     let told = told(&on_shaft(15.0)).blank;
-    assert_eq!((told.core, told.bore_radius), (Core::Shaft, 15e-3));
+    assert_eq!(
+        (told.core, told.bore_radius),
+        (
+            Core::Shaft {
+                torque_at: FaceEnds::Both
+            },
+            15e-3
+        )
+    );
     let both = json!({ "blank": { "bore_radius_mm": 15.0, "shaft": { "radius_mm": 15.0 } } });
     for (fields, place, code, _) in refused! {
         both => "shaft", ConflictingFields;

@@ -1,5 +1,6 @@
 //! What three dimensions take, what planes refuse of it, and what comes of a pair along its faces.
 
+use meshwright_engine::gear::FaceEnds;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use serde_json::{Value, json};
@@ -83,7 +84,7 @@ fn a_transverse_contact_ratio_below_one_is_taken_where_teeth_overlap_along_the_f
 }
 
 #[test]
-fn a_shaft_takes_its_torque_at_both_ends_in_the_plane_and_is_not_told_in_three_dimensions() {
+fn a_shaft_takes_its_torque_at_both_ends_in_the_plane_and_at_any_in_three_dimensions() {
     let cut = |torque_at: &str, method: &str| {
         let blank = json!({ "shaft": { "radius_mm": 20, "torque_at": torque_at } });
         let changes = [("/pair/driving/blank", blank), ("/method", json!(method))];
@@ -98,9 +99,15 @@ fn a_shaft_takes_its_torque_at_both_ends_in_the_plane_and_is_not_told_in_three_d
             Code::NeedsThreeDimensions,
         );
     }
-    let place = "/pair/driving/blank/shaft";
-    let three_dimensional = cut("both", "three_dimensional");
-    fault(&three_dimensional, place, Code::NotInThreeDimensions);
+    for (torque_at, told) in [
+        ("both", FaceEnds::Both),
+        ("minus", FaceEnds::Minus),
+        ("plus", FaceEnds::Plus),
+    ] {
+        let submission = parse(&cut(torque_at, "three_dimensional")).expect("it is told");
+        let blank = &submission.case().pair.driving().data().blank;
+        assert_eq!(blank.shaft(), Some(told));
+    }
 }
 
 #[test]
