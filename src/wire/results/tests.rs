@@ -57,7 +57,7 @@ fn analysis(case: &Case) -> Analysis {
             single_flank: SingleFlank {
                 tooth_to_tooth: 0.9e-6,
                 long_wave: Some(0.3e-6),
-                short_wave: None,
+                short_wave: Some(0.8e-6),
                 mesh_harmonics_rms: Some(0.1e-6),
             },
             output_torque: torque,

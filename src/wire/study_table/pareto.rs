@@ -40,8 +40,13 @@ impl Told {
     /// The quantities of curves that a table has columns of.
     pub(super) fn columns(self) -> impl Iterator<Item = &'static Quantity> {
         let all = QUANTITIES.iter().enumerate();
+        let is_told = move |i: usize| self.0 & (1 << i) != 0;
+        // Stresses stand together.
+        let mut told = all.clone().filter(|(i, _)| is_told(*i));
+        let stressed = told.any(|(_, quantity)| quantity.is_stress());
         let shown = all.filter(move |(i, quantity)| {
-            matches!(quantity.of, Of::Curve(_)) && (quantity.in_every_table || self.0 >> i & 1 == 1)
+            let is_shown = quantity.in_every_table || is_told(*i);
+            matches!(quantity.of, Of::Curve(_)) && (is_shown || stressed && quantity.is_stress())
         });
         shown.map(|(_, quantity)| quantity)
     }

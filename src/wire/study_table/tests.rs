@@ -322,7 +322,7 @@ fn a_row_and_its_line_of_csv_have_every_quantity_under_one_name() {
     let spread = |n: f64| json!({ "mean": n, "rms": n + 1.0, "peak_to_peak": n + 2.0 });
     let stress = |n: f64| json!({ "root_mpa": n, "root_tension_mpa": n + 1.0, "root_compression_mpa": -n, "hole_mpa": n + 2.0 });
     let summary = json!({
-        "method": "flexible", "driving": gear(10.0), "driven": gear(20.0), "contact_ratio": 30.0, "backlash_mm": 31.0,
+        "method": "flexible", "driving": gear(10.0), "driven": gear(20.0), "contact_ratio": 34.0, "backlash_mm": 35.0,
         "curves": [{
             "output_torque_n_m": 115.0,
             "statistics": { "partial": false, "transmission_error_um": and(spread(40.0), &json!({ "tooth_to_tooth": 43.0, "long_wave": 44.0, "short_wave": 45.0, "mesh_harmonics_rms": 46.0 })), "mesh_stiffness_tangent_n_per_m": spread(50.0),

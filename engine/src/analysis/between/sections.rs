@@ -74,7 +74,7 @@ struct Event {
 
 impl Sections {
     /// Those of the curve through `samples` over `span`, rising by position.
-    pub(super) fn new(span: Span, samples: &[Sample]) -> Self {
+    pub(in crate::analysis) fn new(span: Span, samples: &[Sample]) -> Self {
         let samples = overlapping(span, samples);
         let events = with_values(&samples);
         let mut sections = Vec::with_capacity(samples.len() + events.len());
