@@ -1,48 +1,28 @@
 // Designs beside each other: their numbers under names that the user gives, and the fields in which they differ.
 
-import { extent, h, fixed, number } from "./dom.js";
+import { extent, h, number } from "./dom.js";
 import { differences, told } from "./design.js";
 import { csvOf, fileOfDesign, save } from "./download.js";
-import { largest, largestStress } from "./headline.js";
 import { looks } from "./charts.js";
+import { calledOf, inResults, quantities, shown } from "./quantities.js";
 
-const order = (curve, pattern) => curve.spectrum?.named.find(({ label }) => pattern.test(label))?.transmission_error_um;
-/** The value of a stress at the roots of both gears that is farthest from none. */
-const root = (name) => ({ stress }) => {
-  const known = ["driving", "driven"].flatMap((gear) => stress?.[gear][name] ?? []).filter((value) => value !== null);
-  return known.length ? known.reduce((most, value) => (Math.abs(value) > Math.abs(most) ? value : most)) : undefined;
-};
-
-/** What designs are compared by: name, unit, how a number is read from a curve and its results, how it is printed, and whether less of it is better, where one is. */
-const QUANTITIES = [
-  ["Torque", "N m", (curve) => curve.output_torque_n_m, (value) => number(value, 6)],
-  ["STE mean", "µm", (curve) => curve.statistics.transmission_error_um.mean, (value) => fixed(value, 3)],
-  ["STE rms", "µm", (curve) => curve.statistics.transmission_error_um.rms, (value) => fixed(value, 3), true],
-  ["STE p-p", "µm", (curve) => curve.statistics.transmission_error_um.peak_to_peak, (value) => fixed(value, 3), true],
-  ["k mean", "N/µm", (curve) => curve.statistics.mesh_stiffness_tangent_n_per_m.mean * 1e-6, (value) => fixed(value, 2), false],
-  ["k p-p", "N/µm", (curve) => curve.statistics.mesh_stiffness_tangent_n_per_m.peak_to_peak * 1e-6, (value) => fixed(value, 2), true],
-  ["K_Hβ", "", (curve) => curve.face?.face_load_factor, (value) => fixed(value, 3), true],
-  ["H_N", "µm", (curve) => order(curve, /^H_N\d?$/), (value) => number(value, 3), true],
-  ["H_Z2", "µm", (curve) => order(curve, /^H_Z2?$/), (value) => number(value, 3), true],
-  ["Max pressure", "MPa", (curve) => largest(curve.peak_contact_pressure_mpa) ?? undefined, (value) => fixed(value, 0), true],
-  ["Max stress", "MPa", (curve) => largestStress(curve) ?? undefined, (value) => fixed(value, 1), true],
-  ["Root tension", "MPa", root("root_tension_mpa"), (value) => fixed(value, 1), true],
-  ["Root compression", "MPa", root("root_compression_mpa"), (value) => fixed(value, 1)],
-  ["Driving mass", "kg", (_, { pair }) => pair.driving.mass_kg, (value) => fixed(value, 3), true],
-  ["Driven mass", "kg", (_, { pair }) => pair.driven.mass_kg, (value) => fixed(value, 3), true],
-  ["Removed", "%", (_, { pair }) => pair.driven.mass_removed_percent, (value) => fixed(value, 1)],
-];
-
-/** Quantities that are told where stresses were asked for. */
-const STRESSES = ["Max stress", "Root tension", "Root compression"];
 /** What differs by less than this part is the same. */
 const SAME = 1e-3;
 
+/** The quantities that any of `columns` tells, each with its values in them. */
+function toldBy(columns) {
+  const read = (quantity) => columns.map(({ curve, results }) => inResults(quantity, curve, results) ?? undefined);
+  return quantities().map((quantity) => ({ quantity, values: read(quantity) })).filter(({ values }) => values.some(Number.isFinite));
+}
+
+const columnsOf = (designs) => designs.flatMap(({ name, results }, i) => results.curves.map((curve) => ({ name, curve, results, live: i === 0 })));
+
 /** The numbers of `designs` as CSV: a line for each design and torque. */
 export function designsCsv(designs) {
-  const lines = [["design", "method", ...QUANTITIES.map(([name, unit]) => `${name} (${unit})`)]];
-  for (const { name, results } of designs) for (const curve of results.curves) lines.push([name, results.method, ...QUANTITIES.map(([, , read]) => read(curve, results))]);
-  return csvOf(lines);
+  const columns = columnsOf(designs);
+  const told = toldBy(columns);
+  const head = ["design", "method", "Torque (N m)", ...told.map(({ quantity }) => (quantity.printed ? `${calledOf(quantity)} (${quantity.printed})` : calledOf(quantity)))];
+  return csvOf([head, ...columns.map(({ name, curve, results }, i) => [name, results.method, curve.output_torque_n_m, ...told.map(({ quantity: { factor }, values }) => values[i] && factor * values[i])])]);
 }
 
 /** The comparison in `place`: a column for each design and torque. `named` says what the field at a pointer is called, and of which gear it is, `usual` what it is in a submission that does not give it. */
@@ -94,18 +74,14 @@ export class Compare {
 
   /** A line for each quantity that any of the designs tells, the best of designs at one torque marked. */
   #quantities(designs) {
-    const columns = designs.flatMap(({ results }, i) => results.curves.map((curve) => ({ curve, results, live: i === 0 })));
-    const stressed = columns.some(({ curve }) => curve.stress);
-    const alongFaces = columns.some(({ curve }) => curve.face);
-    return QUANTITIES.filter(([name]) => (stressed || !STRESSES.includes(name)) && (alongFaces || name !== "K_Hβ")).map(([name, unit, read, print, less]) => {
-      const values = columns.map(({ curve, results }) => read(curve, results));
-      const cells = columns.map(({ curve: { output_torque_n_m: torque } }, i) => {
-        const rivals = values.filter((value, k) => value !== undefined && columns[k].curve.output_torque_n_m === torque);
-        const best = values[i] !== undefined && isBest(values[i], rivals, less);
-        return h("td", { className: [best ? "best" : "", columns[i].live ? "live" : ""].join(" ").trim() }, values[i] === undefined ? "–" : print(values[i]), best ? h("span", { className: "visually-hidden" }, " best") : null);
-      });
-      return h("tr", {}, h("th", { scope: "row" }, name, unit ? h("small", {}, ` ${unit}`) : null), ...cells);
-    });
+    const columns = columnsOf(designs);
+    const line = (name, printed, cells) => h("tr", {}, h("th", { scope: "row" }, name, printed ? h("small", {}, ` ${printed}`) : null), ...cells);
+    const torques = line("Torque", "N m", columns.map(({ curve, live }) => h("td", { className: live ? "live" : "" }, number(curve.output_torque_n_m, 6))));
+    return [torques, ...toldBy(columns).map(({ quantity, values }) => line(calledOf(quantity), quantity.printed, columns.map(({ curve: { output_torque_n_m: torque }, live }, i) => {
+      const rivals = values.filter((value, k) => value !== undefined && columns[k].curve.output_torque_n_m === torque);
+      const best = values[i] !== undefined && isBest(values[i], rivals, quantity.better);
+      return h("td", { className: [best ? "best" : "", live ? "live" : ""].join(" ").trim() }, shown(quantity, values[i]), best ? h("span", { className: "visually-hidden" }, " best") : null);
+    })))];
   }
 
   /** A field in which the designs differ. */
@@ -115,9 +91,9 @@ export class Compare {
 }
 
 /** Whether a value is better than all of its rivals that are not as good. */
-function isBest(value, rivals, less) {
-  if (less === undefined || rivals.length < 2) return false;
+function isBest(value, rivals, better) {
+  if (!better || rivals.length < 2) return false;
   const [least, most] = extent(rivals);
   if (most - least <= SAME * Math.abs(most)) return false;
-  return Math.abs(value - (less ? least : most)) <= SAME * Math.abs(value);
+  return Math.abs(value - (better === "smaller" ? least : most)) <= SAME * Math.abs(value);
 }

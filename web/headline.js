@@ -4,7 +4,7 @@ import { extent, fixed, h, number } from "./dom.js";
 
 const named = (curve, pattern) => curve.spectrum?.named.find(({ label }) => pattern.test(label))?.transmission_error_um ?? null;
 const mega = (value) => (value === null || value === undefined ? null : value * 1e-6);
-export const largest = (values) => extent(values)?.[1] ?? null;
+const largest = (values) => extent(values)?.[1] ?? null;
 
 /** The part of its span in which one pair of teeth carries alone, in percent. */
 function alone(curve) {
@@ -14,7 +14,7 @@ function alone(curve) {
 }
 
 /** The largest stress at a root or at a hole of either gear. */
-export function largestStress({ stress }) {
+function largestStress({ stress }) {
   if (!stress) return null;
   return largest(["driving", "driven"].flatMap((gear) => [...(stress[gear].root_mpa ?? []), ...(stress[gear].hole_mpa ?? [])]));
 }

@@ -21,6 +21,7 @@ import { remember, remembered } from "./kept.js";
 import { Pattern } from "./pattern.js";
 import { population } from "./population.js";
 import { alike, Follower, resultsOf } from "./preview.js";
+import { fetchQuantities } from "./quantities.js";
 import { RunUp } from "./runup.js";
 import { bare, openapi, usualAt } from "./schema.js";
 import { stresses } from "./series.js";
@@ -665,7 +666,7 @@ async function begin() {
   setUpKey();
   const lay = setUpTabs();
   const fetched = (work) => patiently(work, onProblem);
-  const [given, before, { items: examples }] = await Promise.all([fromFragment(location.hash), remembered(), fetched(() => json("v1/examples"))]);
+  const [given, before, { items: examples }] = await Promise.all([fromFragment(location.hash), remembered(), fetched(() => json("v1/examples")), fetched(fetchQuantities)]);
   if (!given) unreadable();
   setUpStart(examples, given);
   const first = given ?? examples.find(({ name }) => name === FIRST_EXAMPLE).submission;

@@ -6,19 +6,14 @@ import { debounced, h, s, fixed, number, timeOf } from "./dom.js";
 import { figure } from "./figure.js";
 import { allGiven, given, numeric } from "./inputs.js";
 import { offer } from "./offer.js";
+import { inUnit, inWords, options, quantityOf, shown } from "./quantities.js";
 import { Question } from "./question.js";
 
 /** What has come so far is fetched so often at most while members are computed, in milliseconds. */
 const PAUSE = 1000;
 
-/** The quantities to look at: name, unit, and what they are multiplied by. */
-const QUANTITIES = {
-  "transmission_error_um.peak_to_peak": ["STE peak-to-peak", "µm", 1],
-  "transmission_error_um.mean": ["STE mean", "µm", 1],
-  "mesh_stiffness_tangent_n_per_m.mean": ["mean stiffness", "N/µm", 1e-6],
-  mesh_order_um: ["H_Z2", "µm", 1],
-  hole_order_um: ["H_N", "µm", 1],
-};
+/** What is looked at first. */
+const SHOWN = "transmission_error_um.peak_to_peak";
 
 /** A member has at most so many positions in a mesh period: what many members tell settles long before one curve does. */
 const POSITIONS = 10;
@@ -48,7 +43,7 @@ export function population(place, design, form, limits, onOpen) {
   const laws = FIRST.map((_, i) => law(i, design, form));
   const question = new Question(design, { id: "population", words: "Draw them", inWords: (detail) => form.inWords(detail), ignored: NOT_ASKED });
   const ahead = h("p", { className: "note" });
-  const quantity = h("select", { id: "population-quantity", on: { change: () => last && draw() } }, ...Object.entries(QUANTITIES).map(([name, [words, unit]]) => h("option", { value: name }, `${words} in ${unit}`)));
+  const quantity = h("select", { id: "population-quantity", on: { change: () => last && draw() } }, ...options(SHOWN));
   const torque = h("select", { id: "population-torque", on: { change: () => last && draw() } });
   const picker = h("div", { className: "line", hidden: true }, h("label", { htmlFor: quantity.id }, "Look at"), quantity, h("label", { htmlFor: torque.id }, "at"), torque, h("span", { className: "unit" }, "N m"));
   const missing = h("p", { className: "outdated", role: "status", hidden: true });
@@ -170,21 +165,23 @@ export function population(place, design, form, limits, onOpen) {
 
   function draw() {
     const { results, address } = last;
-    const [words, unit, factor] = QUANTITIES[quantity.value];
+    const looked = quantityOf(quantity.value);
+    const { printed, factor } = looked;
+    const words = inWords(looked);
     const all = results.quantities.filter(({ name }) => name === quantity.value);
     const one = all.find((each) => each.output_torque_n_m === Number(torque.value)) ?? all[0];
     picker.hidden = !one;
     if (!one) return out.replaceChildren();
     const percentile = (each, percent) => each.percentiles.find((found) => found.percent === percent);
     const p95 = percentile(one, 95);
-    const told = (value) => (value === null ? "?" : fixed(value * factor, 3));
-    const at95 = `95 of 100 pairs stay below ${told(p95.value)} ${unit} ${p95.low === null || p95.high === null ? "(too few members to say how surely)" : `(with 95 % confidence between ${told(p95.low)} and ${told(p95.high)})`}; half are below ${told(percentile(one, 50).value)}.`;
+    const told = (value) => (value === null ? "?" : shown(looked, value));
+    const at95 = `95 of 100 pairs stay below ${told(p95.value)} ${printed} ${p95.low === null || p95.high === null ? "(too few members to say how surely)" : `(with 95 % confidence between ${told(p95.low)} and ${told(p95.high)})`}; half are below ${told(percentile(one, 50).value)}.`;
     const beyond = Object.entries(results.beyond_total_pitch_tolerance).filter(([, share]) => share !== null).map(([gear, share]) => `${fixed(100 * share, 1)} % of the ${gear} gears are beyond F_pT of their class.`);
     const rejected = Object.entries(results.rejected_by_inspection ?? {}).filter(([, share]) => share !== null).map(([gear, share]) => `${fixed(100 * share, 1)} % of the ${gear} gears made were rejected by the inspection.`);
     const member = (name, number) => h("button", { type: "button", on: { click: () => open(address, number) } }, `Open the ${name} member`);
     const pictures = [
-      figure({ lines: [outlineOf(one.histogram, factor)], x: `${words} in ${unit}`, y: "members", title: `Histogram of the ${words}` }),
-      ...(all.length > 1 ? [figure({ lines: [[95, "5 4"], [50, null], [5, "2 3"]].map(([percent, dash]) => ({ name: `${percent} % are below`, color: "currentColor", dash: dash?.split(" "), x: all.map((each) => each.output_torque_n_m), y: all.map((each) => percentile(each, percent).value * factor) })), x: "output torque in N m", y: `${words} in ${unit}`, title: `Percentiles of the ${words} over the torque` })] : []),
+      figure({ lines: [outlineOf(one.histogram, factor)], x: inUnit(looked), y: "members", title: `Histogram of the ${words}` }),
+      ...(all.length > 1 ? [figure({ lines: [[95, "5 4"], [50, null], [5, "2 3"]].map(([percent, dash]) => ({ name: `${percent} % are below`, color: "currentColor", dash: dash?.split(" "), x: all.map((each) => each.output_torque_n_m), y: all.map((each) => percentile(each, percent).value * factor) })), x: "output torque in N m", y: inUnit(looked), title: `Percentiles of the ${words} over the torque` })] : []),
     ];
     out.replaceChildren(h("p", {}, at95, " ", [...beyond, ...rejected].join(" ")), ...pictures, influencesOf(one), h("div", { className: "buttons" }, member("median", one.members.median), member("smallest", one.members.smallest), member("largest", one.members.largest)));
   }

@@ -1,36 +1,21 @@
 // A search: fields that may differ, what is to be small and what has to hold; the service chooses which designs to compute.
 
 import { json, ProblemError, request } from "./api.js";
-import { apart, at, nameOf } from "./design.js";
+import { apart, at, nameOf, withValue } from "./design.js";
 import { h, fixed, number } from "./dom.js";
 import { figure } from "./figure.js";
 import { given, numeric } from "./inputs.js";
 import { offer } from "./offer.js";
 import { preview } from "./preview.js";
+import { inUnit, inWords, options, quantityOf } from "./quantities.js";
 import { Question } from "./question.js";
 import { DASHES } from "./series.js";
 
 /** How a search stands is fetched so often at most, in milliseconds. */
 const PAUSE = 500;
 
-/** What can be made small or bounded: words and unit. */
-const QUANTITIES = {
-  "transmission_error_um.peak_to_peak": ["STE peak-to-peak", "µm"],
-  "transmission_error_um.mean": ["STE mean", "µm"],
-  face_load_factor: ["K_Hβ", ""],
-  mesh_order_um: ["H_Z2", "µm"],
-  hole_order_um: ["H_N", "µm"],
-  peak_contact_pressure_mpa: ["contact pressure", "MPa"],
-  "stress.driving.root_mpa": ["root stress of the driving gear", "MPa"],
-  "stress.driven.root_mpa": ["root stress of the driven gear", "MPa"],
-  "stress.driven.hole_mpa": ["stress at the holes of the driven gear", "MPa"],
-  "mass_kg.driving": ["mass of the driving gear", "kg"],
-  "mass_kg.driven": ["mass of the driven gear", "kg"],
-  "mass_removed_percent.driven": ["removed by holes of the driven gear", "%"],
-  "least_ligament_mm.driven": ["least material around its holes", "mm"],
-  contact_ratio: ["contact ratio", ""],
-  backlash_mm: ["backlash", "mm"],
-};
+/** What is made small unless somebody chooses otherwise. */
+const FIRST_GOAL = "transmission_error_um.peak_to_peak";
 
 /** Fields that are searched first, as far as a design has them: each variable begins with the first that no other has. */
 const FIRST = ["/pair/driving/tip_relief/amount_um", "/pair/driven/tip_relief/amount_um", "/pair/driving/lead_modifications/0/amount_um", "/pair/driving/profile_modifications/0/amount_um", "/pair/driven/blank/holes/radius_mm", "/pair/driven/blank/web/thickness_mm"];
@@ -38,15 +23,12 @@ const VARIABLES = 3;
 /** So many of them begin with a field. */
 const BEGUN = 2;
 
-/** A quantity with its unit, if it has one. */
-const inUnit = ([words, unit]) => (unit ? `${words} in ${unit}` : words);
-
-const quantities = (id, label, none) => h("select", { id, ariaLabel: label }, ...(none ? [h("option", { value: "" }, none)] : []), ...Object.entries(QUANTITIES).map(([name, quantity]) => h("option", { value: name }, inUnit(quantity))));
+const chosen = (id, label, none) => h("select", { id, ariaLabel: label }, ...(none ? [h("option", { value: "" }, none)] : []), ...options(none ? "" : FIRST_GOAL));
 
 /** The search of `design` in `place`; `form` knows the fields, `onOpen` opens a design. */
 export function search(place, design, form, onOpen) {
   const variables = Array.from({ length: VARIABLES }, (_, i) => variable(i, design, form));
-  const goals = [quantities("search-goal", "What is to be small", null), quantities("search-goal-2", "And what besides", "nothing else")];
+  const goals = [chosen("search-goal", "What is to be small", null), chosen("search-goal-2", "And what besides", "nothing else")];
   const conditions = ["", "-2"].map(condition);
   const evaluations = h("input", { type: "number", id: "search-evaluations", value: 150, min: 2, max: 20000, step: 1 });
   const question = new Question(design, { id: "search", words: "Search", inWords: (detail) => form.inWords(detail) });
@@ -68,10 +50,10 @@ export function search(place, design, form, onOpen) {
   function asked() {
     const minimize = goals.map(({ value }) => value).filter(Boolean).map((quantity) => ({ quantity }));
     const subject_to = conditions.flatMap((each) => each.read());
-    // Stresses are told where they are asked for.
-    const stressed = [...minimize, ...subject_to].some(({ quantity }) => quantity.startsWith("stress."));
-    const { curves } = apart(design.submission);
-    return { base: stressed ? { ...curves, stress: true } : curves, name: `${nameOf(design.submission)}, searched`, search: { variables: variables.flatMap((each) => each.read()), minimize, subject_to, evaluations: Number(evaluations.value) } };
+    // What is asked for by a goal or a bound is told; gears are what they are.
+    const needs = [...minimize, ...subject_to].flatMap(({ quantity }) => quantityOf(quantity).needs).filter((pointer) => !pointer.startsWith("/pair/"));
+    const give = (base, pointer) => withValue(base, pointer, at(design.submission, pointer) || pointer === "/stress" || form.beginnings.object(pointer, null));
+    return { base: needs.reduce(give, apart(design.submission).curves), name: `${nameOf(design.submission)}, searched`, search: { variables: variables.flatMap((each) => each.read()), minimize, subject_to, evaluations: Number(evaluations.value) } };
   }
 
   const how = (about) => ({
@@ -100,10 +82,9 @@ export function search(place, design, form, onOpen) {
   }
 
   function show(found, address, about) {
-    // A search that another client has asked for may have other quantities.
-    const called = ({ quantity }) => QUANTITIES[quantity] ?? [String(quantity), ""];
+    const called = ({ quantity }) => quantityOf(quantity);
     const [parts, held] = [about.search.minimize, about.search.subject_to ?? []].map((asked) => asked.map(called));
-    const told = (values, names) => names.map(([words, unit], i) => `${words} ${values?.[i] === null || values?.[i] === undefined ? "?" : number(values[i], 4)} ${unit}`.trim()).join(", ");
+    const told = (values, names) => names.map((quantity, i) => `${inWords(quantity)} ${values?.[i] === null || values?.[i] === undefined ? "?" : number(quantity.factor * values[i], 4)} ${quantity.printed}`.trim()).join(", ");
     const { best, front, confirmed, generations } = found;
     if (!best) return out.replaceChildren();
     const rows = Object.entries(best.values).map(([path, value]) => h("tr", {}, h("th", { scope: "row" }, form.named(path)), h("td", {}, number(at(about.base, path) ?? null, 5)), h("td", {}, number(value, 5))));
@@ -112,9 +93,9 @@ export function search(place, design, form, onOpen) {
     const open = async (row) => onOpen({ ...(await json(`${address}/designs/${row}`)), ...further }, null);
     const use = (row, words) => h("button", { type: "button", on: { click: () => open(row) } }, words);
     drawBeside(address, best.row, about.base);
-    const reached = generations.map((each, i) => [i + 1, each.best]).filter(([, value]) => value !== null);
+    const reached = generations.map((each, i) => [i + 1, each.best === null ? null : parts[0].factor * each.best]).filter(([, value]) => value !== null);
     const pictures = front.length > 1
-      ? [figure({ points: front.map(({ goals: [x, y], row }) => ({ x, y, label: `design ${row}`, strong: row === best.row, open: () => open(row) })), x: inUnit(parts[0]), y: inUnit(parts[1]), title: "The front: no design found is better in both; the large point is the best compromise. Press a point to open its design" }), frontOf(front, parts, use)]
+      ? [figure({ points: front.map(({ goals: [x, y], row }) => ({ x: parts[0].factor * x, y: parts[1].factor * y, label: `design ${row}`, strong: row === best.row, open: () => open(row) })), x: inUnit(parts[0]), y: inUnit(parts[1]), title: "The front: no design found is better in both; the large point is the best compromise. Press a point to open its design" }), frontOf(front, parts, use)]
       : reached.length > 1 ? [figure({ lines: [{ x: reached.map(([i]) => i), y: reached.map(([, value]) => value) }], x: "generation", y: inUnit(parts[0]), title: "The best so far, generation by generation" })] : [];
     const fine = confirmed && (confirmed.error_estimate
       ? `By the ${about.base.method.startsWith("three") ? "three-dimensional" : "flexible"} method on the fine grid: ${told(confirmed.goals, parts)}; another grid level changes the peak-to-peak value by ${fixed(confirmed.error_estimate.transmission_error_peak_to_peak_um, 4)} µm.`
@@ -153,7 +134,7 @@ export function search(place, design, form, onOpen) {
   /** The designs of a front, each to be used. */
   function frontOf(front, parts, use) {
     const head = [...parts.map(inUnit), ""].map((words) => h("th", { scope: "col" }, words || h("span", { className: "visually-hidden" }, "Actions")));
-    const rows = front.map(({ row, goals }) => h("tr", {}, ...goals.map((value) => h("td", {}, number(value, 4))), h("td", {}, use(row, "Use"))));
+    const rows = front.map(({ row, goals }) => h("tr", {}, ...goals.map((value, i) => h("td", {}, number(parts[i].factor * value, 4))), h("td", {}, use(row, "Use"))));
     return h("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Designs of the front" }, h("table", {}, h("thead", {}, h("tr", {}, ...head)), h("tbody", {}, ...rows)));
   }
 
@@ -164,11 +145,11 @@ export function search(place, design, form, onOpen) {
 
 /** A quantity and the bound that it has to keep. */
 function condition(end, index) {
-  const bounded = quantities(`search-bounded${end}`, "What has to hold", index ? "nothing else" : "nothing");
+  const bounded = chosen(`search-bounded${end}`, "What has to hold", index ? "nothing else" : "nothing");
   const side = h("select", { id: `search-side${end}`, ariaLabel: "Side of the bound" }, h("option", { value: "at_least" }, "at least"), h("option", { value: "at_most" }, "at most"));
   const bound = numeric({ id: `search-bound${end}`, ariaLabel: "Bound" });
   const element = h("div", { className: "line" }, h("label", { htmlFor: bounded.id }, index ? "and" : "with"), bounded, side, bound);
-  const read = () => (bounded.value && bound.value ? [{ quantity: bounded.value, [side.value]: given(bound) }] : []);
+  const read = () => (bounded.value && bound.value ? [{ quantity: bounded.value, [side.value]: given(bound) / quantityOf(bounded.value).factor }] : []);
   return { element, read };
 }
 

@@ -2,12 +2,13 @@
 // that chooses the values itself.
 
 import { json, request } from "./api.js";
-import { h, fixed, number } from "./dom.js";
+import { h, number } from "./dom.js";
 import { at, nameOf, withValue } from "./design.js";
 import { fileOfDesign, save } from "./download.js";
 import { figure } from "./figure.js";
 import { allGiven, given, numeric } from "./inputs.js";
 import { offer } from "./offer.js";
+import { calledOf, inRow, inUnit, inWords, options, quantityOf, shown, worstInRow } from "./quantities.js";
 import { Question } from "./question.js";
 import { usualAt } from "./schema.js";
 import { search } from "./search.js";
@@ -15,17 +16,11 @@ import { search } from "./search.js";
 /** A table is fetched so often at most while a study runs, in milliseconds. */
 const PAUSE = 400;
 
-/** What a column of the picture can be: name, unit, and how it is read from a row; of several torques the worst. */
-const QUANTITIES = {
-  mass: ["mass of both gears", "kg", (row) => row.pair_mass_kg],
-  p_p: ["largest STE peak-to-peak", "µm", (row) => Math.max(...row.curves.map((curve) => curve.statistics.transmission_error_um.peak_to_peak))],
-  mean: ["largest STE mean", "µm", (row) => Math.max(...row.curves.map((curve) => curve.statistics.transmission_error_um.mean))],
-  k: ["least mean stiffness", "N/µm", (row) => Math.min(...row.curves.map((curve) => curve.statistics.mesh_stiffness_tangent_n_per_m.mean)) * 1e-6],
-  h_n: ["largest H_N", "µm", (row) => Math.max(...row.curves.map((curve) => curve.hole_order_um ?? 0))],
-  h_z: ["largest H_Z2", "µm", (row) => Math.max(...row.curves.map((curve) => curve.mesh_order_um ?? 0))],
-  removed: ["removed by holes", "%", (row) => row.mass_removed_percent],
-  ligament: ["least material around holes", "mm", (row) => row.least_ligament_mm],
-};
+/** What the picture shows first, over what. */
+const [ACROSS, UP] = ["pair_mass_kg", "transmission_error_um.peak_to_peak"];
+/** The columns of the table before the torque, of the gear of the study where they are of one, and behind it. */
+const OF_ROW = ["pair_mass_kg", "mass_removed_percent", "least_ligament_mm"];
+const OF_CURVE = [UP, "mesh_stiffness_tangent_n_per_m.mean", "hole_order_um", "mesh_order_um"];
 
 const TORQUE = "/output_torques_n_m";
 /** With which field the first axis begins until somebody chooses another one, and the values of such a field. */
@@ -42,7 +37,7 @@ export function study(place, design, form, onOpen) {
   const gear = h("select", { id: "study-gear", ariaLabel: "Gear of the same mass" }, h("option", { value: "driven" }, "driven"), h("option", { value: "driving" }, "driving"));
   const removed = numeric({ id: "study-removed", value: 25, ariaLabel: "Mass removed in percent" });
   const question = new Question(design, { id: "study", words: "Run the study", inWords: (detail) => form.inWords(detail) });
-  const [across, up] = ["mass", "p_p"].map((chosen, i) => h("select", { id: `study-${i ? "up" : "across"}`, on: { change: () => last && draw(last) } }, ...Object.entries(QUANTITIES).map(([name, [words, unit]]) => h("option", { value: name, selected: name === chosen }, `${words} in ${unit}`))));
+  const [across, up] = [ACROSS, UP].map((chosen, i) => h("select", { id: `study-${i ? "up" : "across"}`, on: { change: () => last && draw(last) } }, ...options(chosen)));
   const picture = h("div", {});
   const picker = h("div", { className: "line", hidden: true }, h("label", { htmlFor: up.id }, "Picture:"), up, h("label", { htmlFor: across.id }, "over"), across);
   const out = h("div", { className: "out" });
@@ -98,32 +93,38 @@ export function study(place, design, form, onOpen) {
     last = results;
     draw(results);
     const csv = h("button", { type: "button", on: { click: async () => save(fileOfDesign(results.name ?? "", "study.csv"), "text/csv", await (await request(`${address}/results/table.csv`)).blob()) } }, "Table as CSV");
-    out.replaceChildren(h("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Designs of the study" }, tableOf(results.rows)), h("div", { className: "buttons" }, csv));
+    out.replaceChildren(h("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Designs of the study" }, tableOf(results)), h("div", { className: "buttons" }, csv));
   }
 
-  function draw({ rows }) {
-    const [[x, xUnit, readX], [y, yUnit, readY]] = [across, up].map((select) => QUANTITIES[select.value]);
-    const points = rows.filter((row) => row.curves?.length && row.curves[0].statistics).map((row) => ({ x: readX(row), y: readY(row), label: nameOfRow(row), strong: row.pareto })).filter((point) => Number.isFinite(point.x) && Number.isFinite(point.y));
-    picker.hidden = points.length < 2;
-    const title = `Designs by ${x} and ${y}; large points are the best`;
-    picture.replaceChildren(...(points.length > 1 ? [figure({ points, x: `${x} in ${xUnit}`, y: `${y} in ${yUnit}`, title })] : []));
+  function draw({ rows, gear }) {
+    const computed = rows.filter((row) => row.curves?.length && row.curves[0].statistics);
+    for (const option of [...across.options, ...up.options]) option.hidden = !computed.some((row) => Number.isFinite(worstInRow(quantityOf(option.value), row, gear)));
+    const [x, y] = [across, up].map((select) => quantityOf(select.value));
+    const [readX, readY] = [x, y].map((quantity) => (row) => quantity.factor * worstInRow(quantity, row, gear));
+    const points = computed.map((row) => ({ x: readX(row), y: readY(row), label: nameOfRow(row), strong: row.pareto })).filter((point) => Number.isFinite(point.x) && Number.isFinite(point.y));
+    picker.hidden = computed.length < 2;
+    const title = `Designs by ${inWords(x)} and ${inWords(y)}, of several torques the worst; large points are the best`;
+    picture.replaceChildren(...(points.length > 1 ? [figure({ points, x: inUnit(x), y: inUnit(y), title })] : []));
   }
 
-  function tableOf(rows) {
-    const names = ["Design", "Best", "Mass of both kg", "Removed %", "Ligament mm", "Torque N m", "STE p-p µm", "k mean N/µm", "H_N µm", "H_Z2 µm", ""];
+  function tableOf({ rows, gear }) {
+    const ofRow = OF_ROW.map((name) => [name, `${name}.${gear}`].map(quantityOf).find((each) => each.of));
+    const ofCurve = OF_CURVE.map(quantityOf);
+    const named = (quantity) => `${calledOf(quantity)} ${quantity.printed}`;
+    const names = ["Design", "Best", ...ofRow.map(named), "Torque N m", ...ofCurve.map(named), ""];
     const head = h("tr", {}, ...names.map((name) => h("th", { scope: "col" }, name || h("span", { className: "visually-hidden" }, "Actions"))));
-    return h("table", {}, h("thead", {}, head), h("tbody", {}, ...rows.flatMap(rowsOf)));
+    const cells = (row, curve) => {
+      const each = (quantity) => shown(quantity, inRow(quantity, row, curve, gear));
+      return [...ofRow.map(each), number(curve.output_torque_n_m), ...ofCurve.map(each)];
+    };
+    return h("table", {}, h("thead", {}, head), h("tbody", {}, ...rows.flatMap((row) => rowsOf(row, cells))));
   }
 
-  function rowsOf(row) {
+  function rowsOf(row, cells) {
     const lead = [h("th", { scope: "row" }, nameOfRow(row)), h("td", {}, row.pareto ? h("strong", { title: "No other design is at least as good in mass, peak-to-peak and stiffness, and better in one" }, "yes") : "")];
     if (!row.curves?.length) return [h("tr", {}, ...lead, h("td", { colSpan: 9 }, row.problem ? (row.problem.errors?.[0]?.detail ?? row.problem.detail) : row.status))];
     const open = h("button", { type: "button", on: { click: () => openRow(row) }, ariaLabel: `Open ${nameOfRow(row)}` }, "Open");
-    return row.curves.map((curve, i) => {
-      const statistics = curve.statistics;
-      const cells = [fixed(row.pair_mass_kg, 3), fixed(row.mass_removed_percent, 1), fixed(row.least_ligament_mm, 2), number(curve.output_torque_n_m), fixed(statistics?.transmission_error_um.peak_to_peak, 3), fixed(statistics && statistics.mesh_stiffness_tangent_n_per_m.mean * 1e-6, 2), number(curve.hole_order_um, 3), number(curve.mesh_order_um, 3)];
-      return h("tr", { className: row.pareto ? "strong" : "" }, ...(i ? [h("th", { scope: "row" }, nameOfRow(row)), h("td")] : lead), ...cells.map((cell) => h("td", {}, cell)), h("td", {}, i ? "" : open));
-    });
+    return row.curves.map((curve, i) => h("tr", { className: row.pareto ? "strong" : "" }, ...(i ? [h("th", { scope: "row" }, nameOfRow(row)), h("td")] : lead), ...cells(row, curve).map((cell) => h("td", {}, cell)), h("td", {}, i ? "" : open)));
   }
 
   /** What a row changes, in the words of the form. */

@@ -21,6 +21,7 @@ use super::static_files::StaticFile;
 use crate::compute::PreviewRules;
 use crate::jobs::Rules;
 use crate::webhooks::most_webhooks;
+use meshwright_wire::study_table::{QuantityEntry, quantities as all_quantities};
 
 /// Check a submission
 ///
@@ -87,6 +88,31 @@ pub(super) async fn examples(request: HeaderMap) -> Response {
         StaticFile::document("application/json", json)
     });
     EXAMPLES.answer(&request).await
+}
+
+/// The quantities.
+#[derive(Serialize, ToSchema)]
+pub(super) struct Quantities {
+    /// The quantities, in the order of the columns of a table.
+    items: Vec<QuantityEntry>,
+}
+
+/// Get quantities
+///
+/// The numbers by which designs are told: columns of tables, goals and bounds of searches, and what populations tell have these names. Each says what it
+/// is called, its unit, which way it is better, and which submissions tell it.
+#[utoipa::path(
+    get, path = "/v1/quantities", tag = "Reference", operation_id = "get_quantities",
+    security(()),
+    responses((status = 200, description = "The quantities.", body = Quantities)),
+)]
+pub(super) async fn quantities(request: HeaderMap) -> Response {
+    static QUANTITIES: LazyLock<StaticFile> = LazyLock::new(|| {
+        let items = all_quantities().collect();
+        let json = serde_json::to_vec(&Quantities { items }).expect("quantities are plain data");
+        StaticFile::document("application/json", json)
+    });
+    QUANTITIES.answer(&request).await
 }
 
 view! {

@@ -100,6 +100,7 @@ async fn keys_are_needed_as_soon_as_there_is_one() {
         "/health/live",
         "/health/ready",
         "/v1/limits",
+        "/v1/quantities",
         "/v1/examples",
         "/openapi.json",
         "/problems",

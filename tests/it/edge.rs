@@ -167,6 +167,7 @@ async fn the_documentation_needs_nothing_from_elsewhere() {
         "/v1/preview",
         "/v1/examples",
         "/v1/limits",
+        "/v1/quantities",
         "/problems/{slug}",
         "/health/live",
         "/health/ready",
@@ -232,6 +233,26 @@ async fn what_can_be_known_without_a_job_is_told() {
         );
     }
     assert!(bench.document("/v1/limits").await.is_object());
+    let quantities: Value = bench.document("/v1/quantities").await;
+    let of_name = |name: &str| {
+        let mut items = quantities["items"].as_array().unwrap().iter();
+        items.find(|item| item["name"] == name).unwrap().clone()
+    };
+    assert_eq!(
+        of_name("stress.driven.root_mpa"),
+        json!({ "name": "stress.driven.root_mpa", "title": "Root stress of the driven gear", "symbol": "σ_root2", "unit": "MPa", "of": "curve", "gear": "driven",
+            "better": "smaller", "needs": ["/stress"], "methods": ["flexible", "three_dimensional"] })
+    );
+    let backlash = of_name("backlash_mm");
+    assert_eq!(
+        [
+            &backlash["of"],
+            &backlash["gear"],
+            &backlash["better"],
+            &backlash["needs"]
+        ],
+        [&json!("pair"), &Value::Null, &Value::Null, &json!([])]
+    );
     let valid = bench
         .post("/v1/validate", &submission(115.0))
         .answer()
@@ -274,6 +295,7 @@ async fn files_of_the_page_and_of_the_documentation_come_packed_as_they_were_bui
         "/docs/swagger-ui-bundle.js",
         "/openapi.json",
         "/v1/examples",
+        "/v1/quantities",
     ] {
         let plain = bench.get(path).answer().await;
         assert_eq!(plain.headers().get("content-encoding"), None);

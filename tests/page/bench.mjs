@@ -526,7 +526,7 @@ export async function benchSteps(service) {
     assert.deepEqual(stiffness.slice(1), [...stiffness.slice(1)].sort((a, b) => a - b));
     assert.equal(stiffness[0].toFixed(1), (await answer(page, "k")).toFixed(1));
     assert.deepEqual(await line("k mean").locator("td").evaluateAll((cells) => cells.map((cell) => cell.classList.contains("best"))), [true, false, false, false, true], "the live design and the one kept last are the same");
-    assert.deepEqual(await line("Driven mass").locator("td").evaluateAll((cells) => cells.map((cell) => /best/.test(cell.textContent))), [false, true, false, false, false]);
+    assert.deepEqual(await line("Mass of the driven gear").locator("td").evaluateAll((cells) => cells.map((cell) => /best/.test(cell.textContent))), [false, true, false, false, false]);
     assert.equal(await line("Torque").locator(".best").count(), 0);
     assert.match(await page.locator("#table th.live").innerText(), /5×r7\.5@34 \(now\)/, "told from the one that was kept under its name");
     assert.match(await page.locator("#differences").innerText(), /Number of holes, driven gear\s+5\s+10\s+8\s+6\s+5/);
@@ -719,7 +719,7 @@ export async function benchSteps(service) {
     await page.waitForFunction(() => /of 4 designs, successful/.test(document.querySelector("#study [role=status]").innerText));
     assert.equal(await page.locator("#study tbody tr").count(), 4);
     // Less web is less mass.
-    await page.locator("#study-up").selectOption("mass");
+    await page.locator("#study-up").selectOption("pair_mass_kg");
     assert.match(await page.locator("#study tbody").innerText(), /Thickness of the web, driving gear 9/);
     const masses = await page.locator("#study .scatter circle").evaluateAll((dots) => new Set(dots.map((dot) => dot.getAttribute("cy"))).size);
     assert.equal(masses, 4);
@@ -734,9 +734,9 @@ export async function benchSteps(service) {
     await page.locator("#axis-1-values").fill("50, 100");
     await page.locator("#study-run").click();
     await page.waitForFunction(() => /4 of 4 designs, successful/.test(document.querySelector("#study [role=status]").innerText));
-    await page.locator("#study-across").selectOption("k");
-    assert.match(await page.locator("#study .scatter").getAttribute("aria-label"), /least mean stiffness/);
-    assert.match(await page.locator("#study .scatter").innerHTML(), /least mean stiffness in N\/µm/);
+    await page.locator("#study-across").selectOption("mesh_stiffness_tangent_n_per_m.mean");
+    assert.match(await page.locator("#study .scatter").getAttribute("aria-label"), /mean mesh stiffness/);
+    assert.match(await page.locator("#study .scatter").innerHTML(), /Mean mesh stiffness in N\/µm/);
   });
 
   await step("kidneys and holes in several patterns are compared at one mass, and a relief that a gear has not yet is varied", service, async (page) => {
@@ -787,7 +787,7 @@ export async function benchSteps(service) {
     await page.locator("#search-evaluations").fill("4");
     await page.locator("#search-evaluations").press("Enter");
     await page.waitForFunction(() => /4 designs looked at, successful/.test(document.querySelector("#search-state").innerText));
-    const [, stress, removed] = /with stress at the holes of the driven gear ([\d.]+) MPa, removed by holes of the driven gear ([\d.]+) %/.exec(await page.locator("#search-out").innerText());
+    const [, stress, removed] = /with hole stress of the driven gear ([\d.]+) MPa, mass removed by holes of the driven gear ([\d.]+) %/.exec(await page.locator("#search-out").innerText());
     // Ten holes of 7.5 mm take a quarter of the blank and carry 30.8 MPa at 115 N m (docs/compare-hole-patterns.md).
     assert.ok(Number(stress) <= 31 && Number(removed) >= 15 && Number(removed) < 25, `${stress} MPa, ${removed} %`);
     assert.equal((await designOf(page)).stress, undefined, "the design itself stays");

@@ -184,7 +184,7 @@ await step("a search finds a design, shows how it came to it, and opens it", ser
   await page.locator("#search-evaluations").fill("8");
   await page.locator("#search-run").click();
   await page.waitForFunction(() => /designs looked at, successful/.test(document.querySelector("#search-state").innerText), null, { timeout: 120_000 });
-  assert.match(await page.locator("#search-out").innerText(), /flexible method on the fine grid: STE peak-to-peak \d/);
+  assert.match(await page.locator("#search-out").innerText(), /flexible method on the fine grid: peak-to-peak transmission error \d/);
   await axe(page);
   const found = Number(await page.locator("#search-out tbody td").nth(1).innerText());
   await changing(page, () => page.locator("#search-out button", { hasText: "Use this design" }).click());
@@ -206,7 +206,7 @@ await step("a search for two goals ends with a front, whose points open their de
   // Larger holes weigh less and are louder: every radius is a compromise.
   const points = page.locator("#search-out [role=button]");
   assert.ok((await points.count()) >= 3, `${await points.count()} points`);
-  assert.match(await page.locator("#search-out .scatter[role=group]").innerHTML(), /STE peak-to-peak in µm[\s\S]*mass of the driven gear in kg/);
+  assert.match(await page.locator("#search-out .scatter[role=group]").innerHTML(), /Peak-to-peak transmission error in µm[\s\S]*Mass of the driven gear in kg/);
   await page.waitForFunction(() => [...document.querySelectorAll("#search-beside img")].filter((each) => each.naturalWidth > 100).length === 2 && document.querySelector("#search-beside .scatter"));
   const [base, best] = await page.locator("#search-beside img").evaluateAll((all) => all.map((each) => [each.alt, each.src]));
   assert.notEqual(base[1], best[1], "both are drawn, and differ");

@@ -183,7 +183,7 @@ export async function solidSteps(service) {
     assert.deepEqual(await Promise.all(["low", "high"].map((end) => page.locator(`#variable-0-${end}`).inputValue())), ["3.2", "16"]);
     const words = await page.locator("#variable-0 option").allInnerTexts();
     assert.ok(words.includes("Misalignment in the plane of the axes (µm)") && !words.some((each) => /\b(um|mm|deg)\b,/.test(each)), words.join("\n"));
-    assert.equal(await page.locator("#search-goal option[value=face_load_factor]").innerText(), "K_Hβ");
+    assert.equal(await page.locator("#search-goal option[value=face_load_factor]").innerText(), "Face load factor");
     for (const line of await page.locator("#search .line:visible").all()) {
       const heights = await line.evaluate((element) => new Set([...element.children].filter((each) => !each.hidden).map((each) => Math.round(each.getBoundingClientRect().top + each.getBoundingClientRect().height / 2))).size);
       assert.equal(heights, 1, await line.innerText());

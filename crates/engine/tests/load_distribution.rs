@@ -2,9 +2,9 @@
 
 mod cases;
 
-use cases::{case, gear, model_by, pair};
+use cases::{case, gear, pair};
 use meshwright_engine::analysis::{
-    Analysis, BodyFormula, Case, Curve, FormulaQuantity, Formulas, Method, PlaneState,
+    Analysis, BodyFormula, Case, Curve, FormulaQuantity, Formulas, Model, PlaneState,
     StiffnessRule, ToothFormula, Warning, analyze,
 };
 use meshwright_engine::gear::{
@@ -41,8 +41,7 @@ fn solve(case: &Case) -> Analysis {
 
 fn asked(pair: GearPair, formulas: Formulas, output_torque: f64) -> Case {
     let mut case = case(pair, &[output_torque]);
-    case.model = model_by(Method::LoadDistribution, &case.model);
-    case.resolution.formulas = formulas;
+    case.model = Model::Formulas(formulas);
     case
 }
 

@@ -24,7 +24,7 @@ use meshwright_engine::run::{Run, Stopped};
 
 fn solve(case: &Case, method: Method) -> Analysis {
     let case = Case {
-        method,
+        model: model_by(method, &case.model),
         ..case.clone()
     };
     analyze(&case, &Library::default(), &Run::unattended())
@@ -499,7 +499,7 @@ fn what_designs_share_changes_no_digit() {
         Method::Flexible,
     ] {
         let with = |case: &Case| Case {
-            method,
+            model: model_by(method, &case.model),
             ..case.clone()
         };
         analyze(&with(&first), &library, &run).expect("a design of the study");
@@ -514,7 +514,7 @@ fn designs_by_methods() -> Vec<Case> {
     let cases = designs.map(|holes| study_design(Some(holes), &[115.0, 20.0]));
     let methods = [Method::Flexible, Method::Decomposition];
     let with = |case: &Case, method| Case {
-        method,
+        model: model_by(method, &case.model),
         ..case.clone()
     };
     cases
@@ -631,7 +631,7 @@ fn along_faces_the_projection_is_the_whole_solution_without_holes_and_near_it_wi
         let library = Library::default();
         let by = |method| {
             let case = Case {
-                method,
+                model: model_by(method, &case.model),
                 ..case.clone()
             };
             solve_from(&library, &case)

@@ -4,8 +4,7 @@ use std::io;
 
 pub(super) use meshwright_exchange::significant;
 use serde::de::{DeserializeOwned, IgnoredAny};
-use serde::ser::SerializeSeq;
-use serde::{Deserialize, Deserializer};
+use serde::{Deserialize, Deserializer, Serialize as _};
 use serde_json::Value;
 use serde_json::ser::{CompactFormatter, Formatter};
 use serde_json::value::RawValue;
@@ -153,16 +152,23 @@ pub(super) fn or_null<S: serde::Serializer>(
     values: &[Option<f64>],
     serializer: S,
 ) -> Result<S::Ok, S::Error> {
-    let null = RawValue::from_string("null".to_owned()).map_err(serde::ser::Error::custom)?;
-    let mut list = serializer.serialize_seq(Some(values.len()))?;
-    for value in values {
-        match value {
-            Some(value) => list.serialize_element(value)?,
-            // As it stands, past the formatter, which takes a null for a number that went wrong.
-            None => list.serialize_element(&null)?,
-        }
+    #[derive(serde::Serialize)]
+    struct One(#[serde(serialize_with = "one_or_null")] Option<f64>);
+    serializer.collect_seq(values.iter().map(|value| One(*value)))
+}
+
+/// Writes a number that may be meant to be absent.
+pub(super) fn one_or_null<S: serde::Serializer>(
+    value: &Option<f64>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    match value {
+        Some(value) => serializer.serialize_f64(*value),
+        // As it stands, past the formatter, which takes a null for a number that went wrong.
+        None => RawValue::from_string("null".to_owned())
+            .map_err(serde::ser::Error::custom)?
+            .serialize(serializer),
     }
-    list.end()
 }
 
 /// What a document of an earlier version does not tell: a number that is never written.

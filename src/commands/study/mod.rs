@@ -173,7 +173,7 @@ mod tests {
 
         let drawn = picture(&study(), &results, None, None).expect("seven designs");
         let svg = drawn.to_svg();
-        assert!(svg.contains("mass of both gears in kg"), "{svg}");
+        assert!(svg.contains("Mass of both gears in kg"), "{svg}");
         assert!(svg.contains("that no other beats"), "{svg}");
         let text = short_table(&results, Duration::from_secs(2));
         assert!(

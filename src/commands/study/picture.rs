@@ -2,11 +2,17 @@
 
 use meshwright_plot::{Axis, Chart, Color, Figure, Look, PALETTE, Panel, Series};
 
-use meshwright_wire::study_table::TableRow;
+use meshwright_wire::study_table::{Quantity, TableRow};
 use meshwright_wire::{PopulationResults, SearchState, Study as StudyDocument, StudyResults};
 
-/// The quantity that is shown of a population.
+/// The quantity that is shown, and that over which designs are.
 const SHOWN: &str = "transmission_error_um.peak_to_peak";
+const OVER: &str = "pair_mass_kg";
+
+/// What stands at the axis of a quantity; a goal that is none stands there by its own words.
+fn at_axis(name: &str) -> String {
+    Quantity::of_name(name).map_or_else(|| name.to_owned(), Quantity::at_axis)
+}
 
 const BASE: Color = PALETTE[2];
 const BEST: Color = PALETTE[1];
@@ -66,11 +72,9 @@ fn of_designs(rows: &[TableRow]) -> Option<Chart> {
     let points = |pareto: bool| -> Vec<(f64, f64)> {
         let rows = rows.iter().filter(|row| row.pareto == pareto);
         rows.filter_map(|row| {
-            let peaks = row.curves.iter().filter_map(|curve| {
-                let statistics = curve.statistics.as_ref()?;
-                Some(statistics.transmission_error_um.peak_to_peak)
-            });
-            Some((row.pair_mass_kg?, peaks.reduce(f64::max)?))
+            let peaks = row.numbers(SHOWN).into_iter().flatten();
+            let mass = row.numbers(OVER).first().copied().flatten();
+            Some((mass?, peaks.reduce(f64::max)?))
         })
         .collect()
     };
@@ -83,10 +87,7 @@ fn of_designs(rows: &[TableRow]) -> Option<Chart> {
         .filter(|(.., points)| !points.is_empty())
         .map(|(name, color, look, points)| Series::new(name, color, look, points))
         .collect();
-    let axes = (
-        "mass of both gears in kg",
-        "largest peak-to-peak transmission error in µm",
-    );
+    let axes = (&*at_axis(OVER), &*at_axis(SHOWN));
     (!series.is_empty()).then(|| chart("", axes, false, series))
 }
 
@@ -109,10 +110,7 @@ fn of_population(population: &PopulationResults) -> Vec<Chart> {
         let series = series
             .map(|(name, percent, color)| Series::new(name, color, Look::Line, percentile(percent)))
             .to_vec();
-        let axes = (
-            "output torque in N m",
-            "peak-to-peak transmission error in µm",
-        );
+        let axes = ("output torque in N m", &*at_axis(SHOWN));
         return vec![chart("", axes, true, series)];
     }
     let bars = at_torques().map(|quantity| {
@@ -123,7 +121,7 @@ fn of_population(population: &PopulationResults) -> Vec<Chart> {
         }
         outline.push((quantity.largest, 0.0));
         let series = Series::new("", OTHER, Look::Line, outline);
-        let axes = ("peak-to-peak transmission error in µm", "members");
+        let axes = (&*at_axis(SHOWN), "members");
         let torque = quantity.output_torque_n_m;
         let torque = torque.map(|torque| format!("{torque} N m"));
         let shown = [5.0, 50.0, 95.0];
@@ -138,7 +136,7 @@ fn of_population(population: &PopulationResults) -> Vec<Chart> {
 }
 
 fn of_search(study: &StudyDocument, search: &SearchState) -> Vec<Chart> {
-    let goals = study.goals();
+    let goals: Vec<String> = study.goals().iter().map(|goal| at_axis(goal)).collect();
     let [first, others @ ..] = &goals[..] else {
         return Vec::new();
     };

@@ -107,7 +107,8 @@ def study(document: Mapping[str, Any], report: Report) -> Flow[StudyTable]:
     best: Json | None = None
     if search is not None and search["best"] is not None:
         best = yield from get(f"/v1/studies/{state['id']}/best")
-    return StudyTable((yield from get(path)), population, search, best)
+    quantities: Json = yield from get("/v1/quantities")
+    return StudyTable((yield from get(path)), population, search, best, quantities["items"])
 
 
 def example(name: str) -> Flow[Json]:

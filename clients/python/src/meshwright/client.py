@@ -131,6 +131,11 @@ class Client:
         items: list[Json] = self._run(_flows.get("/v1/examples"))["items"]
         return items
 
+    def quantities(self) -> list[Json]:
+        """The numbers by which designs are told: their names, titles, units, and what a submission needs for them."""
+        items: list[Json] = self._run(_flows.get("/v1/quantities"))["items"]
+        return items
+
     def example(self, name: str) -> Json:
         """One of them."""
         return self._run(_flows.example(name))
@@ -211,6 +216,10 @@ class AsyncClient:
 
     async def examples(self) -> list[Json]:
         items: list[Json] = (await self._run(_flows.get("/v1/examples")))["items"]
+        return items
+
+    async def quantities(self) -> list[Json]:
+        items: list[Json] = (await self._run(_flows.get("/v1/quantities")))["items"]
         return items
 
     async def example(self, name: str) -> Json:

@@ -2,10 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import pandas
+
+# Shorter names of columns.
+_SHORT = {
+    "mean_um": "transmission_error_um.mean",
+    "rms_um": "transmission_error_um.rms",
+    "peak_to_peak_um": "transmission_error_um.peak_to_peak",
+    "mean_stiffness_n_per_m": "mesh_stiffness_tangent_n_per_m.mean",
+}
 
 
 class StudyTable:
@@ -17,8 +26,10 @@ class StudyTable:
         population: dict[str, Any] | None = None,
         search: dict[str, Any] | None = None,
         best: dict[str, Any] | None = None,
+        quantities: Sequence[dict[str, Any]] = (),
     ) -> None:
         self.document = document
+        self.quantities = quantities
         self.rows: list[dict[str, Any]] = document["rows"]
         self.search = search
         self._population = population
@@ -50,10 +61,11 @@ class StudyTable:
         return [row["label"] for row in self.rows if row["pareto"]]
 
     def frame(self) -> pandas.DataFrame:
-        """Designs that cannot be built have no numbers, and their `problem`."""
+        """A column for each quantity, those of one gear of the study's `gear`. Designs that cannot be built have no numbers, and their `problem`."""
         import pandas
 
-        return pandas.DataFrame([line for row in self.rows for line in _lines(row)])
+        named = [each for each in self.quantities if each["of"] == "curve" or each["gear"] in (None, self.document["gear"])]
+        return pandas.DataFrame([line for row in self.rows for line in _lines(row, named)])
 
 
 class PopulationTable:
@@ -98,25 +110,23 @@ def _spread(quantity: dict[str, Any]) -> dict[str, Any]:
     return line
 
 
-def _lines(row: dict[str, Any]) -> list[dict[str, Any]]:
-    own = {name: row.get(name) for name in ("label", "status", "pareto", "mass_kg", "mass_removed_percent", "least_ligament_mm", "pair_mass_kg", "contact_ratio", "backlash_mm")}
+def _lines(row: dict[str, Any], quantities: Sequence[dict[str, Any]]) -> Iterator[dict[str, Any]]:
+    own = {name: row.get(name) for name in ("label", "status", "pareto")}
     own["problem"] = row["problem"]["detail"] if row.get("problem") else None
-    lines = []
+    of_pair = [each["name"].split(".")[0] for each in quantities if each["of"] == "pair"]
+    of_curve = [each["name"] for each in quantities if each["of"] == "curve"]
     for curve in row["curves"] or [{}]:
-        statistics = curve.get("statistics") or {}
-        ste = statistics.get("transmission_error_um") or {}
-        stiffness = statistics.get("mesh_stiffness_tangent_n_per_m") or {}
-        lines.append(
-            own
-            | {
-                "output_torque_n_m": curve.get("output_torque_n_m"),
-                "mean_um": ste.get("mean"),
-                "rms_um": ste.get("rms"),
-                "peak_to_peak_um": ste.get("peak_to_peak"),
-                "mean_stiffness_n_per_m": stiffness.get("mean"),
-                "hole_order_um": curve.get("hole_order_um"),
-                "hole_order_of_holes_um": curve.get("hole_order_of_holes_um"),
-                "mesh_order_um": curve.get("mesh_order_um"),
-            }
-        )
-    return lines
+        told = {name: _at(curve, name) for name in of_curve}
+        short = {name: told.get(long) for name, long in _SHORT.items()}
+        yield own | {name: row.get(name) for name in of_pair} | {"output_torque_n_m": curve.get("output_torque_n_m")} | short | told
+
+
+def _at(curve: dict[str, Any], name: str) -> float | None:
+    """What a curve of a row, or its statistics, has under names that are joined by dots."""
+    for place in (curve, curve.get("statistics")):
+        found: Any = place
+        for part in name.split("."):
+            found = found.get(part) if isinstance(found, dict) else None
+        if found is not None:
+            return float(found)
+    return None

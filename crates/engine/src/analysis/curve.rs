@@ -1,6 +1,7 @@
 //! What comes out: curves over mesh position.
 
 use super::largest_where::LargestPressure;
+use super::single_flank::SingleFlank;
 use super::spectrum::Spectrum;
 use super::statistics::{SamplingError, Statistics};
 use super::stress::GearStresses;
@@ -128,6 +129,8 @@ pub struct Curve {
     pub load_shares: Vec<LoadShare>,
     /// Of δ.
     pub transmission_error_statistics: Statistics,
+    /// The parts of δ that single-flank testing tells apart.
+    pub single_flank: SingleFlank,
     /// Of the tangent stiffness.
     pub mesh_stiffness_tangent_statistics: Statistics,
     /// By how much the statistics of δ may be off between the positions.

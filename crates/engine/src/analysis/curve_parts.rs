@@ -4,6 +4,7 @@ use super::Case;
 use super::between::Sections;
 use super::curve::{Curve, DecompositionParts, FaceLoad, LoadShare};
 use super::largest_where::LargestPressure;
+use super::single_flank::SingleFlank;
 use super::spectrum::Spectrum;
 use super::stress::GearStresses;
 use crate::contact::MeshContact;
@@ -30,9 +31,12 @@ impl CurveParts {
     pub(super) fn into_curve(self, case: &Case, output_torque: f64) -> Curve {
         let load = case.pair.load(output_torque);
         let sections = &self.sections;
-        let spectrum = case
+        let resampled = case
             .covers_whole_periods()
-            .then(|| Spectrum::of(case, sections));
+            .then(|| Spectrum::resampled(case, sections));
+        let delta = resampled.as_ref().map(|[delta, _]| delta.as_slice());
+        let single_flank = SingleFlank::of(sections, delta);
+        let spectrum = resampled.map(|resampled| Spectrum::of(case, resampled));
         let [
             transmission_error_statistics,
             mesh_stiffness_tangent_statistics,
@@ -53,6 +57,7 @@ impl CurveParts {
                 .collect(),
             transmission_error_statistics,
             mesh_stiffness_tangent_statistics,
+            single_flank,
             sampling_error: sections.error(),
             transmission_error: self.transmission_error,
             mesh_stiffness_tangent: self.stiffness,

@@ -2,7 +2,7 @@
 //!
 //! Read in this order: [`case`] (what is asked), `plan` (what will be computed of it), `setup` (what the methods work with), `flexible`, `pair_contacts`,
 //! `decomposition`, `projected`, `three_dimensional` and `load_distribution` (the methods), `first_order` (what holes change, in the plane and along faces), `light` (torque 0, alike for all), [`stress`] (at roots and holes; along faces `face_stress`) and [`fields`] (everywhere; along faces [`face_fields`]), [`contact_pattern`] (over the flanks), `between` (a curve between its positions), `curve_parts` and [`curve`] with its `statistics`, [`largest_where`] (where its largest values stand), [`evidence`], [`warning`],
-//! [`error`] and [`spectrum`] (what comes out), `answer` (all of it); `analyze` (who carries out the plan), `estimate` (what it costs); [`forces`] (tables of force), [`at_speed`] (motion).
+//! [`error`], [`spectrum`] and [`single_flank`] (what comes out), `answer` (all of it); `analyze` (who carries out the plan), `estimate` (what it costs); [`forces`] (tables of force), [`at_speed`] (motion).
 
 mod analyze;
 mod answer;
@@ -30,6 +30,7 @@ mod pair_contacts;
 mod plan;
 mod projected;
 mod setup;
+pub mod single_flank;
 pub mod spectrum;
 mod statistics;
 pub mod stress;

@@ -51,14 +51,19 @@ const RESAMPLED: usize = 400;
 const STANDING_OUT: (usize, f64) = (10, 0.01);
 
 impl Spectrum {
-    /// The spectrum of the curve of `sections` over the span of `case`, which is whole true periods: as many orders as its positions tell.
-    pub(super) fn of(case: &Case, sections: &Sections) -> Self {
+    /// δ and k of the curve of `sections` over the span of `case`, at equal steps that are near enough for its spectrum.
+    pub(super) fn resampled(case: &Case, sections: &Sections) -> [Vec<f64>; 2] {
         let (positions, periods) = (case.positions(), case.span() as usize);
         let finer = (RESAMPLED * periods).div_ceil(positions);
-        let [delta, stiffness] = sections.resampled(finer * positions);
-        let lines = [delta, stiffness].map(|values| {
+        sections.resampled(finer * positions)
+    }
+
+    /// The spectrum of a curve that was [resampled](Self::resampled) over the span of `case`, which is whole true periods: as many orders as its
+    /// positions tell.
+    pub(super) fn of(case: &Case, resampled: [Vec<f64>; 2]) -> Self {
+        let lines = resampled.map(|values| {
             let mut lines = harmonics(&values);
-            lines.truncate(positions / 2);
+            lines.truncate(case.positions() / 2);
             lines
         });
         Self::of_lines(&case.pair, case.span(), lines, case.driving_speed)

@@ -227,7 +227,7 @@ fn row(design: &Design, range: Option<f64>) -> RowState {
         results.curves.truncate(1);
         let curve = &mut results.curves[0];
         curve.output_torque_n_m = 50.0;
-        let values = &mut curve.statistics.transmission_error_um;
+        let values = &mut curve.statistics.transmission_error_um.whole;
         (values.mean, values.rms, values.peak_to_peak) = (1.0, 0.0, range);
         curve.statistics.mesh_stiffness_tangent_n_per_m = values.clone();
         Summary::of(&results)

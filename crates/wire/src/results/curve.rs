@@ -1,5 +1,7 @@
 //! The curves at one output torque, and their statistics.
 
+use std::ops::Deref;
+
 use meshwright_engine::analysis::at_speed::CurveDynamics;
 use meshwright_engine::analysis::curve::{LeadCure, LoadShare};
 use meshwright_engine::analysis::{Case, Curve, FaceLoad, Statistics};
@@ -11,7 +13,7 @@ use super::spectrum::SpectrumDocument;
 use super::stress::{PeakStressDocument, StressDocument};
 use super::{all, each};
 use crate::declare::answer;
-use crate::units::{or_null, significant, to_mm, to_mpa, to_um};
+use crate::units::{one_or_null, or_null, significant, to_mm, to_mpa, to_um};
 
 answer! {
     /// The curves at one output torque. All lists, those of the spectrum and of the dynamics aside, run over the same positions.
@@ -110,7 +112,7 @@ answer! {
         /// Whether the span is less than whole true periods.
         partial: bool = !case.covers_whole_periods(),
         /// Of the transmission error, in um.
-        transmission_error_um: StatisticsValues = StatisticsValues::of(&curve.transmission_error_statistics, to_um),
+        transmission_error_um: TransmissionErrorStatistics = TransmissionErrorStatistics::of(curve),
         /// Of the tangent stiffness, in N/m.
         mesh_stiffness_tangent_n_per_m: StatisticsValues =
             StatisticsValues::of(&curve.mesh_stiffness_tangent_statistics, |value| value),
@@ -118,6 +120,39 @@ answer! {
         peak_contact_pressure_mpa?: PressureStatistics = Some(PressureStatistics::of(&case.pair, curve)),
         /// The largest stresses, where they were asked for.
         stress?: PeakStressDocument = curve.stresses.as_ref().map(|stresses| PeakStressDocument::of(case, stresses)),
+    }
+}
+
+answer! {
+    /// Of the transmission error, in um: also what single-flank testing tells, by the words of ISO/TR 10064-1.
+    pub struct TransmissionErrorStatistics as TransmissionErrorStatistics, "Statistics of the transmission error" of (curve: &Curve) {
+        /// What is told of either curve.
+        #[serde(flatten)]
+        whole: StatisticsValues = StatisticsValues::of(&curve.transmission_error_statistics, to_um),
+        /// f_i', the largest range in any stretch of one mesh period; null in results of versions before 0.5.
+        #[serde(default, serialize_with = "one_or_null")]
+        #[schema(required)]
+        tooth_to_tooth: Option<f64> = Some(to_um(curve.single_flank.tooth_to_tooth)),
+        /// f_l', the peak-to-peak of what has fewer than half a cycle in a mesh period; null for a partial span, which does not tell it.
+        #[serde(default, serialize_with = "one_or_null")]
+        #[schema(required)]
+        long_wave: Option<f64> = curve.single_flank.long_wave.map(to_um),
+        /// f_k', the peak-to-peak of the rest; null as `long_wave` is.
+        #[serde(default, serialize_with = "one_or_null")]
+        #[schema(required)]
+        short_wave: Option<f64> = curve.single_flank.short_wave.map(to_um),
+        /// The root mean square of the harmonics of the mesh; null as `long_wave` is.
+        #[serde(default, serialize_with = "one_or_null")]
+        #[schema(required)]
+        mesh_harmonics_rms: Option<f64> = curve.single_flank.mesh_harmonics_rms.map(to_um),
+    }
+}
+
+impl Deref for TransmissionErrorStatistics {
+    type Target = StatisticsValues;
+
+    fn deref(&self) -> &StatisticsValues {
+        &self.whole
     }
 }
 

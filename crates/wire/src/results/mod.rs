@@ -20,7 +20,7 @@ use meshwright_engine::analysis::forces::Forces;
 
 pub use curve::{
     CurveDocument, FaceDocument, LeadCureDocument, LoadShareDocument, StatisticsDocument,
-    StatisticsValues,
+    StatisticsValues, TransmissionErrorStatistics,
 };
 pub use decomposition::{
     BlankFitDocument, BlankHarmonicDocument, BlankSampleDocument, DecompositionDocument,

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use meshwright_engine::analysis::curve::{BlankFit, BlankSample, DecompositionParts, LoadShare};
 use meshwright_engine::analysis::largest_where::LargestPressure;
+use meshwright_engine::analysis::single_flank::SingleFlank;
 use meshwright_engine::analysis::spectrum::Spectrum;
 use meshwright_engine::analysis::stress::{GearStresses, PeakStress};
 use meshwright_engine::analysis::{
@@ -53,6 +54,12 @@ fn analysis(case: &Case) -> Analysis {
         let load = case.pair.load(torque);
         Curve {
             face: None,
+            single_flank: SingleFlank {
+                tooth_to_tooth: 0.9e-6,
+                long_wave: Some(0.3e-6),
+                short_wave: Some(0.8e-6),
+                mesh_harmonics_rms: Some(0.1e-6),
+            },
             output_torque: torque,
             load,
             mesh_stiffness_secant: delta.iter().map(|delta| load / delta).collect(),

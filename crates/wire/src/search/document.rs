@@ -123,7 +123,7 @@ impl Kind for QuantityName {
 
     fn read(node: &Node, place: &Place<'_>, (): &()) -> Option<Self> {
         let found = match node {
-            Node::Text(name) => QUANTITIES.iter().find(|quantity| quantity.name == name),
+            Node::Text(name) => Quantity::of_name(name),
             _ => None,
         };
         found.map(Self).or_else(|| {

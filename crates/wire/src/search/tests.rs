@@ -512,6 +512,71 @@ fn a_bound_that_no_design_tells_is_refused_with_what_would_tell_it() {
 }
 
 #[test]
+fn every_quantity_is_told_by_its_methods_where_its_needs_are_given_and_else_refused_with_them() {
+    let place_of = [
+        ("minimize", "/search/minimize/0/quantity"),
+        ("subject_to", "/search/subject_to/0/quantity"),
+    ];
+    let given = |pointer: &str| match pointer {
+        "/stress" => json!(true),
+        "/dynamics" => json!({ "driving_speed_rpm": 3000 }),
+        "/pair/driven/tooth_deviations" => json!({ "eccentricity": { "amount_um": 5.0 } }),
+        "/pair/driving/tooth_deviations" => Value::Null,
+        _ => panic!("{pointer} is new here"),
+    };
+    for quantity in crate::study_table::quantities() {
+        for method in crate::methods() {
+            for (list, place) in place_of {
+                let about = json!({ "quantity": quantity.name, "at_least": 0.1 });
+                let mut study = circles(&json!({ "method": method }), about);
+                if list == "minimize" {
+                    study["search"]["subject_to"] = json!([]);
+                    study["search"]["minimize"] = json!([{ "quantity": quantity.name }]);
+                }
+                let whole = quantity.needs.iter().fold(study, |mut study, pointer| {
+                    testing::put(&mut study, &format!("/base{pointer}"), given(pointer));
+                    study
+                });
+                let what = format!("{} by {method}: {whole}", quantity.name);
+                let refused = testing::study(&whole).err();
+                if quantity.methods.contains(&method) {
+                    assert_eq!(refused, None, "{what}");
+                    if quantity.needs.is_empty() {
+                        continue;
+                    }
+                    let bare = quantity.needs.iter().fold(whole, |mut study, pointer| {
+                        let base = study["base"].as_object_mut().expect("a base");
+                        base.remove(&pointer[1..]);
+                        if pointer.ends_with("tooth_deviations") {
+                            testing::put(&mut study, &format!("/base{pointer}"), Value::Null);
+                        }
+                        study
+                    });
+                    let problem = testing::study(&bare).expect_err(&what);
+                    let [error] = &problem.errors[..] else {
+                        panic!("{what}: {problem:?}")
+                    };
+                    assert_eq!(
+                        (&*error.pointer, error.code),
+                        (place, Code::QuantityNotTold)
+                    );
+                    let named = format!("/base{}", quantity.needs[0]);
+                    assert!(error.detail.contains(&named), "{}", error.detail);
+                } else {
+                    let problem = refused.expect(&what);
+                    let error = problem.errors.iter().find(|error| error.pointer == place);
+                    let error = error.unwrap_or_else(|| panic!("{what}: {problem:?}"));
+                    assert_eq!(error.code, Code::QuantityNotTold, "{what}");
+                    for would in &quantity.methods {
+                        assert!(error.detail.contains(would), "{}", error.detail);
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn a_design_without_holes_has_no_hole_order_and_one_that_does_not_tell_it_has_none_that_would_do() {
     let at = |name: &str, changes: &Value| {
         let submission = testing::parse(&and(example(name), changes));
@@ -542,7 +607,7 @@ fn told_row(design: &Design, range: Option<f64>) -> RowState {
         .and_then(|range| {
             let mut results = Results::read(STUB).expect("a results document");
             results.curves.truncate(1);
-            let values = &mut results.curves[0].statistics.transmission_error_um;
+            let values = &mut results.curves[0].statistics.transmission_error_um.whole;
             values.peak_to_peak = range;
             Summary::of(&results)
         });

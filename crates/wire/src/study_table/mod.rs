@@ -19,7 +19,8 @@ use super::warning::GearName;
 
 pub use self::csv::CsvTable;
 pub use pareto::{Outline, Told};
-pub(crate) use quantity::{Of, QUANTITIES, Quantity};
+pub use quantity::{Better, Quantity, QuantityEntry, ToldOf, quantities};
+pub(crate) use quantity::{Of, QUANTITIES};
 pub use row::{RowCurve, RowState, TableRow};
 pub use summary::Summary;
 
@@ -66,13 +67,8 @@ pub fn csv(rows: &[TableRow]) -> String {
             pointers.push(pointer.clone());
         }
     }
-    let curves = || rows.iter().flat_map(|row| &row.curves);
-    let mut statistics = curves().filter_map(|curve| curve.statistics.as_ref());
-    let told = Told {
-        stress: statistics.any(|statistics| statistics.stress.is_some()),
-        faces: curves().any(|curve| curve.face_load_factor.is_some()),
-        holes_alone: curves().any(|curve| curve.hole_order_of_holes_um.is_some()),
-    };
+    let mut told = Told::default();
+    rows.iter().for_each(|row| told.add(row.summary()));
     let table = CsvTable::new(pointers, told);
     table.header() + &table.lines(rows)
 }

@@ -3,8 +3,10 @@
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, HashSet};
 
+use super::quantity::{Of, QUANTITIES, Quantity};
 use super::row::RowState;
 use super::summary::{Conditions, Summary};
+use crate::warning::GearName;
 
 /// What has to be known of all rows before one of them can be shown: which are best, and what they change. It keeps three
 /// numbers of each row, so that a table of any length is made row by row.
@@ -17,15 +19,37 @@ pub struct Outline {
     told: Told,
 }
 
-/// What a table tells beside what every table does.
+/// Which quantities any row of a table tells, each by its place among all of them.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Told {
-    /// Stresses.
-    pub stress: bool,
-    /// How even the load is along the face.
-    pub faces: bool,
-    /// What holes alone make of their order.
-    pub holes_alone: bool,
+pub struct Told(u64);
+
+const _: () = assert!(QUANTITIES.len() <= u64::BITS as usize);
+
+impl Told {
+    /// Looks at what the next row tells.
+    pub(super) fn add(&mut self, summary: &Summary) {
+        for (i, quantity) in QUANTITIES.iter().enumerate() {
+            let Of::Curve(of) = quantity.of else { continue };
+            // What one gear has of it, both have.
+            let mut curves = summary.curves().iter();
+            let is_told = curves.any(|curve| of(curve, GearName::Driven).is_some());
+            self.0 |= u64::from(is_told) << i;
+        }
+    }
+
+    /// The quantities of curves that a table has columns of.
+    pub(super) fn columns(self) -> impl Iterator<Item = &'static Quantity> {
+        let all = QUANTITIES.iter().enumerate();
+        let is_told = move |i: usize| self.0 & (1 << i) != 0;
+        // Stresses stand together.
+        let mut told = all.clone().filter(|(i, _)| is_told(*i));
+        let stressed = told.any(|(_, quantity)| quantity.is_stress());
+        let shown = all.filter(move |(i, quantity)| {
+            let is_shown = quantity.in_every_table || is_told(*i);
+            matches!(quantity.of, Of::Curve(_)) && (is_shown || stressed && quantity.is_stress())
+        });
+        shown.map(|(_, quantity)| quantity)
+    }
 }
 
 impl Outline {
@@ -43,10 +67,9 @@ impl Outline {
             let group = self.groups.entry(summary.conditions()).or_default();
             group.push((self.rows, objectives));
         }
-        let summary = row.summary.as_ref();
-        self.told.stress |= summary.is_some_and(Summary::has_stress);
-        self.told.faces |= summary.is_some_and(Summary::has_faces);
-        self.told.holes_alone |= summary.is_some_and(Summary::has_holes_alone);
+        if let Some(summary) = &row.summary {
+            self.told.add(summary);
+        }
         self.rows += 1;
     }
 

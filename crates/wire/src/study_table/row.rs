@@ -6,6 +6,7 @@ use serde_json::{Map, Value, json};
 use utoipa::ToSchema;
 use uuid::Uuid;
 
+use super::quantity::{Of, Quantity};
 use super::summary::{CurveSummary, Summary};
 use crate::declare::{Kind as _, utoipa_schema, word};
 use crate::problem::Problem;
@@ -96,6 +97,10 @@ pub struct TableRow {
     /// Why the design has no results; its pointers lead into the design's submission.
     #[schema(value_type = Option<Problem>)]
     pub problem: Option<Value>,
+    /// The study's gear, and what has come of the design.
+    #[serde(skip)]
+    #[schema(ignore)]
+    known: (GearName, Summary),
 }
 
 fn method_once_computed() -> utoipa::openapi::RefOr<utoipa::openapi::Schema> {
@@ -123,11 +128,26 @@ pub struct RowCurve {
     /// K_Hbeta, the load of the heaviest of ten strips of the face over the mean; absent for methods that do not see the face, and at torque 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub face_load_factor: Option<f64>,
+    /// The largest contact pressure over the span, in MPa; absent where it has no limit somewhere.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub peak_contact_pressure_mpa: Option<f64>,
+    /// What a run-up comes to; absent without one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dynamic_transmission_error_um: Option<RowDynamics>,
+}
+
+/// What a run-up of a design comes to at one torque.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, ToSchema)]
+#[schema(title = "Run-up of a row")]
+pub struct RowDynamics {
+    /// The largest peak-to-peak value of the dynamic transmission error over the speeds, whichever way they are run through, in um.
+    pub peak_to_peak: f64,
 }
 
 impl TableRow {
     /// The row of a design, `gear` being the study's and `pareto` whether it is one of the best.
     pub fn new(gear: GearName, state: RowState, pareto: bool) -> Self {
+        let known = (gear, state.summary.clone().unwrap_or_default());
         let summary = state.summary.unwrap_or_default();
         let own = match gear {
             GearName::Driving => summary.driving,
@@ -153,6 +173,33 @@ impl TableRow {
                 .map(|curve| RowCurve::of(gear, curve))
                 .collect(),
             problem: state.problem,
+            known,
+        }
+    }
+
+    /// The study's gear.
+    pub(super) fn gear(&self) -> GearName {
+        self.known.0
+    }
+
+    pub(super) fn summary(&self) -> &Summary {
+        &self.known.1
+    }
+
+    /// The quantity of this name at each of its torques.
+    pub fn numbers(&self, name: &str) -> Vec<Option<f64>> {
+        let quantity = Quantity::of_name(name);
+        let curves = self.summary().curves().iter();
+        curves
+            .map(|curve| self.number(quantity?, Some(curve)))
+            .collect()
+    }
+
+    /// A number of it, of the given one of its curves if it is told of curves.
+    pub(super) fn number(&self, quantity: &Quantity, curve: Option<&CurveSummary>) -> Option<f64> {
+        match quantity.of {
+            Of::Pair(of) => of(self.summary()),
+            Of::Curve(of) => of(curve?, self.gear()),
         }
     }
 }
@@ -165,6 +212,10 @@ impl RowCurve {
             mesh_order_um: curve.mesh_order(),
             output_torque_n_m: curve.output_torque_n_m,
             face_load_factor: curve.face_load_factor,
+            peak_contact_pressure_mpa: curve.peak_contact_pressure_mpa,
+            dynamic_transmission_error_um: curve
+                .dynamic_peak_to_peak_um
+                .map(|peak_to_peak| RowDynamics { peak_to_peak }),
             statistics: curve.statistics,
         }
     }

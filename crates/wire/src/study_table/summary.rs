@@ -200,27 +200,6 @@ impl Summary {
         Some(significant(sum, 10))
     }
 
-    /// Whether it tells stresses.
-    pub(super) fn has_stress(&self) -> bool {
-        let mut statistics = self
-            .curves
-            .iter()
-            .filter_map(|curve| curve.statistics.as_ref());
-        statistics.any(|statistics| statistics.stress.is_some())
-    }
-
-    /// Whether it tells what holes alone make.
-    pub(super) fn has_holes_alone(&self) -> bool {
-        let mut curves = self.curves.iter();
-        curves.any(|curve| !curve.orders_of_holes.is_empty())
-    }
-
-    /// Whether it tells how even the load is along the face.
-    pub(super) fn has_faces(&self) -> bool {
-        let mut factors = self.curves.iter().map(|curve| curve.face_load_factor);
-        factors.any(|factor| factor.is_some())
-    }
-
     /// What designs are compared by, each the less the better; none if a number is missing.
     pub(super) fn objectives(&self) -> Option<[f64; 3]> {
         let mut worst_range = f64::NEG_INFINITY;

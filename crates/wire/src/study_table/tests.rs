@@ -5,6 +5,7 @@ use serde_json::{Map, json};
 use super::*;
 use crate::Code;
 use crate::results::{Results, STUB};
+use crate::testing::and;
 
 /// A results document with two torques, of which the second has no spectrum.
 fn document(mass: f64, ranges: [f64; 2], stiffness: f64) -> Value {
@@ -101,7 +102,11 @@ fn a_summary_keeps_what_the_table_shows_and_survives_the_store() {
     );
 
     let mut results = Results::read(&document.to_string()).unwrap();
-    results.curves[1].statistics.transmission_error_um.mean = f64::NAN;
+    results.curves[1]
+        .statistics
+        .transmission_error_um
+        .whole
+        .mean = f64::NAN;
     assert_eq!(Summary::of(&results).unwrap_err().code, Code::InternalError);
 }
 
@@ -308,6 +313,114 @@ fn what_holes_alone_make_stands_beside_their_order_where_teeth_deviate() {
     assert_eq!(column(&text, "backlash_mm"), ["0.34"; 4]);
     let as_drawn = csv(&table(GearName::Driven, vec![plain]));
     assert!(!as_drawn.contains("hole_order_of_holes_um"));
+}
+
+#[test]
+fn a_row_and_its_line_of_csv_have_every_quantity_under_one_name() {
+    // Numbers that are all different, so that none can stand in the place of another.
+    let gear = |n: f64| json!({ "mass_kg": n, "mass_removed_percent": n + 1.0, "least_ligament_mm": n + 2.0, "polar_inertia_kg_m2": n + 3.0 });
+    let spread = |n: f64| json!({ "mean": n, "rms": n + 1.0, "peak_to_peak": n + 2.0 });
+    let stress = |n: f64| json!({ "root_mpa": n, "root_tension_mpa": n + 1.0, "root_compression_mpa": -n, "hole_mpa": n + 2.0 });
+    let summary = json!({
+        "method": "flexible", "driving": gear(10.0), "driven": gear(20.0), "contact_ratio": 34.0, "backlash_mm": 35.0,
+        "curves": [{
+            "output_torque_n_m": 115.0,
+            "statistics": { "partial": false, "transmission_error_um": and(spread(40.0), &json!({ "tooth_to_tooth": 43.0, "long_wave": 44.0, "short_wave": 45.0, "mesh_harmonics_rms": 46.0 })), "mesh_stiffness_tangent_n_per_m": spread(50.0),
+                "stress": { "driving": stress(60.0), "driven": stress(70.0) } },
+            "peak_contact_pressure_mpa": 80.0, "dynamic_peak_to_peak_um": 81.0, "face_load_factor": 82.0,
+            "orders": { "H_N1": 83.0, "H_N2": 84.0, "H_Z2": 85.0 }, "orders_of_holes": { "H_N1": 86.0, "H_N2": 87.0 },
+        }],
+    });
+    let summary: Summary = serde_json::from_value(summary).expect("as it is kept");
+    for gear in [GearName::Driving, GearName::Driven] {
+        let mut state = state("whole", 0.9, [1.7, 2.5], 2.2e8);
+        state.summary = Some(summary.clone());
+        let rows = table(gear, vec![state]);
+        let (text, row) = (csv(&rows), serde_json::to_value(&rows[0]).expect("JSON"));
+        let mut seen = Vec::new();
+        let mut names = Vec::new();
+        for quantity in QUANTITIES {
+            let (value, at) = match quantity.of {
+                Of::Pair(of) => (of(&summary), &row),
+                Of::Curve(of) => (of(&summary.curves()[0], gear), &row["curves"][0]),
+            };
+            let value = value.unwrap_or_else(|| panic!("{} is not told", quantity.name));
+            if !quantity.is_in_rows_of(gear) {
+                continue;
+            }
+            let name = quantity.column();
+            let pointer = format!("/{}", name.replace('.', "/"));
+            let in_row = at.pointer(&pointer).and_then(Value::as_f64);
+            assert_eq!(in_row, Some(value), "{} at {pointer}", quantity.name);
+            assert_eq!(column(&text, &name), [format!("{value:?}")], "{name}");
+            seen.push(value.to_bits());
+            names.push(name);
+        }
+        let count = seen.len();
+        seen.sort_unstable();
+        seen.dedup();
+        assert_eq!(seen.len(), count, "two quantities tell the same number");
+        // And no column of numbers stands for none of them.
+        let line = text.lines().next().expect("names");
+        let others = line
+            .split(',')
+            .filter(|name| !names.iter().any(|own| own == name));
+        let others: Vec<&str> = others
+            .filter(|name| !name.starts_with("changes."))
+            .collect();
+        assert_eq!(
+            others,
+            [
+                "label",
+                "job",
+                "status",
+                "method",
+                "pareto",
+                "output_torque_n_m",
+                "problem.code",
+                "problem.detail"
+            ]
+        );
+    }
+}
+
+#[test]
+fn every_quantity_says_what_it_is_and_no_two_are_called_alike() {
+    let entries: Vec<QuantityEntry> = quantities().collect();
+    for told in [
+        |entry: &QuantityEntry| entry.name.to_owned(),
+        |entry: &QuantityEntry| entry.title.clone(),
+        |entry: &QuantityEntry| entry.symbol.clone(),
+    ] {
+        let mut all: Vec<String> = entries.iter().map(told).collect();
+        all.sort_unstable();
+        all.dedup();
+        assert_eq!(all.len(), entries.len());
+    }
+    for entry in entries {
+        // A part of the name ends with the unit.
+        let unit = match entry.unit {
+            "1" => "",
+            "%" => "_percent",
+            "N/m" => "_n_per_m",
+            "kg m^2" => "_kg_m2",
+            unit => &format!("_{}", unit.to_lowercase()),
+        };
+        let mut parts = entry.name.split('.');
+        assert!(
+            parts.any(|part| part.ends_with(unit)),
+            "{} in {}",
+            entry.name,
+            entry.unit
+        );
+        let gear = entry.gear.map(GearName::word);
+        let of_gear = entry
+            .name
+            .split('.')
+            .find(|part| ["driving", "driven"].contains(part));
+        assert_eq!(gear, of_gear, "{}", entry.name);
+        assert!(!entry.methods.is_empty(), "{}", entry.name);
+    }
 }
 
 #[test]

@@ -110,6 +110,16 @@ impl Span {
         }
     }
 
+    #[cfg(test)]
+    pub(super) fn new(first: f64, periods: u32, per_period: u32, closes: bool) -> Self {
+        Self {
+            first,
+            periods,
+            per_period,
+            closes,
+        }
+    }
+
     /// The distance of two positions.
     fn step(&self) -> f64 {
         1.0 / f64::from(self.per_period)

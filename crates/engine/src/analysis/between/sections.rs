@@ -81,7 +81,7 @@ struct Event {
 
 impl Sections {
     /// Those of the curve through `samples` over `span`, rising by position.
-    pub(super) fn new(span: Span, samples: &[Sample]) -> Self {
+    pub(in crate::analysis) fn new(span: Span, samples: &[Sample]) -> Self {
         let samples = overlapping(span, samples);
         let events = with_values(&samples);
         let mut sections = Vec::with_capacity(samples.len() + events.len());
@@ -172,6 +172,28 @@ impl Sections {
         });
         let (delta, stiffness) = values.unzip();
         [delta, stiffness]
+    }
+
+    /// The mesh periods of the span.
+    pub(in crate::analysis) fn periods(&self) -> f64 {
+        f64::from(self.span.periods)
+    }
+
+    /// Rising places and δ there, at least so many in a mesh period, with all at which δ is level or has a kink; where it jumps, both sides.
+    pub(in crate::analysis) fn traced(&self, per_period: usize) -> Vec<(f64, f64)> {
+        let mut traced = Vec::new();
+        for Section {
+            from, to, delta, ..
+        } in &self.sections
+        {
+            let parts = ((to - from) * per_period as f64).ceil().max(1.0);
+            let steps = (0..parts as usize).map(|i| from + (to - from) * i as f64 / parts);
+            let mut places: Vec<f64> = steps.chain(delta.level_within(*from, *to)).collect();
+            places.push(*to);
+            places.sort_by(f64::total_cmp);
+            traced.extend(places.into_iter().map(|x| (x, delta.at(x))));
+        }
+        traced
     }
 
     /// By how much what is told of δ may be off because it is known at some positions only.
