@@ -13,8 +13,10 @@ use meshwright_engine::assembly::{Blanks, FaceResolution, MakeAll, Modeling, Pai
 use meshwright_engine::contact::positions::{contacts, contacts_keeping};
 use meshwright_engine::contact::{ContactError, FlankLoad, MeshContact, PositionError, WarmStart};
 use meshwright_engine::gear::{
-    Alignment, GearData, GearPair, Material, Member, Rack, SolidPair, SpurGear, TipEdge, Web,
+    Alignment, GearData, GearPair, Material, Member, Rack, SolidPair, SpurGear,
+    TipEdge, Web,
 };
+use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
 use meshwright_engine::ring::annulus::Imposed;
 use meshwright_engine::run::{Run, Stopped};
@@ -411,6 +413,7 @@ fn large_holes_in_a_soft_gear() -> Case {
         addendum: 3.57e-3,
         dedendum: 4.32e-3,
         tip_radius: 0.6e-3,
+        protuberance: None,
     };
     let polymer = Material {
         youngs_modulus: 3e9,
