@@ -46,6 +46,7 @@ fn helical_gear() -> SolidGear {
             addendum: 2e-3,
             dedendum: 2.5e-3,
             tip_radius: 0.684e-3 * (1.0 - transverse.sin()) / (1.0 - normal.sin()),
+            protuberance: None,
         },
         profile_shift: 0.0,
         thickness_deviation: 0.0,

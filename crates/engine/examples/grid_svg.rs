@@ -68,6 +68,7 @@ fn gear(tooth_count: u32, profile_shift: f64) -> Result<SpurGear, Box<dyn std::e
             addendum: 2e-3,
             dedendum: 2.5e-3,
             tip_radius: 0.76e-3,
+            protuberance: None,
         },
         profile_shift,
         thickness_deviation: 0.0,

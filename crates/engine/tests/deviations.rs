@@ -346,6 +346,7 @@ fn nothing_penetrates_where_the_tip_of_a_gear_that_runs_out_far_carries_everythi
             addendum: 4.241685733765527e-3,
             dedendum: 5.100334700792104e-3,
             tip_radius: 6.525_732_149_401_98e-4,
+            protuberance: None,
         };
         data.profile_shift = shift;
         data.face_width = 1.740_455_730_185_12e-2;

@@ -414,6 +414,7 @@ fn large_holes_in_a_soft_gear() -> Case {
         addendum: 3.57e-3,
         dedendum: 4.32e-3,
         tip_radius: 0.6e-3,
+        protuberance: None,
     };
     let polymer = Material {
         youngs_modulus: 3e9,

@@ -63,6 +63,32 @@ pub enum GearError {
         /// The largest that fits.
         largest: f64,
     },
+    /// The protuberance is less than the stock: grinding would leave a step in the root, and where it ends is not known.
+    #[error("a protuberance of {amount} m is less than the grinding stock of {stock} m")]
+    ProtuberanceBelowStock {
+        /// The protuberance asked for.
+        amount: f64,
+        /// The grinding stock, which is the least that leaves no step.
+        stock: f64,
+    },
+    /// The protuberance leaves no tooth, or no height within the dedendum at which it could begin.
+    #[error("a protuberance of {amount} m is too large; at most {largest} m")]
+    ProtuberanceTooLarge {
+        /// The protuberance asked for.
+        amount: f64,
+        /// The largest that would do.
+        largest: f64,
+    },
+    /// The protuberance begins too near to the hob's tip, or above its reference line.
+    #[error("the protuberance begins at {height} m; it must between {least} m and {largest} m")]
+    ProtuberanceHeight {
+        /// The height asked for, from the hob's tip line.
+        height: f64,
+        /// That of a flank that stands upright, or of the place where the rounding comes out of the hob's flank.
+        least: f64,
+        /// The dedendum.
+        largest: f64,
+    },
     /// The rack cuts so far into the flanks that next to nothing of the tooth is left between them.
     #[error("undercut leaves no tooth at profile shift {profile_shift}; {smallest} avoids it")]
     Undercut {

@@ -37,7 +37,7 @@ impl SpurGear {
     fn profile_moments(&self) -> (f64, f64) {
         let (s_form, s_tip) = (self.form_roll_length(), self.tip_form_roll_length());
         let fillet = self.fillet();
-        let (gamma_0, gamma_1) = fillet.ends();
+        let gamma_1 = fillet.ends().1;
         let (r_a, r_f) = (self.tip_radius(), self.root_radius());
         let tip_angle = self.tip_half_angle();
         let root_end = fillet.point(gamma_1);
@@ -60,7 +60,8 @@ impl SpurGear {
             }
         }
         let step = 1e-5;
-        for (gamma, weight) in gauss_legendre_panels(gamma_0, gamma_1, 8) {
+        let pieces = fillet.smooth_pieces();
+        for (gamma, weight) in pieces.flat_map(|(from, to)| gauss_legendre_panels(from, to, 8)) {
             let p = fillet.point(gamma);
             let d = (fillet.point(gamma + step) - fillet.point(gamma - step)) / (2.0 * step);
             let swept = p.x * d.y - p.y * d.x;

@@ -46,7 +46,7 @@ pub use modification::{
 };
 pub use pair::{DeviationsError, GearPair, GearPairError};
 pub use pair_deviations::{GearDeviations, PairDeviations};
-pub use rack::Rack;
+pub use rack::{Protuberance, Rack};
 pub use solid::{Hand, Helix, Hub, Layer, SolidGear, SolidGearError};
 pub use solid_pair::{Alignment, ContactLine, SolidPair, SolidPairError};
 pub use spur::SpurGear;

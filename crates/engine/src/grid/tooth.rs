@@ -73,7 +73,7 @@ mod tests {
 
     use super::*;
     use crate::gear::spur::tests::paper_gear;
-    use crate::gear::{TipEdge, radial};
+    use crate::gear::{Protuberance, TipEdge, radial};
     use crate::grid::root_curve::RootCurve;
     use crate::grid::tooth_plan::{SIZE_AT_TIP, SIZE_ON_FLANK};
 
@@ -115,6 +115,22 @@ mod tests {
                 data.rack.tip_radius = data.rack.largest_tip_radius();
                 gears.extend(SpurGear::new(data).ok());
             }
+        }
+        // Hobs with a protuberance, whose straight flank cuts the involute or not.
+        for (z, amount, height) in [
+            (20, 0.15e-3, 1.2e-3),
+            (50, 0.15e-3, 1.8e-3),
+            (120, 0.4e-3, 2.2e-3),
+            (120, 0.1e-3, 1.0e-3),
+        ] {
+            let mut data = paper_gear(z);
+            data.rack.dedendum = 2.8e-3;
+            data.rack.protuberance = Some(Protuberance {
+                amount,
+                height,
+                grinding_stock: 0.05e-3,
+            });
+            gears.push(SpurGear::new(data).expect("can be made"));
         }
         gears
             .into_iter()

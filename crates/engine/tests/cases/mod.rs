@@ -25,6 +25,7 @@ pub(crate) fn gear(tooth_count: u32, bore_radius: f64) -> GearData {
             addendum: 2e-3,
             dedendum: 2.5e-3,
             tip_radius: 0.76e-3,
+            protuberance: None,
         },
         profile_shift: 0.0,
         thickness_deviation: 0.0,

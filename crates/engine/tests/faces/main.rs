@@ -135,6 +135,7 @@ impl Drawing {
                     addendum: m,
                     dedendum: 1.25 * m,
                     tip_radius: 0.38 * m,
+                    protuberance: None,
                 },
                 profile_shift: 0.0,
                 thickness_deviation: -0.05 * m,

@@ -324,6 +324,7 @@ impl DrawnPair {
             addendum,
             dedendum: addendum + 0.25 * module,
             tip_radius: module * draw.between(0.05, 0.3),
+            protuberance: None,
         };
         let width = module * draw.between(5.0, 15.0);
         let shifts = if draw.chance(0.3) {

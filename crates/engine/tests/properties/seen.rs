@@ -26,6 +26,7 @@ fn gear(
             addendum: addendum * 1e-3,
             dedendum: dedendum * 1e-3,
             tip_radius: tip_radius * 1e-3,
+            protuberance: None,
         },
         profile_shift,
         thickness_deviation: 0.0,

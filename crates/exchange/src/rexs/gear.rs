@@ -349,6 +349,7 @@ impl<'a> Gear<'a> {
             addendum: module,
             dedendum,
             tip_radius: 0.0,
+            protuberance: None,
         };
         // As a submission has it where it is not said.
         let usual = (0.38 * module).min(rack.largest_tip_radius());

@@ -89,6 +89,17 @@ impl GearDocument {
                 ),
                 Some((to_mm(largest), Side::AtMost)),
             ),
+            GearError::ProtuberanceBelowStock { amount, stock } => {
+                Self::protuberance_below_stock(amount, stock)
+            }
+            GearError::ProtuberanceTooLarge { amount, largest } => {
+                Self::protuberance_too_large(amount, largest)
+            }
+            GearError::ProtuberanceHeight {
+                height,
+                least,
+                largest,
+            } => Self::protuberance_height(height, [least, largest]),
             GearError::Undercut {
                 profile_shift,
                 smallest,

@@ -13,6 +13,7 @@ mod lead;
 mod material;
 mod modification;
 mod proportions;
+mod protuberance;
 mod relief;
 mod repair;
 mod solid;
@@ -33,6 +34,7 @@ pub use lead::{
 pub use material::MaterialDocument;
 pub(super) use modification::MOST_ENTRIES;
 pub use modification::{CrowningDocument, ModificationDocument, SlopeDocument, TableDocument};
+pub use protuberance::ProtuberanceDocument;
 pub use relief::{ReliefEnd, RootReliefDocument, StartDocument, StartWay, TipReliefDocument};
 pub use thickness::{BallsDocument, SpanDocument};
 
@@ -73,6 +75,9 @@ document! {
         rack_tip_radius_mm: f64 = number("Tip rounding of the basic rack", "mm", 0.005, 50.0)
             .or_modules(0.38)
             .fitted(usual_tip_radius),
+        /// The hob that cuts before grinding, where it has a protuberance: the root is as it leaves it.
+        protuberance: Option<ProtuberanceDocument> =
+            absent(nested("Protuberance"), "the rack of the ground flanks cuts the root").left_out(),
         /// How much thicker the teeth are than the rack leaves them, as a transverse arc on the reference circle; negative is thinner and
         /// gives backlash. Half a module to either side, and a space has to be left between fillets. A drawing may say the thickness in another way;
         /// at most one of them is given.
@@ -150,6 +155,7 @@ fn usual_tip_radius(usual: f64, gear: &ObjectReader<'_>) -> f64 {
         addendum: module,
         dedendum,
         tip_radius: usual,
+        protuberance: None,
     };
     let largest = rack.largest_tip_radius();
     if usual <= largest {
@@ -217,6 +223,7 @@ impl GearDocument {
                 addendum: from_mm(self.addendum(helix)),
                 dedendum: from_mm(self.dedendum_mm),
                 tip_radius: from_mm(self.rack_tip_radius_mm),
+                protuberance: self.protuberance.as_ref().map(ProtuberanceDocument::data),
             },
             profile_shift: self.profile_shift,
             face_width: from_mm(self.face_width_mm),

@@ -53,6 +53,7 @@ impl GearDocument {
             );
             check_between(field, value, least * m, most * m, &said)?;
         }
+        self.check_protuberance()?;
         self.check_thickness(helix)?;
         let (edge, broken) = self.tip_edge_field();
         if broken > 0.0 {

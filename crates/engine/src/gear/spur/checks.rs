@@ -20,6 +20,7 @@ impl SpurGear {
                 largest,
             });
         }
+        self.check_protuberance()?;
         let stretch = self.data.rack.module / rack.module;
         let largest = 2.0 * (stretch * rack.half_tip_land());
         // Rounding of a full tip radius leaves a land of nothing, or a little less.
@@ -32,9 +33,42 @@ impl SpurGear {
         Ok(())
     }
 
+    fn check_protuberance(&self) -> Result<(), GearError> {
+        let rack = &self.normal_rack;
+        let Some(hob) = rack.protuberance else {
+            return Ok(());
+        };
+        let (amount, stock) = (hob.amount, hob.grinding_stock);
+        if amount < stock {
+            return Err(GearError::ProtuberanceBelowStock { amount, stock });
+        }
+        let fits = |amount: f64| rack.least_protuberance_height(amount) <= rack.dedendum;
+        if !fits(amount) {
+            return Err(GearError::ProtuberanceTooLarge {
+                amount,
+                largest: bisect(0.0, amount, fits),
+            });
+        }
+        let (least, largest) = (rack.least_protuberance_height(amount), rack.dedendum);
+        if amount > 0.0 && !(least..=largest).contains(&hob.height) {
+            return Err(GearError::ProtuberanceHeight {
+                height: hob.height,
+                least,
+                largest,
+            });
+        }
+        Ok(())
+    }
+
     pub(super) fn check_tooth(&self) -> Result<(), GearError> {
         let rack = &self.data.rack;
         if self.is_undercut && self.neck() < LEAST_TIP_THICKNESS * rack.module {
+            if let Some(hob) = rack.protuberance.filter(|_| self.end_of_rack >= 0.0) {
+                return Err(GearError::ProtuberanceTooLarge {
+                    amount: hob.amount,
+                    largest: hob.grinding_stock,
+                });
+            }
             let (r, sin) = (self.reference_radius(), rack.pressure_angle.sin());
             let smallest = (self.normal_rack.straight_depth() - r * sin * sin) / rack.module;
             return Err(GearError::Undercut {

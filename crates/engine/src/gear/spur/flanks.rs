@@ -97,6 +97,12 @@ impl SpurGear {
     /// circle, and the slope of that by `s`.
     fn undercut_depth_and_slope(&self, s: f64) -> (f64, f64) {
         const STEP: f64 = 1e-6;
+        // Where the rounding of a protuberance has come back to the involute the flank has ended.
+        let s = if self.end_of_rack > 0.0 {
+            s.max(self.end_of_rack)
+        } else {
+            s
+        };
         let (r_b, r) = (self.flank.base_radius(), self.flank.radius(s));
         let gamma = self.fillet.gamma_at(r);
         let polar = |gamma: f64| {
@@ -111,12 +117,13 @@ impl SpurGear {
         (depth.max(0.0), slope)
     }
 
-    /// The roll length down to which the flank is followed as it is cut: the form circle, or below the corner of an undercut flank nearly the base circle.
+    /// The roll length down to which the flank is followed as it is cut: the form circle, or below the corner of an undercut flank nearly the base circle, or
+    /// the end of the rack's flank.
     pub fn lowest_roll_length(&self) -> f64 {
         // A roll length of a tenth is a hundredth of the height above the base circle.
         const NEARLY: f64 = 0.1;
         if self.is_undercut {
-            NEARLY * self.form_roll_length
+            self.end_of_rack.max(NEARLY * self.form_roll_length)
         } else {
             self.form_roll_length
         }

@@ -2,6 +2,8 @@
 
 mod checks;
 mod flanks;
+#[cfg(test)]
+mod hobbed;
 
 use std::f64::consts::PI;
 
@@ -26,7 +28,9 @@ pub struct SpurGear {
     fillet: Trochoid,
     /// Where the flank ends and the fillet begins.
     form_roll_length: f64,
-    /// Whether the rack undercuts the flank, so that the fillet begins at a corner.
+    /// The roll length at which the rack's straight flank ends, negative where it goes past the base circle.
+    end_of_rack: f64,
+    /// Whether the rack, or its protuberance, undercuts the flank, so that the fillet begins at a corner.
     is_undercut: bool,
     broken_edge: Option<BrokenEdge>,
     modifications: Vec<Modification>,
@@ -65,9 +69,9 @@ impl SpurGear {
             data.thickness_deviation,
         );
         let end_of_rack = r * alpha.sin() - (normal_rack.straight_depth() - shift) / alpha.sin();
-        let is_undercut = end_of_rack < 0.0;
+        let is_undercut = end_of_rack < 0.0 || normal_rack.residual_undercut() > 0.0;
         let (fillet, form_roll_length) = if is_undercut {
-            let fillet = whole.cutting(&flank);
+            let fillet = whole.under(&flank, end_of_rack, rack.module, &normal_rack);
             let corner = fillet.point(fillet.ends().0);
             (fillet, flank.roll_length(corner.norm()))
         } else {
@@ -79,6 +83,7 @@ impl SpurGear {
             flank,
             fillet,
             form_roll_length,
+            end_of_rack,
             is_undercut,
             broken_edge: None,
             modifications: Vec::new(),
@@ -262,7 +267,7 @@ impl SpurGear {
         self.fillet
     }
 
-    /// Whether the rack undercuts the flank: it ends in a corner, at which the fillet cuts the involute.
+    /// Whether the rack, or its protuberance, undercuts the flank: it ends in a corner, at which the fillet cuts the involute.
     pub fn is_undercut(&self) -> bool {
         self.is_undercut
     }
@@ -389,6 +394,7 @@ pub(crate) mod tests {
                 addendum: 2e-3,
                 dedendum: 2.5e-3,
                 tip_radius: 0.76e-3,
+                protuberance: None,
             },
             profile_shift: 0.0,
             thickness_deviation: 0.0,

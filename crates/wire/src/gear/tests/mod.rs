@@ -2,6 +2,7 @@
 
 mod blank;
 mod generated;
+mod hob;
 mod published;
 mod teeth;
 
