@@ -2,6 +2,7 @@
 
 mod blank;
 mod generated;
+mod openings;
 mod published;
 mod teeth;
 
