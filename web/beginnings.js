@@ -74,6 +74,11 @@ export class Beginnings {
       const circle = rounded((outer + inner) / 2);
       return { count: 6, circle_radius_mm: circle, radius_mm: rounded(Math.min((web ? 0.4 : 0.27) * (outer - inner), 0.27 * (root - bore), 0.3 * circle), 2), phase_deg: 0 };
     }
+    if (name === "spokes") {
+      const [inner, outer] = web ? [web.inner_radius_mm, web.outer_radius_mm] : [bore, root];
+      const at = (part) => rounded(inner + part * (outer - inner));
+      return { count: 5, width_mm: rounded(Math.max(0.15 * at(0.2), 1.2 * this.limits.least_ligament_modules * module)), fillet_radius_mm: rounded(0.06 * (outer - inner), 2), inner_radius_mm: at(0.2), outer_radius_mm: at(0.75), phase_deg: 0 };
+    }
     const [low, high] = reachOf(holes);
     if (name === "tip_relief") return { amount_um: 10, shape: "linear", start: { radial_length_mm: rounded(0.5 * module, 2) } };
     const hub = Math.min(bore + 0.2 * (root - bore), (bore + low) / 2);

@@ -2,7 +2,7 @@
 
 import { deformedShape } from "./deformed.js";
 import { s, number } from "./dom.js";
-import { HoleHandles } from "./holes.js";
+import { HoleHandles, openingsOf } from "./holes.js";
 
 const TURN = Math.PI / 180;
 const MEMBERS = ["driving", "driven"];
@@ -93,11 +93,12 @@ export class Drawing {
     const [pitch, base] = ["pitch", "base"].map((name) => s("circle", { class: name }));
     const bore = s("circle", { class: "opening" });
     const web = s("path", { class: "web" });
+    const openings = s("path", { class: "opening" });
     const tooth0 = s("circle", { class: "tooth0" });
     const cross = s("path", { class: "cross" });
     const holes = new HoleHandles(member, this.design, (event) => this.#inGear(member, event));
     const marks = s("g", { class: "circles", "aria-hidden": "true" }, pitch, base);
-    const rotor = s("g", { class: `rotor ${member}`, "data-member": member }, body, web, marks, bore, holes.element, cross, tooth0);
+    const rotor = s("g", { class: `rotor ${member}`, "data-member": member }, body, web, marks, bore, openings, holes.element, cross, tooth0);
     const gear = { rotor, holes, outline: null, drawn: null };
     // All points of the profile are painted anew at every move of a hole, so that there are no more than can be seen.
     gear.draw = () => {
@@ -114,6 +115,7 @@ export class Drawing {
       gear.outline = outline;
       if (!same) gear.draw();
       for (const [circle, r] of [[pitch, pitch_mm], [base, base_mm], [bore, outline.bore_radius_mm], [tooth0, (tip - root) / 9]]) circle.setAttribute("r", r);
+      openings.setAttribute("d", openingsOf(outline, this.design.get(`/pair/${member}/blank`)).map((line) => `M${line.map((point) => point.join(" ")).join("L")}Z`).join(""));
       web.setAttribute("d", outline.web ? ringPath(outline.web) : "");
       tooth0.setAttribute("cx", (root + tip) / 2);
       cross.setAttribute("d", `M${-0.12 * root} 0H${0.12 * root}M0 ${-0.12 * root}V${0.12 * root}`);

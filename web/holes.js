@@ -4,6 +4,8 @@ import { at } from "./design.js";
 import { s, number } from "./dom.js";
 
 const TURN = Math.PI / 180;
+/** Corners of the outline of a round hole. */
+const ROUND_OF_HOLE = 20;
 const round = (value, step) => Number((Math.round(value / step) * step).toFixed(6));
 
 export class HoleHandles {
@@ -147,3 +149,27 @@ function slotPath({ circle_radius_mm: R, slot }, angle) {
   const large = 2 * half > Math.PI ? 1 : 0;
   return `M${at(R + r, -half)}A${R + r} ${R + r} 0 ${large} 1 ${at(R + r, half)}A${r} ${r} 0 0 1 ${at(R - r, half)}A${R - r} ${R - r} 0 ${large} 0 ${at(R - r, -half)}A${r} ${r} 0 0 1 ${at(R + r, -half)}Z`;
 }
+
+/** The outlines of the openings of a blank that are no holes of its patterns: the service tells them behind those, from spokes and from an outline. */
+export function openingsOf({ holes = [] }, blank) {
+  const patterns = blank?.holes ? [blank.holes].flat() : [];
+  const known = patterns.reduce((count, pattern) => count + anglesOf(pattern).length, 0);
+  return holes.slice(known).map(({ at_mm: [x, y], radius_mm: r, slot_angle_deg: angle, edge_mm: edge }) => {
+    const slot = angle && { width_mm: 2 * r, angle_deg: angle };
+    return edge ?? lineOf({ circle_radius_mm: Math.hypot(x, y), radius_mm: r, slot }, Math.atan2(y, x));
+  });
+}
+
+/** The outline of a hole of a pattern at an angle. */
+export function lineOf({ circle_radius_mm: R, radius_mm, slot }, angle) {
+  const [x0, y0] = [R * Math.cos(angle), R * Math.sin(angle)];
+  if (!slot) return circle(radius_mm, ROUND_OF_HOLE).map(([x, y]) => [x + x0, y + y0]);
+  const [r, half] = [slot.width_mm / 2, (slot.angle_deg * TURN) / 2];
+  const along = Math.max(2, Math.ceil(half / 0.08));
+  const arc = (radius, from, to) => Array.from({ length: along + 1 }, (_, i) => from + ((to - from) * i) / along).map((turned) => [radius * Math.cos(turned), radius * Math.sin(turned)]);
+  const end = (at, from) => Array.from({ length: 7 }, (_, i) => from + (Math.PI * (i + 1)) / 8).map((turned) => [R * Math.cos(at) + r * Math.cos(turned), R * Math.sin(at) + r * Math.sin(turned)]);
+  return [...arc(R + r, angle - half, angle + half), ...end(angle + half, angle + half), ...arc(R - r, angle + half, angle - half), ...end(angle - half, angle - half + Math.PI)];
+}
+
+/** A circle as a closed line. */
+export const circle = (radius, corners) => Array.from({ length: corners }, (_, i) => [radius * Math.cos((2 * Math.PI * i) / corners), radius * Math.sin((2 * Math.PI * i) / corners)]);

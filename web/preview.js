@@ -228,9 +228,11 @@ export class Follower {
     });
   }
 
-  /** Holes are drawn from the design itself: an outline is asked for where something else has changed. */
+  /** Holes are drawn from the design itself: an outline is asked for where something else has changed, and at each change of a blank whose other openings it tells behind the holes. */
   async #outline(submission) {
-    const shape = JSON.stringify(submission.pair, (name, value) => (name === "holes" ? undefined : value));
+    const shape = JSON.stringify(submission.pair, function (name, value) {
+      return name === "holes" && !this.spokes && !this.outline ? undefined : value;
+    });
     if (shape === this.#drawn) return;
     try {
       this.onOutline(await post("v1/outline", submission), submission);

@@ -46,7 +46,8 @@ export function kindOf(api, given) {
   if (types[0] === "object" && schema.properties) return { kind: "object", schema, optional };
   if (types[0] === "array") {
     const items = kindOf(api, schema.items ?? {});
-    return { kind: items.kind === "number" ? "numbers" : items.kind === "text" ? "texts" : "list", schema, items, optional };
+    // Lists of lists are typed as they are.
+    return { kind: { number: "numbers", text: "texts", list: "json" }[items.kind] ?? "list", schema, items, optional };
   }
   if (types[0] === "number" || types[0] === "integer") return { kind: "number", whole: types[0] === "integer", schema, optional };
   if (types[0] === "boolean") return { kind: "flag", schema, optional };

@@ -1,7 +1,7 @@
 // The surface of a gear in space: teeth along their helix, end faces, web, hub, holes. Points are in the frame of the gear, in mm; z is that of its face.
 
 import { thinned } from "./drawing.js";
-import { anglesOf } from "./holes.js";
+import { anglesOf, circle, lineOf, openingsOf } from "./holes.js";
 
 const TURN = Math.PI / 180;
 /** What a facet may lie beside the flank, in modules. */
@@ -9,9 +9,8 @@ const FINENESS = 0.008;
 /** By so much a tooth turns in one piece of its length at most, in radians. */
 const PIECE = 0.05;
 const MOST_PIECES = 16;
-/** Corners of a large circle, and of the round of a hole. */
+/** Corners of a large circle. */
 const ROUND = 72;
-const ROUND_OF_HOLE = 20;
 
 /** Points and triangles as they are gathered. */
 class Surface {
@@ -48,24 +47,10 @@ class Surface {
   }
 }
 
-const circle = (radius, corners = ROUND) => Array.from({ length: corners }, (_, i) => [radius * Math.cos((2 * Math.PI * i) / corners), radius * Math.sin((2 * Math.PI * i) / corners)]);
-
 /** The outlines of the holes of a blank. */
 export function holesOf(blank) {
   const patterns = blank.holes ? [blank.holes].flat() : [];
-  return patterns.flatMap((pattern) => anglesOf(pattern).map((angle) => (pattern.slot ? slotLine(pattern, angle) : holeLine(pattern, angle))));
-}
-
-function holeLine({ circle_radius_mm: R, radius_mm: r }, angle) {
-  return circle(r, ROUND_OF_HOLE).map(([x, y]) => [x + R * Math.cos(angle), y + R * Math.sin(angle)]);
-}
-
-function slotLine({ circle_radius_mm: R, slot }, angle) {
-  const [r, half] = [slot.width_mm / 2, (slot.angle_deg * TURN) / 2];
-  const along = Math.max(2, Math.ceil(half / 0.08));
-  const arc = (radius, from, to) => Array.from({ length: along + 1 }, (_, i) => from + ((to - from) * i) / along).map((turned) => [radius * Math.cos(turned), radius * Math.sin(turned)]);
-  const end = (at, from) => Array.from({ length: 7 }, (_, i) => from + (Math.PI * (i + 1)) / 8).map((turned) => [R * Math.cos(at) + r * Math.cos(turned), R * Math.sin(at) + r * Math.sin(turned)]);
-  return [...arc(R + r, angle - half, angle + half), ...end(angle + half, angle + half), ...arc(R - r, angle + half, angle - half), ...end(angle - half, angle - half + Math.PI)];
+  return patterns.flatMap((pattern) => anglesOf(pattern).map((angle) => lineOf(pattern, angle)));
 }
 
 /**
@@ -119,7 +104,7 @@ export function surfaceOf(outline, gear, twist, mid) {
   const module = gear.module_mm;
   const tooth = thinned(outline.tooth_mm, FINENESS * module);
   const count = outline.tooth_count;
-  const holes = holesOf(blank);
+  const holes = [...holesOf(blank), ...openingsOf(outline, blank)];
   const reach = Math.max(0, ...holes.flat().map(([x, y]) => Math.hypot(x, y)));
   const rim = Math.max(outline.circles.root_mm - 0.25 * module, Math.min(reach + 0.01 * module, 0.999 * outline.circles.root_mm));
   const sections = Math.min(MOST_PIECES, Math.max(1, Math.ceil(Math.abs(twist) * face / PIECE)));
@@ -155,14 +140,14 @@ export function surfaceOf(outline, gear, twist, mid) {
     });
     // Corners of the last ring lie beyond the rim: it has other corners, and no gap stays between them.
     const beyond = i + 1 < rings.length ? 1 : 1 / Math.cos(Math.PI / ROUND);
-    for (const [span, corners] of pieces([circle(radii[0]), circle(beyond * radii[1])], inside)) for (const [z, up] of [[heights[0], false], [heights[1], true]]) surface.trapezoid(span, corners, z, up);
+    for (const [span, corners] of pieces([circle(radii[0], ROUND), circle(beyond * radii[1], ROUND)], inside)) for (const [z, up] of [[heights[0], false], [heights[1], true]]) surface.trapezoid(span, corners, z, up);
     for (const hole of inside) surface.wall(hole, heights, true);
     // Where a ring is wider than its neighbor its wall is seen.
     const before = rings[i - 1]?.heights;
     if (!before) {
-      if (radii[0] > 0) surface.wall(circle(radii[0]), heights, true);
+      if (radii[0] > 0) surface.wall(circle(radii[0], ROUND), heights, true);
     } else {
-      const wall = (from, to, inward) => to - from > 1e-6 && surface.wall(circle(radii[0]), [from, to], inward);
+      const wall = (from, to, inward) => to - from > 1e-6 && surface.wall(circle(radii[0], ROUND), [from, to], inward);
       wall(heights[0], Math.min(before[0], heights[1]), true);
       wall(Math.max(before[1], heights[0]), heights[1], true);
       wall(before[0], Math.min(heights[0], before[1]), false);

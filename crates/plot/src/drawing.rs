@@ -2,7 +2,9 @@
 
 use std::f64::consts::PI;
 
-use meshwright_engine::gear::{GearPair, Hole, HoleShape, Member, SpurGear, Vector, radial};
+use meshwright_engine::gear::{
+    GearPair, Hole, HoleShape, Member, SpurGear, Vector, radial, tangential,
+};
 
 use super::svg::{Paint, Place, Svg};
 use super::{Color, INK, Look, WHITE};
@@ -142,11 +144,18 @@ pub fn openings(gear: &SpurGear, place: Placement) -> Vec<Shape> {
     shapes
 }
 
-/// A hole: a disk, or a slot along its circle with round ends.
+/// A hole: a disk, a slot along its circle with round ends, or what its contour encloses.
 fn opening(hole: &Hole, place: Placement) -> Shape {
     let at = |angle: f64| place.center + hole.circle_radius * radial(place.angle + angle);
     match hole.shape {
         HoleShape::Round { radius } => Shape::Disk(at(hole.angle), radius, WHITE),
+        HoleShape::Contour(_) => {
+            // A two-thousandth of the radius is no longer seen.
+            let edge = hole.edge(5e-4 * hole.circle_radius).into_iter();
+            let (e_x, e_y) = (radial(place.angle), tangential(place.angle));
+            let placed = edge.map(|p| place.center + p.x * e_x + p.y * e_y);
+            Shape::Region(placed.collect(), WHITE)
+        }
         HoleShape::Slot { width, angle } => {
             const POINTS: i32 = 24;
             let half = 0.5 * width;

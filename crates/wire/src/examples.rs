@@ -45,6 +45,7 @@ const EXAMPLES: &[Example] = examples! {
     "unequal-holes" true "Six holes of two sizes at unequal angles: their order spreads over those of a revolution."
     "unequal-spacing" true "Eight equal holes at unequal angles: what an even ring puts into H_8 spreads over the orders beside it."
     "slots" true "Five kidneys along a circle."
+    "spokes" true "A driven gear on five straight spokes of constant width."
     "stress" true "Design 8R34 with the largest stresses at its roots and at the edges of its holes."
     "helical-pair" true "A helical pair in three dimensions: a crowned pinion on a shaft askew, and a wheel whose web stands at one side. The load along the face and its factor K_Hbeta."
     "run-up" true "Test case 2 run up and down to 20,000 1/min: the force table, the motion of the gears over speed, and its resonances."
@@ -116,6 +117,7 @@ mod tests {
             ("unequal-holes", driven, "/blank/holes/1/at_deg/1"),
             ("unequal-spacing", driven, "/blank/holes/at_deg/1"),
             ("slots", driven, "/blank/holes/slot/width_mm"),
+            ("spokes", driven, "/blank/spokes/fillet_radius_mm"),
             (
                 "interface-radii",
                 "",

@@ -64,18 +64,24 @@ answer! {
 }
 
 answer! {
-    /// A hole: round, or a slot along its circle with round ends.
+    /// A hole: round, a slot along its circle with round ends, or an opening drawn by its edge.
     pub struct HoleOutline as HoleOutline, "Hole outline" of (hole: &Hole) {
-        /// Its center, in mm.
+        /// Its center, in mm: of an opening drawn by its edge, its center of mass.
         #[schema(value_type = Vec<f64>, min_items = 2, max_items = 2)]
         at_mm: Point = point(hole.circle_radius * radial(hole.angle)),
-        /// The radius of a round hole, or of the ends of a slot, in mm.
+        /// The radius of a round hole, or of the ends of a slot, in mm; of an opening drawn by its edge, about half its extent along the radius.
         radius_mm: f64 = to_mm(hole.half_width()),
         /// The angle between the centers of the ends of a slot, about the center of the gear, in degrees; absent for a round hole.
         slot_angle_deg?: f64 = match hole.shape {
-            HoleShape::Round { .. } => None,
+            HoleShape::Round { .. } | HoleShape::Contour(_) => None,
             HoleShape::Slot { angle, .. } => Some(angle.to_degrees()),
         },
+        /// The edge of an opening between spokes, or of a loop of the outline, counter-clockwise, in mm: no point of it is more than a micrometer from the line
+        /// through these. Absent for round holes and slots.
+        #[schema(value_type = Option<Vec<Vec<f64>>>)]
+        edge_mm?: Vec<Point> = hole
+            .contour()
+            .map(|_| hole.edge(TOLERANCE).into_iter().map(point).collect()),
     }
 }
 

@@ -32,7 +32,8 @@ pub mod tip;
 
 pub use accuracy::{Inspection, Normals, Passed, Tolerances};
 pub use blank::{
-    BlankRegion, Core, Hole, HolePattern, HoleShape, Ligament, Moments, Symmetry, Web,
+    BlankRegion, Contour, ContourFault, Core, Drawn, Hole, HolePattern, HoleShape, Ligament,
+    Moments, Side, Spokes, SpokesFault, Symmetry, Web,
 };
 pub use data::{DeviationList, GearData, GearError};
 pub use deviation::{Eccentricity, ToothDeviations};

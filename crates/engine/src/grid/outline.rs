@@ -2,18 +2,26 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::gear::{Hole, Vector, radial};
+use crate::gear::{Contour, Hole, Side, Vector, radial, tangential};
 
 /// A closed curve, counter-clockwise.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) enum Outline {
     /// A circle about the axis, from the angle −π.
     Circle {
         /// Its radius.
         radius: f64,
     },
-    /// The edge of a hole, from its outermost point at its own angle.
+    /// The edge of a hole, from its outermost point at its own angle, or from the first corner of its contour.
     Edge(Hole),
+    /// The edge of a sector of a ring about the x axis, from its clockwise corner on the bore: outward, along the outer circle, inward, and back along
+    /// the bore.
+    Sector {
+        /// The inner and the outer radius.
+        radii: [f64; 2],
+        /// Half its angle.
+        half: f64,
+    },
 }
 
 impl Outline {
@@ -21,7 +29,59 @@ impl Outline {
     pub(super) fn length(&self) -> f64 {
         match self {
             Self::Circle { radius } => TAU * radius,
-            Self::Edge(hole) => 2.0 * hole.circle_radius * hole.span() + TAU * hole.half_width(),
+            Self::Edge(hole) => match hole.contour() {
+                Some(contour) => contour.length(),
+                None => 2.0 * hole.circle_radius * hole.span() + TAU * hole.half_width(),
+            },
+            Self::Sector { radii, half } => {
+                sector_corners(*radii, *half)[2] + 2.0 * half * radii[0]
+            }
+        }
+    }
+
+    /// The lengths at which its sides begin, and whether they meet the ones before at an angle; none where it has no sides.
+    pub(super) fn corners(&self) -> Vec<(f64, bool)> {
+        match self {
+            Self::Circle { .. } => Vec::new(),
+            Self::Edge(hole) => hole.contour().map_or_else(Vec::new, Contour::corners),
+            Self::Sector { radii, half } => {
+                let [side, arc, left] = sector_corners(*radii, *half);
+                [0.0, side, arc, left].map(|length| (length, true)).into()
+            }
+        }
+    }
+
+    /// Its roundings, by the elements that there would be `around` a whole circle, and its pieces between two corners, by their length: each with
+    /// the largest element that it asks for.
+    pub(super) fn details(&self, around: f64) -> Vec<(Side, f64)> {
+        let Self::Edge(hole) = self else {
+            return Vec::new();
+        };
+        if hole.contour().is_none() {
+            return Vec::new();
+        }
+        let (sides, corners) = (hole.sides(), self.corners());
+        let is_corner = |i: usize| corners[i % corners.len()].1;
+        let sides = sides.into_iter().enumerate();
+        sides
+            .filter_map(|(i, side)| {
+                let rounding =
+                    (side.turn().abs() >= LEAST_ROUNDING).then(|| TAU * side.radius() / around);
+                let alone = (is_corner(i) && is_corner(i + 1)).then(|| side.length());
+                let size = rounding.into_iter().chain(alone).reduce(f64::min)?;
+                Some((side, size))
+            })
+            .collect()
+    }
+
+    /// The distance from `point`, in the material, to a part of the curve that faces the nearest one across the material; infinite where there is
+    /// none.
+    pub(super) fn distance_across(&self, point: Vector) -> f64 {
+        match self {
+            Self::Circle { .. } | Self::Sector { .. } => f64::INFINITY,
+            Self::Edge(hole) => hole.contour().map_or(f64::INFINITY, |contour| {
+                contour.distance_across(hole.own(point))
+            }),
         }
     }
 
@@ -30,6 +90,20 @@ impl Outline {
         match self {
             Self::Circle { radius } => *radius * radial(length / radius - PI),
             Self::Edge(hole) => edge_point(hole, length),
+            Self::Sector { radii, half } => {
+                let [inner, outer] = *radii;
+                let [side, arc, left] = sector_corners(*radii, *half);
+                if length <= side {
+                    (inner + length) * radial(-half)
+                } else if length <= arc {
+                    outer * radial((length - side) / outer - half)
+                } else if length <= left {
+                    // As far in as the right side is out, to the digit.
+                    (inner + (left - length)) * radial(*half)
+                } else {
+                    inner * radial(half - (length - left) / inner)
+                }
+            }
         }
     }
 
@@ -38,13 +112,28 @@ impl Outline {
         match self {
             Self::Circle { radius } => point.norm() - radius,
             Self::Edge(hole) => hole.distance_to(point),
+            Self::Sector { radii, half } => {
+                let [inner, outer] = radii.map(|radius| point.norm() - radius);
+                let off = point.y.atan2(point.x).abs() - half;
+                let beside = point.norm() * off.clamp(-PI / 2.0, PI / 2.0).sin();
+                outer.max(-inner).max(beside)
+            }
         }
     }
+}
+
+/// The lengths at which the edge of a sector turns, but for its beginning.
+fn sector_corners([inner, outer]: [f64; 2], half: f64) -> [f64; 3] {
+    let side = outer - inner;
+    let arc = side + 2.0 * half * outer;
+    [side, arc, arc + side]
 }
 
 /// Below this sine of the angle between them, two curves count as touching rather than crossing: an element between them
 /// would be too sharp.
 const LEAST_CROSSING: f64 = 0.6;
+/// An arc that turns less, in radians, is a piece of a smooth curve and no rounding: 15 degrees.
+const LEAST_ROUNDING: f64 = PI / 12.0;
 
 impl Outline {
     /// Where the circle of `radius` about the axis crosses the curve, by the length along the curve; a circle that all but
@@ -53,6 +142,11 @@ impl Outline {
         let Self::Edge(hole) = self else {
             return Vec::new();
         };
+        if let Some(contour) = hole.contour() {
+            let crossings = contour.crossings(radius).into_iter();
+            let square = crossings.filter(|(_, sine)| *sine >= LEAST_CROSSING);
+            return square.map(|(length, _)| length).collect();
+        }
         let (r, w) = (hole.circle_radius, hole.half_width());
         // On either end, seen from its center, off the radius through it; circles about the axis cross no other part.
         let cos = (radius * radius - r * r - w * w) / (2.0 * r * w);
@@ -71,6 +165,10 @@ impl Outline {
 
 /// Half the outer arc, the counter-clockwise end, the inner arc, the clockwise end, and the other half of the outer arc.
 fn edge_point(hole: &Hole, length: f64) -> Vector {
+    if let Some(contour) = hole.contour() {
+        let own = contour.point(length);
+        return own.x * radial(hole.angle) + own.y * tangential(hole.angle);
+    }
     let (r, w, half) = (hole.circle_radius, hole.half_width(), hole.span() / 2.0);
     let [clockwise, counter_clockwise] = hole.ends();
     let (outer, end, inner) = ((r + w) * half, PI * w, 2.0 * (r - w) * half);

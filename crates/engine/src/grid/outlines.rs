@@ -43,6 +43,44 @@ impl Outlines {
         outlines
     }
 
+    /// Divides the edge of a `sector`, with equal radii on both sides, and the boundaries within.
+    pub(super) fn of_sector(sector: &Outline, within: &[Boundary], sizes: &Sizes) -> Self {
+        let mut outlines = Self {
+            points: Vec::new(),
+            chains: Vec::new(),
+        };
+        let corners: Vec<f64> = sector.corners().into_iter().map(|(s, _)| s).collect();
+        let own_size = within
+            .iter()
+            .map(Boundary::least_size)
+            .fold(f64::INFINITY, f64::min);
+        let mut lengths = sizes.divide(sector, own_size, LEAST_AROUND, &corners[1..]);
+        // The left side is the right one backwards.
+        let right = lengths
+            .iter()
+            .copied()
+            .filter(|s| *s > 0.0 && *s < corners[1]);
+        let left: Vec<f64> = right.map(|s| corners[3] - s).collect();
+        lengths.retain(|s| *s <= corners[2] || *s >= corners[3]);
+        lengths.extend(left);
+        lengths.sort_by(f64::total_cmp);
+        let nodes = lengths
+            .iter()
+            .map(|s| outlines.node(sector.point(*s)))
+            .collect();
+        outlines.chains.push(Chain {
+            outline: sector.clone(),
+            nodes,
+            lengths,
+            closed: true,
+            bounds: true,
+        });
+        for boundary in within {
+            outlines.add_boundary(boundary, &[], &mut [], sizes);
+        }
+        outlines
+    }
+
     /// The points, and the chains that stand on them: boundaries first.
     pub(super) fn finish(self) -> (Vec<Vector>, Vec<Chain>) {
         (self.points, self.chains)
@@ -60,29 +98,46 @@ impl Outlines {
         meetings: &mut [Vec<Meeting>],
         sizes: &Sizes,
     ) {
-        let outline = boundary.outline;
-        let mut crossings: Vec<(f64, usize)> = Vec::new();
+        let outline = &boundary.outline;
+        let mut crossings: Vec<(f64, Option<usize>)> = Vec::new();
         for (edge, radius) in web_edges.iter().enumerate() {
-            crossings.extend(outline.crossings(*radius).into_iter().map(|s| (s, edge)));
+            crossings.extend(
+                outline
+                    .crossings(*radius)
+                    .into_iter()
+                    .map(|s| (s, Some(edge))),
+            );
         }
+        // Where sides join smoothly a point is worth having, where they meet at an angle there has to be one.
+        let (sharp, smooth): (Vec<_>, Vec<_>) = outline
+            .corners()
+            .into_iter()
+            .partition(|(_, is_sharp)| *is_sharp);
+        crossings.extend(smooth.into_iter().map(|(s, _)| (s, None)));
+        let sharp: Vec<f64> = sharp.into_iter().map(|(s, _)| s).collect();
+        let apart = |a: f64, b: f64| (a - b).abs() > NEAREST_CROSSINGS * sizes.at(outline.point(a));
+        crossings.retain(|(s, _)| sharp.iter().all(|corner| apart(*s, *corner)));
+        crossings.extend(sharp.iter().filter(|s| **s > 0.0).map(|s| (*s, None)));
         crossings.sort_by(|a, b| a.0.total_cmp(&b.0));
         // Also not too near the start, which is a point of its own.
         let least = |s: f64| NEAREST_CROSSINGS * sizes.at(outline.point(s));
         let mut last = 0.0;
         crossings.retain(|&(s, _)| {
-            let apart = s - last > least(s) && outline.length() - s > least(s);
+            let apart =
+                sharp.contains(&s) || s - last > least(s) && outline.length() - s > least(s);
             if apart {
                 last = s;
             }
             apart
         });
         let through: Vec<f64> = crossings.iter().map(|(s, _)| *s).collect();
-        let lengths = sizes.divide(&outline, boundary.size, LEAST_AROUND, &through);
+        let lengths = sizes.divide(outline, boundary.least_size(), LEAST_AROUND, &through);
         let nodes: Vec<u32> = lengths
             .iter()
             .map(|s| self.node(outline.point(*s)))
             .collect();
         for (s, edge) in crossings {
+            let Some(edge) = edge else { continue };
             if let Some(place) = lengths.iter().position(|length| *length == s) {
                 let point = outline.point(s);
                 let around = web_edges[edge] * (point.y.atan2(point.x) + PI);
@@ -90,7 +145,7 @@ impl Outlines {
             }
         }
         self.chains.push(Chain {
-            outline,
+            outline: outline.clone(),
             nodes,
             lengths,
             closed: true,
@@ -130,7 +185,7 @@ impl Outlines {
         let chain = |links: std::ops::Range<usize>, closed: bool| {
             let last = if closed { links.end } else { links.end + 1 };
             Chain {
-                outline,
+                outline: outline.clone(),
                 nodes: (links.start..last)
                     .filter_map(|i| nodes[i % count])
                     .collect(),

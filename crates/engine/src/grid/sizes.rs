@@ -1,7 +1,7 @@
 //! How large the triangles of a whole blank are, place by place.
 
 use super::outline::Outline;
-use crate::gear::Vector;
+use crate::gear::{Side, Vector};
 
 /// The growth of sizes away from a boundary, per length: that of the structured blank.
 const GROWTH: f64 = 0.35;
@@ -21,7 +21,7 @@ const SAMPLES: f64 = 8.0;
 const SPARE: f64 = 1e-3;
 
 /// A boundary and the size of the triangles along it.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct Boundary {
     /// The curve.
     pub(super) outline: Outline,
@@ -29,6 +29,8 @@ pub(super) struct Boundary {
     pub(super) size: f64,
     /// Whether it goes around the material, or bounds an opening within.
     pub(super) around: bool,
+    /// Parts of the curve that ask for a smaller size, and which.
+    pub(super) details: Vec<(Side, f64)>,
 }
 
 impl Boundary {
@@ -36,6 +38,19 @@ impl Boundary {
     fn clearance(&self, point: Vector) -> f64 {
         let distance = self.outline.distance(point);
         if self.around { -distance } else { distance }
+    }
+
+    /// The size that it asks for at `point`, so far off it.
+    fn asks(&self, point: Vector, distance: f64) -> f64 {
+        let details = self.details.iter();
+        let sizes = details.map(|(side, size)| size + GROWTH * side.distance_to(point));
+        sizes.fold(self.size + GROWTH * distance, f64::min)
+    }
+
+    /// The least size that it asks for.
+    pub(super) fn least_size(&self) -> f64 {
+        let sizes = self.details.iter().map(|(_, size)| *size);
+        sizes.fold(self.size, f64::min)
     }
 }
 
@@ -46,6 +61,8 @@ pub(super) struct Sizes {
     pub(super) boundaries: Vec<Boundary>,
     /// What all sizes are multiplied by.
     pub(super) scale: f64,
+    /// The edge of the sector that is divided, if it is no whole: a side of it is no boundary of the material.
+    pub(super) within: Option<Outline>,
 }
 
 impl Sizes {
@@ -55,18 +72,26 @@ impl Sizes {
         let (mut nearest, mut second) = (f64::INFINITY, f64::INFINITY);
         for boundary in &self.boundaries {
             let distance = boundary.clearance(point).abs();
-            size = size.min(boundary.size + GROWTH * distance);
+            size = size.min(boundary.asks(point, distance));
             second = second.min(distance.max(nearest));
-            nearest = nearest.min(distance);
+            if distance < nearest {
+                nearest = distance;
+                second = second.min(boundary.outline.distance_across(point));
+            }
         }
         (self.scale * size.min(OF_LIGAMENT * (nearest + second))).max(LEAST)
     }
 
     /// Whether `point` stands within the material by `margin`.
     pub(super) fn is_inside(&self, point: Vector, margin: f64) -> bool {
-        self.boundaries
-            .iter()
-            .all(|boundary| boundary.clearance(point) >= margin)
+        let within = self.within.iter();
+        within
+            .map(|edge| -edge.distance(point))
+            .all(|clearance| clearance >= margin)
+            && self
+                .boundaries
+                .iter()
+                .all(|boundary| boundary.clearance(point) >= margin)
     }
 
     /// The lengths along `outline` that divide it into elements of these sizes, from 0 up to but without its whole length:
@@ -122,10 +147,12 @@ mod tests {
             outline: Outline::Circle { radius },
             size,
             around,
+            details: Vec::new(),
         };
         Sizes {
             boundaries: vec![boundary(1.0, 0.06, true), boundary(0.3, 0.1, false)],
             scale: 1.0,
+            within: None,
         }
     }
 

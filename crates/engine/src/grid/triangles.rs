@@ -2,6 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
+use spade::handles::FixedVertexHandle;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
 use super::outline::Outline;
@@ -144,14 +145,13 @@ impl TriangleNet {
             }
         }
         let mut seen = vec![false; delaunay.num_all_faces()];
-        // The outermost chain is convex: whatever touches the hull is material.
-        let mut next: Vec<_> = delaunay
-            .convex_hull()
-            .filter_map(|edge| {
-                edge.rev()
-                    .face()
-                    .as_inner()
-                    .or_else(|| edge.face().as_inner())
+        // The outermost chain is counter-clockwise: what lies on its left is material.
+        let mut next: Vec<_> = self.chains[0]
+            .links()
+            .filter_map(|(a, b, _)| {
+                let [a, b] = [a, b].map(|i| FixedVertexHandle::from_index(i as usize));
+                let edge = delaunay.get_edge_from_neighbors(a, b)?;
+                edge.face().as_inner()
             })
             .collect();
         while let Some(face) = next.pop() {

@@ -40,12 +40,42 @@ impl BlankGrid {
         elements_per_turn: f64,
         level: GridLevel,
     ) -> Result<Self, GridError> {
+        let plate = (face_width, interface_radius);
+        Self::triangles(region, plate, elements_per_turn, 1, level)
+    }
+
+    /// Divides one of `sector_count` equal sectors of `region` into triangles, that about the x axis, which has hole 0 inside of it and no other. The web
+    /// has to leave the sector even.
+    ///
+    /// # Errors
+    ///
+    /// As [`BlankGrid::whole`].
+    pub(super) fn sector_of_triangles(
+        region: &BlankRegion,
+        plate: (f64, f64),
+        elements_per_turn: f64,
+        sector_count: u32,
+        level: GridLevel,
+    ) -> Result<Self, GridError> {
+        Self::triangles(region, plate, elements_per_turn, sector_count, level)
+    }
+
+    fn triangles(
+        region: &BlankRegion,
+        (face_width, interface_radius): (f64, f64),
+        elements_per_turn: f64,
+        sector_count: u32,
+        level: GridLevel,
+    ) -> Result<Self, GridError> {
         check(region, interface_radius)?;
         let region = &BlankRegion {
             web: region.web_in(face_width),
             ..region.clone()
         };
-        let plan = Plan::new(region, interface_radius, elements_per_turn);
+        let plan = Plan {
+            sector_count,
+            ..Plan::new(region, interface_radius, elements_per_turn)
+        };
         let part = region.web.map_or(1.0, |web| web.thickness / face_width);
         let mut last = GridError::Distorted {
             smallest_jacobian: f64::NAN,
@@ -110,6 +140,8 @@ fn check(region: &BlankRegion, interface_radius: f64) -> Result<(), GridError> {
 struct Plan {
     region: BlankRegion,
     boundaries: Vec<Boundary>,
+    /// The number of equal sectors of which one is divided.
+    sector_count: u32,
 }
 
 impl Plan {
@@ -125,7 +157,7 @@ impl Plan {
                 .map(|hole| Hole {
                     circle_radius: length(hole.circle_radius),
                     angle: short(hole.angle),
-                    shape: match hole.shape.simplest() {
+                    shape: match hole.shape.clone().simplest() {
                         HoleShape::Round { radius } => HoleShape::Round {
                             radius: length(radius),
                         },
@@ -133,6 +165,9 @@ impl Plan {
                             width: length(width),
                             angle: short(angle),
                         },
+                        HoleShape::Contour(contour) => {
+                            HoleShape::Contour(contour.scaled(1.0 / interface_radius, short))
+                        }
                     },
                 })
                 .collect(),
@@ -144,26 +179,36 @@ impl Plan {
         };
         let circle = |radius| Outline::Circle { radius };
         let around = |half_width: f64| std::f64::consts::TAU * half_width / AROUND_HOLE;
-        let interface = circle(1.0);
+        let (interface, turn) = (circle(1.0), std::f64::consts::TAU);
         let coarse = GridLevel::Coarse.count(elements_per_turn).max(LEAST_AROUND);
         let mut boundaries = vec![
             Boundary {
                 outline: interface,
-                size: interface.length() / coarse as f64,
+                size: turn / coarse as f64,
                 around: true,
+                details: Vec::new(),
             },
             Boundary {
                 outline: circle(region.bore_radius),
                 size: around(region.bore_radius),
                 around: false,
+                details: Vec::new(),
             },
         ];
-        boundaries.extend(region.holes.iter().map(|hole| Boundary {
-            outline: Outline::Edge(*hole),
-            size: around(hole.half_width()),
-            around: false,
+        boundaries.extend(region.holes.iter().map(|hole| {
+            let outline = Outline::Edge(hole.clone());
+            Boundary {
+                details: outline.details(AROUND_HOLE),
+                outline,
+                size: around(hole.half_width()),
+                around: false,
+            }
         }));
-        Self { region, boundaries }
+        Self {
+            region,
+            boundaries,
+            sector_count: 1,
+        }
     }
 
     /// The grid with all sizes times `scale`, in interface radii; `None` where boundaries cross in their divisions.
@@ -171,15 +216,32 @@ impl Plan {
         let sizes = Sizes {
             boundaries: self.boundaries.clone(),
             scale,
+            within: self.sector(),
         };
-        let (points, chains) = Outlines::new(&self.boundaries, &self.web_edges(), &sizes).finish();
+        let outlines = match &sizes.within {
+            // The boundaries are the interface circle, the bore, hole 0 and the others.
+            Some(sector) => Outlines::of_sector(sector, &self.boundaries[2..3], &sizes),
+            None => Outlines::new(&self.boundaries, &self.web_edges(), &sizes),
+        };
+        let (points, chains) = outlines.finish();
         let mut net = TriangleNet::new(points, chains, &sizes)?;
         for _ in 0..level.halvings() {
             net.halve();
         }
         let (mut grid, chains) = net.into_grid();
         self.thin(&mut grid, web_part);
-        Some(self.blank(grid, chains))
+        Some(match self.sector() {
+            Some(_) => self.sector_blank(grid, chains),
+            None => self.blank(grid, chains),
+        })
+    }
+
+    /// The edge of the sector that is divided; `None` where all is.
+    fn sector(&self) -> Option<Outline> {
+        (self.sector_count > 1).then(|| Outline::Sector {
+            radii: [self.region.bore_radius, 1.0],
+            half: std::f64::consts::PI / f64::from(self.sector_count),
+        })
     }
 
     /// The circles on which the thickness changes, within the material.
@@ -233,6 +295,44 @@ impl Plan {
     }
 }
 
+impl Plan {
+    fn sector_blank(&self, grid: Grid, mut chains: Vec<Chain>) -> BlankGrid {
+        let edge = chains.remove(0);
+        let corners: Vec<f64> = edge.outline.corners().into_iter().map(|(s, _)| s).collect();
+        let half = std::f64::consts::PI / f64::from(self.sector_count);
+        // Between two lengths, with or without both ends.
+        let along = |from: f64, to: f64, ends: bool| -> Vec<(u32, f64)> {
+            let places = edge.nodes.iter().copied().zip(edge.lengths.iter().copied());
+            let within = |s: f64| (s > from && s < to) || (ends && (s == from || s == to));
+            places.filter(|(_, s)| within(*s)).collect()
+        };
+        let nodes = |places: Vec<(u32, f64)>| -> Vec<u32> {
+            places.into_iter().map(|(node, _)| node).collect()
+        };
+        let arc = along(corners[1], corners[2], true);
+        let arc_angles = arc.iter().map(|(_, s)| (s - corners[1]) - half).collect();
+        let mut left = nodes(along(corners[2], corners[3], false));
+        left.reverse();
+        // The edge ends where it begins.
+        let mut bore = nodes(along(corners[3], f64::INFINITY, true));
+        bore.push(edge.nodes[0]);
+        bore.reverse();
+        BlankGrid {
+            grid,
+            sector_count: self.sector_count,
+            arc_angles,
+            arc_nodes: nodes(arc),
+            bore_nodes: bore,
+            side_nodes: (nodes(along(0.0, corners[1], false)), left),
+            hole_edges: chains
+                .into_iter()
+                .take(1)
+                .map(|chain| chain.nodes)
+                .collect(),
+        }
+    }
+}
+
 /// The share of a triangle's area that lies between two radii; all of it or nothing, to the digit, where its nodes do.
 fn share_within(grid: &Grid, element: &Element, (inner, outer): (f64, f64)) -> f64 {
     let radii = element
@@ -274,6 +374,7 @@ fn share_within(grid: &Grid, element: &Element, (inner, outer): (f64, f64)) -> f
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gear::{Contour, Side, Spokes};
 
     const LEVELS: [GridLevel; 3] = [GridLevel::Coarse, GridLevel::Standard, GridLevel::Fine];
     const FACE_WIDTH: f64 = 20e-3;
@@ -358,7 +459,39 @@ mod tests {
             region(12.0, vec![slot(30.0, 0.0, 20.0, 0.9)], Some((20.0, 40.0))),
             region(12.0, vec![round(30.0, 0.0, 7.0)], Some((12.01, 45.3))),
             region(12.0, vec![round(30.0, 0.0, 7.0)], Some((25.0, 60.0))),
+            region(12.0, spokes(5, 4.0, 3.0), None),
+            region(12.0, spokes(8, 2.0, 1.0), Some((15.0, 42.0))),
+            region(12.0, spokes(3, 6.0, 2.0), Some((25.0, 31.0))),
+            region(12.0, vec![cornered(), round(30.0, 3.0, 8.0)], None),
         ]
+    }
+
+    fn spokes(count: u32, width: f64, fillet_radius: f64) -> Vec<Hole> {
+        let spokes = Spokes {
+            count,
+            width: width * 1e-3,
+            fillet_radius: fillet_radius * 1e-3,
+            inner_radius: 19e-3,
+            outer_radius: 39e-3,
+            phase: 0.4,
+        };
+        spokes.openings().expect("spokes")
+    }
+
+    /// An opening with sharp corners, a notch and an arc, beside the axis.
+    fn cornered() -> Hole {
+        let at = |x: f64, y: f64| 1e-3 * Vector::new(x, y);
+        let corners = [
+            (at(22.0, -12.0), 0.0),
+            (at(34.0, -12.0), 0.3),
+            (at(34.0, 12.0), 0.0),
+            (at(22.0, 12.0), 0.0),
+            (at(22.0, 3.0), 0.0),
+            (at(28.0, 0.0), 0.0),
+            (at(22.0, -3.0), 0.0),
+        ];
+        let side = |i: usize| Side::new(corners[i].0, corners[(i + 1) % 7].0, corners[i].1);
+        Contour::opening(&(0..7).map(side).collect::<Vec<_>>()).expect("an opening")
     }
 
     fn whole(region: &BlankRegion, level: GridLevel) -> BlankGrid {
@@ -497,8 +630,11 @@ mod tests {
                                 width: factor * width,
                                 angle,
                             },
+                            HoleShape::Contour(ref contour) => {
+                                HoleShape::Contour(contour.scaled(factor, |number| number))
+                            }
                         },
-                        ..*hole
+                        ..hole.clone()
                     })
                     .collect(),
                 web: region.web.map(|web| Web {

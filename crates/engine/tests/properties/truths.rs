@@ -359,6 +359,7 @@ fn scale(data: &mut GearData, s: f64) {
         match &mut hole.shape {
             HoleShape::Round { radius } => *radius *= s,
             HoleShape::Slot { width, .. } => *width *= s,
+            HoleShape::Contour(_) => unreachable!("holes are drawn round or as slots"),
         }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! What is proven: a ring condensed by one of its N sectors is the ring condensed as a whole; triangles and quadrilaterals
 //! agree on the same blank as well as their grids resolve it; webs and rings in series have the stiffness of their closed
-//! forms; slots of no angle are round holes; stresses by recovery rows are those of Lamé and Kirsch.
+//! forms; slots of no angle are round holes; spokes bend as beams do; stresses by recovery rows are those of Lamé and Kirsch.
 
 use std::f64::consts::{PI, TAU};
 
@@ -10,8 +10,8 @@ use faer::Mat;
 use meshwright_engine::fem::condensation::condense_with;
 use meshwright_engine::fem::recovery::{Functional, edge_stresses, nodal_stresses};
 use meshwright_engine::gear::{
-    BlankRegion, Core, Hole, HolePattern, HoleShape, Material, SpurGear, Vector, Web, radial,
-    tangential,
+    BlankRegion, Contour, Core, Hole, HolePattern, HoleShape, Material, Spokes, SpurGear, Vector,
+    Web, radial, tangential,
 };
 use meshwright_engine::grid::{BlankGrid, Grid, GridLevel, ToothGrid};
 use meshwright_engine::ring::blank::BlankSubstructure;
@@ -271,7 +271,7 @@ fn slots_of_no_angle_are_round_holes() {
     };
     let unequal = vec![round(30e-3, 0.4, 9e-3), round(28e-3, 3.0, 5e-3)];
     for holes in [unequal, pattern(5, 30e-3, 8e-3).holes()] {
-        let slots: Vec<Hole> = holes.iter().copied().map(slot).collect();
+        let slots: Vec<Hole> = holes.iter().cloned().map(slot).collect();
         let (round, slots) = (region(holes, None), region(slots, None));
         assert_eq!(
             of_region(&round, GridLevel::Coarse),
@@ -637,5 +637,129 @@ fn four_unequal_holes_settle_and_are_the_same_at_every_run() {
         let (coarse, standard) = settled(orders);
         println!("{orders} orders: {coarse:.1e}, then {standard:.1e}");
         assert!(standard < bound && standard < coarse / 6.0);
+    }
+}
+
+fn spokes(width: f64, fillet_radius: f64, ends: [f64; 2]) -> Spokes {
+    Spokes {
+        count: 6,
+        width,
+        fillet_radius,
+        inner_radius: ends[0],
+        outer_radius: ends[1],
+        phase: 0.0,
+    }
+}
+
+#[test]
+fn slender_spokes_turn_as_beams_that_are_clamped_at_both_ends() {
+    let (e, nu) = (
+        Material::STEEL.youngs_modulus,
+        Material::STEEL.poisson_ratio,
+    );
+    let [inner, outer] = [14e-3, 40e-3];
+    let length = outer - inner;
+    // The rim turns by φ and takes the end of a spoke along by r_o φ: shear force times r_o and moment of a Timoshenko beam, κ = 5/6.
+    let of_beams = |w: f64| {
+        let bending = e * FACE_WIDTH * w.powi(3) / 12.0;
+        let shear = 5.0 / 6.0 * e / (2.0 * (1.0 + nu)) * FACE_WIDTH * w;
+        let phi = 12.0 * bending / (shear * length * length);
+        let sum = 12.0 * outer * outer / length.powi(3) - 12.0 * outer / length.powi(2)
+            + (4.0 + phi) / length;
+        6.0 * bending / (1.0 + phi) * sum / (INTERFACE * INTERFACE)
+    };
+    let ratio = |w: f64| {
+        let region = BlankRegion {
+            bore_radius: 4e-3,
+            ..region(
+                spokes(w, w / 2.0, [inner, outer])
+                    .openings()
+                    .expect("spokes"),
+                None,
+            )
+        };
+        let place = Harmonics { largest: 24 }.cosine(0, Component::Tangential);
+        let stiffness = condensed(&of_region(&region, GridLevel::Standard), 24).stiffness;
+        stiffness[(place, place)] / of_beams(w)
+    };
+    let [wide, narrow] = [1.2e-3, 0.6e-3].map(ratio);
+    println!(
+        "of beams: {wide:.4}, {narrow:.4}, towards {:.4}",
+        2.0 * narrow - wide
+    );
+    // The fillets, and how the ends yield, count as the width does by the length.
+    assert!((wide - 1.0).abs() < 0.15 && (narrow - 1.0).abs() < 0.6 * (wide - 1.0).abs());
+    assert!((2.0 * narrow - wide - 1.0).abs() < 0.01);
+}
+
+#[test]
+fn blanks_on_spokes_settle_and_their_sectors_are_the_whole() {
+    let region = region(
+        spokes(4e-3, 2e-3, [20e-3, 39e-3])
+            .openings()
+            .expect("spokes"),
+        None,
+    );
+    for (orders, bound) in [(12, 3e-3), (24, 1e-2)] {
+        let [coarse, standard, fine] = LEVELS.map(|level| {
+            let grid = of_region(&region, level);
+            assert_eq!(of_region(&region, level), grid);
+            condensed(&grid, orders).stiffness
+        });
+        let (first, second) = (apart(&coarse, &standard), apart(&standard, &fine));
+        println!("{orders} orders: {first:.1e}, then {second:.1e}");
+        assert!(second < bound && second < first / 6.0);
+    }
+    let grid = of_region(&region, GridLevel::Coarse);
+    assert_eq!(grid.sector_count, 6);
+    let by_sector = condensed(&grid, 24);
+    let joined = apart(
+        &condensed(&grid.unrolled(), 24).stiffness,
+        &by_sector.stiffness,
+    );
+    // Roundings of two eliminations in another order.
+    assert!(joined < 1e-9, "{joined:e}");
+    let [whole, sectors] = [
+        whole(&region, GridLevel::Standard),
+        of_region(&region, GridLevel::Standard),
+    ]
+    .map(|grid| condensed(&grid, 24));
+    let off = apart(&whole.stiffness, &sectors.stiffness_at(region.phase()));
+    println!("sectors joined: {joined:.1e}; whole and by sectors: {off:.1e}");
+    // Two divisions of one blank, as far as each has settled.
+    assert!(off < 5e-3);
+}
+
+#[test]
+fn blanks_drawn_by_contours_are_those_of_their_holes_and_spokes() {
+    let drawn = |hole: &Hole| {
+        let mut sides = hole.sides();
+        sides.rotate_left(1);
+        Contour::opening(&sides).expect("an opening")
+    };
+    let slot = |hole: Hole| Hole {
+        shape: HoleShape::Slot {
+            width: 8e-3,
+            angle: 0.5,
+        },
+        ..hole
+    };
+    let patterns = [
+        pattern(6, 30e-3, 7e-3).holes(),
+        pattern(5, 30e-3, 4e-3)
+            .holes()
+            .into_iter()
+            .map(slot)
+            .collect(),
+        spokes(4e-3, 2e-3, [20e-3, 39e-3])
+            .openings()
+            .expect("spokes"),
+    ];
+    for holes in patterns {
+        let [one, other] = [holes.clone(), holes.iter().map(drawn).collect()]
+            .map(|holes| condensed(&of_region(&region(holes, None), GridLevel::Coarse), 24));
+        let apart = apart(&one.stiffness, &other.stiffness);
+        println!("apart by {apart:.1e}");
+        assert!(apart < 1e-10);
     }
 }

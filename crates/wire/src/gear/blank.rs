@@ -4,6 +4,7 @@ use meshwright_engine::gear::{BlankRegion, Core, FaceEnds, Hub, Web};
 
 use super::field::Field;
 use super::holes::HolesDocument;
+use super::openings::{LOOPS, SideDocument, SpokesDocument};
 use crate::declare::{absent, document, nested, number, unless, word};
 use crate::units::from_mm;
 
@@ -18,6 +19,12 @@ document! {
         pub(super) shaft: Option<ShaftDocument> = absent(nested("Shaft"), "the gear has a bore").left_out(),
         /// The holes of the blank: a pattern, or a list of patterns.
         pub(super) holes: HolesDocument = (),
+        /// Straight spokes, with openings between them. Holes and an outline stand beside them.
+        pub(super) spokes: Option<SpokesDocument> = absent(nested("Spokes"), "none").left_out(),
+        /// Openings of any shape, by closed loops of lines and arcs. A loop around an opening runs clockwise. A clockwise circle about the axis is the bore and
+        /// has its radius; a counter-clockwise one goes around the blank and says no more, because the teeth end the gear. Loops that are circles, or kidneys
+        /// along a circle about the axis, are holes of that shape.
+        pub(super) outline: Option<Vec<Vec<SideDocument>>> = absent(LOOPS, "none").left_out(),
         /// A ring that is thinner, or thicker, than the face is wide.
         pub(super) web: Option<WebDocument> = absent(nested("Web"), "none"),
         /// The ring on the bore where it is not as wide as the face. It needs three dimensions.
@@ -97,7 +104,7 @@ impl BlankDocument {
 
     /// What the engine is told.
     pub(super) fn data(&self) -> BlankRegion {
-        BlankRegion {
+        let region = BlankRegion {
             bore_radius: from_mm(self.core_field().1),
             core: match &self.shaft {
                 Some(shaft) => Core::Shaft {
@@ -105,12 +112,17 @@ impl BlankDocument {
                 },
                 None => Core::Bore,
             },
-            holes: self.holes.data(),
+            // Openings that there cannot be are refused before.
+            holes: [self.holes.data(), self.openings().unwrap_or_default()].concat(),
             web: self.web.as_ref().map(|web| Web {
                 inner_radius: from_mm(web.inner_radius_mm),
                 outer_radius: from_mm(web.outer_radius_mm),
                 thickness: from_mm(web.thickness_mm),
             }),
+        };
+        match self.outline {
+            Some(_) => region.evened(),
+            None => region,
         }
     }
 }

@@ -16,9 +16,18 @@ impl GearDocument {
     /// Two holes, by their places in the list, or the ends of one slot leave too little between them.
     pub(super) fn overlap_fault(&self, [one, other]: [usize; 2], ligament: f64) -> Fault {
         let holes = &self.blank.holes;
-        let (first, second) = (holes.pattern_of(one), holes.pattern_of(other));
         let missing = self.least_ligament_mm() - to_mm(ligament);
         let detail = self.left("between them", ligament);
+        // Those that are drawn come last.
+        if let Some(by) = self.blank.drawn_by(other) {
+            let fault = self.opening_fault(by, Code::HolesOverlap, missing, detail);
+            return match self.blank.drawn_by(one) == Some(by) {
+                true => fault,
+                // Neither is to blame more than the other.
+                false => Fault::new(by.field(), fault.code, fault.detail, None),
+            };
+        }
+        let (first, second) = (holes.pattern_of(one), holes.pattern_of(other));
         if first == second {
             return self.overlap_within(first, [one, other], missing, detail);
         }
@@ -63,13 +72,16 @@ impl GearDocument {
 
     /// A hole leaves too little below the root circle or around the bore.
     pub(super) fn breach_fault(&self, code: Code, hole: usize, ligament: f64) -> Fault {
-        let pattern = self.blank.holes.pattern_of(hole);
         let missing = self.least_ligament_mm() - to_mm(ligament);
         let (place, sign, side) = match code {
             Code::HolesBreachRim => ("below the root circle", -1.0, Side::AtMost),
             _ => ("around the bore", 1.0, Side::AtLeast),
         };
         let detail = self.left(place, ligament);
+        if let Some(by) = self.blank.drawn_by(hole) {
+            return self.opening_fault(by, code, missing, detail);
+        }
+        let pattern = self.blank.holes.pattern_of(hole);
         // The width of the holes is to blame, unless none would do: then it is their circle.
         self.narrower(pattern, missing, code, &detail)
             .unwrap_or_else(|| {
@@ -86,7 +98,7 @@ impl GearDocument {
         [from, to]: [f64; 2],
         [inner, outer]: [f64; 2],
     ) -> Fault {
-        let (pattern, code) = (self.blank.holes.pattern_of(hole), Code::HoleAcrossEdge);
+        let code = Code::HoleAcrossEdge;
         let detail = format!(
             "A hole reaches from {} mm to {} mm; it has to lie within {} mm and {} mm, and touch neither edge.",
             plain(to_mm(from)),
@@ -94,6 +106,10 @@ impl GearDocument {
             plain(to_mm(inner)),
             plain(to_mm(outer))
         );
+        if let Some(by) = self.blank.drawn_by(hole) {
+            return Fault::new(by.field(), code, detail, None);
+        }
+        let pattern = self.blank.holes.pattern_of(hole);
         let least = from_mm(self.least_ligament_mm());
         let (low, high) = (inner + least, outer - least);
         if to - from > high - low {

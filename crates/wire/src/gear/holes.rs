@@ -10,7 +10,7 @@ use crate::declare::{
     Declared, EACH, Kind, List, Named, Nested, Node, Number, Place, absent, document, list, nested,
     number, unless,
 };
-use crate::problem::{Code, FieldError};
+use crate::problem::Code;
 use crate::units::from_mm;
 
 /// The most patterns of holes in one blank.
@@ -151,19 +151,12 @@ impl HolesDocument {
         ends.into_iter().position(|end| hole < end).unwrap_or(0)
     }
 
-    /// That there are more holes than a blank may have.
-    pub(super) fn too_many(&self, pointer: &str) -> Option<FieldError> {
-        let count: usize = self
-            .patterns()
+    /// The number of all holes.
+    pub(super) fn count(&self) -> usize {
+        self.patterns()
             .iter()
             .map(PatternDocument::hole_count)
-            .sum();
-        if count <= MOST_HOLES {
-            return None;
-        }
-        let pointer = format!("{pointer}/blank/holes");
-        let detail = format!("{pointer} has {count} holes; a blank has at most {MOST_HOLES}.");
-        Some(FieldError::new(pointer, Code::TooLarge, detail))
+            .sum()
     }
 }
 
@@ -188,9 +181,9 @@ impl PatternDocument {
                 angle: slot.angle_deg.to_radians(),
             },
         };
-        let angles: Vec<f64> = match (&self.at_deg, shape) {
+        let angles: Vec<f64> = match (&self.at_deg, &shape) {
             // The engine's own pattern, so that its digits are those that they always were.
-            (None, HoleShape::Round { radius }) => {
+            (None, &HoleShape::Round { radius }) => {
                 let pattern = HolePattern {
                     count,
                     circle_radius,
@@ -199,7 +192,7 @@ impl PatternDocument {
                 };
                 return pattern.holes();
             }
-            (None, HoleShape::Slot { .. }) => {
+            (None, _) => {
                 let turn = TAU / f64::from(count);
                 (0..count)
                     .map(|i| phase.to_radians() + f64::from(i) * turn)
@@ -210,7 +203,7 @@ impl PatternDocument {
         let hole = |angle| Hole {
             circle_radius,
             angle,
-            shape,
+            shape: shape.clone(),
         };
         angles.into_iter().map(hole).collect()
     }

@@ -1,6 +1,6 @@
 //! The gears of a submission, and what is wrong with those that cannot be made.
 //!
-//! The document by its parts: `tip`, `relief`, `modification`, `thickness`, `deviation`, `lead`, `material`, `blank` and `holes`; `solid` is the gear along its axis. Then what prevents
+//! The document by its parts: `tip`, `relief`, `modification`, `thickness`, `deviation`, `lead`, `material`, `blank`, `holes` and `openings`; `solid` is the gear along its axis. Then what prevents
 //! a gear (`proportions`, `faults`, `blank_faults`), which fields could change (`field`), and the values that together would do (`repair`).
 
 mod blank;
@@ -12,6 +12,7 @@ mod holes;
 mod lead;
 mod material;
 mod modification;
+mod openings;
 mod proportions;
 mod protuberance;
 mod relief;
@@ -34,6 +35,7 @@ pub use lead::{
 pub use material::MaterialDocument;
 pub(super) use modification::MOST_ENTRIES;
 pub use modification::{CrowningDocument, ModificationDocument, SlopeDocument, TableDocument};
+pub use openings::{Point, SideDocument, SpokesDocument};
 pub use protuberance::ProtuberanceDocument;
 pub use relief::{ReliefEnd, RootReliefDocument, StartDocument, StartWay, TipReliefDocument};
 pub use thickness::{BallsDocument, SpanDocument};

@@ -79,6 +79,7 @@ impl GearDocument {
                 "1 % of the root radius to each side and more",
             )?;
         }
+        self.check_openings()?;
         self.check_web()
     }
 
@@ -126,7 +127,7 @@ impl GearDocument {
             let place = format!("{pointer}/tooth_deviations");
             deviations.faults(&place, self.tooth_count, self.module_mm)
         });
-        let of_holes = self.blank.holes.too_many(pointer);
+        let of_holes = self.blank.too_many_holes(pointer);
         of_tables.chain(of_deviations).chain(of_holes).collect()
     }
 
@@ -134,8 +135,9 @@ impl GearDocument {
     pub(super) fn without_lists(&self) -> Self {
         let mut gear = self.clone();
         gear.tooth_deviations = None;
-        if gear.blank.holes.too_many("").is_some() {
+        if gear.blank.too_many_holes("").is_some() {
             gear.blank.holes = HolesDocument::None;
+            (gear.blank.spokes, gear.blank.outline) = (None, None);
         }
         for modification in &mut gear.profile_modifications {
             modification.empty_table();

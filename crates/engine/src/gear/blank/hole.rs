@@ -1,15 +1,16 @@
-//! One hole of a blank: round, or a slot along its circle.
+//! One hole of a blank: round, a slot along its circle, or any opening by its contour.
 //!
 //! A slot is all that lies within half its width of an arc about the gear's axis, and a round hole is a slot whose arc is one
 //! point. So every distance between holes is a distance between two such arcs, less the half widths.
 
 use std::f64::consts::{PI, TAU};
 
+use super::contour::{Contour, Side, between};
 use super::moments::Moments;
-use crate::gear::{Vector, radial};
+use crate::gear::{Vector, radial, tangential};
 
 /// The shape of a hole. Lengths are in meters, angles in radians.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum HoleShape {
     /// A circle.
     Round {
@@ -23,12 +24,14 @@ pub enum HoleShape {
         /// The angle between the centers of its ends, as seen from the gear's axis; with 0 the slot is a round hole.
         angle: f64,
     },
+    /// Any opening, by the lines and arcs around it.
+    Contour(Contour),
 }
 
 /// A hole through a blank, in the frame of its gear.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Hole {
-    /// The radius of the circle on which its middle stands, in meters.
+    /// The radius of the circle on which its middle stands, in meters: of a contour, the center of mass of the opening.
     pub circle_radius: f64,
     /// The polar angle of its middle, in radians: from the centerline of tooth 0, positive towards its loaded flank.
     pub angle: f64,
@@ -37,30 +40,88 @@ pub struct Hole {
 }
 
 impl Hole {
-    /// The radius of a round hole, half the width of a slot.
+    /// The radius of a round hole, half the width of a slot; of a contour half its extent along the radius, or twice its area by its length where
+    /// that is less.
     pub fn half_width(&self) -> f64 {
-        match self.shape {
-            HoleShape::Round { radius } => radius,
+        match &self.shape {
+            HoleShape::Round { radius } => *radius,
             HoleShape::Slot { width, .. } => width / 2.0,
+            HoleShape::Contour(contour) => contour.half_width(),
         }
     }
 
-    /// The angle between the centers of the ends; 0 for a round hole.
+    /// The angle between the centers of the ends of a slot; 0 for any other hole.
     pub fn span(&self) -> f64 {
         match self.shape {
-            HoleShape::Round { .. } => 0.0,
             HoleShape::Slot { angle, .. } => angle,
+            HoleShape::Round { .. } | HoleShape::Contour(_) => 0.0,
+        }
+    }
+
+    /// The contour, if that is what the hole is drawn by.
+    pub fn contour(&self) -> Option<&Contour> {
+        match &self.shape {
+            HoleShape::Contour(contour) => Some(contour),
+            HoleShape::Round { .. } | HoleShape::Slot { .. } => None,
         }
     }
 
     /// The largest radius that the hole reaches.
     pub fn outer_reach(&self) -> f64 {
-        self.circle_radius + self.half_width()
+        match self.contour() {
+            Some(contour) => contour.reach()[1],
+            None => self.circle_radius + self.half_width(),
+        }
     }
 
     /// The smallest radius that the hole reaches; not positive if it reaches the axis.
     pub fn inner_reach(&self) -> f64 {
-        self.circle_radius - self.half_width()
+        match self.contour() {
+            Some(contour) => contour.reach()[0],
+            None => self.circle_radius - self.half_width(),
+        }
+    }
+
+    /// The lines and arcs around the hole, counter-clockwise, in the frame of the gear.
+    pub fn sides(&self) -> Vec<Side> {
+        if let Some(contour) = self.contour() {
+            let sides = contour.sides().iter();
+            return sides.map(|side| side.turned(self.angle)).collect();
+        }
+        let (r, w, half) = (self.circle_radius, self.half_width(), self.span() / 2.0);
+        let [from, to] = [self.angle - half, self.angle + half];
+        let [outer, inner] = [r + w, r - w].map(|r| [from, to].map(|angle| r * radial(angle)));
+        let bulge = (half / 2.0).tan();
+        let end = |from, to| Side::new(from, to, 1.0);
+        match half > 0.0 {
+            false => vec![end(outer[0], inner[0]), end(inner[0], outer[0])],
+            true => vec![
+                Side::new(outer[0], outer[1], bulge),
+                end(outer[1], inner[1]),
+                Side::new(inner[1], inner[0], -bulge),
+                end(inner[0], outer[0]),
+            ],
+        }
+    }
+
+    /// Points along the edge, counter-clockwise, each once: no point of the edge is farther than `tolerance` from the closed line through them.
+    pub fn edge(&self, tolerance: f64) -> Vec<Vector> {
+        let pieces = |side: &Side| {
+            // An arc that turns by φ rises by r (1 − cos(φ/2)) over its chord.
+            let most = 2.0 * (1.0 - tolerance / side.radius().max(tolerance)).acos();
+            (side.turn().abs() / most).ceil().max(1.0)
+        };
+        let sides = self.sides();
+        let points = sides.iter().flat_map(|side| {
+            let count = pieces(side);
+            (0..count as u32).map(move |i| side.point(side.length() * f64::from(i) / count))
+        });
+        points.collect()
+    }
+
+    /// A point of the frame of the gear in that of the hole, whose x axis runs through its middle.
+    pub(crate) fn own(&self, point: Vector) -> Vector {
+        point.x * radial(-self.angle) + point.y * tangential(-self.angle)
     }
 
     /// The centers of the clockwise and of the counter-clockwise end; the center twice for a round hole.
@@ -70,6 +131,9 @@ impl Hole {
 
     /// The distance from `point` to the edge of the hole, negative inside of it.
     pub fn distance_to(&self, point: Vector) -> f64 {
+        if let Some(contour) = self.contour() {
+            return contour.distance_to(self.own(point));
+        }
         let off = wrapped(point.y.atan2(point.x) - self.angle).abs();
         let apart = (off - self.span() / 2.0).max(0.0);
         chord(point.norm(), self.circle_radius, apart) - self.half_width()
@@ -80,6 +144,9 @@ impl Hole {
     /// The nearest points of two arcs about one center are at one angle where the arcs stand beside each other, and their
     /// nearest ends otherwise. Where the arcs meet, this is less the sum of the half widths.
     pub fn ligament_to(&self, other: &Self) -> f64 {
+        if self.contour().or(other.contour()).is_some() {
+            return between(&self.sides(), &other.sides());
+        }
         let between = wrapped(self.angle - other.angle).abs();
         let half_spans = f64::midpoint(self.span(), other.span());
         // The far sides of two long slots may be nearer than their near ones.
@@ -91,9 +158,12 @@ impl Hole {
             - other.half_width()
     }
 
-    /// The least material between the two ends of a slot of more than half a turn; infinite for other holes, between whose
-    /// ends nothing is left standing alone.
+    /// The least material between the two ends of a slot of more than half a turn, or between two parts of a contour that face each other; infinite
+    /// for other holes, between whose ends nothing is left standing alone.
     pub fn ligament_between_own_ends(&self) -> f64 {
+        if let Some(contour) = self.contour() {
+            return contour.neck();
+        }
         if self.span() <= PI {
             return f64::INFINITY;
         }
@@ -111,6 +181,11 @@ impl Hole {
     /// Green's theorem around the part, counter-clockwise: along the outer arc or the circle that cuts it, around the
     /// counter-clockwise end, back along the inner arc, and around the clockwise end.
     pub fn moments_within(&self, radius: f64) -> Moments {
+        if let Some(contour) = self.contour() {
+            let own = contour.moments_within(radius);
+            let first = own.first.x * radial(self.angle) + own.first.y * tangential(self.angle);
+            return Moments { first, ..own };
+        }
         let (r, w, half) = (self.circle_radius, self.half_width(), self.span() / 2.0);
         if radius <= r - w {
             return Moments::default();
@@ -287,7 +362,7 @@ pub(super) mod tests {
 
     #[test]
     fn the_ends_of_a_long_slot_leave_a_tongue() {
-        let long = holes()[6];
+        let long = &holes()[6];
         let [right, left] = long.ends();
         let tongue = (right - left).norm() - 4e-3;
         assert!((long.ligament_between_own_ends() - tongue).abs() < 1e-16);

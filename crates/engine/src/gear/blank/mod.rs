@@ -1,18 +1,22 @@
 //! The blank under the teeth: a bore on a rigid hub ring, holes, and a web.
 //!
-//! Read in this order: [`hole`] (one opening, round or a slot, and what is left between two), [`region`] (bore, holes and web
+//! Read in this order: [`hole`] (one opening, round or a slot, and what is left between two), [`contour`] (any other opening), [`spokes`] (openings between spokes), [`region`] (bore, holes and web
 //! together), [`moments`] (what they take away), [`symmetry`] (how often a blank repeats around).
 
 use std::f64::consts::PI;
 
+pub mod contour;
 pub mod hole;
 pub mod moments;
 pub mod region;
+pub mod spokes;
 pub mod symmetry;
 
+pub use contour::{Contour, ContourFault, Drawn, Side};
 pub use hole::{Hole, HoleShape};
 pub use moments::Moments;
 pub use region::{BlankRegion, Core, Ligament, Web};
+pub use spokes::{Spokes, SpokesFault};
 pub use symmetry::Symmetry;
 
 /// N equal round holes on a circle.

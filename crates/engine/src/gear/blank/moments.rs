@@ -58,6 +58,20 @@ impl Moments {
         }
     }
 
+    /// What the line from `a` to `b` adds, likewise.
+    pub fn under_line(a: Vector, b: Vector) -> Self {
+        let swept = a.x * b.y - b.x * a.y;
+        let squares = |p: f64, q: f64| (p * p + p * q + q * q) / 3.0;
+        Self {
+            area: swept / 2.0,
+            first: Vector::new(
+                (b.y - a.y) * squares(a.x, b.x),
+                (a.x - b.x) * squares(a.y, b.y),
+            ) / 2.0,
+            polar: swept * (squares(a.x, b.x) + squares(a.y, b.y)) / 4.0,
+        }
+    }
+
     /// Those of the disc of `radius` about the origin.
     pub fn of_disc(radius: f64) -> Self {
         Self {

@@ -49,7 +49,7 @@ pub struct BlankRegion {
 pub enum Ligament {
     /// Between two holes.
     Between(usize, usize),
-    /// Between the ends of one slot.
+    /// Between the ends of one slot, or two parts of one contour.
     WithinSlot(usize),
     /// Between a hole and the bore.
     ToBore(usize),
@@ -203,7 +203,7 @@ impl BlankRegion {
     pub fn turned(&self, angle: f64) -> Self {
         let turn = |hole: &Hole| Hole {
             angle: hole.angle + angle,
-            ..*hole
+            ..hole.clone()
         };
         Self {
             holes: self.holes.iter().map(turn).collect(),
@@ -224,12 +224,12 @@ mod tests {
         let all = holes();
         let apart = Hole {
             angle: -1.65,
-            ..all[4]
+            ..all[4].clone()
         };
         BlankRegion {
             bore_radius: 12e-3,
             core: Core::Bore,
-            holes: vec![all[0], all[1], all[3], apart],
+            holes: vec![all[0].clone(), all[1].clone(), all[3].clone(), apart],
             web,
         }
     }
@@ -318,10 +318,10 @@ mod tests {
             ..region(None)
         };
         let all = holes();
-        let (place, left) = with(all[0]).least_ligament(45e-3).expect("a hole");
+        let (place, left) = with(all[0].clone()).least_ligament(45e-3).expect("a hole");
         assert_eq!(place, Ligament::ToRim(0));
         assert!((left - 7e-3).abs() < 1e-16);
-        let (place, _) = with(all[4]).least_ligament(45e-3).expect("a hole");
+        let (place, _) = with(all[4].clone()).least_ligament(45e-3).expect("a hole");
         assert_eq!(place, Ligament::ToBore(0));
         assert!(
             region(None)

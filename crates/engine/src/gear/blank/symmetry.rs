@@ -8,6 +8,10 @@ use crate::gear::gcd;
 
 /// What holes may differ by and still count as equal: relative for lengths, in radians for angles.
 const ALIKE: f64 = 1e-12;
+/// What holes of a drawing may differ by and still be meant as equal, likewise: its coordinates have six or more digits.
+const DRAWN: f64 = 1e-6;
+/// What part of its sector an opening leaves free on either side, at least, if the sector is to stand for all of them.
+const WITHIN: f64 = 1e-3;
 
 /// The turns that map a blank onto itself.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -22,13 +26,13 @@ pub struct Symmetry {
 impl BlankRegion {
     /// The symmetry of the blank, to rounding.
     pub fn symmetry(&self) -> Symmetry {
-        let classes = self.classes();
+        let classes = self.classes(ALIKE);
         // Each class is taken to itself, so that the number of its holes is a multiple of N.
         let most = classes
             .iter()
             .fold(0, |most, class| gcd(most, class.len() as u32));
         let orbits_of = |count: u32| -> Option<Vec<Vec<usize>>> {
-            let orbits = classes.iter().map(|class| self.orbits(class, count));
+            let orbits = classes.iter().map(|class| self.orbits(class, count, ALIKE));
             Some(orbits.collect::<Option<Vec<_>>>()?.concat())
         };
         (1..=most)
@@ -46,7 +50,7 @@ impl BlankRegion {
     pub fn pattern(&self) -> Option<HolePattern> {
         let Symmetry { count, orbits } = self.symmetry();
         let first = self.holes.first()?;
-        let alone = orbits.len() == 1 && first.span() <= ALIKE;
+        let alone = orbits.len() == 1 && first.contour().is_none() && first.span() <= ALIKE;
         alone.then(|| HolePattern {
             count,
             circle_radius: first.circle_radius,
@@ -55,18 +59,61 @@ impl BlankRegion {
         })
     }
 
-    /// The angle of hole 0 of a pattern; 0 for any other blank.
-    pub fn phase(&self) -> f64 {
-        self.pattern().map_or(0.0, |pattern| pattern.phase)
+    /// The number of equal openings drawn by a contour, equally spaced, if that is what the holes are and each stays within its sector; `None` otherwise.
+    pub fn ring_of_contours(&self) -> Option<u32> {
+        let first = self.holes.first()?;
+        first.contour()?;
+        let Symmetry { count, orbits } = self.symmetry();
+        let reach = std::f64::consts::PI / f64::from(count.max(1));
+        let stays = || {
+            let points = first.edge(WITHIN * first.circle_radius).into_iter();
+            let angles = points
+                .map(|point| first.own(point))
+                .map(|own| own.y.atan2(own.x));
+            angles.fold(0.0, |most: f64, angle| most.max(angle.abs())) < (1.0 - WITHIN) * reach
+        };
+        (count > 1 && orbits.len() == 1 && stays()).then_some(count)
     }
 
-    /// The holes that are equal but for their angle.
-    fn classes(&self) -> Vec<Vec<usize>> {
+    /// The same blank with holes that are equal and equally spaced to within the digits of a drawing made so to the last digit: a hole stands by the first of its kind.
+    pub fn evened(mut self) -> Self {
+        for class in self.classes(DRAWN) {
+            let most = class.len() as u32;
+            let counts = (2..=most).rev().filter(|count| most.is_multiple_of(*count));
+            let even = counts
+                .map(|count| (count, self.orbits(&class, count, DRAWN)))
+                .find_map(|(count, orbits)| Some((count, orbits?)));
+            let Some((count, orbits)) = even else {
+                continue;
+            };
+            for orbit in orbits {
+                let first = self.holes[orbit[0]].clone();
+                for (k, &hole) in orbit.iter().enumerate() {
+                    self.holes[hole] = Hole {
+                        angle: first.angle + TAU * k as f64 / f64::from(count),
+                        circle_radius: first.circle_radius,
+                        shape: self.holes[class[0]].shape.clone(),
+                    };
+                }
+            }
+        }
+        self
+    }
+
+    /// The angle of hole 0 of a pattern, or of a ring of contours; 0 for any other blank.
+    pub fn phase(&self) -> f64 {
+        let ring = || self.ring_of_contours().map(|_| self.holes[0].angle);
+        let pattern = self.pattern().map(|pattern| pattern.phase);
+        pattern.or_else(ring).unwrap_or(0.0)
+    }
+
+    /// The holes that are equal but for their angle, to within `slack`.
+    fn classes(&self, slack: f64) -> Vec<Vec<usize>> {
         let mut classes: Vec<Vec<usize>> = Vec::new();
         for (i, hole) in self.holes.iter().enumerate() {
             match classes
                 .iter_mut()
-                .find(|class| alike(&self.holes[class[0]], hole))
+                .find(|class| alike(&self.holes[class[0]], hole, slack))
             {
                 Some(class) => class.push(i),
                 None => classes.push(vec![i]),
@@ -76,7 +123,7 @@ impl BlankRegion {
     }
 
     /// The orbits of `class` under a turn by 2π/`count`; `None` if the turn takes a hole to where there is none.
-    fn orbits(&self, class: &[usize], count: u32) -> Option<Vec<Vec<usize>>> {
+    fn orbits(&self, class: &[usize], count: u32, slack: f64) -> Option<Vec<Vec<usize>>> {
         let turn = TAU / f64::from(count);
         let mut left = class.to_vec();
         let mut orbits = Vec::new();
@@ -84,7 +131,7 @@ impl BlankRegion {
             let mut orbit = Vec::new();
             for k in 0..count {
                 let angle = self.holes[first].angle + f64::from(k) * turn;
-                let here = |&i: &usize| wrapped(self.holes[i].angle - angle).abs() <= ALIKE;
+                let here = |&i: &usize| wrapped(self.holes[i].angle - angle).abs() <= slack;
                 let place = left.iter().position(here)?;
                 orbit.push(left.remove(place));
             }
@@ -95,11 +142,16 @@ impl BlankRegion {
 }
 
 /// Whether two holes are equal but for their angle; a slot of no angle is a round hole.
-fn alike(one: &Hole, other: &Hole) -> bool {
-    let near = |a: f64, b: f64| (a - b).abs() <= ALIKE * a.abs().max(b.abs());
+fn alike(one: &Hole, other: &Hole, slack: f64) -> bool {
+    let near = |a: f64, b: f64| (a - b).abs() <= slack * a.abs().max(b.abs());
     near(one.circle_radius, other.circle_radius)
         && near(one.half_width(), other.half_width())
-        && (one.span() - other.span()).abs() <= ALIKE
+        && (one.span() - other.span()).abs() <= slack
+        && match (one.contour(), other.contour()) {
+            (None, None) => true,
+            (Some(a), Some(b)) => a.is_like(b, slack * one.circle_radius),
+            _ => false,
+        }
 }
 
 impl HoleShape {
@@ -160,7 +212,7 @@ mod tests {
             width: 8e-3,
             angle: 0.0,
         };
-        region.holes[2].shape = shape;
+        region.holes[2].shape = shape.clone();
         assert_eq!(region.pattern(), Some(pattern(6, 30e-3, 4e-3, 0.1)));
         assert_eq!(shape.simplest(), HoleShape::Round { radius: 4e-3 });
     }
@@ -196,6 +248,22 @@ mod tests {
             0,
             "a solid blank repeats at every angle"
         );
+    }
+
+    #[test]
+    fn holes_that_are_equal_to_the_digits_of_a_drawing_repeat() {
+        let drawn = pattern(7, 30e-3, 3e-3, 0.2);
+        let mut region = region(&[drawn]);
+        for (i, hole) in region.holes.iter_mut().enumerate() {
+            hole.angle += 4e-7 * (i as f64).sin();
+            hole.circle_radius *= 1.0 + 1e-7 * i as f64;
+        }
+        assert_eq!(region.symmetry().count, 1);
+        let evened = region.clone().evened();
+        assert_eq!(evened.pattern(), Some(drawn));
+        assert_eq!(evened.clone().evened(), evened);
+        region.holes[3].angle += 1e-5;
+        assert_eq!(region.clone().evened(), region);
     }
 
     #[test]

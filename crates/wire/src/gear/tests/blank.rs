@@ -29,8 +29,8 @@ fn a_pattern_alone_and_in_a_list_and_by_its_angles_is_the_same() {
     for (one, other) in told_of(&at).iter().zip(&alone) {
         near(one.angle, other.angle);
         assert_eq!(
-            (one.shape, one.circle_radius),
-            (other.shape, other.circle_radius)
+            (&one.shape, one.circle_radius),
+            (&other.shape, other.circle_radius)
         );
     }
     for none in [json!(null), json!([])] {

@@ -3,6 +3,7 @@
 mod blank;
 mod generated;
 mod hob;
+mod openings;
 mod published;
 mod teeth;
 
