@@ -6,14 +6,11 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use super::hole::{Hole, HoleShape};
 use super::moments::Moments;
 use crate::gear::{Vector, radial, tangential};
 
 /// Two lengths that differ by less, as a part of the reach of the curve, are equal: more than the digits that a drawing has.
-const SAME: f64 = 1e-9;
-/// The same for a circle about the axis, which a drawing may tell to six digits.
-const DRAWN: f64 = 1e-6;
+pub(super) const SAME: f64 = 1e-9;
 /// The sharpest corner that the material may have, in radians: 30 degrees. Elements do not fill a sharper one.
 const SHARPEST_MATERIAL: f64 = PI / 6.0;
 /// The sharpest corner that the opening may have, in radians: 10 degrees.
@@ -33,9 +30,9 @@ pub struct Side {
     /// tan(θ/4) with the angle θ through which it turns, positive counter-clockwise; 0 of a line.
     pub bulge: f64,
     /// The center of an arc.
-    center: Vector,
+    pub(super) center: Vector,
     /// Its radius.
-    radius: f64,
+    pub(super) radius: f64,
     /// Its length.
     length: f64,
 }
@@ -268,7 +265,7 @@ impl Side {
     }
 
     /// What it adds to the moments of a region on its left.
-    fn moments(&self) -> Moments {
+    pub(super) fn moments(&self) -> Moments {
         if self.bulge == 0.0 {
             return Moments::under_line(self.from, self.to);
         }
@@ -345,98 +342,12 @@ pub enum ContourFault {
     AroundAxis,
 }
 
-/// What a closed curve bounds, with the material on its left.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Drawn {
-    /// An opening.
-    Opening(Hole),
-    /// A circle about the axis.
-    Circle {
-        /// Its radius.
-        radius: f64,
-        /// Whether the material is inside of it: a bore has it outside.
-        is_inside: bool,
-    },
-}
-
 /// A closed curve of lines and arcs around an opening that does not contain the axis, counter-clockwise, in the frame whose x axis runs through
 /// the center of mass of the opening.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Contour(Arc<[Side]>);
+pub struct Contour(pub(super) Arc<[Side]>);
 
 impl Contour {
-    /// The opening inside of `sides`, each of which begins where the one before it ends, the first where the last ends. Sides of one line or of one
-    /// circle become one; a circle is a round hole, and a kidney along a circle about the axis a slot.
-    ///
-    /// # Errors
-    ///
-    /// [`ContourFault`].
-    pub fn opening(sides: &[Side]) -> Result<Hole, ContourFault> {
-        check(sides)?;
-        let sides = merged(sides);
-        if let Some(hole) = round(&sides).or_else(|| slot(&sides)) {
-            return Ok(hole);
-        }
-        let moments: Moments = sides.iter().map(Side::moments).sum();
-        let center = moments.first / moments.area;
-        let angle = center.y.atan2(center.x);
-        let mut sides: Vec<Side> = sides.iter().map(|side| side.turned(-angle)).collect();
-        let first = (0..sides.len())
-            .min_by(|i, j| {
-                let seen = |i: usize| {
-                    let arm = sides[i].from - Vector::new(center.norm(), 0.0);
-                    // A corner straight outside may be seen just behind.
-                    (arm.y.atan2(arm.x) + 1e-6).rem_euclid(TAU)
-                };
-                seen(*i).total_cmp(&seen(*j))
-            })
-            .unwrap_or(0);
-        sides.rotate_left(first);
-        Ok(Hole {
-            circle_radius: center.norm(),
-            angle,
-            shape: HoleShape::Contour(Self(sides.into())),
-        })
-    }
-
-    /// What `sides` bound, which run with the material on their left: clockwise around an opening.
-    ///
-    /// # Errors
-    ///
-    /// [`ContourFault`]: [`ContourFault::Clockwise`] of an opening that runs counter-clockwise.
-    pub fn drawn(sides: &[Side]) -> Result<Drawn, ContourFault> {
-        if let Some(first) = sides.first() {
-            let alike = |side: &Side| {
-                side.bulge * first.bulge > 0.0
-                    && side.center.norm() <= DRAWN * first.radius
-                    && (side.radius - first.radius).abs() <= DRAWN * first.radius
-            };
-            let turns: f64 = sides.iter().map(Side::turn).sum();
-            if sides.iter().all(alike) && (turns.abs() - TAU).abs() < DRAWN {
-                return Ok(Drawn::Circle {
-                    radius: first.radius,
-                    is_inside: turns > 0.0,
-                });
-            }
-        }
-        let backward: Vec<Side> = sides.iter().rev().map(Side::reversed).collect();
-        let count = sides.len();
-        let side = |i: usize| count - 1 - i;
-        Self::opening(&backward)
-            .map(Drawn::Opening)
-            .map_err(|fault| match fault {
-                ContourFault::NoLength { side: i } => ContourFault::NoLength { side: side(i) },
-                ContourFault::Crosses { sides: [a, b] } => ContourFault::Crosses {
-                    sides: [side(b), side(a)],
-                },
-                // Side i began where the one before it ended.
-                ContourFault::TooSharp { corner } => ContourFault::TooSharp {
-                    corner: (count - corner) % count,
-                },
-                other => other,
-            })
-    }
-
     /// Its sides.
     pub fn sides(&self) -> &[Side] {
         &self.0
@@ -667,7 +578,7 @@ pub(super) fn between(one: &[Side], other: &[Side]) -> f64 {
 }
 
 /// Refuses what is no simple closed curve, counter-clockwise, beside the axis.
-fn check(sides: &[Side]) -> Result<(), ContourFault> {
+pub(super) fn check(sides: &[Side]) -> Result<(), ContourFault> {
     let count = sides.len();
     let size = sides
         .iter()
@@ -744,7 +655,7 @@ fn winding(sides: &[Side], point: Vector) -> i32 {
 }
 
 /// The same curve with as few sides as it can have.
-fn merged(sides: &[Side]) -> Vec<Side> {
+pub(super) fn merged(sides: &[Side]) -> Vec<Side> {
     let count = sides.len();
     let joins = |i: usize| joined(&sides[(i + count - 1) % count], &sides[i]).is_some();
     // All on one circle: two halves of it say so.
@@ -789,51 +700,6 @@ fn joined(one: &Side, other: &Side) -> Option<Side> {
             other.to,
             (one.bulge.atan() + other.bulge.atan()).tan(),
         )
-    })
-}
-
-/// A circle as a round hole.
-fn round(sides: &[Side]) -> Option<Hole> {
-    let [one, other] = sides else { return None };
-    let center = one.center;
-    let is_circle = one.bulge > 0.0
-        && other.bulge > 0.0
-        && (center - other.center).norm() <= SAME * one.radius
-        && (one.radius - other.radius).abs() <= SAME * one.radius;
-    is_circle.then(|| Hole {
-        circle_radius: center.norm(),
-        angle: center.y.atan2(center.x),
-        shape: HoleShape::Round { radius: one.radius },
-    })
-}
-
-/// Two arcs about the axis between half circles as a slot.
-fn slot(sides: &[Side]) -> Option<Hole> {
-    let about_axis = |side: &Side| side.bulge != 0.0 && side.center.norm() <= SAME * side.radius;
-    if sides.len() != 4 {
-        return None;
-    }
-    let outer = sides
-        .iter()
-        .position(|side| about_axis(side) && side.bulge > 0.0)?;
-    let [outer, end, inner, other] = [0, 1, 2, 3].map(|k| &sides[(outer + k) % 4]);
-    let width = outer.radius - inner.radius;
-    let half_circle = |side: &Side| {
-        side.bulge > 0.0
-            && (side.radius - width / 2.0).abs() <= SAME * width
-            && (side.bulge - 1.0).abs() <= SAME
-    };
-    let is_slot = about_axis(inner) && inner.bulge < 0.0 && half_circle(end) && half_circle(other);
-    is_slot.then(|| {
-        let middle = outer.middle();
-        Hole {
-            circle_radius: f64::midpoint(outer.radius, inner.radius),
-            angle: middle.y.atan2(middle.x),
-            shape: HoleShape::Slot {
-                width,
-                angle: outer.turn(),
-            },
-        }
     })
 }
 

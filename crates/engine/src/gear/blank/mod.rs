@@ -1,18 +1,20 @@
 //! The blank under the teeth: a bore on a rigid hub ring, holes, and a web.
 //!
-//! Read in this order: [`hole`] (one opening, round or a slot, and what is left between two), [`contour`] (any other opening), [`spokes`] (openings between spokes), [`region`] (bore, holes and web
+//! Read in this order: [`hole`] (one opening, round or a slot, and what is left between two), [`contour`] (any other opening), `drawn` (what closed curves of a drawing bound), [`spokes`] (openings between spokes), [`region`] (bore, holes and web
 //! together), [`moments`] (what they take away), [`symmetry`] (how often a blank repeats around).
 
 use std::f64::consts::PI;
 
 pub mod contour;
+mod drawn;
 pub mod hole;
 pub mod moments;
 pub mod region;
 pub mod spokes;
 pub mod symmetry;
 
-pub use contour::{Contour, ContourFault, Drawn, Side};
+pub use contour::{Contour, ContourFault, Side};
+pub use drawn::Drawn;
 pub use hole::{Hole, HoleShape};
 pub use moments::Moments;
 pub use region::{BlankRegion, Core, Ligament, Web};
