@@ -512,10 +512,11 @@ mod tests {
                 for (end, (x, w)) in at_ends.flat_map(|end| rule.iter().map(move |of| (end, of))) {
                     let r = radii[i + 1] + half[0] * x;
                     for (a, [f, _]) in shape(*x).into_iter().enumerate() {
-                        for c in 0..3 {
-                            if let Some((at, share)) = number(3 * a + 2 * end)[c] {
+                        let node = number(3 * a + 2 * end);
+                        for (of, component) in node.into_iter().zip(components) {
+                            if let Some((at, share)) = of {
                                 let weight = w * half[0] * r.powi(power + 1) * shares[end];
-                                held[(at, *mean)] += weight * f * share * components[c];
+                                held[(at, *mean)] += weight * f * share * component;
                             }
                         }
                     }

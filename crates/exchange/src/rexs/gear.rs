@@ -578,7 +578,7 @@ impl<'a> Gear<'a> {
                 };
                 // Where it says to have no bore, or nothing would be left of it around one, it is of one piece with its shaft.
                 let radius = diameter / 2.0;
-                let largest = root - LEAST_RIM * self.module;
+                let largest = root - LEAST_RIM * self.module / self.cosine;
                 let solid = solid.is_some() || radius > largest;
                 let blank = if solid {
                     self.on_solid_shaft(&pointer, (radius, largest), section)

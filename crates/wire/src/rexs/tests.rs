@@ -1004,6 +1004,16 @@ fn a_helical_pinion_of_one_piece_with_its_shaft_is_computed_along_its_face() {
         "{bored:?} {on_shaft:?} {at_one_end:?}"
     );
     assert_ne!(at_one_end.1, on_shaft.1);
+    // Of a shaft that is as thick as the root a module of the transverse section is left.
+    let section = |diameter: u32| format!(r#"unit="mm">{diameter}<"#);
+    let thick = taken_of(model.replace(&section(24), &section(42)).as_bytes());
+    let radius = field(&thick, "/pair/driving/blank/shaft/radius_mm").as_f64();
+    let largest = 24.0 / 10_f64.to_radians().cos() - 2.5 - 2.0 / 10_f64.to_radians().cos();
+    assert!(
+        (0.0..2e-4).contains(&(largest - radius.expect("a radius"))),
+        "{radius:?}"
+    );
+    assert!(parse(&thick.submission).is_ok());
 }
 
 #[test]

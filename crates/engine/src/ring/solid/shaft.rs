@@ -317,7 +317,7 @@ mod tests {
                 [FaceEnds::Minus, FaceEnds::Plus].map(|ends| stiffness(&axial, order, ends));
             // Functions are even and odd in turn, and the component along the axis changes its sign.
             let sign = |i: usize| {
-                if (i / m / 2 + i % m) % 2 == 0 {
+                if (i / m / 2 + i % m).is_multiple_of(2) {
                     1.0
                 } else {
                     -1.0
