@@ -13,8 +13,8 @@ impl BlankGrid {
     /// Divides the blank `region` inside `interface_radius`, under `tooth_count` teeth with `elements_per_tooth` elements on the
     /// interface circle for each at the standard level. `face_width` is the thickness beside the web.
     ///
-    /// A blank without holes is divided by one pitch, a pattern of round holes by the sector of one hole, and a ring of equal openings drawn by contours, such as
-    /// those between spokes, by triangles in the sector of one opening; any other, and one whose web ends across the holes or close to them, as a whole. The frame is that of hole 0 of a pattern, so that patterns
+    /// A blank without holes is divided by one pitch, a pattern of round holes by the sector of one hole; any other, and one
+    /// whose web ends across the holes or close to them, as a whole. The frame is that of hole 0 of a pattern, so that patterns
     /// of any phase share their grid, and of the gear otherwise: turned by [`BlankRegion::phase`].
     ///
     /// # Errors
@@ -44,18 +44,6 @@ impl BlankGrid {
         }
         let elements = elements_per_tooth * f64::from(tooth_count.max(1));
         let region = settled(region.turned(-region.phase()));
-        let even = region.web_in(face_width).is_none_or(|web| {
-            let [inner, outer] = [web.inner_radius, web.outer_radius];
-            inner <= region.bore_radius && outer >= interface_radius
-        });
-        let by_sector = region.ring_of_contours().filter(|_| even).map(|count| {
-            let plate = (face_width, interface_radius);
-            Self::sector_of_triangles(&region, plate, elements, count, level)
-        });
-        // Where the sides of a sector run too close to an opening, all of it is divided.
-        if let Some(Ok(grid)) = by_sector {
-            return Ok(grid);
-        }
         Self::whole(&region, face_width, interface_radius, elements, level)
     }
 

@@ -44,22 +44,6 @@ impl BlankGrid {
         Self::triangles(region, plate, elements_per_turn, 1, level)
     }
 
-    /// Divides one of `sector_count` equal sectors of `region` into triangles, that about the x axis, which has hole 0 inside of it and no other. The web
-    /// has to leave the sector even.
-    ///
-    /// # Errors
-    ///
-    /// As [`BlankGrid::whole`].
-    pub(super) fn sector_of_triangles(
-        region: &BlankRegion,
-        plate: (f64, f64),
-        elements_per_turn: f64,
-        sector_count: u32,
-        level: GridLevel,
-    ) -> Result<Self, GridError> {
-        Self::triangles(region, plate, elements_per_turn, sector_count, level)
-    }
-
     fn triangles(
         region: &BlankRegion,
         (face_width, interface_radius): (f64, f64),

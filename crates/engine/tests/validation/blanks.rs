@@ -693,7 +693,7 @@ fn slender_spokes_turn_as_beams_that_are_clamped_at_both_ends() {
 }
 
 #[test]
-fn blanks_on_spokes_settle_and_their_sectors_are_the_whole() {
+fn blanks_on_spokes_settle() {
     let region = region(
         spokes(4e-3, 2e-3, [20e-3, 39e-3])
             .openings()
@@ -710,24 +710,6 @@ fn blanks_on_spokes_settle_and_their_sectors_are_the_whole() {
         println!("{orders} orders: {first:.1e}, then {second:.1e}");
         assert!(second < bound && second < first / 6.0);
     }
-    let grid = of_region(&region, GridLevel::Coarse);
-    assert_eq!(grid.sector_count, 6);
-    let by_sector = condensed(&grid, 24);
-    let joined = apart(
-        &condensed(&grid.unrolled(), 24).stiffness,
-        &by_sector.stiffness,
-    );
-    // Roundings of two eliminations in another order.
-    assert!(joined < 1e-9, "{joined:e}");
-    let [whole, sectors] = [
-        whole(&region, GridLevel::Standard),
-        of_region(&region, GridLevel::Standard),
-    ]
-    .map(|grid| condensed(&grid, 24));
-    let off = apart(&whole.stiffness, &sectors.stiffness_at(region.phase()));
-    println!("sectors joined: {joined:.1e}; whole and by sectors: {off:.1e}");
-    // Two divisions of one blank, as far as each has settled.
-    assert!(off < 5e-3);
 }
 
 #[test]

@@ -100,11 +100,9 @@ impl BlankRegion {
         self
     }
 
-    /// The angle of hole 0 of a pattern, or of a ring of contours; 0 for any other blank.
+    /// The angle of hole 0 of a pattern; 0 for any other blank.
     pub fn phase(&self) -> f64 {
-        let ring = || self.ring_of_contours().map(|_| self.holes[0].angle);
-        let pattern = self.pattern().map(|pattern| pattern.phase);
-        pattern.or_else(ring).unwrap_or(0.0)
+        self.pattern().map_or(0.0, |pattern| pattern.phase)
     }
 
     /// The holes that are equal but for their angle, to within `slack`.
