@@ -13,10 +13,8 @@ use meshwright_engine::assembly::{Blanks, FaceResolution, MakeAll, Modeling, Pai
 use meshwright_engine::contact::positions::{contacts, contacts_keeping};
 use meshwright_engine::contact::{ContactError, FlankLoad, MeshContact, PositionError, WarmStart};
 use meshwright_engine::gear::{
-    Alignment, GearData, GearPair, Material, Member, Rack, SolidPair, SpurGear,
-    TipEdge, Web,
+    Alignment, GearData, GearPair, Material, Member, Rack, SolidPair, SpurGear, TipEdge, Web,
 };
-use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
 use meshwright_engine::ring::annulus::Imposed;
 use meshwright_engine::run::{Run, Stopped};
