@@ -138,7 +138,7 @@ fn a_submission_with_other_fields_or_words_has_another_version() {
         (DOCUMENT_VERSION, sha256_hex(told.join("\n")).as_str()),
         (
             3,
-            "8acf12e762c2a4a04bbe40b91d43258bb1aa51abb60af5fb19cd7b3712c27186"
+            "df866cb39f28ddef37140e08e113f5a18a17353848114aa50219e2f581051f3a"
         ),
         "{told:#?}"
     );
