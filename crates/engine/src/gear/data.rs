@@ -80,7 +80,7 @@ pub enum GearError {
         largest: f64,
     },
     /// The protuberance begins too near to the hob's tip, or above its reference line.
-    #[error("the protuberance begins at {height} m; it must between {least} m and {largest} m")]
+    #[error("the protuberance begins at {height} m; it must be between {least} m and {largest} m")]
     ProtuberanceHeight {
         /// The height asked for, from the hob's tip line.
         height: f64,
