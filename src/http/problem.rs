@@ -23,7 +23,7 @@ const PROBLEM_JSON: HeaderValue = HeaderValue::from_static("application/problem+
 
 /// A problem, and when it may be over.
 pub(super) struct Refusal {
-    problem: Problem,
+    problem: Box<Problem>,
     retry_after: Option<Duration>,
 }
 
@@ -48,7 +48,7 @@ impl Refusal {
 
     fn until(wait: Duration, detail: String) -> Self {
         Self {
-            problem: Problem::new(Code::RateLimited, detail),
+            problem: Box::new(Problem::new(Code::RateLimited, detail)),
             retry_after: Some(wait),
         }
     }
@@ -57,7 +57,7 @@ impl Refusal {
 impl<E: Into<Problem>> From<E> for Refusal {
     fn from(error: E) -> Self {
         Self {
-            problem: error.into(),
+            problem: Box::new(error.into()),
             retry_after: None,
         }
     }
@@ -67,7 +67,9 @@ impl IntoResponse for Refusal {
     fn into_response(self) -> Response {
         let mut response = render(&self.problem, HeaderMap::new());
         // `shape` finds it here and completes its links.
-        response.extensions_mut().insert(Arc::new(self.problem));
+        response
+            .extensions_mut()
+            .insert(Arc::<Problem>::from(self.problem));
         if let Some(wait) = self.retry_after {
             // Whole seconds, never before the time.
             let seconds = wait.as_secs_f64().ceil().max(1.0) as u64;

@@ -463,7 +463,7 @@ fn csv(curves: &[CurveColumns]) -> String {
     let present = |column: &usize| cells.iter().any(|cells| cells[*column].1.is_some());
     let columns = cells.first().map_or(0, |cells| cells.len());
     let columns: Vec<usize> = (0..columns).filter(present).collect();
-    let mut text = CsvWriter::new();
+    let mut text = CsvWriter::default();
     text.text("output_torque_n_m");
     for &column in &columns {
         text.text(cells[0][column].0);

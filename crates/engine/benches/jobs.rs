@@ -303,7 +303,7 @@ fn helical(web: bool, hole_circle: Option<f64>) -> Case {
         at_each_position: false,
         cure: false,
     };
-    case.model = Model::Faces(faces, FaceHoles::Whole);
+    case.model = Model::Faces(Box::new(faces), FaceHoles::Whole);
     case
 }
 

@@ -10,9 +10,9 @@ pub struct CsvWriter {
     line: Vec<String>,
 }
 
-impl CsvWriter {
+impl Default for CsvWriter {
     /// An empty table.
-    pub fn new() -> Self {
+    fn default() -> Self {
         let builder = csv::WriterBuilder::new()
             .terminator(csv::Terminator::CRLF)
             .flexible(true)
@@ -22,7 +22,9 @@ impl CsvWriter {
             line: Vec::new(),
         }
     }
+}
 
+impl CsvWriter {
     /// A cell of text, which may be anybody's.
     pub fn text(&mut self, text: &str) {
         self.line.push(neutral(text).into_owned());
@@ -126,7 +128,7 @@ mod tests {
 
     #[test]
     fn cells_are_quoted_where_they_have_to_be() {
-        let mut table = CsvWriter::new();
+        let mut table = CsvWriter::default();
         for text in ["a, \"b\"", "=1", "plain"] {
             table.text(text);
         }

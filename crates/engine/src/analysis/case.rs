@@ -107,7 +107,7 @@ pub enum Model {
     /// Elastic gears in their transverse section.
     Section(SectionHoles),
     /// Elastic gears along their faces.
-    Faces(Faces, FaceHoles),
+    Faces(Box<Faces>, FaceHoles),
     /// Formulas for what gears yield, on the theoretical lines of contact: eqs. 4 and 5. They see no holes.
     Formulas(Formulas),
 }
@@ -233,9 +233,9 @@ impl Case {
                     let faces = Faces {
                         pair: faces.pair.as_drawn(),
                         cure: false,
-                        ..faces.clone()
+                        ..(**faces).clone()
                     };
-                    Model::Faces(faces, FaceHoles::FirstOrder)
+                    Model::Faces(Box::new(faces), FaceHoles::FirstOrder)
                 }
                 other => other.clone(),
             },

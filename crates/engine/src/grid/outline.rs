@@ -14,14 +14,6 @@ pub(super) enum Outline {
     },
     /// The edge of a hole, from its outermost point at its own angle, or from the first corner of its contour.
     Edge(Hole),
-    /// The edge of a sector of a ring about the x axis, from its clockwise corner on the bore: outward, along the outer circle, inward, and back along
-    /// the bore.
-    Sector {
-        /// The inner and the outer radius.
-        radii: [f64; 2],
-        /// Half its angle.
-        half: f64,
-    },
 }
 
 impl Outline {
@@ -33,9 +25,6 @@ impl Outline {
                 Some(contour) => contour.length(),
                 None => 2.0 * hole.circle_radius * hole.span() + TAU * hole.half_width(),
             },
-            Self::Sector { radii, half } => {
-                sector_corners(*radii, *half)[2] + 2.0 * half * radii[0]
-            }
         }
     }
 
@@ -44,10 +33,6 @@ impl Outline {
         match self {
             Self::Circle { .. } => Vec::new(),
             Self::Edge(hole) => hole.contour().map_or_else(Vec::new, Contour::corners),
-            Self::Sector { radii, half } => {
-                let [side, arc, left] = sector_corners(*radii, *half);
-                [0.0, side, arc, left].map(|length| (length, true)).into()
-            }
         }
     }
 
@@ -78,7 +63,7 @@ impl Outline {
     /// none.
     pub(super) fn distance_across(&self, point: Vector) -> f64 {
         match self {
-            Self::Circle { .. } | Self::Sector { .. } => f64::INFINITY,
+            Self::Circle { .. } => f64::INFINITY,
             Self::Edge(hole) => hole.contour().map_or(f64::INFINITY, |contour| {
                 contour.distance_across(hole.own(point))
             }),
@@ -90,20 +75,6 @@ impl Outline {
         match self {
             Self::Circle { radius } => *radius * radial(length / radius - PI),
             Self::Edge(hole) => edge_point(hole, length),
-            Self::Sector { radii, half } => {
-                let [inner, outer] = *radii;
-                let [side, arc, left] = sector_corners(*radii, *half);
-                if length <= side {
-                    (inner + length) * radial(-half)
-                } else if length <= arc {
-                    outer * radial((length - side) / outer - half)
-                } else if length <= left {
-                    // As far in as the right side is out, to the digit.
-                    (inner + (left - length)) * radial(*half)
-                } else {
-                    inner * radial(half - (length - left) / inner)
-                }
-            }
         }
     }
 
@@ -112,21 +83,8 @@ impl Outline {
         match self {
             Self::Circle { radius } => point.norm() - radius,
             Self::Edge(hole) => hole.distance_to(point),
-            Self::Sector { radii, half } => {
-                let [inner, outer] = radii.map(|radius| point.norm() - radius);
-                let off = point.y.atan2(point.x).abs() - half;
-                let beside = point.norm() * off.clamp(-PI / 2.0, PI / 2.0).sin();
-                outer.max(-inner).max(beside)
-            }
         }
     }
-}
-
-/// The lengths at which the edge of a sector turns, but for its beginning.
-fn sector_corners([inner, outer]: [f64; 2], half: f64) -> [f64; 3] {
-    let side = outer - inner;
-    let arc = side + 2.0 * half * outer;
-    [side, arc, arc + side]
 }
 
 /// Below this sine of the angle between them, two curves count as touching rather than crossing: an element between them

@@ -43,44 +43,6 @@ impl Outlines {
         outlines
     }
 
-    /// Divides the edge of a `sector`, with equal radii on both sides, and the boundaries within.
-    pub(super) fn of_sector(sector: &Outline, within: &[Boundary], sizes: &Sizes) -> Self {
-        let mut outlines = Self {
-            points: Vec::new(),
-            chains: Vec::new(),
-        };
-        let corners: Vec<f64> = sector.corners().into_iter().map(|(s, _)| s).collect();
-        let own_size = within
-            .iter()
-            .map(Boundary::least_size)
-            .fold(f64::INFINITY, f64::min);
-        let mut lengths = sizes.divide(sector, own_size, LEAST_AROUND, &corners[1..]);
-        // The left side is the right one backwards.
-        let right = lengths
-            .iter()
-            .copied()
-            .filter(|s| *s > 0.0 && *s < corners[1]);
-        let left: Vec<f64> = right.map(|s| corners[3] - s).collect();
-        lengths.retain(|s| *s <= corners[2] || *s >= corners[3]);
-        lengths.extend(left);
-        lengths.sort_by(f64::total_cmp);
-        let nodes = lengths
-            .iter()
-            .map(|s| outlines.node(sector.point(*s)))
-            .collect();
-        outlines.chains.push(Chain {
-            outline: sector.clone(),
-            nodes,
-            lengths,
-            closed: true,
-            bounds: true,
-        });
-        for boundary in within {
-            outlines.add_boundary(boundary, &[], &mut [], sizes);
-        }
-        outlines
-    }
-
     /// The points, and the chains that stand on them: boundaries first.
     pub(super) fn finish(self) -> (Vec<Vector>, Vec<Chain>) {
         (self.points, self.chains)

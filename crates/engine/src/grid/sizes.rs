@@ -61,8 +61,6 @@ pub(super) struct Sizes {
     pub(super) boundaries: Vec<Boundary>,
     /// What all sizes are multiplied by.
     pub(super) scale: f64,
-    /// The edge of the sector that is divided, if it is no whole: a side of it is no boundary of the material.
-    pub(super) within: Option<Outline>,
 }
 
 impl Sizes {
@@ -84,14 +82,9 @@ impl Sizes {
 
     /// Whether `point` stands within the material by `margin`.
     pub(super) fn is_inside(&self, point: Vector, margin: f64) -> bool {
-        let within = self.within.iter();
-        within
-            .map(|edge| -edge.distance(point))
-            .all(|clearance| clearance >= margin)
-            && self
-                .boundaries
-                .iter()
-                .all(|boundary| boundary.clearance(point) >= margin)
+        self.boundaries
+            .iter()
+            .all(|boundary| boundary.clearance(point) >= margin)
     }
 
     /// The lengths along `outline` that divide it into elements of these sizes, from 0 up to but without its whole length:
@@ -152,7 +145,6 @@ mod tests {
         Sizes {
             boundaries: vec![boundary(1.0, 0.06, true), boundary(0.3, 0.1, false)],
             scale: 1.0,
-            within: None,
         }
     }
 

@@ -40,26 +40,12 @@ impl BlankGrid {
         elements_per_turn: f64,
         level: GridLevel,
     ) -> Result<Self, GridError> {
-        let plate = (face_width, interface_radius);
-        Self::triangles(region, plate, elements_per_turn, 1, level)
-    }
-
-    fn triangles(
-        region: &BlankRegion,
-        (face_width, interface_radius): (f64, f64),
-        elements_per_turn: f64,
-        sector_count: u32,
-        level: GridLevel,
-    ) -> Result<Self, GridError> {
         check(region, interface_radius)?;
         let region = &BlankRegion {
             web: region.web_in(face_width),
             ..region.clone()
         };
-        let plan = Plan {
-            sector_count,
-            ..Plan::new(region, interface_radius, elements_per_turn)
-        };
+        let plan = Plan::new(region, interface_radius, elements_per_turn);
         let part = region.web.map_or(1.0, |web| web.thickness / face_width);
         let mut last = GridError::Distorted {
             smallest_jacobian: f64::NAN,
@@ -124,8 +110,6 @@ fn check(region: &BlankRegion, interface_radius: f64) -> Result<(), GridError> {
 struct Plan {
     region: BlankRegion,
     boundaries: Vec<Boundary>,
-    /// The number of equal sectors of which one is divided.
-    sector_count: u32,
 }
 
 impl Plan {
@@ -188,11 +172,7 @@ impl Plan {
                 around: false,
             }
         }));
-        Self {
-            region,
-            boundaries,
-            sector_count: 1,
-        }
+        Self { region, boundaries }
     }
 
     /// The grid with all sizes times `scale`, in interface radii; `None` where boundaries cross in their divisions.
@@ -200,32 +180,15 @@ impl Plan {
         let sizes = Sizes {
             boundaries: self.boundaries.clone(),
             scale,
-            within: self.sector(),
         };
-        let outlines = match &sizes.within {
-            // The boundaries are the interface circle, the bore, hole 0 and the others.
-            Some(sector) => Outlines::of_sector(sector, &self.boundaries[2..3], &sizes),
-            None => Outlines::new(&self.boundaries, &self.web_edges(), &sizes),
-        };
-        let (points, chains) = outlines.finish();
+        let (points, chains) = Outlines::new(&self.boundaries, &self.web_edges(), &sizes).finish();
         let mut net = TriangleNet::new(points, chains, &sizes)?;
         for _ in 0..level.halvings() {
             net.halve();
         }
         let (mut grid, chains) = net.into_grid();
         self.thin(&mut grid, web_part);
-        Some(match self.sector() {
-            Some(_) => self.sector_blank(grid, chains),
-            None => self.blank(grid, chains),
-        })
-    }
-
-    /// The edge of the sector that is divided; `None` where all is.
-    fn sector(&self) -> Option<Outline> {
-        (self.sector_count > 1).then(|| Outline::Sector {
-            radii: [self.region.bore_radius, 1.0],
-            half: std::f64::consts::PI / f64::from(self.sector_count),
-        })
+        Some(self.blank(grid, chains))
     }
 
     /// The circles on which the thickness changes, within the material.
@@ -275,44 +238,6 @@ impl Plan {
             bore_nodes,
             side_nodes: (Vec::new(), Vec::new()),
             hole_edges: nodes.take(self.region.holes.len()).collect(),
-        }
-    }
-}
-
-impl Plan {
-    fn sector_blank(&self, grid: Grid, mut chains: Vec<Chain>) -> BlankGrid {
-        let edge = chains.remove(0);
-        let corners: Vec<f64> = edge.outline.corners().into_iter().map(|(s, _)| s).collect();
-        let half = std::f64::consts::PI / f64::from(self.sector_count);
-        // Between two lengths, with or without both ends.
-        let along = |from: f64, to: f64, ends: bool| -> Vec<(u32, f64)> {
-            let places = edge.nodes.iter().copied().zip(edge.lengths.iter().copied());
-            let within = |s: f64| (s > from && s < to) || (ends && (s == from || s == to));
-            places.filter(|(_, s)| within(*s)).collect()
-        };
-        let nodes = |places: Vec<(u32, f64)>| -> Vec<u32> {
-            places.into_iter().map(|(node, _)| node).collect()
-        };
-        let arc = along(corners[1], corners[2], true);
-        let arc_angles = arc.iter().map(|(_, s)| (s - corners[1]) - half).collect();
-        let mut left = nodes(along(corners[2], corners[3], false));
-        left.reverse();
-        // The edge ends where it begins.
-        let mut bore = nodes(along(corners[3], f64::INFINITY, true));
-        bore.push(edge.nodes[0]);
-        bore.reverse();
-        BlankGrid {
-            grid,
-            sector_count: self.sector_count,
-            arc_angles,
-            arc_nodes: nodes(arc),
-            bore_nodes: bore,
-            side_nodes: (nodes(along(0.0, corners[1], false)), left),
-            hole_edges: chains
-                .into_iter()
-                .take(1)
-                .map(|chain| chain.nodes)
-                .collect(),
         }
     }
 }

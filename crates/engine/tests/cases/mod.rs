@@ -178,7 +178,7 @@ pub(crate) fn along_faces(
         cure: false,
     };
     Case {
-        model: Model::Faces(faces, FaceHoles::Whole),
+        model: Model::Faces(Box::new(faces), FaceHoles::Whole),
         ..case(section, output_torques)
     }
 }

@@ -23,7 +23,7 @@ impl CsvTable {
 
     /// The line of names.
     pub fn header(&self) -> String {
-        let mut text = CsvWriter::new();
+        let mut text = CsvWriter::default();
         text.text("label");
         for pointer in &self.pointers {
             text.text(&format!("changes.{pointer}"));
@@ -47,7 +47,7 @@ impl CsvTable {
 
     /// The lines of some rows.
     pub fn lines<'a>(&self, rows: impl IntoIterator<Item = &'a TableRow>) -> String {
-        let mut text = CsvWriter::new();
+        let mut text = CsvWriter::default();
         for row in rows {
             if row.curves.is_empty() {
                 self.line(&mut text, row, None);

@@ -112,15 +112,17 @@ impl Document {
         self.fill_in_table();
         self.check_forces(&pair, errors);
         self.check_size(purpose, &pair, errors);
-        let faces = |pair| Faces {
-            pair,
-            resolution: FaceResolution {
-                face_order: self.resolution.face_order as usize,
-                ..FaceResolution::STANDARD
-            },
-            slices: self.resolution.face_slices as usize,
-            at_each_position: self.face_load == FaceRows::Positions,
-            cure: true,
+        let faces = |pair| {
+            Box::new(Faces {
+                pair,
+                resolution: FaceResolution {
+                    face_order: self.resolution.face_order as usize,
+                    ..FaceResolution::STANDARD
+                },
+                slices: self.resolution.face_slices as usize,
+                at_each_position: self.face_load == FaceRows::Positions,
+                cure: true,
+            })
         };
         let model = match (self.method, solid) {
             (Method::ThreeDimensionalProjected, Some(solid)) => {

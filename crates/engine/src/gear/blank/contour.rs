@@ -585,7 +585,10 @@ pub(super) fn check(sides: &[Side]) -> Result<(), ContourFault> {
         .map(|side| side.from.norm())
         .fold(0.0, f64::max);
     let slack = SAME * size;
-    if let Some(side) = sides.iter().position(|side| !(side.length > slack)) {
+    if let Some(side) = sides
+        .iter()
+        .position(|side| side.length.is_nan() || side.length <= slack)
+    {
         return Err(ContourFault::NoLength { side });
     }
     if count < 2 || sides.iter().all(|side| side.bulge == 0.0) && count < 3 {
@@ -732,6 +735,7 @@ fn turned(v: Vector, angle: f64) -> Vector {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gear::Hole;
     use crate::gear::Spokes;
     use crate::gear::blank::hole::tests::holes;
 

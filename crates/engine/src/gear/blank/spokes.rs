@@ -61,7 +61,7 @@ impl Spokes {
         }
         let pitch = TAU / f64::from(self.count);
         let sin = (pitch / 2.0).sin();
-        if !(half < inner * sin) {
+        if half.is_nan() || half >= inner * sin {
             let largest_width = 2.0 * inner * sin;
             return Err(SpokesFault::Overlap { largest_width });
         }

@@ -10,8 +10,6 @@ use crate::gear::gcd;
 const ALIKE: f64 = 1e-12;
 /// What holes of a drawing may differ by and still be meant as equal, likewise: its coordinates have six or more digits.
 const DRAWN: f64 = 1e-6;
-/// What part of its sector an opening leaves free on either side, at least, if the sector is to stand for all of them.
-const WITHIN: f64 = 1e-3;
 
 /// The turns that map a blank onto itself.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -57,22 +55,6 @@ impl BlankRegion {
             radius: first.half_width(),
             phase: first.angle,
         })
-    }
-
-    /// The number of equal openings drawn by a contour, equally spaced, if that is what the holes are and each stays within its sector; `None` otherwise.
-    pub fn ring_of_contours(&self) -> Option<u32> {
-        let first = self.holes.first()?;
-        first.contour()?;
-        let Symmetry { count, orbits } = self.symmetry();
-        let reach = std::f64::consts::PI / f64::from(count.max(1));
-        let stays = || {
-            let points = first.edge(WITHIN * first.circle_radius).into_iter();
-            let angles = points
-                .map(|point| first.own(point))
-                .map(|own| own.y.atan2(own.x));
-            angles.fold(0.0, |most: f64, angle| most.max(angle.abs())) < (1.0 - WITHIN) * reach
-        };
-        (count > 1 && orbits.len() == 1 && stays()).then_some(count)
     }
 
     /// The same blank with holes that are equal and equally spaced to within the digits of a drawing made so to the last digit: a hole stands by the first of its kind.
