@@ -229,7 +229,10 @@ impl Gear<'_> {
         }
         for (attribute, value) in [
             (own::HOLES, &blank["holes"]),
+            (own::SPOKES, &blank["spokes"]),
+            (own::OUTLINE, &blank["outline"]),
             (own::SHAFT, &blank["shaft"]),
+            (own::PROTUBERANCE, &self.document["protuberance"]),
             (own::DEVIATIONS, &self.document["tooth_deviations"]),
         ] {
             if !value.is_null() {

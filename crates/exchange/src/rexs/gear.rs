@@ -295,6 +295,9 @@ impl<'a> Gear<'a> {
         if !leads.is_empty() {
             put("lead_modifications", Value::Array(leads), None);
         }
+        if let Some(protuberance) = reading.json(self.gear, own::PROTUBERANCE) {
+            put("protuberance", protuberance, of_gear(own::PROTUBERANCE));
+        }
         if let Some(deviations) = reading.json(self.gear, own::DEVIATIONS) {
             put("tooth_deviations", deviations, of_gear(own::DEVIATIONS));
         }
@@ -594,9 +597,15 @@ impl<'a> Gear<'a> {
                 (radius, blank)
             }
         };
-        if let Some(holes) = reading.json(self.gear, own::HOLES) {
-            reading.from(format!("{pointer}/holes"), self.gear, own::HOLES);
-            blank["holes"] = holes;
+        for (field, attribute) in [
+            ("holes", own::HOLES),
+            ("spokes", own::SPOKES),
+            ("outline", own::OUTLINE),
+        ] {
+            if let Some(openings) = reading.json(self.gear, attribute) {
+                reading.from(format!("{pointer}/{field}"), self.gear, attribute);
+                blank[field] = openings;
+            }
         }
         if let Some(web) = self.web(radius, root) {
             blank["web"] = web;

@@ -32,6 +32,12 @@ mod own {
     pub(super) const METHOD: &str = "custom_meshwright_method";
     /// Of a gear: the holes of the blank, the JSON of a submission.
     pub(super) const HOLES: &str = "custom_meshwright_holes";
+    /// Of a gear: the openings between the spokes of the blank, the JSON of a submission.
+    pub(super) const SPOKES: &str = "custom_meshwright_spokes";
+    /// Of a gear: the openings of the blank by their outlines, the JSON of a submission.
+    pub(super) const OUTLINE: &str = "custom_meshwright_outline";
+    /// Of a gear: the protuberance of its hob, the JSON of a submission.
+    pub(super) const PROTUBERANCE: &str = "custom_meshwright_protuberance";
     /// Of a gear that is of one piece with its shaft: that, the JSON of a submission.
     pub(super) const SHAFT: &str = "custom_meshwright_shaft";
     /// Of a gear: the deviations of the teeth, the JSON of a submission.

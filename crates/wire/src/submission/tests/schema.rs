@@ -140,7 +140,7 @@ fn a_submission_with_other_fields_or_words_has_another_version() {
         (DOCUMENT_VERSION, sha256_hex(told.join("\n")).as_str()),
         (
             3,
-            "500e1772dc4b34b5e416c08867ea2129de0b5fb975dfd9eb7cff00072e339701"
+            "b7a3ded6ccb9c153c65532e0550ab944c5337e021a4ef71f8f4c79ebeee80d6c"
         ),
         "{told:#?}"
     );
