@@ -1,6 +1,7 @@
 //! Random numbers, alike on every machine.
 
-use meshwright_sample::normal::quantile;
+use std::f64::consts::TAU;
+
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 
@@ -28,8 +29,9 @@ impl Chance {
         self.even() < probability
     }
 
-    /// A standard normal deviate.
+    /// A standard normal deviate (Box and Muller).
     pub(crate) fn normal(&mut self) -> f64 {
-        quantile(self.even())
+        let (one, other) = (1.0 - self.even(), self.even());
+        (-2.0 * libm::log(one)).sqrt() * libm::cos(TAU * other)
     }
 }
