@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::gear::{Contour, Hole, Side, Vector, radial, tangential};
+use crate::gear::{Contour, Hole, Side, Vector, radial, turned};
 
 /// A closed curve, counter-clockwise.
 #[derive(Debug, Clone)]
@@ -34,6 +34,16 @@ impl Outline {
             Self::Circle { .. } => Vec::new(),
             Self::Edge(hole) => hole.contour().map_or_else(Vec::new, Contour::corners),
         }
+    }
+
+    /// Center and radius of a circle around all of a curve that is drawn by its sides; `None` of others.
+    pub(super) fn circle_around(&self) -> Option<(Vector, f64)> {
+        let Self::Edge(hole) = self else { return None };
+        hole.contour()?;
+        let center = hole.circle_radius * radial(hole.angle);
+        let sides = hole.sides().into_iter().map(|side| side.circle_around());
+        let reaches = sides.map(|(middle, radius)| (middle - center).norm() + radius);
+        Some((center, reaches.fold(0.0, f64::max)))
     }
 
     /// Its roundings, by the elements that there would be `around` a whole circle, and its pieces between two corners, by their length: each with
@@ -124,8 +134,7 @@ impl Outline {
 /// Half the outer arc, the counter-clockwise end, the inner arc, the clockwise end, and the other half of the outer arc.
 fn edge_point(hole: &Hole, length: f64) -> Vector {
     if let Some(contour) = hole.contour() {
-        let own = contour.point(length);
-        return own.x * radial(hole.angle) + own.y * tangential(hole.angle);
+        return turned(contour.point(length), hole.angle);
     }
     let (r, w, half) = (hole.circle_radius, hole.half_width(), hole.span() / 2.0);
     let [clockwise, counter_clockwise] = hole.ends();

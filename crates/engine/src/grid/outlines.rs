@@ -93,7 +93,7 @@ impl Outlines {
             apart
         });
         let through: Vec<f64> = crossings.iter().map(|(s, _)| *s).collect();
-        let lengths = sizes.divide(outline, boundary.least_size(), LEAST_AROUND, &through);
+        let lengths = sizes.divide(outline, boundary.least_size, LEAST_AROUND, &through);
         let nodes: Vec<u32> = lengths
             .iter()
             .map(|s| self.node(outline.point(*s)))

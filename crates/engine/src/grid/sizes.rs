@@ -30,27 +30,54 @@ pub(super) struct Boundary {
     /// Whether it goes around the material, or bounds an opening within.
     pub(super) around: bool,
     /// Parts of the curve that ask for a smaller size, and which.
-    pub(super) details: Vec<(Side, f64)>,
+    details: Vec<(Side, f64)>,
+    /// The least size that it asks for.
+    pub(super) least_size: f64,
+    /// Center and radius of a circle around all of a curve that has sides of its own.
+    circle: Option<(Vector, f64)>,
 }
 
 impl Boundary {
+    /// That of `outline`, along which triangles have `size`, and where it has details the sizes that these ask for.
+    pub(super) fn new(
+        outline: Outline,
+        size: f64,
+        around: bool,
+        details: Vec<(Side, f64)>,
+    ) -> Self {
+        let sizes = details.iter().map(|(_, size)| *size);
+        Self {
+            least_size: sizes.fold(size, f64::min),
+            circle: outline.circle_around(),
+            outline,
+            size,
+            around,
+            details,
+        }
+    }
+
+    /// How far off it `point` stands at least, as far as that is seen without a look at its sides.
+    fn least_distance(&self, point: Vector) -> f64 {
+        let off = |(center, radius): (Vector, f64)| (point - center).norm() - radius;
+        self.circle.map_or(f64::NEG_INFINITY, off)
+    }
+
     /// How far within the material `point` stands of it.
     fn clearance(&self, point: Vector) -> f64 {
         let distance = self.outline.distance(point);
         if self.around { -distance } else { distance }
     }
 
-    /// The size that it asks for at `point`, so far off it.
-    fn asks(&self, point: Vector, distance: f64) -> f64 {
+    /// The size that it asks for at `point`, so far off it, where that is less than `size`.
+    fn asks(&self, point: Vector, distance: f64, size: f64) -> f64 {
+        let size = size.min(self.size + GROWTH * distance);
+        // Details are parts of the curve, and no nearer.
+        if self.least_size + GROWTH * distance >= size {
+            return size;
+        }
         let details = self.details.iter();
         let sizes = details.map(|(side, size)| size + GROWTH * side.distance_to(point));
-        sizes.fold(self.size + GROWTH * distance, f64::min)
-    }
-
-    /// The least size that it asks for.
-    pub(super) fn least_size(&self) -> f64 {
-        let sizes = self.details.iter().map(|(_, size)| *size);
-        sizes.fold(self.size, f64::min)
+        sizes.fold(size, f64::min)
     }
 }
 
@@ -69,8 +96,12 @@ impl Sizes {
         let mut size = LARGEST * point.norm();
         let (mut nearest, mut second) = (f64::INFINITY, f64::INFINITY);
         for boundary in &self.boundaries {
+            let least = boundary.least_distance(point);
+            if least >= second && boundary.least_size + GROWTH * least >= size {
+                continue;
+            }
             let distance = boundary.clearance(point).abs();
-            size = size.min(boundary.asks(point, distance));
+            size = boundary.asks(point, distance, size);
             second = second.min(distance.max(nearest));
             if distance < nearest {
                 nearest = distance;
@@ -82,9 +113,9 @@ impl Sizes {
 
     /// Whether `point` stands within the material by `margin`.
     pub(super) fn is_inside(&self, point: Vector, margin: f64) -> bool {
-        self.boundaries
-            .iter()
-            .all(|boundary| boundary.clearance(point) >= margin)
+        self.boundaries.iter().all(|boundary| {
+            boundary.least_distance(point) >= margin || boundary.clearance(point) >= margin
+        })
     }
 
     /// The lengths along `outline` that divide it into elements of these sizes, from 0 up to but without its whole length:
@@ -136,11 +167,8 @@ mod tests {
     use super::*;
 
     fn ring() -> Sizes {
-        let boundary = |radius, size, around| Boundary {
-            outline: Outline::Circle { radius },
-            size,
-            around,
-            details: Vec::new(),
+        let boundary = |radius, size, around| {
+            Boundary::new(Outline::Circle { radius }, size, around, Vec::new())
         };
         Sizes {
             boundaries: vec![boundary(1.0, 0.06, true), boundary(0.3, 0.1, false)],

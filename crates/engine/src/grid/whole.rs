@@ -150,27 +150,18 @@ impl Plan {
         let (interface, turn) = (circle(1.0), std::f64::consts::TAU);
         let coarse = GridLevel::Coarse.count(elements_per_turn).max(LEAST_AROUND);
         let mut boundaries = vec![
-            Boundary {
-                outline: interface,
-                size: turn / coarse as f64,
-                around: true,
-                details: Vec::new(),
-            },
-            Boundary {
-                outline: circle(region.bore_radius),
-                size: around(region.bore_radius),
-                around: false,
-                details: Vec::new(),
-            },
+            Boundary::new(interface, turn / coarse as f64, true, Vec::new()),
+            Boundary::new(
+                circle(region.bore_radius),
+                around(region.bore_radius),
+                false,
+                Vec::new(),
+            ),
         ];
         boundaries.extend(region.holes.iter().map(|hole| {
             let outline = Outline::Edge(hole.clone());
-            Boundary {
-                details: outline.details(AROUND_HOLE),
-                outline,
-                size: around(hole.half_width()),
-                around: false,
-            }
+            let details = outline.details(AROUND_HOLE);
+            Boundary::new(outline, around(hole.half_width()), false, details)
         }));
         Self { region, boundaries }
     }

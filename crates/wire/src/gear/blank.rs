@@ -23,7 +23,7 @@ document! {
         pub(super) spokes: Option<SpokesDocument> = absent(nested("Spokes"), "none").left_out(),
         /// Openings of any shape, by closed loops of lines and arcs. A loop around an opening runs clockwise. A clockwise circle about the axis is the bore and
         /// has its radius; a counter-clockwise one goes around the blank and says no more, because the teeth end the gear. Loops that are circles, or kidneys
-        /// along a circle about the axis, are holes of that shape.
+        /// along a circle about the axis, are holes of that shape. All loops together have at most 1,000 sides.
         pub(super) outline: Option<Vec<Vec<SideDocument>>> = absent(LOOPS, "none").left_out(),
         /// A ring that is thinner, or thicker, than the face is wide.
         pub(super) web: Option<WebDocument> = absent(nested("Web"), "none"),

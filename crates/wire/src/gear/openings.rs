@@ -25,6 +25,9 @@ const MOST_SIDES: usize = 200;
 /// The most loops of an outline: the openings, the bore and the circle around.
 const MOST_LOOPS: usize = MOST_HOLES + 2;
 
+/// The most sides of all loops together: each place of a grid is looked at from many of them.
+const MOST_SIDES_IN_ALL: usize = 1000;
+
 /// How far the bore of an outline may be from the bore radius, as a part of it: the digits of a drawing.
 const DIGITS: f64 = 1e-6;
 
@@ -261,14 +264,25 @@ impl BlankDocument {
         Ok(openings)
     }
 
-    /// That there are more holes and openings than a blank may have.
-    pub(super) fn too_many_holes(&self, pointer: &str) -> Option<FieldError> {
-        let spokes = self
-            .spokes
-            .as_ref()
-            .map_or(0, |spokes| spokes.count as usize);
+    /// The number of spokes, which is that of the openings between them.
+    fn spoke_count(&self) -> usize {
+        let spokes = self.spokes.as_ref();
+        spokes.map_or(0, |spokes| spokes.count as usize)
+    }
+
+    /// That there are more holes and openings than a blank may have, or more sides of these.
+    pub(super) fn too_many(&self, pointer: &str) -> Option<FieldError> {
+        let sides: usize = self.outline.iter().flatten().map(Vec::len).sum();
+        if sides > MOST_SIDES_IN_ALL {
+            let pointer = format!("{pointer}/blank/outline");
+            let detail = format!(
+                "{pointer} has {sides} sides; its loops have at most {MOST_SIDES_IN_ALL} together. An arc stands for many lines."
+            );
+            return Some(FieldError::new(pointer, Code::TooLarge, detail));
+        }
         let loops = self.outline.as_ref().map_or(0, Vec::len);
-        let count = self.holes.count() + spokes + loops.saturating_sub(MOST_LOOPS - MOST_HOLES);
+        let count =
+            self.holes.count() + self.spoke_count() + loops.saturating_sub(MOST_LOOPS - MOST_HOLES);
         if count <= MOST_HOLES {
             return None;
         }
@@ -283,11 +297,7 @@ impl BlankDocument {
     /// What drew the opening that the engine knows as `hole`; `None` if that is one of a pattern.
     pub(super) fn drawn_by(&self, hole: usize) -> Option<DrawnBy> {
         let index = hole.checked_sub(self.holes.count())?;
-        let spokes = self
-            .spokes
-            .as_ref()
-            .map_or(0, |spokes| spokes.count as usize);
-        let Some(index) = index.checked_sub(spokes) else {
+        let Some(index) = index.checked_sub(self.spoke_count()) else {
             return Some(DrawnBy::Spokes);
         };
         let outlined = self.outlined().ok()?;

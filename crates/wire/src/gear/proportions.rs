@@ -127,7 +127,7 @@ impl GearDocument {
             let place = format!("{pointer}/tooth_deviations");
             deviations.faults(&place, self.tooth_count, self.module_mm)
         });
-        let of_holes = self.blank.too_many_holes(pointer);
+        let of_holes = self.blank.too_many(pointer);
         of_tables.chain(of_deviations).chain(of_holes).collect()
     }
 
@@ -135,7 +135,7 @@ impl GearDocument {
     pub(super) fn without_lists(&self) -> Self {
         let mut gear = self.clone();
         gear.tooth_deviations = None;
-        if gear.blank.too_many_holes("").is_some() {
+        if gear.blank.too_many("").is_some() {
             gear.blank.holes = HolesDocument::None;
             (gear.blank.spokes, gear.blank.outline) = (None, None);
         }

@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 use super::moments::Moments;
-use crate::gear::{Vector, radial, tangential};
+use crate::gear::{Vector, radial, turned};
 
 /// Two lengths that differ by less, as a part of the reach of the curve, are equal: more than the digits that a drawing has.
 pub(super) const SAME: f64 = 1e-9;
@@ -101,6 +101,16 @@ impl Side {
         self.length
     }
 
+    /// Center and radius of a circle around it: that of its chord, or its own where it turns by more than half a turn.
+    pub(crate) fn circle_around(&self) -> (Vector, f64) {
+        if self.bulge.abs() > 1.0 {
+            (self.center, self.radius)
+        } else {
+            let half = (self.to - self.from) / 2.0;
+            (self.from + half, half.norm())
+        }
+    }
+
     /// How far off `point` is.
     pub fn distance_to(&self, point: Vector) -> f64 {
         (self.nearest_to(point) - point).norm()
@@ -118,9 +128,7 @@ impl Side {
         if self.bulge == 0.0 {
             return self.from + part * (self.to - self.from);
         }
-        let (sin, cos) = (part * self.turn()).sin_cos();
-        let arm = self.from - self.center;
-        self.center + Vector::new(cos * arm.x - sin * arm.y, sin * arm.x + cos * arm.y)
+        self.center + turned(self.from - self.center, part * self.turn())
     }
 
     /// The direction in which it runs at its beginning and at its end.
@@ -554,11 +562,18 @@ impl Contour {
 
 /// The material between the openings inside of two closed curves of `one` and `other`, negative where they overlap: then what one reaches into the other.
 pub(super) fn between(one: &[Side], other: &[Side]) -> f64 {
+    let around =
+        |sides: &[Side]| -> Vec<(Vector, f64)> { sides.iter().map(Side::circle_around).collect() };
+    let (circles, others) = (around(one), around(other));
     let mut least = f64::INFINITY;
     let mut meet = false;
-    for a in one {
-        for b in other {
-            let slack = SAME * a.from.norm();
+    for (a, (p, r)) in one.iter().zip(&circles) {
+        let slack = SAME * a.from.norm();
+        for (b, (q, s)) in other.iter().zip(&others) {
+            let apart = (p - q).norm() - r - s;
+            if apart > slack && apart > least {
+                continue;
+            }
             meet |= !a.meets(b, slack).is_empty();
             least = least.min(a.nearest(b).0);
         }
@@ -726,10 +741,6 @@ fn circles_meet((one, r): (Vector, f64), (other, s): (Vector, f64)) -> Vec<Vecto
 
 fn cross(a: Vector, b: Vector) -> f64 {
     a.x * b.y - a.y * b.x
-}
-
-fn turned(v: Vector, angle: f64) -> Vector {
-    v.x * radial(angle) + v.y * tangential(angle)
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 
 use super::contour::{Contour, Side, between};
 use super::moments::Moments;
-use crate::gear::{Vector, radial, tangential};
+use crate::gear::{Vector, radial, turned};
 
 /// The shape of a hole. Lengths are in meters, angles in radians.
 #[derive(Debug, Clone, PartialEq)]
@@ -121,7 +121,7 @@ impl Hole {
 
     /// A point of the frame of the gear in that of the hole, whose x axis runs through its middle.
     pub(crate) fn own(&self, point: Vector) -> Vector {
-        point.x * radial(-self.angle) + point.y * tangential(-self.angle)
+        turned(point, -self.angle)
     }
 
     /// The centers of the clockwise and of the counter-clockwise end; the center twice for a round hole.
@@ -183,7 +183,7 @@ impl Hole {
     pub fn moments_within(&self, radius: f64) -> Moments {
         if let Some(contour) = self.contour() {
             let own = contour.moments_within(radius);
-            let first = own.first.x * radial(self.angle) + own.first.y * tangential(self.angle);
+            let first = turned(own.first, self.angle);
             return Moments { first, ..own };
         }
         let (r, w, half) = (self.circle_radius, self.half_width(), self.span() / 2.0);

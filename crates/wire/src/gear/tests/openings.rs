@@ -162,6 +162,24 @@ fn spokes_that_do_not_fit_are_refused_where_they_stand_with_what_would_do() {
 }
 
 #[test]
+fn an_outline_has_a_thousand_sides_at_most() {
+    // Round openings by so many lines each.
+    let outline = |loops: u32, sides: u32| {
+        let polygon = |i: u32| -> Value {
+            let [x, y] = polar(31.0, f64::from(i) * 360.0 / f64::from(loops));
+            let corner = |k: u32| {
+                let [u, v] = polar(4.0, -f64::from(k) * 360.0 / f64::from(sides));
+                line(x + u, y + v)
+            };
+            (0..sides).map(corner).collect()
+        };
+        json!({ "outline": (0..loops).map(polygon).collect::<Value>() })
+    };
+    assert_eq!(told(&blank(&outline(10, 100))).blank.holes.len(), 10);
+    fault(&blank(&outline(10, 101)), "blank/outline", Code::TooLarge);
+}
+
+#[test]
 fn loops_that_bound_no_region_are_refused_at_their_side() {
     let square = |x: f64| {
         json!([
