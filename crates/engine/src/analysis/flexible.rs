@@ -79,6 +79,22 @@ fn sections<T>(
 }
 
 impl<T> Solved<T> {
+    /// What the `contacts` of `sweep` under `load` tell, with what was `kept` of them; `deltas` are those under another load.
+    fn of(
+        contacts: Vec<MeshContact>,
+        kept: Vec<T>,
+        (load, sweep): (f64, &Sweep),
+        deltas: impl Fn(f64) -> Result<Vec<f64>, AnalysisError>,
+    ) -> Result<Self, AnalysisError> {
+        let of_contacts = || contacts.iter().map(|contact| contact.stiffness).collect();
+        let stiffness = sweep.stiffness(load, of_contacts, deltas)?;
+        Ok(Self {
+            contacts,
+            kept,
+            stiffness,
+        })
+    }
+
     /// What is known at the `places` that they tell of.
     fn samples(&self, places: &[Place]) -> Vec<Sample> {
         let at = |place: &Place| self.contacts[place.contact].transmission_error;
@@ -89,23 +105,29 @@ impl<T> Solved<T> {
     }
 }
 
-/// Solves `sweep` under one load, unless the contacts of an equal pair are known, and keeps nothing beside them.
+/// Solves `sweep` under one load and keeps nothing beside its contacts. Those of a drawn pair are asked for once: all members of a population are made
+/// to one drawing, and no two of them alike.
 fn solved_once<T>(
     pair: &ModeledPair<'_>,
     load: f64,
     sweep: &Sweep,
 ) -> Result<Solved<T>, AnalysisError> {
-    let contacts = pair.contacts(load, &sweep.positions)?.to_vec();
-    let of_contacts = || contacts.iter().map(|contact| contact.stiffness).collect();
-    let stiffness = sweep.stiffness(load, of_contacts, |load| {
-        let contacts = pair.contacts(load, &sweep.positions)?;
-        let deltas = contacts.iter().map(|contact| contact.transmission_error);
-        Ok(deltas.collect())
-    })?;
-    Ok(Solved {
-        contacts,
-        kept: Vec::new(),
-        stiffness,
+    let Setup {
+        case,
+        deviations,
+        run,
+        ..
+    } = pair.setup;
+    let at = |load: f64| -> Result<Vec<MeshContact>, AnalysisError> {
+        if case.pair.is_as_drawn() {
+            return Ok(pair.contacts(load, &sweep.positions)?.to_vec());
+        }
+        let made = pair.model.made(deviations);
+        Ok(contacts_at(made, load, &sweep.positions, run)?)
+    };
+    Solved::of(at(load)?, Vec::new(), (load, sweep), |load| {
+        let deltas = at(load)?.into_iter();
+        Ok(deltas.map(|contact| contact.transmission_error).collect())
     })
 }
 
@@ -120,15 +142,9 @@ pub(super) fn solved<T: Send>(
     let made = model.made(setup.deviations);
     let middle = contacts_keeping(made, load, &sweep.positions, setup.run, keep)?;
     let (contacts, kept): (Vec<MeshContact>, Vec<T>) = middle.into_iter().unzip();
-    let of_contacts = || contacts.iter().map(|contact| contact.stiffness).collect();
-    let stiffness = sweep.stiffness(load, of_contacts, |load| {
+    Solved::of(contacts, kept, (load, sweep), |load| {
         let contacts = contacts_at(made, load, &sweep.positions, setup.run)?.into_iter();
         Ok(contacts.map(|contact| contact.transmission_error).collect())
-    })?;
-    Ok(Solved {
-        contacts,
-        kept,
-        stiffness,
     })
 }
 

@@ -8,7 +8,7 @@ use crate::run::Stopped;
 /// Why a part could not be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PartError {
-    /// Its grid could not be laid.
+    /// Its grid could not be made.
     #[error(transparent)]
     Grid(#[from] GridError),
     /// It could not be condensed.

@@ -738,7 +738,7 @@ mod tests {
                 filled
             };
             let filled: f64 = volume.elements.iter().map(of).sum();
-            // What is told ends at a shaft.
+            // Fields end at the radius of a shaft.
             let shaft = gear.shaft().map_or(0.0, |shaft| {
                 let [low, high] = shaft.heights;
                 0.5 * TAU * shaft.outer_radius.powi(2) * (high - low)
