@@ -7,7 +7,8 @@ const RISE: f64 = 1.5;
 /// power, so that rows are close where loads are light and even where they are not.
 const BETWEEN: f64 = 3.5;
 
-/// Parts of the largest load that stand between 0 and the others: pairs of teeth come to carry one after the other there. Tables of so few loads have none.
+/// Parts of the largest load that stand between 0 and the others, as far as these are larger: pairs of teeth come to carry one after the other there.
+/// Tables of so few loads have none.
 const LIGHT: ([f64; 2], usize) = ([7.5e-4, 6e-3], 7);
 
 /// The least rise of δ from row to row in m, less than an atom.
@@ -43,7 +44,14 @@ impl Ladder {
     /// The loads in N, rising from 0.
     pub fn loads(&self) -> Vec<f64> {
         let (light, few) = LIGHT;
-        let light = if self.count > few { &light[..] } else { &[] };
+        // The others begin lower the more there are.
+        let lightest = ((self.count - 1) as f64).powf(-RISE);
+        let wanted = if self.count > few {
+            light.partition_point(|part| *part < lightest)
+        } else {
+            0
+        };
+        let light = &light[..wanted];
         let heavy = self.count - 1 - light.len();
         let heavy = (1..=heavy).map(|j| (j as f64 / heavy as f64).powf(RISE));
         let parts = [0.0].into_iter().chain(light.iter().copied()).chain(heavy);
@@ -652,6 +660,19 @@ pub(super) mod tests {
             };
             let rise = sign * (flank.delta[2][1] - flank.delta[1][1]);
             assert!(rise > 0.0 && rise < 2.0 * APART, "{rise:e}");
+        }
+    }
+
+    #[test]
+    fn loads_of_a_table_rise_however_many_there_are() {
+        for count in 2..400 {
+            let loads = Ladder {
+                count,
+                largest: 3.0,
+            }
+            .loads();
+            assert_eq!((loads.len(), loads[0], loads[count - 1]), (count, 0.0, 3.0));
+            assert!(loads.is_sorted_by(|a, b| a < b), "{count}: {loads:?}");
         }
     }
 
