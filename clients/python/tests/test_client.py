@@ -109,7 +109,10 @@ def test_a_population_is_what_numpy_makes_of_its_table(service):
             assert np.isclose(told["standard_deviation"], np.std(values), rtol=1e-9)
             for percent in (1, 5, 25, 50, 75, 95, 99):
                 assert np.isclose(told[f"p{percent}"], np.percentile(values, percent), rtol=1e-12)
-                assert told[f"p{percent}_low"] <= told[f"p{percent}"] <= told[f"p{percent}_high"]
+                low, high = told[f"p{percent}_low"], told[f"p{percent}_high"]
+                # 400 members that are not all independent are at the edge of what carries limits of p1 and p99, which need 367 independent ones.
+                assert low <= told[f"p{percent}"] or (percent == 1 and np.isnan(low))
+                assert told[f"p{percent}"] <= high or (percent == 99 and np.isnan(high))
     for quantity in table.population().quantities:
         if quantity["name"] == "transmission_error_um.mean":
             histogram = quantity["histogram"]

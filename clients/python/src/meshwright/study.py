@@ -122,11 +122,11 @@ def _lines(row: dict[str, Any], quantities: Sequence[dict[str, Any]]) -> Iterato
 
 
 def _at(curve: dict[str, Any], name: str) -> float | None:
-    """What a curve of a row, or its statistics, has under names that are joined by dots."""
+    """The number that a curve of a row, or its statistics, has under names that are joined by dots."""
     for place in (curve, curve.get("statistics")):
         found: Any = place
         for part in name.split("."):
             found = found.get(part) if isinstance(found, dict) else None
-        if found is not None:
+        if isinstance(found, (int, float)):
             return float(found)
     return None
