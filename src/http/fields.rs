@@ -140,7 +140,7 @@ pub(super) enum NoLook {
     Parameters,
     #[response(
         status = 404,
-        description = "There is no such job or torque, the job has not ended, or its method does not see this."
+        description = "There is no such job, torque or mesh position, the job has not ended, or its method does not see this."
     )]
     Absent,
     #[response(
@@ -379,11 +379,16 @@ impl FieldParameters {
             Problem::new(Code::NotFound, detail)
         })?;
         let (position, span) = (self.mesh_position.unwrap_or(0.0), f64::from(case.span()));
-        if !(0.0..=span).contains(&position) {
-            let nearest = if position > span { span } else { 0.0 };
-            return Err(invalid(format!(
-                "mesh_position is {position}; the job spans 0 to {span} mesh periods, and the nearest is {nearest}."
-            )));
+        let outside = |nearest| {
+            format!(
+                "mesh_position is {position:?}; the job spans 0 to {span} mesh periods, and the nearest is {nearest}."
+            )
+        };
+        if position > span {
+            return Err(Problem::new(Code::NotFound, outside(span)));
+        }
+        if !(0.0..).contains(&position) {
+            return Err(invalid(outside(0.0)));
         }
         Ok((torque, position))
     }

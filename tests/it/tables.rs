@@ -140,7 +140,7 @@ async fn fields_come_as_a_grid_at_any_position_and_torque_of_the_job() {
     }
     problem(get("?torque=116").await, 404, "not_found").await;
     problem(get("?mesh_position=-0.5").await, 400, "invalid_parameter").await;
-    problem(get("?mesh_position=1e9").await, 400, "invalid_parameter").await;
+    problem(get("?mesh_position=1e9").await, 404, "not_found").await;
     problem(get("?position=1").await, 400, "invalid_parameter").await;
 }
 

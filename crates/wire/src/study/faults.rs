@@ -1,11 +1,10 @@
 //! What is wrong with a study wherever it stands: fields that there are not, values that no submission may have, in the
 //! base and in each change. Whether values go together is each design's own matter.
 
-use std::collections::BTreeMap;
-
 use meshwright_engine::run::Run;
 use serde_json::Value;
 
+use super::constant_mass::ConstantMass;
 use super::{Plan, Study};
 use crate::declare::{Errors, Node, escaped};
 use crate::pointer::Pointer;
@@ -46,21 +45,21 @@ impl Study {
         }
     }
 
-    /// Refuses what is wrong with a field of the base and would be wrong in every design.
+    /// Refuses what is wrong with a field of the base, unless each design sets it.
     fn check_base(&self, errors: &Errors) {
-        // Thousands of designs change the same few places.
-        let places: BTreeMap<&str, &Pointer> =
-            self.paths().map(|path| (path.text(), path)).collect();
         let mended = |error: &FieldError| {
             let pointer = &error.pointer;
-            let is_set = |path: &&Pointer| path.covers(pointer) || path.is_below(pointer);
+            let is_set = |path: &Pointer| path.covers(pointer) || path.is_below(pointer);
+            let by_rule = |rule: &ConstantMass| rule.sets(pointer);
+            let by_designs = || match &self.plan {
+                Plan::Designs(designs) => designs
+                    .iter()
+                    .all(|design| design.changes.iter().any(|(path, _)| is_set(path))),
+                _ => self.paths().any(is_set),
+            };
             // A list that is too long is so whatever stands in it, and no base that anybody means.
             error.code != Code::TooLarge
-                && (self
-                    .constant_mass
-                    .as_ref()
-                    .is_some_and(|rule| rule.sets(pointer))
-                    || places.values().any(is_set))
+                && (self.constant_mass.as_ref().is_some_and(by_rule) || by_designs())
         };
         for error in Submission::wrong_fields(&self.base) {
             if !mended(&error) {

@@ -5,7 +5,7 @@
 //! labels; the members of a population are drawn from laws; a search chooses its designs by what came of those before. What changes is named by JSON pointers (RFC 6901) into the submission.
 //!
 //! What is wrong with the study itself is refused: a pointer that names no field, a value of the wrong type, a field of
-//! the base that no design mends, a label that stands twice, more designs than the limit. What is wrong with one design
+//! the base that a design does not set, a label that stands twice, more designs than the limit. What is wrong with one design
 //! is not: a tooth that is undercut, holes that overlap. Such a design stands in the table with its problem.
 
 mod constant_mass;
