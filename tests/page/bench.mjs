@@ -554,10 +554,10 @@ export async function benchSteps(service) {
     assert.equal(await page.evaluate(() => document.documentElement.scrollHeight - innerHeight), 0);
   }, { viewport: { width: 1280, height: 800 } });
 
-  await step("a phone shows answers and drawing first, a large screen curves beside the drawing", service, async (page) => {
+  await step("a phone shows answers, drawing and design first, a large screen curves beside the drawing", service, async (page) => {
     await open(page, service);
     const top = async (place) => (await page.locator(place).boundingBox()).y;
-    const order = await Promise.all([".answers-panel", ".drawing-panel", ".work-panel", ".form-panel"].map(top));
+    const order = await Promise.all([".answers-panel", ".drawing-panel", ".form-panel", ".work-panel"].map(top));
     assert.deepEqual(order, [...order].sort((a, b) => a - b));
     assert.ok((await top("#drawing svg")) < 844);
     await page.setViewportSize({ width: 3840, height: 2160 });

@@ -153,7 +153,7 @@ export async function holeAt(page, index) {
     const box = await locator.boundingBox();
     return [box.x + box.width / 2, box.y + box.height / 2];
   };
-  return [await middle(page.locator(".rotor.driven .hole").nth(index)), await middle(page.locator(".rotor.driven .opening"))];
+  return [await middle(page.locator(".rotor.driven .hole").nth(index)), await middle(page.locator(".rotor.driven circle.opening"))];
 }
 
 /** A file that `work` makes the page give, as text or bytes. */

@@ -89,7 +89,7 @@ await step("curves and gears stand at the same position, whichever is moved", se
   await page.waitForFunction((old) => document.querySelector(".rotor.driving").getAttribute("transform") !== old, before);
   assert.match(await page.locator("#readout").innerText(), /Transmission error 1\d\.\d+ µm/);
   const byCurve = await page.locator("#position").inputValue();
-  const gear = await page.locator(".rotor.driving .opening").boundingBox();
+  const gear = await page.locator(".rotor.driving circle.opening").boundingBox();
   await drag(page, [gear.x - 40, gear.y + 10], [gear.x - 40, gear.y + 50]);
   assert.notEqual(await page.locator("#position").inputValue(), byCurve);
   assert.ok((await page.locator(".forces .force").count()) >= 1);
