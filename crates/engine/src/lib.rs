@@ -34,6 +34,33 @@
 //! 6. **At speed** ([`dynamics`]). δ(θ, F) over a ladder of loads is a table of force with an energy ([`analysis::forces`]), and
 //!    m_e x'' + c x' + F(θ, x) = F_0 is run through speeds, up and down.
 //!
+//! # Along the face
+//!
+//! Of a helical gear, a web narrower than the face, an uneven lead or axes out of line no transverse section is like the next. The paper has
+//! none of this. z runs along the axis from the middle of the face, and each step above has its counterpart:
+//!
+//! 1. **Geometry** ([`gear::SolidGear`], [`gear::SolidPair`]). The transverse section at z is the plane pair at the phase
+//!    η + z/p_x, p_x the axial pitch ([`gear::SolidPair::phase`]), so that lines of contact cross the flanks. Leads, deviations and axes that are out of line are
+//!    gaps over z ([`gear::SolidPair::lead_gap`]).
+//! 2. **Substructures** ([`fem::prism`], [`fem::axial`], [`ring::solid`]). A gear is its section times polynomials across the face, in a
+//!    frame that turns with the helix. Teeth, rim, web and hub are condensed part by part, order by order around the circle; where parts of unlike
+//!    width meet, the displacements of the narrower one are those of the wider ([`ring::solid::joint`]). A web with holes takes its sector or its whole grid,
+//!    as in the plane ([`ring::solid::web`]).
+//! 3. **Flanks that give way** ([`contact::face::FlankYield`], [`assembly::FaceYield`]). On a flank are functions of roll length and z; between
+//!    them stands the smooth compliance of the gear, of each tooth and of its neighbors. What is singular is left out of it and added in closed form: a
+//!    half space under each line of contact, and what a flank lacks of one at its tip and at both ends of its face.
+//! 4. **Contact** ([`contact::face`]). Lines are cut into slices. A slice is a contact of the plane: a nonlinear spring between the flanks, whose
+//!    force over its depth is Hertz's, or that of the plane's cells where a tip, a fillet or a kink is near ([`contact::face::spring`]). Newton's method finds the depths
+//!    at which springs, compliance and load are in balance.
+//! 5. **Methods** ([`analysis`]). Both whole gears at every position (`three_dimensional`), or over one mesh period, with the first order of what holes
+//!    change added for each period (`three_dimensional_projected`). Stresses at roots and around holes, and fields, come from the same factors
+//!    ([`assembly::FaceRoots`], [`assembly::face_holes`], [`assembly::FaceInside`]).
+//!
+//! A face is cut as finely as `contact::face::SLICES` says; with straight teeth, even leads and a blank as wide as the face it tells what the plane
+//! tells of narrow (plane stress) and wide (plane strain) faces, which tests hold.
+//!
+//! # What else there is
+//!
 //! Where the rest of the paper went: the inner unknowns of the annulus (K_in,in and K_in,ed of eqs. 11 and 12) are eliminated
 //! exactly with every blank ([`fem::condensation`]); what is left of it on the circle R_w is [`ring::annulus`], on which
 //! `analysis::decomposition` puts the displacement of the whole gear. The frequency f_0 (eq. 2) is that of the true period ([`gear::GearPair::period`]), the
