@@ -101,10 +101,10 @@ pub(super) async fn events(client: Client, JobId(id): JobId) -> Result<Response,
 }
 
 /// What an event tells: its name, and its data as JSON.
-pub(super) type Told = (EventName, String);
+pub(super) type Event = (EventName, String);
 
 /// The event `name` with this data.
-pub(super) fn told(name: EventName, data: &impl Serialize) -> Option<Told> {
+pub(super) fn event(name: EventName, data: &impl Serialize) -> Option<Event> {
     let data = serde_json::to_string(data).expect("a view is plain data");
     Some((name, data))
 }
@@ -112,7 +112,7 @@ pub(super) fn told(name: EventName, data: &impl Serialize) -> Option<Told> {
 /// One who watches until there is nothing more to see.
 pub(super) trait Watching: Send + 'static {
     /// The next event; none at the end.
-    fn next(&mut self) -> impl Future<Output = Option<Told>> + Send;
+    fn next(&mut self) -> impl Future<Output = Option<Event>> + Send;
 }
 
 /// A place among those who wait.
@@ -147,7 +147,7 @@ pub(super) fn answer(app: App, watch: impl Watching, pass: Pass, place: Part) ->
 }
 
 /// The next event for one who may see it; none when his key is revoked meanwhile.
-async fn next(app: &App, watch: &mut impl Watching, pass: &Pass) -> Option<Told> {
+async fn next(app: &App, watch: &mut impl Watching, pass: &Pass) -> Option<Event> {
     let mut event = pin!(watch.next());
     loop {
         tokio::select! {
@@ -177,7 +177,7 @@ struct Watch {
 
 impl Watching for Watch {
     /// The next event; none after the job has ended or vanished, or when the service shuts down.
-    async fn next(&mut self) -> Option<Told> {
+    async fn next(&mut self) -> Option<Event> {
         if self.status.is_some_and(Status::has_ended) {
             return None;
         }
@@ -185,7 +185,7 @@ impl Watching for Watch {
             let job = self.app.jobs.find(&self.client, self.id).await.ok()?;
             if self.status != Some(job.status) {
                 self.status = Some(job.status);
-                return told(EventName::Status, &JobView::of(&job, &self.app.edge));
+                return event(EventName::Status, &JobView::of(&job, &self.app.edge));
             }
             if job.status == Status::Running && self.progress != Some(job.progress) {
                 self.pause().await?;
@@ -195,7 +195,7 @@ impl Watching for Watch {
                     positions_done: job.progress.done,
                     positions_total: job.progress.total,
                 };
-                return told(EventName::Progress, &view);
+                return event(EventName::Progress, &view);
             }
             tokio::select! {
                 () = self.news.changed(self.progress) => {}

@@ -167,11 +167,11 @@ type Wrong = (Fault, FieldError);
 /// What is wrong with a model itself: no field of a submission is.
 fn of_model(stage: Option<i64>, fault: Fault) -> Wrong {
     let error = FieldError::new("", Code::ModelRefused, "");
-    told(stage, fault, error)
+    wrong(stage, fault, error)
 }
 
 /// The error with the place and the words of the fault, after the stage that it is of.
-fn told(stage: Option<i64>, fault: Fault, error: FieldError) -> Wrong {
+fn wrong(stage: Option<i64>, fault: Fault, error: FieldError) -> Wrong {
     let stage = stage.map_or_else(String::new, |stage| format!("Stage {stage}: "));
     let detail = format!("{stage}{}: {}", fault.place, fault.detail);
     (fault, FieldError { detail, ..error })
@@ -198,7 +198,7 @@ fn checked(stage: Option<i64>, import: &Import) -> Result<Submission, Vec<Wrong>
                 place: place.unwrap_or(&error.pointer).to_owned(),
                 detail: error.detail.clone(),
             };
-            told(stage, fault, error)
+            wrong(stage, fault, error)
         });
         faults.collect()
     })

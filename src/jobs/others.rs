@@ -9,7 +9,7 @@ use tokio_util::sync::CancellationToken;
 use tracing::warn;
 
 use super::live::Live;
-use super::store::{Listener, Store, StoreError, Told};
+use super::store::{Listener, Notice, Store, StoreError};
 
 /// So often everybody looks, also without news: what is told may be lost, and progress is not told at all.
 const LOOK: Duration = Duration::from_secs(2);
@@ -49,20 +49,20 @@ async fn listen(store: &Store, live: &Live) {
     }
 }
 
-async fn next(store: &Store, listener: &mut Option<Listener>) -> Result<Told, StoreError> {
+async fn next(store: &Store, listener: &mut Option<Listener>) -> Result<Notice, StoreError> {
     match listener {
         Some(listener) => listener.next().await,
         None => {
             *listener = store.listen().await?;
-            Ok(Told::Missed)
+            Ok(Notice::Missed)
         }
     }
 }
 
-fn pass_on(told: Told, live: &Live) {
+fn pass_on(told: Notice, live: &Live) {
     match told {
-        Told::Work => live.ring(),
-        Told::Jobs(status, ids) => {
+        Notice::Work => live.ring(),
+        Notice::Jobs(status, ids) => {
             for id in ids {
                 if status == Status::Dismissed
                     && let Some(running) = live.running(id)
@@ -76,8 +76,8 @@ fn pass_on(told: Told, live: &Live) {
                 }
             }
         }
-        Told::Message => live.mail.notify_one(),
-        Told::Study(id) => live.changed(id),
-        Told::Missed => live.look(),
+        Notice::Message => live.mail.notify_one(),
+        Notice::Study(id) => live.changed(id),
+        Notice::Missed => live.look(),
     }
 }

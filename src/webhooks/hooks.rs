@@ -91,7 +91,7 @@ impl Webhooks {
         };
         Ok(Made {
             webhook,
-            secret: told(&secret),
+            secret: shown(&secret),
             repeated,
         })
     }
@@ -182,7 +182,7 @@ impl Webhooks {
         self.store_secret(id, &secret).await?;
         Ok(Made {
             webhook,
-            secret: told(&secret),
+            secret: shown(&secret),
             repeated: false,
         })
     }
@@ -195,6 +195,6 @@ fn new_secret() -> Result<String, WebhookError> {
 }
 
 /// A secret as it is told.
-fn told(secret: &str) -> String {
+fn shown(secret: &str) -> String {
     format!("whsec_{secret}")
 }

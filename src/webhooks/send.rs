@@ -119,7 +119,7 @@ mod tests {
     use super::*;
 
     /// What is told of a receiver that says `first` once and `again` for ever.
-    async fn told_of(first: &'static str, again: &'static str) -> Result<StatusCode, String> {
+    async fn outcome_of(first: &'static str, again: &'static str) -> Result<StatusCode, String> {
         let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
         let address = listener.local_addr().unwrap();
         tokio::spawn(async move {
@@ -140,10 +140,10 @@ mod tests {
     async fn a_receiver_that_sends_informational_answers_for_ever_is_given_up_at_once() {
         const EARLY: &str = "HTTP/1.1 103 Early Hints\r\nLink: </a>\r\n\r\n";
         let start = Instant::now();
-        let told = told_of("", EARLY).await.unwrap_err();
+        let told = outcome_of("", EARLY).await.unwrap_err();
         assert!(told.contains("informational"), "{told}");
         assert!(start.elapsed() < TIME_OUT / 2);
         let answer = "HTTP/1.1 103 Early Hints\r\n\r\nHTTP/1.1 204 No Content\r\n\r\n";
-        assert_eq!(told_of(answer, "").await, Ok(StatusCode::NO_CONTENT));
+        assert_eq!(outcome_of(answer, "").await, Ok(StatusCode::NO_CONTENT));
     }
 }

@@ -1,71 +1,8 @@
-//! Bytes as a submission, a preview, a study and a REXS model: whatever they are, reading ends in a document or a problem, and what was
-//! read is read again from its echo, or from the model that it is written as. Guided by coverage (libFuzzer); `crates/fuzz/run` builds and runs it.
+//! Bytes as all that they might be (`check`), guided by what they reach in the code (libFuzzer); `crates/fuzz/run` builds and runs it.
 
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use meshwright_engine::run::Run;
-use meshwright_exchange::rexs::{Choices, import, is_model};
-use meshwright_wire::{Preview, Problem, Searching, Study, Submission, model_of};
+use meshwright_fuzz_check::check;
 
-/// So many designs of a study are expanded.
-const DESIGNS: usize = 8;
-
-fn check(problem: &Problem) {
-    assert!([400, 422].contains(&problem.status), "{problem:?}");
-    assert!(!problem.detail.contains("NaN"), "{problem:?}");
-    for error in &problem.errors {
-        assert!(error.nearest.is_none_or(f64::is_finite), "{error:?}");
-    }
-}
-
-/// Takes a model, and writes what it comes to as one that can be taken again.
-fn check_model(bytes: &[u8]) {
-    let Ok(imported) = import(bytes, &Choices::default()) else {
-        return;
-    };
-    match Submission::parse(imported.submission.to_string().as_bytes()) {
-        Ok(submission) => {
-            let model = model_of(&submission, None, "");
-            import(model.as_bytes(), &Choices::default()).expect("what is written can be read");
-        }
-        Err(problem) => check(&problem),
-    }
-}
-
-fuzz_target!(|bytes: &[u8]| {
-    if is_model(bytes) {
-        check_model(bytes);
-        return;
-    }
-    match Submission::parse(bytes) {
-        Ok(submission) => {
-            let again = Submission::parse(submission.canonical_json().as_bytes()).expect("an echo is valid");
-            assert_eq!(again.input_hash(), submission.input_hash());
-        }
-        Err(problem) => check(&problem),
-    }
-    if let Err(problem) = Preview::parse(bytes, 4000) {
-        check(&problem);
-    }
-    match Study::submitted(bytes, &Run::unattended()) {
-        Ok(study) => {
-            if let Some(mut search) = Searching::new(study.clone()) {
-                for row in 0..search.ask().min(DESIGNS) {
-                    if let Err(problem) = &search.design(row).submission {
-                        check(problem);
-                    }
-                }
-                return;
-            }
-            for row in 0..study.total().min(DESIGNS) {
-                let design = study.design(row).expect("there are so many");
-                if let Err(problem) = &design.submission {
-                    check(problem);
-                }
-            }
-            assert!(study.design(study.total()).is_none());
-        }
-        Err(problem) => check(&problem),
-    }
-});
+fuzz_target!(|bytes: &[u8]| check(bytes));

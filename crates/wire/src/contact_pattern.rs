@@ -90,7 +90,7 @@ pub struct Row(#[serde(serialize_with = "or_null")] pub(super) Vec<Option<f64>>)
 impl Row {
     fn of(row: &[Pressure]) -> Self {
         let cell = |pressure: &Pressure| match pressure {
-            Pressure::Of(pressure) => Some(told(to_mpa(*pressure))),
+            Pressure::Of(pressure) => Some(rounded(to_mpa(*pressure))),
             Pressure::Unlimited => None,
         };
         Self(row.iter().map(cell).collect())
@@ -129,11 +129,11 @@ answer! {
         /// Where they touch the flank of gear 2: the diameter, in mm.
         driven_diameter_mm: Vec<f64> = diameters(1),
         /// The load on each for its width, along the transverse line of action, in N/mm.
-        load_n_per_mm: Vec<f64> = slices().map(|slice| told(to_n_per_mm(slice.force / slice.length))).collect(),
+        load_n_per_mm: Vec<f64> = slices().map(|slice| rounded(to_n_per_mm(slice.force / slice.length))).collect(),
         /// The largest pressure on each, in MPa; null at a sharp tip edge, where it has no limit.
         #[serde(serialize_with = "or_null")]
         pressure_mpa: Vec<Option<f64>> =
-            slices().map(|slice| slice.pressure.map(|pressure| told(to_mpa(pressure)))).collect(),
+            slices().map(|slice| slice.pressure.map(|pressure| rounded(to_mpa(pressure)))).collect(),
     }
 }
 
@@ -152,6 +152,6 @@ fn place(length: f64) -> f64 {
     significant(to_mm(length), DIGITS.0)
 }
 
-fn told(value: f64) -> f64 {
+fn rounded(value: f64) -> f64 {
     significant(value, DIGITS.1)
 }

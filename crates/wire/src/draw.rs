@@ -181,17 +181,17 @@ answer! {
     /// The tolerances of ISO 1328-1:2013 for a gear and a class, unrounded, in um.
     pub struct TolerancesDocument as Tolerances, "Tolerances" of (tolerances: &Tolerances) {
         /// f_pT: of a single pitch.
-        single_pitch: f64 = told(tolerances.single_pitch),
+        single_pitch: f64 = um(tolerances.single_pitch),
         /// F_pT: of the cumulative pitch around the gear.
-        total_pitch: f64 = told(tolerances.total_pitch),
+        total_pitch: f64 = um(tolerances.total_pitch),
         /// f_HaT: of the slope of a profile.
-        profile_slope: f64 = told(tolerances.profile_slope),
+        profile_slope: f64 = um(tolerances.profile_slope),
         /// f_faT: of the form of a profile.
-        profile_form: f64 = told(tolerances.profile_form),
+        profile_form: f64 = um(tolerances.profile_form),
         /// F_rT: of the runout.
-        runout: f64 = told(tolerances.runout),
+        runout: f64 = um(tolerances.runout),
         /// f_HbT: of the slope of a helix.
-        helix_slope: f64 = told(tolerances.helix_slope),
+        helix_slope: f64 = um(tolerances.helix_slope),
     }
 }
 
@@ -210,7 +210,7 @@ pub struct DrawnDeviations {
     tolerances_um: TolerancesDocument,
 }
 
-fn told(value: f64) -> f64 {
+fn um(value: f64) -> f64 {
     significant(to_um(value), 10)
 }
 
@@ -258,7 +258,7 @@ impl Draw {
         }
         let inspection = &self.accuracy.inspection;
         Ok(DrawnDeviations {
-            total_pitch_deviation_um: told(inspection.total_pitch_deviation(&teeth)),
+            total_pitch_deviation_um: um(inspection.total_pitch_deviation(&teeth)),
             gears_rejected: rejected,
             tooth_deviations: DeviationsDocument::of(&teeth),
             tolerances_um: TolerancesDocument::of(&inspection.tolerances),

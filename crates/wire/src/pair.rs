@@ -111,7 +111,7 @@ impl PairDocument {
         let told = match pair {
             Ok(pair) => return Some(pair),
             Err(SolidPairError::Section(error)) => {
-                self.told([&sections[0], &sections[1]], overlap_ratio, &error)
+                self.field_error([&sections[0], &sections[1]], overlap_ratio, &error)
             }
             Err(SolidPairError::FacesDoNotOverlap {
                 axial_offset,
@@ -166,7 +166,7 @@ impl PairDocument {
         })?;
         let (one, other) = (driving.clone(), driven.clone());
         let pair = GearPair::new(one, other, from_mm(self.center_distance_mm));
-        errors.report(pair.map_err(|error| self.told([&driving, &driven], 0.0, &error)))
+        errors.report(pair.map_err(|error| self.field_error([&driving, &driven], 0.0, &error)))
     }
 
     /// Both gears, if they can be made and could mesh; what prevents that is reported to `errors`.
@@ -190,7 +190,7 @@ impl PairDocument {
         Some([driving?, driven?])
     }
 
-    fn told(
+    fn field_error(
         &self,
         [driving, driven]: [&SpurGear; 2],
         overlap_ratio: f64,

@@ -41,9 +41,9 @@ impl Refusals {
     }
 
     /// The most common one first.
-    pub fn told(&self) -> Vec<RefusalState> {
-        let mut told: Vec<RefusalState> = self.0.values().cloned().collect();
-        told.sort_by(|a, b| b.count.cmp(&a.count).then(a.code.cmp(&b.code)));
-        told
+    pub fn most_common_first(&self) -> Vec<RefusalState> {
+        let mut states: Vec<RefusalState> = self.0.values().cloned().collect();
+        states.sort_by(|a, b| b.count.cmp(&a.count).then(a.code.cmp(&b.code)));
+        states
     }
 }

@@ -305,7 +305,7 @@ pub(super) fn short_table(results: &StudyResults, elapsed: Duration) -> String {
         computed.len(),
         results.total,
         computed.len() as f64 / seconds.max(1e-9),
-        why_others_failed("designs", &refusals.told()),
+        why_others_failed("designs", &refusals.most_common_first()),
     ));
     text
 }

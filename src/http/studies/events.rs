@@ -11,7 +11,7 @@ use uuid::Uuid;
 use super::view::StudyView;
 use crate::http::app::App;
 use crate::http::client::Client;
-use crate::http::events::{self, EventName, Told, WatchEvent, Watching, told};
+use crate::http::events::{self, Event, EventName, WatchEvent, Watching, event};
 use crate::http::parameters::StudyId;
 use crate::http::problem::Refusal;
 use crate::jobs::News;
@@ -68,7 +68,7 @@ struct Watch {
 
 impl Watching for Watch {
     /// The next event; none after the study has ended or vanished, or when the service shuts down.
-    async fn next(&mut self) -> Option<Told> {
+    async fn next(&mut self) -> Option<Event> {
         if self.known.is_some_and(|(status, _)| status.has_ended()) {
             return None;
         }
@@ -77,14 +77,14 @@ impl Watching for Watch {
             let now = (study.status(), study.done());
             let before = self.known.replace(now);
             if before.map(|(status, _)| status) != Some(now.0) {
-                return told(EventName::Status, &StudyView::of(&study, &self.app.edge));
+                return event(EventName::Status, &StudyView::of(&study, &self.app.edge));
             }
             if before != Some(now) {
                 let view = StudyProgressView {
                     done: study.done(),
                     total: study.total,
                 };
-                return told(EventName::Progress, &view);
+                return event(EventName::Progress, &view);
             }
             // The pause comes after the news, so that many of them cost one look.
             let news = async {

@@ -11,7 +11,7 @@ use axum::http::header::{CONTENT_TYPE, HeaderName, HeaderValue, LINK};
 use axum::response::{IntoResponse, Response};
 use futures_util::stream;
 use meshwright_engine::run::Run;
-use meshwright_wire::study_table::{CsvTable, Outline, TableRow, Told};
+use meshwright_wire::study_table::{CsvTable, KnownQuantities, Outline, TableRow};
 use meshwright_wire::{Code, Problem, Results, RowState, StudyResults};
 use serde::de::IntoDeserializer;
 use serde::{Deserialize, Serialize};
@@ -232,7 +232,7 @@ const MOST_DOCUMENTS: u32 = 8;
 /// What has to be known of all rows before the first one is shown.
 struct Front {
     pointers: Vec<String>,
-    told: Told,
+    quantities: KnownQuantities,
     /// Whether no other row beats it, of each row.
     best: Vec<bool>,
 }
@@ -264,7 +264,7 @@ impl Outlines {
             let outline = over_rows(app, client, study.id, Outline::default(), add).await?;
             let front = move |_: &Run| Front {
                 pointers: outline.pointers().to_vec(),
-                told: outline.told(),
+                quantities: outline.quantities(),
                 best: outline.front(),
             };
             blocking(client, front).await
@@ -285,7 +285,7 @@ async fn table(
     let front = outline.get().ok_or_else(crate::http::problem::internal)?;
     let (head, foot, layout) = match form {
         StudyFile::Csv => {
-            let csv = CsvTable::new(front.pointers.clone(), front.told);
+            let csv = CsvTable::new(front.pointers.clone(), front.quantities);
             (csv.header(), "", Layout::Csv(csv))
         }
         StudyFile::Ndjson => (String::new(), "", Layout::Lines),

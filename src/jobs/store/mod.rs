@@ -72,7 +72,7 @@ pub(super) use attempt::{Came, Claim, End, Ended, Lease};
 pub(super) use claim::{Claimed, Reader, Started};
 pub(super) use documents::Packed;
 pub(super) use end::Lost;
-pub(super) use news::{Listener, Told};
+pub(super) use news::{Listener, Notice};
 pub(super) use studies::{NewRow, NewStudy, SearchStep, StudyOutcome};
 pub(super) use study_tables::StoredRow;
 pub(super) use submit::{NewJob, Outcome, QueueBounds};

@@ -12,7 +12,7 @@ const CHANNEL: &str = "meshwright";
 
 /// Something that a process has done, this one perhaps.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(in crate::jobs) enum Told {
+pub(in crate::jobs) enum Notice {
     /// A job waits.
     Work,
     /// The state of jobs has changed.
@@ -42,30 +42,35 @@ impl Store {
 
 impl Listener {
     /// What is told next.
-    pub(in crate::jobs) async fn next(&mut self) -> Result<Told, StoreError> {
+    pub(in crate::jobs) async fn next(&mut self) -> Result<Notice, StoreError> {
         // Without a connection something may be told that nobody hears.
         let heard = self.0.try_recv().await?;
-        Ok(heard.map_or(Told::Missed, |heard| told(heard.payload())))
+        Ok(heard.map_or(Notice::Missed, |heard| read(heard.payload())))
     }
 }
 
 /// What the words of a trigger mean. Those of a later version mean that something has happened.
-fn told(words: &str) -> Told {
+fn read(words: &str) -> Notice {
     let mut words = words.split(' ');
-    let told = match words.next() {
-        Some("work") => Some(Told::Work),
+    let notice = match words.next() {
+        Some("work") => Some(Notice::Work),
         // One at a time is how the version before told it.
         Some("jobs" | "job") => {
             let status = words.next().and_then(Status::of_word);
             let ids: Option<Vec<Uuid>> = words.by_ref().map(|id| id.parse().ok()).collect();
             let ids = ids.filter(|ids| !ids.is_empty());
-            status.zip(ids).map(|(status, ids)| Told::Jobs(status, ids))
+            status
+                .zip(ids)
+                .map(|(status, ids)| Notice::Jobs(status, ids))
         }
-        Some("message") => Some(Told::Message),
-        Some("study") => words.next().and_then(|id| id.parse().ok()).map(Told::Study),
+        Some("message") => Some(Notice::Message),
+        Some("study") => words
+            .next()
+            .and_then(|id| id.parse().ok())
+            .map(Notice::Study),
         _ => None,
     };
-    told.unwrap_or(Told::Missed)
+    notice.unwrap_or(Notice::Missed)
 }
 
 #[cfg(test)]
@@ -76,23 +81,23 @@ mod tests {
     fn what_is_told_is_understood_or_taken_for_news() {
         let id = Uuid::now_v7();
         for (words, meant) in [
-            ("work".to_owned(), Told::Work),
+            ("work".to_owned(), Notice::Work),
             (
                 format!("job dismissed {id}"),
-                Told::Jobs(Status::Dismissed, vec![id]),
+                Notice::Jobs(Status::Dismissed, vec![id]),
             ),
             (
                 format!("jobs failed {id} {id}"),
-                Told::Jobs(Status::Failed, vec![id, id]),
+                Notice::Jobs(Status::Failed, vec![id, id]),
             ),
-            (format!("jobs failed {id} x"), Told::Missed),
-            ("message".to_owned(), Told::Message),
-            (format!("study {id}"), Told::Study(id)),
-            ("job dismissed".to_owned(), Told::Missed),
-            ("weather fine".to_owned(), Told::Missed),
-            (String::new(), Told::Missed),
+            (format!("jobs failed {id} x"), Notice::Missed),
+            ("message".to_owned(), Notice::Message),
+            (format!("study {id}"), Notice::Study(id)),
+            ("job dismissed".to_owned(), Notice::Missed),
+            ("weather fine".to_owned(), Notice::Missed),
+            (String::new(), Notice::Missed),
         ] {
-            assert_eq!(told(&words), meant, "{words}");
+            assert_eq!(read(&words), meant, "{words}");
         }
     }
 }

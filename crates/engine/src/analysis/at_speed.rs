@@ -179,7 +179,7 @@ pub fn dynamics(
     run: &Run,
 ) -> Result<CurveDynamics, AnalysisError> {
     let pair = &case.pair;
-    let (labels, orders) = told(pair, curve).into_iter().unzip();
+    let (labels, orders) = orders_at_speed(pair, curve).into_iter().unzip();
     let data = RunUpData {
         speeds: request.speeds.clone(),
         tooth_count: pair.driving().tooth_count(),
@@ -226,16 +226,16 @@ fn per_mesh_period(pair: &GearPair, order: f64) -> f64 {
 }
 
 /// The orders that are told: those that are known, and what else stands out of the static curve but for the mesh, as far as there is room.
-fn told(pair: &GearPair, curve: &Curve) -> Vec<(String, f64)> {
-    let mut told = known(pair);
+fn orders_at_speed(pair: &GearPair, curve: &Curve) -> Vec<(String, f64)> {
+    let mut orders = known(pair);
     let most = TOLD_A_PERIOD * pair.period() as usize;
     let named = curve.spectrum.iter().flat_map(|spectrum| &spectrum.named);
     for line in named {
-        let is_new = told.iter().all(|(label, _)| *label != line.label);
-        if is_new && told.len() < most && !matches!(line.kind, OrderKind::Mesh { .. }) {
-            told.push((line.label.clone(), per_mesh_period(pair, line.order)));
+        let is_new = orders.iter().all(|(label, _)| *label != line.label);
+        if is_new && orders.len() < most && !matches!(line.kind, OrderKind::Mesh { .. }) {
+            orders.push((line.label.clone(), per_mesh_period(pair, line.order)));
         }
     }
-    told.sort_by(|a, b| a.1.total_cmp(&b.1));
-    told
+    orders.sort_by(|a, b| a.1.total_cmp(&b.1));
+    orders
 }

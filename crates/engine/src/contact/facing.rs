@@ -157,7 +157,7 @@ pub(super) fn nearer_tip(gears: &GearPair, phase: f64) -> Member {
 
 impl<'a> View<'a> {
     /// The same flanks, looked at from the other gear.
-    pub(super) fn told_on_mate(&self) -> Self {
+    pub(super) fn seen_from_mate(&self) -> Self {
         Self {
             seat: self.seat.other(),
             ..*self

@@ -160,7 +160,7 @@ impl Looks {
             looked.extend(stretch.map(|(stretch, more)| (stretch, place, more)));
         }
         // A tip stands in a fillet where the other flank ends there.
-        let mate = view.told_on_mate();
+        let mate = view.seen_from_mate();
         let mates = (range.ends[0] == RangeEnd::Fillet)
             .then(|| mate.range())
             .flatten();

@@ -174,7 +174,7 @@ fn chunk_of(
         for &place in places {
             let eta = positions[place];
             let period = (eta - fraction).round() as i64;
-            let told = stage.told(period, &mut warm, |contact, cells, solution| {
+            let told = stage.contact_with(period, &mut warm, |contact, cells, solution| {
                 tell(place, contact, cells, solution);
             });
             told.map_err(|error| at(error, eta))?;

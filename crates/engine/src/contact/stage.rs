@@ -110,13 +110,13 @@ impl<'a> Stage<'a> {
         warm: &mut WarmStart,
         keep: impl FnOnce(&ContactCells<'_>, &ContactSolution) -> T,
     ) -> Result<(MeshContact, T), PositionError> {
-        self.told(period, warm, |contact, cells, solution| {
+        self.contact_with(period, warm, |contact, cells, solution| {
             (contact, keep(cells, solution))
         })
     }
 
     /// What `tell` makes of the contact in mesh period `period`, of its cells and their solution.
-    pub(super) fn told<T>(
+    pub(super) fn contact_with<T>(
         &mut self,
         period: i64,
         warm: &mut WarmStart,

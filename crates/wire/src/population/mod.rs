@@ -60,7 +60,7 @@ impl Varied {
     }
 
     /// A value of the field as JSON has it.
-    pub(super) fn told(&self, value: f64) -> Value {
+    pub(super) fn json_of(&self, value: f64) -> Value {
         if self.whole {
             json!(value as i64)
         } else {

@@ -367,7 +367,7 @@ impl PopulationSample {
             size: self.population.size() as u64,
             done: self.done,
             failed: self.failed,
-            refusals: self.refusals.told(),
+            refusals: self.refusals.most_common_first(),
             quantities,
             beyond_total_pitch_tolerance: of_gears(&|counted, _| {
                 Some(counted.exceeded as f64 / counted.gears as f64)

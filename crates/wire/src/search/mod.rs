@@ -111,7 +111,7 @@ impl Variable {
     }
 
     /// The same as JSON has it.
-    fn told(&self, u: f64) -> Value {
+    fn json_at(&self, u: f64) -> Value {
         let value = self.at(u);
         if self.whole {
             json!(value.round() as i64)
@@ -252,7 +252,7 @@ impl Search {
     fn changes_at(&self, point: &[f64]) -> Map<String, Value> {
         let placed = self.variables.iter().zip(point);
         placed
-            .map(|(variable, u)| (variable.path.text().to_owned(), variable.told(*u)))
+            .map(|(variable, u)| (variable.path.text().to_owned(), variable.json_at(*u)))
             .collect()
     }
 

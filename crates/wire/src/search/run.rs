@@ -335,8 +335,8 @@ impl Searching {
             best,
             front: front.into_iter().map(found).collect(),
             generations: self.generations.clone(),
-            refusals: self.refusals.told(),
-            member_refusals: self.member_refusals.told(),
+            refusals: self.refusals.most_common_first(),
+            member_refusals: self.member_refusals.most_common_first(),
             ended_by: self.ended_by,
             confirmed: self.confirmed.clone(),
         }

@@ -111,7 +111,7 @@ impl Study {
         let mut submission = self.base.clone();
         let places = population.varied().iter().zip(0..).map(|(varied, i)| {
             let place = format!("{at}/vary/{i}/path");
-            (&varied.path, varied.told(varied.median()), place)
+            (&varied.path, varied.json_of(varied.median()), place)
         });
         let places: Vec<_> = places.collect();
         for (path, value, place) in &places {

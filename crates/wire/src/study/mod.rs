@@ -117,7 +117,7 @@ impl Composed {
 /// What is drawn for the fields that are varied.
 fn drawn(varied: &[Varied], values: Vec<f64>) -> impl Iterator<Item = (&Pointer, Cow<'_, Value>)> {
     let drawn = varied.iter().zip(values);
-    drawn.map(|(varied, value)| (&varied.path, Cow::Owned(varied.told(value))))
+    drawn.map(|(varied, value)| (&varied.path, Cow::Owned(varied.json_of(value))))
 }
 
 /// A document that is JSON, without what stands between its words.

@@ -60,7 +60,7 @@ impl Study {
     fn inspect(&self, population: &Population, at: &str, errors: &Errors) {
         let mut base = self.base.clone();
         for varied in population.varied() {
-            let value = varied.told(varied.median());
+            let value = varied.json_of(varied.median());
             base.put(varied.path.steps(), Node::of(&value));
         }
         population.refuse_hopeless(&base, at, errors);

@@ -1,6 +1,6 @@
 //! The table as CSV: one line for each row and torque, a row without curves having one line.
 
-use super::pareto::Told;
+use super::pareto::KnownQuantities;
 use super::quantity::{Of, QUANTITIES, Quantity};
 use super::row::TableRow;
 use super::summary::CurveSummary;
@@ -12,13 +12,16 @@ use crate::warning::GearName;
 #[derive(Debug, Clone)]
 pub struct CsvTable {
     pointers: Vec<String>,
-    told: Told,
+    quantities: KnownQuantities,
 }
 
 impl CsvTable {
     /// A table whose rows change what is at these pointers, with columns for what it has `told`.
-    pub fn new(pointers: Vec<String>, told: Told) -> Self {
-        Self { pointers, told }
+    pub fn new(pointers: Vec<String>, quantities: KnownQuantities) -> Self {
+        Self {
+            pointers,
+            quantities,
+        }
     }
 
     /// The line of names.
@@ -36,7 +39,7 @@ impl CsvTable {
         for name in ["pareto", "output_torque_n_m"] {
             text.text(name);
         }
-        let curves = self.told.columns();
+        let curves = self.quantities.columns();
         curves.for_each(|quantity| text.text(&quantity.column()));
         for name in ["problem.code", "problem.detail"] {
             text.text(name);
@@ -70,7 +73,7 @@ impl CsvTable {
         of_pair(row.gear()).for_each(|quantity| text.number(row.number(quantity, curve)));
         text.text(if row.pareto { "true" } else { "false" });
         text.number(curve.map(|curve| curve.output_torque_n_m));
-        let curves = self.told.columns();
+        let curves = self.quantities.columns();
         curves.for_each(|quantity| text.number(row.number(quantity, curve)));
         for part in ["code", "detail"] {
             text.value(row.problem.as_ref().and_then(|problem| problem.get(part)));

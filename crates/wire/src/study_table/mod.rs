@@ -18,8 +18,8 @@ use super::status::Status;
 use super::warning::GearName;
 
 pub use self::csv::CsvTable;
-pub use pareto::{Outline, Told};
-pub use quantity::{Better, Quantity, QuantityEntry, ToldOf, quantities};
+pub use pareto::{KnownQuantities, Outline};
+pub use quantity::{Better, Quantity, QuantityEntry, QuantityOf, quantities};
 pub(crate) use quantity::{Of, QUANTITIES};
 pub use row::{RowCurve, RowState, TableRow};
 pub use summary::Summary;
@@ -67,8 +67,8 @@ pub fn csv(rows: &[TableRow]) -> String {
             pointers.push(pointer.clone());
         }
     }
-    let mut told = Told::default();
-    rows.iter().for_each(|row| told.add(row.summary()));
-    let table = CsvTable::new(pointers, told);
+    let mut quantities = KnownQuantities::default();
+    rows.iter().for_each(|row| quantities.add(row.summary()));
+    let table = CsvTable::new(pointers, quantities);
     table.header() + &table.lines(rows)
 }

@@ -16,16 +16,16 @@ pub struct Outline {
     groups: BTreeMap<Conditions, Vec<(usize, [f64; 3])>>,
     pointers: Vec<String>,
     known: HashSet<String>,
-    told: Told,
+    quantities: KnownQuantities,
 }
 
-/// Which quantities any row of a table tells, each by its place among all of them.
+/// Which quantities any row of a table has, each by its place among all of them.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Told(u64);
+pub struct KnownQuantities(u64);
 
 const _: () = assert!(QUANTITIES.len() <= u64::BITS as usize);
 
-impl Told {
+impl KnownQuantities {
     /// Looks at what the next row tells.
     pub(super) fn add(&mut self, summary: &Summary) {
         for (i, quantity) in QUANTITIES.iter().enumerate() {
@@ -68,14 +68,14 @@ impl Outline {
             group.push((self.rows, objectives));
         }
         if let Some(summary) = &row.summary {
-            self.told.add(summary);
+            self.quantities.add(summary);
         }
         self.rows += 1;
     }
 
-    /// What any row tells beside the rest.
-    pub fn told(&self) -> Told {
-        self.told
+    /// Which quantities any row has.
+    pub fn quantities(&self) -> KnownQuantities {
+        self.quantities
     }
 
     /// What the rows change, in the order in which it was met first.

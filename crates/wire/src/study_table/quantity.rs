@@ -48,7 +48,7 @@ pub enum Better {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(title = "What a quantity is of")]
-pub enum ToldOf {
+pub enum QuantityOf {
     /// Of the pair, whatever the torque.
     Pair,
     /// Of the curve at each torque.
@@ -67,7 +67,7 @@ view! {
         /// Its unit, written as those of fields are; 1 without one.
         unit: &'static str = quantity.unit,
         /// Whether it is told of the pair or of each curve.
-        of: ToldOf = match quantity.of { Of::Pair(_) => ToldOf::Pair, Of::Curve(_) => ToldOf::Curve },
+        of: QuantityOf = match quantity.of { Of::Pair(_) => QuantityOf::Pair, Of::Curve(_) => QuantityOf::Curve },
         /// Of which gear it is; null where it is of both.
         #[schema(required)]
         gear: Option<GearName> = quantity.gear,

@@ -8,7 +8,7 @@ use meshwright_wire::warning::GearName;
 use tokio::sync::Barrier;
 
 use super::*;
-use crate::jobs::store::{NewRow, NewStudy, StudyOutcome, Told};
+use crate::jobs::store::{NewRow, NewStudy, Notice, StudyOutcome};
 use crate::jobs::study::StudyRecord;
 
 /// Another process on the same database.
@@ -439,15 +439,15 @@ async fn what_one_process_does_another_one_hears() {
     let mut listener = hearer.listen().await.unwrap().unwrap();
     let mut heard = async || listener.next().await.unwrap();
     let job = queued(&speaker, 1, "a").await;
-    assert_eq!(heard().await, Told::Work);
+    assert_eq!(heard().await, Notice::Work);
     let claim = claim(&speaker, 2).await;
-    assert_eq!(heard().await, Told::Jobs(Status::Running, vec![job.id]));
+    assert_eq!(heard().await, Notice::Jobs(Status::Running, vec![job.id]));
     speaker
         .cancel(CLIENT, job.id, at(3))
         .await
         .unwrap()
         .unwrap();
-    assert_eq!(heard().await, Told::Jobs(Status::Dismissed, vec![job.id]));
+    assert_eq!(heard().await, Notice::Jobs(Status::Dismissed, vec![job.id]));
     assert!(!speaker.holds(claim).await.unwrap());
 }
 
