@@ -1,10 +1,11 @@
-//! Bytes as a submission, a preview, a study and a REXS model: whatever they are, reading ends in a document or a problem, and what was
+//! Bytes as a submission, a preview, a study, a REXS model and a drawing: whatever they are, reading ends in a document or a problem, and what was
 //! read is read again from its echo, or from the model that it is written as. Guided by coverage (libFuzzer); `crates/fuzz/run` builds and runs it.
 
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
 use meshwright_engine::run::Run;
+use meshwright_exchange::dxf::outline;
 use meshwright_exchange::rexs::{Choices, import, is_model};
 use meshwright_wire::{Preview, Problem, Searching, Study, Submission, model_of};
 
@@ -34,6 +35,7 @@ fn check_model(bytes: &[u8]) {
 }
 
 fuzz_target!(|bytes: &[u8]| {
+    let _ = outline(bytes, &[]);
     if is_model(bytes) {
         check_model(bytes);
         return;
