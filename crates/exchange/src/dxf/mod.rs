@@ -13,6 +13,7 @@ mod shape;
 mod tests;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::TAU;
 use std::fmt;
 
 use meshwright_engine::gear::blank::contour::winding;
@@ -83,7 +84,7 @@ impl From<String> for Refused {
 /// The outline of the drawing `bytes`, DXF as text: of its model space, or of what is there on `layers` if any are named.
 ///
 /// The origin is the axis of the gear, the x axis the centerline of tooth 0. Loops that do not run around the axis bound openings. Of the others the
-/// smallest circle within all openings is the bore and the largest beyond them the circle around.
+/// smallest circle within all openings is the bore and the largest beyond them the circle around. Openings are in the order of their radius and angle.
 ///
 /// # Errors
 ///
@@ -98,7 +99,8 @@ pub fn outline(bytes: &[u8], layers: &[String]) -> Result<Outline, Refused> {
     };
     drawing.remarks.push(match unit {
         None => "The drawing says no unit ($INSUNITS): its lengths are taken for mm.".to_owned(),
-        Some(Unit { name, in_mm }) => format!("The drawing is in {name}: 1 is {in_mm} mm."),
+        Some(Unit { name, in_mm }) if in_mm == 1.0 => format!("The drawing is in {name}."),
+        Some(Unit { name, in_mm }) => format!("The drawing is in {name}, each {in_mm} mm."),
     });
     drawing.remarks.push(
         "The origin is taken for the axis of the gear, and the x axis for the centerline of tooth 0, whose loaded flank is on the side of positive y."
@@ -248,104 +250,109 @@ impl Drawing<'_> {
 
     /// The loops of an outline, with the material on their left.
     fn sorted(&mut self, loops: Vec<Loop>) -> Result<Vec<Vec<Side>>, Refused> {
-        let in_mm = self.in_mm();
-        let mm = |radius: f64| significant(radius * in_mm, 6);
-        let reach = |sides: &[Side]| {
-            let reaches = sides.iter().map(Side::reach);
-            reaches.fold([f64::INFINITY, 0.0], |[least, most], [low, high]| {
-                [least.min(low), f64::max(most, high)]
-            })
-        };
-        let mut openings: Vec<Vec<Side>> = Vec::new();
-        let mut around = Vec::new();
+        let mut openings = Vec::new();
+        let (mut layers, mut around) = (BTreeSet::new(), Vec::new());
         for Loop { sides, entity } in loops {
             let area = sides.iter().map(Side::moments).sum::<Moments>().area;
             let length: f64 = sides.iter().map(Side::length).sum();
-            if area.abs() * in_mm <= WITHIN_MM * length {
-                let place = self.entities[entity].place();
-                return Err(format!(
-                    "{place} begins a loop that encloses nothing: is it drawn twice?"
-                )
-                .into());
+            let entity = &self.entities[entity];
+            if area.abs() * self.in_mm() <= WITHIN_MM * length {
+                let detail = format!(
+                    "{} begins a loop that encloses nothing: is it drawn twice?",
+                    entity.place()
+                );
+                return Err(detail.into());
             }
             if winding(&sides, Vector::zeros()) != 0 {
                 around.push((reach(&sides), entity));
-            } else if area < 0.0 {
-                openings.push(sides);
-            } else {
-                openings.push(sides.iter().rev().map(Side::reversed).collect());
+                continue;
             }
+            layers.insert(entity.layer());
+            openings.push(match area < 0.0 {
+                true => sides,
+                false => sides.iter().rev().map(Side::reversed).collect(),
+            });
         }
         if openings.is_empty() {
-            return Err("Each loop runs around the origin, which is the axis of the gear; none bounds an opening.".to_owned().into());
+            let detail = "Each loop runs around the origin, which is the axis of the gear; none bounds an opening.";
+            return Err(detail.to_owned().into());
         }
+        let mut openings = in_order(openings);
         let [least, most] = reach(&openings.concat());
+        let layers: Vec<&str> = layers.into_iter().collect();
         self.remarks.push(format!(
-            "{} openings, from the radius {} mm to {} mm.",
+            "Openings on layer {}: {}, from the radius {} mm to {} mm.",
+            layers.join(" and "),
             openings.len(),
-            mm(least),
-            mm(most)
+            self.mm(least),
+            self.mm(most)
         ));
+        openings.extend(self.circles(around, [least, most])?);
+        Ok(openings)
+    }
+
+    /// The bore and the circle around of the loops around the axis, each with its least and its largest radius; openings lie between those of `within`.
+    fn circles(
+        &mut self,
+        mut around: Vec<([f64; 2], &Entity<'_>)>,
+        within: [f64; 2],
+    ) -> Result<Vec<Vec<Side>>, Refused> {
+        let [least, most] = within;
+        let (mut bore, mut outer, mut others) = (None, None, Vec::new());
         // From the smallest to the largest.
         around.sort_by(|a, b| a.0[1].total_cmp(&b.0[1]));
-        let is_circle = |[low, high]: [f64; 2]| (high - low) * in_mm <= 2.0 * WITHIN_MM;
-        let mut bore = None;
-        let mut outer = None;
-        let mut others = Vec::new();
         for ([low, high], entity) in around {
-            let place = self.entities[entity].place();
-            let radius = f64::midpoint(low, high);
-            let is_within = high <= least;
-            if !is_within && low < most {
-                return Err(format!(
-                    "{place} begins a loop around the origin, the axis of the gear, that openings reach: its radii are {} to {} mm.",
-                    mm(low),
-                    mm(high)
-                )
-                .into());
+            let radii = format!("{} to {} mm", self.mm(low), self.mm(high));
+            let is_circle = (high - low) * self.in_mm() <= 2.0 * WITHIN_MM;
+            let (is_inside, is_outside) = (high <= least, low >= most);
+            if !is_circle && is_inside || !is_inside && !is_outside {
+                let why = match is_inside {
+                    true => "a bore is a circle: draw it without keyway and splines",
+                    false => "openings lie on both sides of it or cross it",
+                };
+                let detail = format!(
+                    "{} begins a loop around the axis with the radii {radii}; {why}.",
+                    entity.place()
+                );
+                return Err(detail.into());
             }
-            match (is_within, is_circle([low, high])) {
-                (true, false) => {
-                    return Err(format!(
-                        "{place} begins a loop around the axis with the radii {} to {} mm; a bore is a circle: draw it without keyway and splines.",
-                        mm(low),
-                        mm(high)
-                    )
-                    .into());
-                }
-                (true, true) if bore.is_none() => bore = Some(radius),
-                (false, true) => others.extend(
-                    outer
-                        .replace(radius)
-                        .map(|radius| format!("a circle of {} mm", mm(radius))),
-                ),
-                (true, true) => others.push(format!("a circle of {} mm", mm(radius))),
-                (false, false) => {
-                    others.push(format!("a contour of {} to {} mm", mm(low), mm(high)))
-                }
+            let radius = f64::midpoint(low, high);
+            let circle = |radius| format!("a circle of {} mm", self.mm(radius));
+            match (is_inside, is_circle) {
+                (true, _) if bore.is_none() => bore = Some(radius),
+                (true, _) => others.push(circle(radius)),
+                (false, true) => others.extend(outer.replace(radius).map(circle)),
+                (false, false) => others.push(format!("a contour of {radii}")),
             }
         }
         if let Some(radius) = bore {
-            let is_last = significant(radius * in_mm, 9);
+            let radius = significant(radius * self.in_mm(), 9);
             self.remarks.push(format!(
-                "The smallest circle about the axis is the bore: blank/bore_radius_mm is {is_last}."
+                "The smallest circle about the axis is the bore: blank/bore_radius_mm is {radius}."
             ));
         }
         if !others.is_empty() {
+            let others = others.join(", ");
             self.remarks.push(format!(
-                "Left out, for they run around the axis and bound no opening: {}.",
-                others.join(", ")
+                "Left out, for they run around the axis and bound no opening: {others}."
             ));
         }
-        openings.extend(bore.map(|radius| circle(radius, -1.0)));
-        openings.extend(outer.map(|radius| circle(radius, 1.0)));
-        Ok(openings)
+        let bore = bore.map(|radius| circle(radius, -1.0));
+        Ok(bore
+            .into_iter()
+            .chain(outer.map(|radius| circle(radius, 1.0)))
+            .collect())
+    }
+
+    /// A length as it is told, in mm.
+    fn mm(&self, length: f64) -> f64 {
+        significant(length * self.in_mm(), 6)
     }
 
     /// The sides of a loop, as a submission has them.
     fn written(&self, sides: &[Side]) -> Vec<Value> {
-        // A hundred picometers say no less, and 2.0000000000000004 no more than 2.
-        const DIGITS: f64 = 1e10;
+        // 2.0000000000000004 says no more than 2.
+        const DIGITS: f64 = 1e12;
         let point = |at: Vector| {
             json!([at.x, at.y].map(|x| (x * self.in_mm() * DIGITS).round() / DIGITS + 0.0))
         };
@@ -358,6 +365,37 @@ impl Drawing<'_> {
         };
         sides.iter().map(side).collect()
     }
+}
+
+/// Openings by the radius of their center of mass, and those of a circle by its angle from the x axis: the order in which they were drawn says nothing.
+fn in_order(openings: Vec<Vec<Side>>) -> Vec<Vec<Side>> {
+    /// What radii and angles of a circle of openings may differ by: the digits of a drawing.
+    const ALIKE: f64 = 1e-6;
+    let center = |sides: &[Side]| {
+        let moments: Moments = sides.iter().map(Side::moments).sum();
+        moments.first / moments.area
+    };
+    let mut placed: Vec<(f64, f64, Vec<Side>)> = openings
+        .into_iter()
+        .map(|sides| {
+            let center = center(&sides);
+            let angle = (center.y.atan2(center.x) + ALIKE).rem_euclid(TAU);
+            (center.norm(), angle, sides)
+        })
+        .collect();
+    placed.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for circle in placed.chunk_by_mut(|a, b| b.0 - a.0 <= ALIKE * b.0) {
+        circle.sort_by(|a, b| a.1.total_cmp(&b.1));
+    }
+    placed.into_iter().map(|placed| placed.2).collect()
+}
+
+/// The least and the largest distance from the axis.
+fn reach(sides: &[Side]) -> [f64; 2] {
+    let reaches = sides.iter().map(Side::reach);
+    reaches.fold([f64::INFINITY, 0.0], |[least, most], [low, high]| {
+        [least.min(low), f64::max(most, high)]
+    })
 }
 
 /// A circle about the axis, counter-clockwise if `sense` is 1, clockwise if it is -1.

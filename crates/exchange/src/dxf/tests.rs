@@ -204,7 +204,7 @@ fn lengths_are_in_the_unit_that_the_drawing_says_and_without_one_in_mm() {
     let read =
         |unit| outline(file(unit, &[circle([2.0, 0.0], 0.5)]).as_bytes(), &[]).expect("a drawing");
     for (unit, reach, remark) in [
-        (Some(1), [38.1, 63.5], "in inches: 1 is 25.4 mm"),
+        (Some(1), [38.1, 63.5], "in inches, each 25.4 mm"),
         (Some(5), [15.0, 25.0], "in cm"),
         (Some(4), [1.5, 2.5], "in mm"),
         (Some(0), [1.5, 2.5], "no unit"),
@@ -397,13 +397,13 @@ fn circles_about_the_axis_are_the_bore_and_the_one_around_and_other_contours_the
         "{told}"
     );
     assert!(
-        told.contains("1 openings, from the radius 17 mm to 33 mm"),
+        told.contains("Openings on layer A: 1, from the radius 17 mm to 33 mm"),
         "{told}"
     );
     for (odd, expected) in [
         (
             circle(axis, 25.0),
-            "that openings reach: its radii are 25 to 25 mm",
+            "with the radii 25 to 25 mm; openings lie on both sides of it or cross it",
         ),
         (
             circle([1.0, 0.0], 12.0),
@@ -446,4 +446,49 @@ fn what_is_no_drawing_or_too_large_is_refused() {
     // As many ends at one place as there may be.
     let star = vec![line([30.0, 0.0], [31.0, 0.0]); 20_000];
     assert!(refused(&file(Some(4), &star)).contains("More than two ends meet"));
+}
+
+#[test]
+fn openings_are_told_by_their_radius_and_then_by_their_angle_however_they_are_drawn() {
+    let at = |radius: f64, degrees: f64| {
+        let angle = degrees.to_radians();
+        circle([radius * angle.cos(), radius * angle.sin()], 2.0)
+    };
+    let places = [
+        (20.0, 0.0),
+        (20.0, 90.0),
+        (20.0, 180.0),
+        (20.0, 270.0),
+        (30.0, -1e-12),
+        (30.0, 120.0),
+        (30.0, 240.0),
+    ];
+    let mut drawn: Vec<String> = places
+        .iter()
+        .map(|(radius, degrees)| at(*radius, *degrees))
+        .collect();
+    let expected: Vec<f64> = places
+        .iter()
+        .map(|(radius, degrees)| radius * degrees.to_radians().cos())
+        .collect();
+    for _ in 0..2 {
+        let read = read(&drawn);
+        let middle = |sides: &Vec<Value>| {
+            let ends: f64 = sides
+                .iter()
+                .filter_map(|side| side["arc_to"][0].as_f64())
+                .sum();
+            ends / 2.0
+        };
+        let middles: Vec<f64> = read.loops.iter().map(middle).collect();
+        assert!(
+            middles
+                .iter()
+                .zip(&expected)
+                .all(|(a, b)| (a - b).abs() < 1e-9),
+            "{middles:?}"
+        );
+        drawn.reverse();
+        drawn.swap(1, 4);
+    }
 }
