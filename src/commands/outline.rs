@@ -42,3 +42,35 @@ impl Outline {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+
+    #[test]
+    fn an_outline_is_written_and_a_drawing_that_is_refused_is_exit_code_two() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let circle = "0\nCIRCLE\n8\nHoles\n10\n30\n20\n0\n40\n5\n";
+        let entities = format!("{circle}0\nSPLINE\n8\nNotes\n");
+        let text = format!("0\nSECTION\n2\nENTITIES\n{entities}0\nENDSEC\n0\nEOF\n");
+        let mut command = Outline {
+            drawing: folder.path().join("gear.dxf"),
+            layer: vec!["Holes".to_owned()],
+            output: folder.path().join("outline.json"),
+        };
+        fs::write(&command.drawing, text).expect("written");
+        let code = command.run().expect("runs");
+        assert_eq!(format!("{code:?}"), format!("{:?}", ExitCode::SUCCESS));
+        let written = fs::read_to_string(&command.output).expect("an outline");
+        let expected = "[\n  [\n    {\"arc_to\":[25.0,0.0],\"through\":[30.0,-5.0]},\n    {\"arc_to\":[35.0,0.0],\"through\":[30.0,5.0]}\n  ]\n]\n";
+        assert_eq!(written, expected);
+        command.layer.clear();
+        let code = command.run().expect("runs");
+        assert_eq!(
+            format!("{code:?}"),
+            format!("{:?}", ExitCode::from(EXIT_PROBLEM))
+        );
+    }
+}

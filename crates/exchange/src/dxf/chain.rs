@@ -47,12 +47,13 @@ pub(super) struct Loop {
 pub(super) fn loops(pieces: &[Piece], within: f64, most: usize) -> Result<Vec<Loop>, Vec<Open>> {
     let ends = Ends::new(pieces, within);
     let count = ends.points.len();
-    let mut mates = vec![0; count];
+    let mut mates: Vec<usize> = Vec::with_capacity(count);
     let (mut alone, mut branches) = (Vec::new(), Vec::<Open>::new());
     for end in 0..count {
         let found = ends.mates(end);
+        mates.extend(found.first());
         match found.as_slice() {
-            [mate] => mates[end] = *mate,
+            [_] => {}
             [] => alone.push(end),
             _ => {
                 let point = ends.points[end];
@@ -83,7 +84,11 @@ pub(super) fn loops(pieces: &[Piece], within: f64, most: usize) -> Result<Vec<Lo
         while !is_taken[end / 2] {
             is_taken[end / 2] = true;
             let side = pieces[end / 2].side;
-            sides.push(if end % 2 == 0 { side } else { side.reversed() });
+            sides.push(if end.is_multiple_of(2) {
+                side
+            } else {
+                side.reversed()
+            });
             end = mates[end ^ 1];
         }
         let Some(last) = sides.last() else {

@@ -99,7 +99,7 @@ pub fn outline(bytes: &[u8], layers: &[String]) -> Result<Outline, Refused> {
     };
     drawing.remarks.push(match unit {
         None => "The drawing says no unit ($INSUNITS): its lengths are taken for mm.".to_owned(),
-        Some(Unit { name, in_mm }) if in_mm == 1.0 => format!("The drawing is in {name}."),
+        Some(Unit { name, in_mm: 1.0 }) => format!("The drawing is in {name}."),
         Some(Unit { name, in_mm }) => format!("The drawing is in {name}, each {in_mm} mm."),
     });
     drawing.remarks.push(

@@ -371,7 +371,7 @@ fn circles_about_the_axis_are_the_bore_and_the_one_around_and_other_contours_the
     // A contour of 40 teeth between the radii 47 and 52.
     let tooth = |i: usize| {
         let angle = std::f64::consts::TAU * i as f64 / 80.0;
-        let radius = if i % 2 == 0 { 47.0 } else { 52.0 };
+        let radius = if i.is_multiple_of(2) { 47.0 } else { 52.0 };
         [(10, radius * angle.cos()), (20, radius * angle.sin())]
     };
     let mut teeth: Vec<(i32, f64)> = (0..80).flat_map(tooth).collect();

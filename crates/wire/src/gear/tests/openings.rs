@@ -251,7 +251,11 @@ fn dxf(loops: &[Value], of_polylines: bool) -> String {
         let mut polyline = format!("0\nLWPOLYLINE\n8\n0\n90\n{}\n70\n1\n", sides.len());
         for (i, side) in sides.iter().enumerate() {
             let to = end(side);
-            let [[x, y], [u, v]] = if i % 2 == 0 { [from, to] } else { [to, from] };
+            let [[x, y], [u, v]] = if i.is_multiple_of(2) {
+                [from, to]
+            } else {
+                [to, from]
+            };
             let mut bulge = 0.0;
             entities.push(match side.get("through") {
                 None => format!(
