@@ -3,8 +3,7 @@
 //! Read in this order: `file` (the entities of a file), `shape` (the lines and arcs of an entity), `chain` (closed loops of these), and here which of
 //! them bound openings.
 //!
-//! The reader is our own. `dxf`, the crate for it, drops entities that it does not know without a word, which would make another gear of a drawing, and
-//! panics at a date that is none; see ARCHITECTURE.md.
+//! Why no crate reads it stands in ARCHITECTURE.md.
 
 mod chain;
 mod file;
