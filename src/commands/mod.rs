@@ -7,6 +7,7 @@ mod document;
 mod health;
 mod keys;
 mod migrate;
+mod outline;
 mod rexs;
 mod serve;
 mod solve;
@@ -40,6 +41,8 @@ enum Command {
     /// Take a pair out of a REXS model, or write one.
     #[command(subcommand)]
     Rexs(rexs::Rexs),
+    /// Write the openings of a blank that a drawing in DXF comes to.
+    Outline(outline::Outline),
     /// Make, list and revoke API keys.
     Keys(keys::Keys),
     /// Bring the tables of the database up to date.
@@ -61,6 +64,7 @@ pub fn run() -> anyhow::Result<ExitCode> {
         Command::Solve(solve) => solve.run(),
         Command::Study(study) => study.run(),
         Command::Rexs(rexs) => rexs.run(),
+        Command::Outline(outline) => outline.run(),
         Command::Keys(keys) => keys.run(),
         Command::Migrate(migrate) => migrate.run(),
         Command::Backup(backup) => backup.run(),

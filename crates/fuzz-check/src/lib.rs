@@ -1,7 +1,8 @@
-//! Bytes as a submission, a preview, a study and a REXS model: whatever they are, reading ends in a document or a problem, and what was
+//! Bytes as a submission, a preview, a study, a REXS model and a drawing: whatever they are, reading ends in a document or a problem, and what was
 //! read is read again from its echo, or from the model that it is written as.
 
 use meshwright_engine::run::Run;
+use meshwright_exchange::dxf::outline;
 use meshwright_exchange::rexs::{Choices, import, is_model};
 use meshwright_wire::{Preview, Problem, Searching, Study, Submission, model_of};
 
@@ -14,6 +15,8 @@ const DESIGNS: usize = 8;
 ///
 /// If something does not hold that should, whatever they are.
 pub fn check(bytes: &[u8]) {
+    // Loops, or why there are none.
+    let _ = outline(bytes, &[]);
     if is_model(bytes) {
         check_model(bytes);
         return;

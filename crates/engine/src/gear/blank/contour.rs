@@ -252,7 +252,7 @@ impl Side {
     }
 
     /// The least and the largest distance of its points from the axis.
-    fn reach(&self) -> [f64; 2] {
+    pub fn reach(&self) -> [f64; 2] {
         let ends = [self.from.norm(), self.to.norm()];
         let mut least = self
             .nearest_to(Vector::zeros())
@@ -273,7 +273,7 @@ impl Side {
     }
 
     /// What it adds to the moments of a region on its left.
-    pub(super) fn moments(&self) -> Moments {
+    pub fn moments(&self) -> Moments {
         if self.bulge == 0.0 {
             return Moments::under_line(self.from, self.to);
         }
@@ -654,8 +654,8 @@ fn turn_at(sides: &[Side], i: usize) -> f64 {
     cross(before, after).atan2(before.dot(&after))
 }
 
-/// How often a closed curve goes around `point`, counter-clockwise.
-fn winding(sides: &[Side], point: Vector) -> i32 {
+/// How often a closed curve goes around `point`, counter-clockwise. Each side begins exactly where the one before it ends.
+pub fn winding(sides: &[Side], point: Vector) -> i32 {
     let mut winds = 0;
     for side in sides {
         let (a, b) = (side.from - point, side.to - point);

@@ -1,10 +1,11 @@
-//! Spokes and outlines: what is read, told to the engine and refused, and that a gear drawn in two ways is one gear.
+//! Spokes and outlines: what is read, told to the engine and refused, and that a gear drawn in two ways, or in a drawing, is one gear.
 
 use std::f64::consts::PI;
 
 use meshwright_engine::gear::HoleShape;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
+use meshwright_exchange::dxf::outline;
 use serde_json::{Value, json};
 
 use super::{fault, faults, mended, near, told};
@@ -221,6 +222,80 @@ fn loops_that_bound_no_region_are_refused_at_their_side() {
     }
 }
 
+/// Center, radius, first angle and turn of an arc, in mm and radians, positive counter-clockwise.
+fn arc_of(from: [f64; 2], through: [f64; 2], to: [f64; 2]) -> ([f64; 2], f64, f64, f64) {
+    // From the first of them, where the circle is |p|² = 2 p · c.
+    let [[a, b], [c, d]] = [through, to].map(|[x, y]| [x - from[0], y - from[1]]);
+    let (p, q) = ((a * a + b * b) / 2.0, (c * c + d * d) / 2.0);
+    let twice = a * d - b * c;
+    let arm = [(p * d - q * b) / twice, (a * q - c * p) / twice];
+    let center = [from[0] + arm[0], from[1] + arm[1]];
+    let at = |[x, y]: [f64; 2]| (y - center[1]).atan2(x - center[0]);
+    let turn = |to: f64| (to - at(from)).rem_euclid(2.0 * PI);
+    let turn = match turn(at(through)) < turn(at(to)) {
+        true => turn(at(to)),
+        false => turn(at(to)) - 2.0 * PI,
+    };
+    (center, arm[0].hypot(arm[1]), at(from), turn)
+}
+
+/// A drawing of these loops in inches: of lines and arcs last to first, every second line the other way round, or of polylines with bulges.
+fn dxf(loops: &[Value], of_polylines: bool) -> String {
+    let mm = |x: f64| x / 25.4;
+    let point = |value: &Value| [0, 1].map(|i| value[i].as_f64().expect("a coordinate"));
+    let mut entities: Vec<String> = Vec::new();
+    for sides in loops {
+        let sides = sides.as_array().expect("sides");
+        let end = |side: &Value| point(side.get("line_to").unwrap_or(&side["arc_to"]));
+        let mut from = end(sides.last().expect("a side"));
+        let mut polyline = format!("0\nLWPOLYLINE\n8\n0\n90\n{}\n70\n1\n", sides.len());
+        for (i, side) in sides.iter().enumerate() {
+            let to = end(side);
+            let [[x, y], [u, v]] = if i.is_multiple_of(2) {
+                [from, to]
+            } else {
+                [to, from]
+            };
+            let mut bulge = 0.0;
+            entities.push(match side.get("through") {
+                None => format!(
+                    "0\nLINE\n8\n0\n10\n{}\n20\n{}\n11\n{}\n21\n{}\n",
+                    mm(x),
+                    mm(y),
+                    mm(u),
+                    mm(v)
+                ),
+                Some(through) => {
+                    let (center, radius, first, turn) = arc_of(from, point(through), to);
+                    bulge = (turn / 4.0).tan();
+                    let (start, end) = if turn > 0.0 {
+                        (first, first + turn)
+                    } else {
+                        (first + turn, first)
+                    };
+                    let [x, y] = center.map(mm);
+                    let (start, end) = (start.to_degrees(), end.to_degrees());
+                    format!(
+                        "0\nARC\n8\n0\n10\n{x}\n20\n{y}\n40\n{}\n50\n{start}\n51\n{end}\n",
+                        mm(radius)
+                    )
+                }
+            });
+            polyline += &format!("10\n{}\n20\n{}\n42\n{bulge}\n", mm(from[0]), mm(from[1]));
+            from = to;
+        }
+        if of_polylines {
+            entities.truncate(entities.len() - sides.len());
+            entities.push(polyline);
+        }
+    }
+    entities.reverse();
+    format!(
+        "0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n1\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n{}0\nENDSEC\n0\nEOF\n",
+        entities.concat()
+    )
+}
+
 #[test]
 fn the_same_gear_drawn_both_ways_has_the_same_curve() {
     let holes =
@@ -236,10 +311,19 @@ fn the_same_gear_drawn_both_ways_has_the_same_curve() {
     // The bore and the circle around may be told as well.
     of_spokes.push(circle([0.0, 0.0], 15.0, true));
     of_spokes.push(circle([0.0, 0.0], 47.5, false));
+    // As a drawing has them.
+    let [of_lines, of_polylines] = [false, true].map(|of_polylines| {
+        let text = dxf(&of_spokes, of_polylines);
+        let read = outline(text.as_bytes(), &[]).unwrap_or_else(|refused| panic!("{refused}"));
+        assert_eq!(read.loops.len(), of_spokes.len());
+        read.loops.into_iter().map(Value::from).collect()
+    });
     for (said, drawn) in [
         (json!({ "holes": holes }), of_holes),
         (json!({ "holes": slots }), of_slots),
         (json!({ "spokes": spokes() }), of_spokes),
+        (json!({ "spokes": spokes() }), of_lines),
+        (json!({ "spokes": spokes() }), of_polylines),
     ] {
         let [one, other] = [said, json!({ "outline": drawn })].map(|fields| {
             let coarse =
