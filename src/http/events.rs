@@ -101,10 +101,10 @@ pub(super) async fn events(client: Client, JobId(id): JobId) -> Result<Response,
 }
 
 /// What an event tells: its name, and its data as JSON.
-pub(super) type Event = (EventName, String);
+pub(super) type NamedData = (EventName, String);
 
 /// The event `name` with this data.
-pub(super) fn event(name: EventName, data: &impl Serialize) -> Option<Event> {
+pub(super) fn event(name: EventName, data: &impl Serialize) -> Option<NamedData> {
     let data = serde_json::to_string(data).expect("a view is plain data");
     Some((name, data))
 }
@@ -112,7 +112,7 @@ pub(super) fn event(name: EventName, data: &impl Serialize) -> Option<Event> {
 /// One who watches until there is nothing more to see.
 pub(super) trait Watching: Send + 'static {
     /// The next event; none at the end.
-    fn next(&mut self) -> impl Future<Output = Option<Event>> + Send;
+    fn next(&mut self) -> impl Future<Output = Option<NamedData>> + Send;
 }
 
 /// A place among those who wait.
@@ -147,7 +147,7 @@ pub(super) fn answer(app: App, watch: impl Watching, pass: Pass, place: Part) ->
 }
 
 /// The next event for one who may see it; none when his key is revoked meanwhile.
-async fn next(app: &App, watch: &mut impl Watching, pass: &Pass) -> Option<Event> {
+async fn next(app: &App, watch: &mut impl Watching, pass: &Pass) -> Option<NamedData> {
     let mut event = pin!(watch.next());
     loop {
         tokio::select! {
@@ -177,7 +177,7 @@ struct Watch {
 
 impl Watching for Watch {
     /// The next event; none after the job has ended or vanished, or when the service shuts down.
-    async fn next(&mut self) -> Option<Event> {
+    async fn next(&mut self) -> Option<NamedData> {
         if self.status.is_some_and(Status::has_ended) {
             return None;
         }

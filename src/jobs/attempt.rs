@@ -51,7 +51,7 @@ struct Done {
 type Held = BTreeMap<usize, Attempt>;
 
 /// What the engine's threads tell: the attempt by its place, what it came to, and what it took.
-type Ended = (usize, Outcome, SignedDuration);
+type Reached = (usize, Outcome, SignedDuration);
 
 /// After so long it is looked up whether the claims still hold. What is computed by then is not worth the look.
 const LOOK_AFTER: Duration = Duration::from_millis(50);
@@ -95,7 +95,7 @@ impl WorkerContext {
             held.insert(place, attempt);
         }
         let mut outcomes = self.launch(work, threads);
-        let mut ended: Vec<Ended> = Vec::with_capacity(held.len());
+        let mut reached: Vec<Reached> = Vec::with_capacity(held.len());
         // What is to be written, at that time at the latest.
         let mut done = Vec::with_capacity(held.len());
         let mut written = pin!(sleep(Duration::ZERO));
@@ -110,7 +110,7 @@ impl WorkerContext {
 
         loop {
             tokio::select! {
-                count = outcomes.recv_many(&mut ended, usize::MAX) => {
+                count = outcomes.recv_many(&mut reached, usize::MAX) => {
                     if count == 0 {
                         break;
                     }
@@ -119,7 +119,7 @@ impl WorkerContext {
                     if done.is_empty() {
                         written.as_mut().reset(Instant::now() + self.pace.gather);
                     }
-                    done.extend(ended.drain(..).filter_map(|(place, outcome, elapsed)| {
+                    done.extend(reached.drain(..).filter_map(|(place, outcome, elapsed)| {
                         let attempt = held.remove(&place)?;
                         let end = End { at: self.jobs.clock.now(), elapsed };
                         Some(Done { attempt, end, outcome })
@@ -200,7 +200,7 @@ impl WorkerContext {
 
     /// Starts the computations on the worker's own threads: they are long, so they must not sit on a thread that answers requests. A
     /// panic in one is the engine's fault and ends this job only.
-    fn launch(&self, work: Vec<Work>, threads: &Threads) -> mpsc::UnboundedReceiver<Ended> {
+    fn launch(&self, work: Vec<Work>, threads: &Threads) -> mpsc::UnboundedReceiver<Reached> {
         let (sender, receiver) = mpsc::unbounded_channel();
         let pools = threads.for_jobs(work.len());
         let work = Arc::new(Mutex::new(work.into_iter().enumerate()));

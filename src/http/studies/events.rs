@@ -11,7 +11,7 @@ use uuid::Uuid;
 use super::view::StudyView;
 use crate::http::app::App;
 use crate::http::client::Client;
-use crate::http::events::{self, Event, EventName, WatchEvent, Watching, event};
+use crate::http::events::{self, EventName, NamedData, WatchEvent, Watching, event};
 use crate::http::parameters::StudyId;
 use crate::http::problem::Refusal;
 use crate::jobs::News;
@@ -68,7 +68,7 @@ struct Watch {
 
 impl Watching for Watch {
     /// The next event; none after the study has ended or vanished, or when the service shuts down.
-    async fn next(&mut self) -> Option<Event> {
+    async fn next(&mut self) -> Option<NamedData> {
         if self.known.is_some_and(|(status, _)| status.has_ended()) {
             return None;
         }
