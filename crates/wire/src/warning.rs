@@ -71,7 +71,7 @@ pub enum WarningCode {
     ContactBeyondElasticity,
     /// The largest contact pressure stands at a kink of a profile modification, which a run-in would round.
     PressureAtKink,
-    /// So few positions a mesh period tell the orders of its higher multiples wrongly.
+    /// So few positions a mesh period tell the orders of its higher multiples wrongly, and may miss extremes of the stiffness.
     FewPositions,
     /// The span is not whole true periods.
     PartialSpan,
@@ -291,7 +291,7 @@ impl WarningDocument {
                 None,
                 Some((f64::from(positions), "positions")),
                 format!(
-                    "{positions} positions a mesh period tell mesh harmonics up to the {}th at most, and the upper ones wrongly where a pair takes up or leaves the load between two of them; orders want {FEW_POSITIONS} or more.",
+                    "{positions} positions a mesh period tell mesh harmonics up to the {}th at most, and the upper ones wrongly where a pair takes up or leaves the load between two of them; between so few the stiffness may have extremes that are not found. Orders and the peak-to-peak of the stiffness want {FEW_POSITIONS} or more.",
                     positions / 2
                 ),
             ),
@@ -580,7 +580,9 @@ mod tests {
             (few.value, few.unit.as_deref()),
             (Some(10.0), Some("positions"))
         );
-        assert!(few.detail.contains("up to the 5th"), "{}", few.detail);
+        for said in ["up to the 5th", "the peak-to-peak of the stiffness"] {
+            assert!(few.detail.contains(said), "{}", few.detail);
+        }
         assert_eq!(warned(20), None);
     }
 

@@ -117,7 +117,14 @@ impl ForceTable {
         loads: Vec<f64>,
         [loaded, other]: [FlankRows; 2],
     ) -> Result<Self, FallingRow> {
-        let table = Self::set_apart(period, loads, [loaded.clone(), other.clone()]);
+        let mut table = Self {
+            period,
+            loads,
+            loaded: loaded.clone(),
+            other: other.clone(),
+        };
+        set_apart(&mut table.loaded.delta, |a, b| a.max(b + APART));
+        set_apart(&mut table.other.delta, |a, b| a.min(b - APART));
         let step = table.step();
         for (given, found, sign) in [(loaded, &table.loaded, 1.0), (other, &table.other, -1.0)] {
             let rows = given.delta.iter().zip(&found.delta).zip(&table.loads);
@@ -139,18 +146,6 @@ impl ForceTable {
             }
         }
         Ok(table)
-    }
-
-    /// With each row beyond the one before.
-    fn set_apart(period: u32, loads: Vec<f64>, [mut loaded, mut other]: [FlankRows; 2]) -> Self {
-        set_apart(&mut loaded.delta, |a, b| a.max(b + APART));
-        set_apart(&mut other.delta, |a, b| a.min(b - APART));
-        Self {
-            period,
-            loads,
-            loaded,
-            other,
-        }
     }
 
     /// The loaded flank.
@@ -225,16 +220,20 @@ impl ForceTable {
         self.forces(eta, delta).load
     }
 
-    /// What the gears exert at the mesh position `eta` and the approach `delta`.
-    pub fn forces(&self, eta: f64, delta: f64) -> Forces {
-        let place = (eta / self.step()).rem_euclid(self.positions() as f64);
+    /// Between which of its positions `place` stands, in steps from the first one.
+    fn between(&self, place: f64) -> Between {
         let first = (place.floor() as usize).min(self.positions() - 1);
-        let between = Between {
+        Between {
             first,
             second: (first + 1) % self.positions(),
             part: place - first as f64,
             step: self.step(),
-        };
+        }
+    }
+
+    /// What the gears exert at the mesh position `eta` and the approach `delta`.
+    pub fn forces(&self, eta: f64, delta: f64) -> Forces {
+        let between = self.between((eta / self.step()).rem_euclid(self.positions() as f64));
         let (loaded, other) = (&self.loaded.delta, &self.other.delta);
         if delta > between.value(&loaded[0]) {
             self.of_flank(loaded, between, delta, 1.0)
@@ -293,25 +292,62 @@ impl ForceTable {
 
     /// The table with `by_position` times as many positions under `loads`, which rise from 0 to its largest. Along a row: on cubics through its own, and on
     /// the lesser of two branches where pairs of teeth begin or cease to carry. From row to row, of four at least: so that compliances are met where they
-    /// are known, and as along a row where they are not. Where that brings two rows together between positions they are set apart.
+    /// are known, and as along a row where they are not. Where rows would meet that way, δ is linear from load to load, and from position to position: as the rows that were
+    /// computed rise, so do those between them, everywhere.
     pub fn under(&self, by_position: usize, loads: Vec<f64>) -> Self {
         // The other flanks have their kinks upside down.
         let flank = |rows: &FlankRows, sign: f64| {
             let turned = |row: &Vec<f64>| row.iter().map(|delta| sign * delta).collect();
             let delta: Vec<Vec<f64>> = rows.delta.iter().map(turned).collect();
-            let between_loads = match &rows.compliance {
+            let mut between_loads = match &rows.compliance {
                 Some(compliance) => self.met(&delta, compliance, &loads),
                 None => self.along_loads(&delta, &loads),
             };
-            let along_positions = between_loads.iter().map(|row| {
-                (0..row.len() * by_position)
-                    .map(|i| sign * between_closed(row, i as f64 / by_position as f64))
-                    .collect()
-            });
-            FlankRows::of_delta(along_positions.collect())
+            self.let_rise(&mut between_loads, &delta, &loads);
+            let positions = self.positions() * by_position;
+            let mut fine = vec![vec![0.0; positions]; loads.len()];
+            for i in 0..positions {
+                let place = i as f64 / by_position as f64;
+                let mut column: Vec<f64> = between_loads
+                    .iter()
+                    .map(|row| between_closed(row, place))
+                    .collect();
+                if !column.is_sorted_by(|a, b| a < b) {
+                    let between = self.between(place);
+                    column = between_loads.iter().map(|row| between.value(row)).collect();
+                }
+                for (row, delta) in fine.iter_mut().zip(column) {
+                    row[i] = sign * delta;
+                }
+            }
+            FlankRows::of_delta(fine)
         };
-        let flanks = [flank(&self.loaded, 1.0), flank(&self.other, -1.0)];
-        Self::set_apart(self.period, loads, flanks)
+        Self {
+            period: self.period,
+            loaded: flank(&self.loaded, 1.0),
+            other: flank(&self.other, -1.0),
+            loads,
+        }
+    }
+
+    /// Makes `rows` under `loads` linear in the load at positions where they do not rise from one row of `delta`, which are those of the table, to the next.
+    fn let_rise(&self, rows: &mut [Vec<f64>], delta: &[Vec<f64>], loads: &[f64]) {
+        for (own, ends) in self.loads.windows(2).zip(delta.windows(2)) {
+            let within = loads.partition_point(|load| *load <= own[0])
+                ..loads.partition_point(|load| *load < own[1]);
+            for i in 0..self.positions() {
+                let [low, high] = [ends[0][i], ends[1][i]];
+                let on_the_way = rows[within.clone()].iter().map(|row| row[i]);
+                let column = std::iter::once(low).chain(on_the_way).chain([high]);
+                if column.is_sorted_by(|a, b| a < b) {
+                    continue;
+                }
+                for j in within.clone() {
+                    let part = (loads[j] - own[0]) / (own[1] - own[0]);
+                    rows[j][i] = low + part * (high - low);
+                }
+            }
+        }
     }
 
     /// `delta` at its positions under `loads`.
@@ -660,6 +696,45 @@ pub(super) mod tests {
             };
             let rise = sign * (flank.delta[2][1] - flank.delta[1][1]);
             assert!(rise > 0.0 && rise < 2.0 * APART, "{rise:e}");
+        }
+    }
+
+    #[test]
+    fn rows_between_rows_that_rise_rise_too() {
+        // δ = c F, with a compliance c that is very small at two positions beside each other: a cubic through those around them is negative in between.
+        // The compliances that the loaded flank claims are ten times too large, so that what meets them turns back from row to row.
+        let compliance = [1e-6, 1e-6, 1e-6, 1e-9, 1e-9, 1e-6, 1e-6, 1e-6];
+        let loads = [0.0, 1.0, 2.0, 4.0, 8.0].to_vec();
+        let rows = |factor: f64, from: f64| {
+            let row = |load: &f64| {
+                compliance
+                    .iter()
+                    .map(|c| from + factor * c * load)
+                    .collect()
+            };
+            loads.iter().map(row).collect::<Vec<Vec<f64>>>()
+        };
+        let loaded = FlankRows {
+            delta: rows(1.0, 0.0),
+            compliance: Some(vec![compliance.map(|c| 10.0 * c).to_vec(); loads.len()]),
+        };
+        let other = FlankRows::of_delta(rows(-1.0, -1e-6));
+        let table = ForceTable::new(1, loads, [loaded, other]).expect("rows that rise");
+        let fine = table.refined(4, 4);
+        let loads = fine.loads.windows(2);
+        for (j, load) in loads.map(|ends| ends[1] - ends[0]).enumerate() {
+            for i in 0..fine.positions() {
+                for (flank, sign) in [(fine.loaded(), 1.0), (fine.other(), -1.0)] {
+                    let rises = sign * (flank.delta[j + 1][i] - flank.delta[j][i]) / load;
+                    // Where it is linear it rises as the rows beside it do; where it is not, more than rounding.
+                    assert!(rises > 1e-3 * 1e-9, "{sign} {i} {j}: {rises:e}");
+                }
+            }
+        }
+        // Halfway between the two positions, under the loads of the table.
+        let halfway = |j: usize| fine.loaded().delta[j][14];
+        for (j, load) in [(4, 1.0), (8, 2.0), (12, 4.0), (16, 8.0)] {
+            assert!((halfway(j) / (1e-9 * load) - 1.0).abs() < 1e-9);
         }
     }
 

@@ -8,8 +8,16 @@ const TOGETHER: f64 = 1e-3;
 /// The part of the way between two positions over which an event is looked for from one of them alone.
 const FARTHEST: f64 = 0.6;
 
+/// What the samples on both sides of an event tell of its place.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place {
+    pub(super) at: f64,
+    /// Whether it was followed to there; else it may be anywhere between its neighbors.
+    pub(super) is_known: bool,
+}
+
 /// The places between the samples `at` and `at + 1` of `samples` at which a pair takes up or leaves the load, rising.
-pub(super) fn events(samples: &[Sample], at: usize) -> Vec<f64> {
+pub(super) fn events(samples: &[Sample], at: usize) -> Vec<Place> {
     let (before, after) = (&samples[at], &samples[at + 1]);
     let (from, to) = (before.position, after.position);
     let pairs = before.pairs.iter().chain(&after.pairs);
@@ -20,13 +28,22 @@ pub(super) fn events(samples: &[Sample], at: usize) -> Vec<f64> {
     changing.sort_unstable();
     changing.dedup();
     let margin = TOGETHER * (to - from);
-    let within = |place: f64| place.clamp(from + margin, to - margin);
-    let mut found: Vec<f64> = changing
+    let within = |place: Option<f64>| Place {
+        at: place.map_or(f64::midpoint(from, to), |place| {
+            place.clamp(from + margin, to - margin)
+        }),
+        is_known: place.is_some(),
+    };
+    let mut found: Vec<Place> = changing
         .iter()
         .map(|&n| within(event(samples, at, n)))
         .collect();
-    found.sort_by(f64::total_cmp);
-    found.dedup_by(|later, earlier| *later - *earlier < margin);
+    found.sort_by(|a, b| a.at.total_cmp(&b.at));
+    found.dedup_by(|later, earlier| later.at - earlier.at < margin);
+    if found.len() > 1 {
+        // Each ends where the next one stands.
+        found.iter_mut().for_each(|place| place.is_known = true);
+    }
     // Pairs that take the whole load over from each other without a share in common touch together nowhere but at one place.
     if !before
         .pairs
@@ -37,7 +54,7 @@ pub(super) fn events(samples: &[Sample], at: usize) -> Vec<f64> {
             .all(|&n| clearance_of(samples, at, n).is_none())
         && let Some(place) = crossing(samples, at)
     {
-        return vec![within(place)];
+        return vec![within(Some(place))];
     }
     found
 }
@@ -45,8 +62,8 @@ pub(super) fn events(samples: &[Sample], at: usize) -> Vec<f64> {
 /// Where pair `n`, which carries at only one of the samples `at` and `at + 1`, takes up or leaves the load.
 ///
 /// Its share falls to zero there from one side, and what parts its flanks from the other. Either is followed along its last two samples; the
-/// nearer they are, the more it counts.
-fn event(samples: &[Sample], at: usize, n: i64) -> f64 {
+/// nearer they are, the more it counts. `None` if neither comes to zero between the samples.
+fn event(samples: &[Sample], at: usize, n: i64) -> Option<f64> {
     let carries_after = samples[at + 1].carries(n);
     let (from, to) = (samples[at].position, samples[at + 1].position);
     let share = |sample: &Sample| {
@@ -73,12 +90,12 @@ fn event(samples: &[Sample], at: usize, n: i64) -> f64 {
         (Some(before), Some(after)) => {
             let weight = |way: f64| 1.0 / (way.powi(2) + (TOGETHER * width).powi(2));
             let (a, b) = (weight(before - from), weight(to - after));
-            (a * before + b * after) / (a + b)
+            Some((a * before + b * after) / (a + b))
         }
         // From one side alone the other end of the way may just have been found to lie beyond it.
-        (Some(before), None) => before.min(from + FARTHEST * width),
-        (None, Some(after)) => after.max(to - FARTHEST * width),
-        (None, None) => f64::midpoint(from, to),
+        (Some(before), None) => Some(before.min(from + FARTHEST * width)),
+        (None, Some(after)) => Some(after.max(to - FARTHEST * width)),
+        (None, None) => None,
     }
 }
 

@@ -166,7 +166,8 @@ fn wanted(sections: &Sections) -> Vec<Wanted> {
     wanted
 }
 
-/// Where the extremes of k are read off a line that goes on to an event from far away.
+/// Where the extremes of k are read off a line that goes on to an event from far away, and between two events without a position, where other pairs carry
+/// and nothing is known of k.
 fn wanted_of_stiffness(sections: &Sections) -> Vec<Wanted> {
     let stiffness = |section: &Section| section.stiffness;
     let known = sections.extremes(stiffness);
@@ -174,14 +175,19 @@ fn wanted_of_stiffness(sections: &Sections) -> Vec<Wanted> {
     let open = sections.sections.iter().filter(|section| {
         let extremes = section.extremes(stiffness);
         let is_extreme = extremes[0].0 <= known[0].0 || extremes[1].0 >= known[1].0;
-        is_extreme && section.events.contains(&true) && section.to - section.from > far
+        let is_open = match section.events {
+            [false, false] => false,
+            [true, true] => true,
+            _ => is_extreme,
+        };
+        is_open && section.to - section.from > far
     });
     let beside = |section: &Section| {
         let away = 0.5 * far;
-        if section.events[0] {
-            section.from + away
-        } else {
-            section.to - away
+        match section.events {
+            [true, true] => section.middle(),
+            [true, false] => section.from + away,
+            _ => section.to - away,
         }
     };
     open.map(|section| Wanted {
@@ -331,6 +337,76 @@ mod tests {
             assert!((stiffness.largest / 4e8 - 1.0).abs() < 1e-9);
             assert!(solved <= most_further(10));
         }
+    }
+
+    #[test]
+    fn an_event_of_which_no_pair_tells_stands_where_both_sides_of_it_meet() {
+        // Before it δ rises on a line; behind it it falls on a parabola, on which a second pair takes up the load so that a line through two of its shares
+        // tells nothing.
+        let event = 0.32;
+        let curve = |x: f64| {
+            let behind = (x - event).max(0.0);
+            1e-6 * (1.0 + 0.1 * x - 2.0 * behind + 1.2 * behind * behind)
+        };
+        let state = |pair: i64, share: f64| PairState {
+            pair,
+            share,
+            clearance: None,
+        };
+        let sample = |i: u32| {
+            let position = f64::from(i) / 10.0;
+            let taken = (0.3 * (position - event).max(0.0)).powf(0.2);
+            Sample {
+                position,
+                transmission_error: curve(position),
+                stiffness: 1e8,
+                pairs: vec![state(0, 1.0 - taken), state(1, taken)],
+            }
+        };
+        // Ten in a step of the curve.
+        let samples: Vec<Sample> = (0..=10).map(sample).collect();
+        let sections = Sections::new(span(1, 1, false), &samples);
+        let [delta, _] = sections.statistics();
+        // What is left after a step of the secant, of 0.03.
+        assert!((delta.largest_at - event).abs() < 1e-3, "{delta:?}");
+        assert!((delta.largest / curve(event) - 1.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn k_is_looked_at_between_two_events_without_a_position() {
+        // One pair leaves the load shortly after another one took it up, and in between three springs carry.
+        let (takes_up, leaves) = (0.42, 0.47);
+        let state = |pair: i64, ahead: f64| PairState {
+            pair,
+            share: ahead.max(0.0),
+            clearance: (ahead <= 0.0).then_some(-ahead),
+        };
+        let sample = |position: f64| Sample {
+            position,
+            transmission_error: 1e-6 * (1.0 + 0.1 * (6.0 * (position - 0.2)).cos()),
+            stiffness: if takes_up < position && position < leaves {
+                3e8
+            } else {
+                2e8
+            },
+            pairs: vec![
+                state(0, leaves - position),
+                state(1, 1.0),
+                state(2, position - takes_up),
+            ],
+        };
+        let span = span(10, 1, false);
+        let refinement = Refinement {
+            span,
+            most: most_further(10),
+            repeats_after: 1,
+        };
+        let samples = (0..10).map(|i| sample(f64::from(i) / 10.0)).collect();
+        let sections = refinement.sections(samples, |further| {
+            Ok::<_, Infallible>(further.iter().copied().map(sample).collect())
+        });
+        let [_, stiffness] = sections.expect("nothing fails").statistics();
+        assert_eq!((stiffness.smallest, stiffness.largest), (2e8, 3e8));
     }
 
     #[test]

@@ -25,6 +25,10 @@ const JUMP: f64 = 1e-5;
 /// Both sides of an event meet within twice this part of the way between its neighbors, if they are near enough to be believed.
 const NEARBY: f64 = 0.1;
 
+/// An event of which no pair tells the place stands where both sides meet, anywhere between neighbors that are nearer to each other than this part of
+/// a step.
+const CLOSE: f64 = 1.0 / 8.0;
+
 /// What the positions between are to tell of δ: its extremes to this part of its peak-to-peak, and no better than so many meters.
 const TOLERANCE: (f64, f64) = (1e-3, 5e-10);
 
@@ -72,6 +76,8 @@ fn wider(first: Extremes, second: Extremes) -> Extremes {
 /// An event, with δ there as either side of it has it.
 struct Event {
     at: f64,
+    /// Whether its place is known without δ.
+    is_known: bool,
     /// The sample before it.
     after: usize,
     /// As the side before it has it, and that behind it.
@@ -83,7 +89,7 @@ impl Sections {
     /// Those of the curve through `samples` over `span`, rising by position.
     pub(in crate::analysis) fn new(span: Span, samples: &[Sample]) -> Self {
         let samples = overlapping(span, samples);
-        let events = with_values(&samples);
+        let events = with_values(&samples, CLOSE * span.step());
         let mut sections = Vec::with_capacity(samples.len() + events.len());
         let mut first = 0;
         for piece in 0..=events.len() {
@@ -249,13 +255,14 @@ fn overlapping(span: Span, samples: &[Sample]) -> Vec<Sample> {
     before.chain(samples.iter().cloned()).chain(after).collect()
 }
 
-/// The events between `samples`, with δ at each.
-fn with_values(samples: &[Sample]) -> Vec<Event> {
+/// The events between `samples`, with δ at each; neighbors within `close` of each other are close.
+fn with_values(samples: &[Sample], close: f64) -> Vec<Event> {
     let mut found = Vec::new();
     for after in 0..samples.len().saturating_sub(1) {
         let places = events(samples, after).into_iter();
-        found.extend(places.map(|at| Event {
-            at,
+        found.extend(places.map(|place| Event {
+            at: place.at,
+            is_known: place.is_known,
             after,
             delta: [0.0; 2],
             error: 0.0,
@@ -269,14 +276,20 @@ fn with_values(samples: &[Sample]) -> Vec<Event> {
         let beside = beside.map(|sample| (sample.position, sample.transmission_error));
         let before = Side::of(samples[begins..=event.after].iter().rev(), event.at);
         let behind = Side::of(samples[event.after + 1..ends].iter(), event.at);
-        event.settle(beside, before, behind);
+        event.settle(beside, (before, behind), close);
     }
     found
 }
 
 impl Event {
-    /// Puts it where both sides of it meet, if that is near, and says what δ is there; `beside` are the samples next to it.
-    fn settle(&mut self, beside: [(f64, f64); 2], before: Option<Side>, behind: Option<Side>) {
+    /// Puts it where both sides of it meet, if that is near, and says what δ is there; `beside` are the samples next to it,
+    /// which are close within `close`.
+    fn settle(
+        &mut self,
+        beside: [(f64, f64); 2],
+        (before, behind): (Option<Side>, Option<Side>),
+        close: f64,
+    ) {
         let [from, to] = beside;
         let unknown = UNKNOWN * (to.1 - from.1).abs();
         let (Some(before), Some(behind)) = (&before, &behind) else {
@@ -297,7 +310,9 @@ impl Event {
         let step = NEARBY * width;
         let rate = (apart(self.at + step) - apart(self.at - step)) / (2.0 * step);
         let met = self.at - apart(self.at) / rate;
-        if (met - self.at).abs() < 2.0 * step && from.0 < met && met < to.0 {
+        let is_open = !self.is_known && width < close;
+        let is_near = is_open || (met - self.at).abs() < 2.0 * step;
+        if is_near && from.0 < met && met < to.0 {
             self.at = met;
         }
         let [one, other] = [before, behind].map(|side| side.curve.at(self.at));
