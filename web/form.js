@@ -26,6 +26,7 @@ const INSTEAD = {
   ...Object.fromEntries(THICKNESSES.map((name) => [name, THICKNESSES.filter((other) => other !== name)])),
   radius_mm: ["slot"], slot: ["radius_mm"], at_deg: ["count", "phase_deg"], count: ["at_deg"], phase_deg: ["at_deg"],
   tip_diameter_mm: ["addendum_mm"], addendum_mm: ["tip_diameter_mm"], tip_rounding_mm: ["tip_chamfer_mm"], tip_chamfer_mm: ["tip_rounding_mm"],
+  bore_radius_mm: ["shaft"], shaft: ["bore_radius_mm"],
 };
 
 export class Form {

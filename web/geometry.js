@@ -19,6 +19,7 @@ export const OF_GEARS = [
   ["Root form diameter", "d_Ff", "mm", (it) => fixed(it.form_diameter_mm ?? twice(it.form_radius_mm), 3)],
   ["Root diameter", "d_f", "mm", (it) => fixed(twice(it.root_radius_mm), 3)],
   ["Tip thickness", "s_an", "mm", (it) => fixed(it.tip_thickness_mm, 3)],
+  ["Tip thickness, transverse", "s_at", "mm", (it) => fixed(it.tip_thickness_transverse_mm, 3)],
   ["Tip clearance", "c", "mm", (it) => fixed(it.tip_clearance_mm, 3)],
   ["Specific sliding at A", "ζ_A", "", (it) => fixed(it.specific_sliding_a, 3)],
   ["Specific sliding at E", "ζ_E", "", (it) => fixed(it.specific_sliding_e, 3)],

@@ -13,6 +13,21 @@ pub(super) fn root() -> PathBuf {
 }
 
 #[test]
+fn the_clients_have_the_version_of_the_service() {
+    let version = env!("CARGO_PKG_VERSION");
+    for (file, line) in [
+        (
+            "typescript/package.json",
+            format!("\"version\": \"{version}\""),
+        ),
+        ("python/pyproject.toml", format!("version = \"{version}\"")),
+    ] {
+        let text = fs::read_to_string(root().join("clients").join(file)).unwrap();
+        assert!(text.contains(&line), "{file}: {line}");
+    }
+}
+
+#[test]
 fn the_committed_openapi_document_is_the_generated_one() {
     let path = root().join("api/openapi.json");
     let generated = format!("{:#}\n", meshwright::http::openapi());

@@ -284,12 +284,19 @@ async fn a_model_is_read_in_every_container_and_a_refused_one_says_why_of_each_s
     assert!(errors[1]["nearest"].as_f64().unwrap() < 120.0);
 }
 
+/// The models of our own as other programs write them.
+fn models_of_other_programs() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/rexs");
+    let files = std::fs::read_dir(folder).unwrap();
+    let mut files: Vec<PathBuf> = files.map(|file| file.unwrap().path()).collect();
+    files.sort();
+    files
+}
+
 #[test]
 fn every_file_of_another_program_is_read_or_refused_by_its_place_on_the_command_line() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/rexs");
     let mut read = 0;
-    for file in std::fs::read_dir(folder).unwrap() {
-        let file = file.unwrap().path();
+    for file in models_of_other_programs() {
         let stage = [path("--stage"), path("3")];
         let mut arguments = vec![path("rexs"), path("import"), &file];
         let name = file.file_name().unwrap().to_string_lossy();
@@ -310,4 +317,51 @@ fn every_file_of_another_program_is_read_or_refused_by_its_place_on_the_command_
         }
     }
     assert!(read >= 9, "{read}");
+}
+
+#[tokio::test]
+async fn every_file_of_another_program_is_read_over_http_as_on_the_command_line() {
+    let bench = Bench::real().await;
+    let mut files = 0;
+    for file in models_of_other_programs() {
+        let name = file.file_name().unwrap().to_string_lossy().into_owned();
+        let stage = if name.starts_with("two-stages") { 3 } else { 0 };
+        let query = if stage > 0 {
+            format!("?stage={stage}")
+        } else {
+            String::new()
+        };
+        let request = bench.client.post(bench.url(&format!("/v1/rexs{query}")));
+        let request = request.header("content-type", "application/octet-stream");
+        let answer = request
+            .body(std::fs::read(&file).unwrap())
+            .send()
+            .await
+            .unwrap();
+
+        let mut arguments = vec![path("rexs"), path("import"), &file];
+        let said = stage.to_string();
+        if stage > 0 {
+            arguments.extend([path("--stage"), path(&said)]);
+        }
+        let ran = meshwright(&arguments);
+        if ran.status.success() {
+            assert_eq!(answer.status(), StatusCode::OK, "{name}");
+            let read = answer.document().await;
+            let submission: Value = serde_json::from_slice(&ran.stdout).unwrap();
+            assert_eq!(read["submissions"], Value::from(vec![submission]), "{name}");
+            assert!(!read["assumed"].as_array().unwrap().is_empty(), "{name}");
+        } else {
+            let refused = problem(answer, 422, "model_refused").await;
+            let told = String::from_utf8_lossy(&ran.stderr);
+            for error in refused["errors"].as_array().unwrap() {
+                let detail = error["detail"].as_str().unwrap();
+                let place = &detail[detail.find("component ").expect("its place in the model")..];
+                let place = place.split(')').next().unwrap();
+                assert!(told.contains(place), "{name}: {place}: {told}");
+            }
+        }
+        files += 1;
+    }
+    assert_eq!(files, 13);
 }

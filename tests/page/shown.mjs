@@ -458,6 +458,59 @@ export async function shownSteps(service) {
     assert.deepEqual([driving.tip_diameter_mm, driven.tip_diameter_mm, driving.addendum_mm, driven.addendum_mm], [103.2, 103.4, undefined, undefined]);
   });
 
+  await step("tips that nobody shortened are warned of, and the diameters that gear programs take are taken over by the button", service, async (page) => {
+    // A planet stage from a report, its tip diameters left out: 0.009 modules of clearance. The report has 978.808 and 905.470 mm.
+    const steel = { youngs_modulus_gpa: 206, poisson_ratio: 0.3, density_kg_m3: 7830 };
+    const gear = (tooth_count, profile_shift, bore_radius_mm) => ({ tooth_count, profile_shift, module_mm: 45, face_width_mm: 491, material: steel, blank: { bore_radius_mm } });
+    await openDesign(page, service, { method: "flexible", pair: { center_distance_mm: 863, driving: gear(19, 0.617, 200), driven: gear(17, 0.8021, 180) }, output_torques_n_m: [298141.5] });
+    await settled(page);
+    await page.locator("#warned").click();
+    // The rack's clearance is 0.25 modules, 11.25 mm.
+    assert.match(await page.locator("#warnings").innerText(), /The tips of the driving gear clear the root circle of the driven gear by 0\.39\d+ mm, less than 0\.1 modules/);
+    await changing(page, () => page.locator("#warnings button", { hasText: "Tip diameter, driving gear 978.8" }).first().click());
+    const { driving, driven } = (await designOf(page)).pair;
+    assert.ok(Math.abs(driving.tip_diameter_mm - 978.808) < 0.009 && Math.abs(driven.tip_diameter_mm - 905.47) < 0.009, `${driving.tip_diameter_mm} ${driven.tip_diameter_mm}`);
+    assert.equal(await page.locator("#warnings button", { hasText: "Tip diameter" }).count(), 0);
+  });
+
+  await step("thickness, hob, shaft and spokes are typed as drawings say them, each in place of what it excludes", service, async (page) => {
+    await open(page, service);
+    const typed = async (pointer, text) => {
+      const input = await field(page, pointer);
+      await input.click();
+      await input.press("Control+a");
+      await changing(page, () => input.pressSequentially(text));
+    };
+    const pressed = async (pointer) => changing(page, async () => (await field(page, pointer)).check());
+    const computed = async () => assert.ok(await page.locator("#problem").isHidden(), await page.locator("#problem").innerText());
+    await tab(page, "geometry");
+    const backlash = () => page.locator("#geometry tr", { hasText: "Normal backlash" }).first().innerText();
+    // Teeth 50 um thinner in the normal section; the same by a span over six teeth: 16.93700 mm a module, less 50 um cos 20 degrees.
+    await typed("/pair/driving/tooth_thickness_deviation_normal_um", "-50");
+    await computed();
+    const thinner = await backlash();
+    await pressed("/pair/driving/span_measurement");
+    for (const [name, text] of [["teeth", "6"], ["length_mm", "33.82702"]]) await typed(`/pair/driving/span_measurement/${name}`, text);
+    await computed();
+    const said = (await designOf(page)).pair.driving;
+    assert.deepEqual([said.span_measurement, said.tooth_thickness_deviation_normal_um], [{ teeth: 6, length_mm: 33.82702 }, undefined]);
+    assert.equal(await backlash(), thinner);
+    await typed("/pair/driving/dedendum_mm", "2,8");
+    await pressed("/pair/driving/protuberance");
+    for (const [name, text] of [["amount_um", "160"], ["height_mm", "1,5"], ["grinding_stock_um", "60"]]) await typed(`/pair/driving/protuberance/${name}`, text);
+    await computed();
+    await pressed("/pair/driving/blank/shaft");
+    await typed("/pair/driving/blank/shaft/radius_mm", "20");
+    await computed();
+    await changing(page, async () => (await field(page, HOLES)).selectOption({ index: 0 }));
+    await pressed("/pair/driven/blank/spokes");
+    await computed();
+    const { pair } = await designOf(page);
+    assert.deepEqual(pair.driving.protuberance, { amount_um: 160, height_mm: 1.5, grinding_stock_um: 60 });
+    assert.deepEqual([pair.driving.blank.shaft.radius_mm, pair.driving.blank.bore_radius_mm], [20, undefined]);
+    assert.deepEqual([pair.driven.blank.spokes.count, pair.driven.blank.holes], [5, undefined]);
+  });
+
   await step("a stage of an electric drive is typed from a report, and what stands on the page is its own from the first number to the last", service, async (page) => {
     page.setDefaultTimeout(900_000);
     await open(page, service);

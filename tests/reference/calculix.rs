@@ -419,6 +419,31 @@ fn steep_parabolic_reliefs_follow_calculix_at_light_and_at_full_load() {
     check("calculix-steep-relief.json", pair, Corners::Settled, 12);
 }
 
+#[test]
+fn an_undercut_pinion_whose_corner_carries_follows_calculix_within_0_3_percent() {
+    let toothed = |tooth_count, bore_radius| {
+        let mut data = gear(tooth_count, bore_radius);
+        let rack = &mut data.rack;
+        (rack.module, rack.addendum, rack.dedendum) = (1e-3, 1e-3, 1.25e-3);
+        rack.tip_radius = 0.38e-3;
+        data.face_width = 5e-3;
+        data
+    };
+    let pair = pair(toothed(10, 1.5e-3), toothed(80, 12e-3), 45e-3);
+    let file = "calculix-undercut.json";
+    let compared = compare(file, &pair);
+    assert_eq!(compared.len(), 8, "positions of {file}");
+    let violations = violations(&pair, &compared, Corners::Settled);
+    assert!(violations.is_empty(), "{}", violations.join("\n"));
+    for c in &compared {
+        let level = c.delta[0] / c.delta[1] - 1.0;
+        assert!(level.abs() < 0.003, "{}: {level}", c.eta);
+    }
+    // On the corner before the path of contact, where that begins, and where it ends.
+    let beyond = compared.iter().filter(|c| c.outside(&pair)).count();
+    assert!(beyond > 3, "{beyond}");
+}
+
 /// The standard pair with relief, its driven gear on a blank of a bore of 15 mm, these round holes (circle and own radius in mm, angle in
 /// degrees), and this web.
 fn on_blank(holes: &[(f64, f64, f64)], web: Option<Web>) -> GearPair {

@@ -6,6 +6,7 @@ at positive angles, on both gears: the driving gear turns counter-clockwise abou
 """
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from math import atan2, cos, hypot, pi, sin, sqrt, tan
 
 import numpy as np
@@ -117,11 +118,36 @@ class Gear:
         """Half the angle of the tooth at the base circle."""
         return (pi / 2 + 2 * self.x * tan(self.alpha)) / self.z + involute(self.alpha)
 
+    @cached_property
+    def flank_start(self):
+        """(gamma, roll length) where the involute begins: gamma is the angle of the trochoid's normal there, as in `fillet`.
+
+        They touch at gamma = alpha, unless that lies before the base circle: the trochoid then cuts the involute (undercut).
+        """
+        straight_depth = self.hf - self.rho * (1 - sin(self.alpha)) - self.x * self.m
+        tangent = self.rp * sin(self.alpha) - straight_depth / sin(self.alpha)
+        if tangent >= 0:
+            return self.alpha, tangent
+
+        def beside(gamma):
+            """By what angle the trochoid lies outside the involute at equal radius, and the roll length there."""
+            radius, angle = self.trochoid(gamma)
+            if radius < self.rb:
+                return -1.0, 0.0
+            s = sqrt(radius**2 - self.rb**2)
+            return angle - (self.base_half_angle - (s / self.rb - atan2(s, self.rb))), s
+
+        high = pi / 2
+        low = next(gamma for gamma in np.linspace(pi / 2, self.alpha, 4001) if beside(gamma)[0] > 0)
+        for _ in range(60):
+            middle = (low + high) / 2
+            low, high = (middle, high) if beside(middle)[0] > 0 else (low, middle)
+        return low, beside(low)[1]
+
     @property
     def form_roll_length(self):
-        """Roll length of the end of the involute, where the trochoid begins."""
-        straight_depth = self.hf - self.rho * (1 - sin(self.alpha)) - self.x * self.m
-        return self.rp * sin(self.alpha) - straight_depth / sin(self.alpha)
+        """Roll length where the involute begins."""
+        return self.flank_start[1]
 
     @property
     def form_radius(self):
@@ -172,24 +198,28 @@ class Gear:
         angle = self.base_half_angle - (s / self.rb - np.arctan2(s, self.rb)) - self.removed(s) / self.rb
         return polar(np.hypot(self.rb, s), angle)
 
-    def fillet(self, gamma):
-        """Point of the trochoid; gamma is the angle of its normal to the rolling line: alpha at the flank, pi/2 at the root.
-
-        Removed material of the flank fades to zero over the fillet.
-        """
-        gamma = np.asarray(gamma, float)
+    def trochoid(self, gamma):
+        """Radius and angle of the trochoid at `gamma`, before anything is removed."""
         land = pi * self.m / 4 - (self.hf - self.rho) * tan(self.alpha) - self.rho / cos(self.alpha)
         depth = self.hf - self.rho - self.x * self.m
         # The pitch point stands beside the rounding's center by this much, on the side away from the tooth.
         aside = depth / np.tan(gamma)
         foot = pi / self.z - (land - aside) / self.rp
         r, t = self.rp - depth - self.rho * np.sin(gamma), -aside - self.rho * np.cos(gamma)
-        angle = foot + np.arctan2(t, r) - self.removed(self.form_roll_length) / self.rb * (1 - self.fillet_fade(gamma))
-        return polar(np.hypot(r, t), angle)
+        return np.hypot(r, t), foot + np.arctan2(t, r)
+
+    def fillet(self, gamma):
+        """Point of the trochoid; gamma is the angle of its normal to the rolling line, pi/2 at the root.
+
+        Removed material of the flank fades to zero over the fillet.
+        """
+        radius, angle = self.trochoid(np.asarray(gamma, float))
+        return polar(radius, angle - self.removed(self.form_roll_length) / self.rb * (1 - self.fillet_fade(gamma)))
 
     def fillet_fade(self, gamma):
         """Smooth step from 0 at the flank to 1 at the root circle."""
-        t = (gamma - self.alpha) / (pi / 2 - self.alpha)
+        start = self.flank_start[0]
+        t = (gamma - start) / (pi / 2 - start)
         return t * t * (3 - 2 * t)
 
     def rounding(self, t):
@@ -216,7 +246,7 @@ class Gear:
         rotation that the point takes.
         """
         stretch = lambda low, high: lambda t: low + np.asarray(t, float) * (high - low)
-        gamma = stretch(pi / 2, self.alpha)
+        gamma = stretch(pi / 2, self.flank_start[0])
         root_end = self.fillet(pi / 2)
         root_angle = stretch(pi / self.z, atan2(root_end[1], root_end[0]))
         pieces = [
@@ -275,9 +305,14 @@ class Pair:
 
     @property
     def path(self):
-        """Roll lengths on the driving gear at the start of the path of contact, the pitch point and the end."""
+        """Roll lengths on the driving gear at the start of the path of contact, the pitch point and the end.
+
+        An undercut flank may begin inside the tip circle of its mate, and ends the path there.
+        """
         total = self.center_distance * sin(self.aw)
-        return total - self.driven.tip_roll_length, self.driving.rb * tan(self.aw), self.driving.tip_roll_length
+        start = max(total - self.driven.tip_roll_length, self.driving.form_roll_length)
+        end = min(self.driving.tip_roll_length, total - self.driven.form_roll_length)
+        return start, self.driving.rb * tan(self.aw), end
 
     @property
     def contact_ratio(self):

@@ -99,6 +99,7 @@ def all_series():
         rounding(),
         chamfer(),
         steep_relief(),
+        undercut(),
     ]
     return {series.name: series for series in listed}
 
@@ -245,4 +246,19 @@ def steep_relief():
         (96.0, 384.0),
         (0.475, 0.525, 0.55, 0.575, 0.6, 0.65),
         check_at=0.55,
+    )
+
+
+def undercut():
+    return Series(
+        "calculix-undercut",
+        "a pinion of 10 teeth, undercut: its path of contact begins where the trochoid cuts the flank, whose corner carries before",
+        Pair(Gear(z=10, m=1.0, bore=1.5), Gear(z=80, m=1.0, bore=12.0), 45.0, face_width=5.0),
+        (8.0,),
+        # The corner carries from 0.34 to 0.59, and about 0.15, where the tip of the wheel has just come down on it. Two flanks carry from there to
+        # 0.69, the corner of the tip a little longer.
+        (0.0, 0.15, 0.3, 0.45, 0.5, 0.56, 0.62, 0.72),
+        Options(contact=0.008, fillet=0.08, tooth=1.2, body=2.5, strip=0.12, core=0.0015, core_reach=0.015, contact_stiffness=3e9),
+        check_at=0.45,
+        stiffness_every=8,
     )

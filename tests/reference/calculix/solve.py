@@ -72,12 +72,12 @@ def sizes_for(pair, which, eta, near, options, first_gap):
     for tooth in {n + k for n in near for k in (-1, 0, 1)}:
         angle = pair.tooth_angle(which, eta, tooth)
         # The middle of the fillet, halfway between its ends in angle of its normal.
-        middle = gear.fillet((gear.alpha + np.pi / 2) / 2)
+        middle = gear.fillet((gear.flank_start[0] + np.pi / 2) / 2)
         for side in (1.0, -1.0):
             point = rotate(middle * np.array([1.0, side]), angle) + center
             sizes.add(place(point), 0.35 * gear.m, options.fillet)
         if options.stress_fillet and tooth in near:
-            for gamma in np.linspace(gear.alpha, np.pi / 2, 40):
+            for gamma in np.linspace(gear.flank_start[0], np.pi / 2, 40):
                 point = rotate(gear.fillet(gamma), angle) + center
                 sizes.add(place(point), 2 * options.stress_fillet, options.stress_fillet)
     zero = pair.tooth_angle(which, eta, 0)

@@ -63,7 +63,7 @@ def fillet_stress(pair, position, eta, printed):
                     points.append(shape @ x)
                     stresses.append(gear.youngs_modulus * (along @ stretch) / (along @ along))
             points, stresses = np.array(points), np.array(stresses)
-            start = gear.fillet(gear.alpha)
+            start = gear.fillet(gear.flank_start[0])
             steps = np.hypot(*np.diff(np.vstack([start, points]), axis=0).T)
             k, tensile = int(np.argmax(np.abs(stresses))), int(np.argmax(stresses))
             angle = np.degrees(np.arctan2(points[:, 1], points[:, 0]))

@@ -2,7 +2,7 @@
 //! an independent solver and with the paper.
 //!
 //! Read in this order: [`closed_forms`], [`convergence`] (of grid, cells and positions), [`patch`], [`blanks`], [`uncondensed`]
-//! and [`inside`] (the substructures, their coupling and the stresses within them), [`stress`] and [`fields`], [`invariants`] and
+//! and [`inside`] (the substructures, their coupling and the stresses within them), [`stress`] and [`fields`], [`undercut`], [`invariants`] and
 //! [`robustness`]. [`support`] makes the gears, [`whole`] assembles a gear without any condensation.
 
 mod blanks;
@@ -16,4 +16,5 @@ mod robustness;
 mod stress;
 mod support;
 mod uncondensed;
+mod undercut;
 mod whole;

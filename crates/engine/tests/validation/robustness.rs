@@ -260,6 +260,28 @@ fn three_hundred_teeth_on_either_side_are_solved() {
 }
 
 #[test]
+fn the_fewest_and_the_most_teeth_are_solved() {
+    let most = meshed(gear(30, 12e-3), gear(1000, 200e-3), 1030.5e-3);
+    // Four teeth leave a contact ratio of 1.0017, by the wheel's long addendum.
+    let few = |tooth_count, shift: f64, addendum: f64, bore: f64| {
+        let mut data = gear(tooth_count, bore);
+        data.profile_shift = shift;
+        data.rack.pressure_angle = 30_f64.to_radians();
+        (data.rack.addendum, data.rack.dedendum, data.rack.tip_radius) = (addendum, 2.1e-3, 0.1e-3);
+        data
+    };
+    let few = meshed(
+        few(4, 0.5, 1.5e-3, 0.3e-3),
+        few(60, -0.5, 2e-3, 8e-3),
+        64e-3,
+    );
+    for (pair, torque) in [(most, 2000.0), (few, 20.0)] {
+        let trouble = trouble(&case(pair, &[torque]));
+        assert!(trouble.is_none(), "{trouble:?}");
+    }
+}
+
+#[test]
 fn contact_is_as_wide_as_the_narrower_gear() {
     // Half the width on both gears under half the load is the same plane problem.
     let of = |widths: [f64; 2], torque: f64| {

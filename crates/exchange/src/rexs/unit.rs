@@ -203,4 +203,128 @@ mod tests {
         assert_eq!(DEG.convert(20.0, Some("°")), Some(20.0));
         assert_eq!(DEG.convert(20_f64.to_radians(), Some("rad")), Some(20.0));
     }
+
+    /// Every unit of the lists of versions 1.0 to 2.0.
+    const LISTED: [&str; 66] = [
+        "C",
+        "mm",
+        "°",
+        "none",
+        "kN",
+        "K",
+        "%",
+        "N mm / rad",
+        "N / m",
+        "N",
+        "mum",
+        "N m",
+        "rad",
+        "MPa",
+        "W / mm",
+        "l / min",
+        "h",
+        "HV",
+        "N / mm^2",
+        "1e-6 / C",
+        "kg / dm^3",
+        "W / (m K)",
+        "J / (kg K)",
+        "mm^2 / s",
+        "1 / min",
+        "s",
+        "HRC",
+        "HB",
+        "W",
+        "kW",
+        "N / rad",
+        "Hz",
+        "m / s^2",
+        "m / s",
+        "m^2",
+        "K m^2 / W",
+        "N / (mm mum)",
+        "(N / mm^2)^0.5",
+        "1e-6 mm^3 / (N m)",
+        "K (m / s)^0.75 mm^1.75 / W",
+        "mg",
+        "1 / s",
+        "mm / h",
+        "mm^2 / N",
+        "N / mm",
+        "mPa s",
+        "N / (mm s^0.5 K)",
+        "rad / s",
+        "mus",
+        "K / mus",
+        "dB",
+        "Pa",
+        "m^3 / s",
+        "mm^2",
+        "1 / mm",
+        "kg",
+        "kg m^2",
+        "deg",
+        "MRev",
+        "W / (m^2 K)",
+        "kg / mm",
+        "pF",
+        "Ohm",
+        "V",
+        "pS / m",
+        "V / m",
+    ];
+
+    #[test]
+    fn every_unit_of_the_standards_lists_converts_to_those_of_its_quantity_alone() {
+        let pi = std::f64::consts::PI;
+        let quantities: [(Unit, &[(&str, f64)]); 7] = [
+            (NONE, &[("none", 1.0)]),
+            (MM, &[("mm", 1.0), ("mum", 1e-3)]),
+            (DEG, &[("deg", 1.0), ("°", 1.0), ("rad", 180.0 / pi)]),
+            (MPA, &[("MPa", 1.0), ("N / mm^2", 1.0), ("Pa", 1e-6)]),
+            (KG_PER_DM3, &[("kg / dm^3", 1.0)]),
+            (N_M, &[("N m", 1.0)]),
+            (
+                PER_MINUTE,
+                &[
+                    ("1 / min", 1.0),
+                    ("1 / s", 60.0),
+                    ("Hz", 60.0),
+                    ("rad / s", 30.0 / pi),
+                ],
+            ),
+        ];
+        let powers = |unit: &str| unit.replace("^2", "²").replace("^3", "³");
+        for (unit, own) in quantities {
+            for said in LISTED {
+                let expected = own.iter().find(|(name, _)| *name == said);
+                // With and without spaces and signs of multiplication, powers as they are printed.
+                let close = said.replace(' ', "");
+                for spelling in [
+                    said,
+                    &close,
+                    &powers(said),
+                    &powers(&close),
+                    &said.replace("N m", "N*m"),
+                    &said.replace("N m", "N·m"),
+                ] {
+                    let found = unit.convert(3.0, Some(spelling));
+                    match (found, expected) {
+                        (Some(found), Some((_, factor))) => {
+                            assert!(
+                                (found / (3.0 * factor) - 1.0).abs() < 1e-14,
+                                "{spelling}: {found} {}",
+                                unit.name
+                            );
+                        }
+                        (found, expected) => assert!(
+                            found.is_none() && expected.is_none(),
+                            "{spelling}: {found:?} {}",
+                            unit.name
+                        ),
+                    }
+                }
+            }
+        }
+    }
 }

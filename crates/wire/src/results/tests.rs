@@ -364,6 +364,32 @@ fn computed_results_read_back_with_all_that_they_may_have() {
 }
 
 #[test]
+fn the_force_table_of_a_helical_pair_tells_its_backlash_along_the_transverse_line_of_action() {
+    let gear = |tooth_count: u32| json!({ "tooth_count": tooth_count, "module_mm": 2, "face_width_mm": 10, "blank": { "bore_radius_mm": 10 } });
+    // 20/40 at 30 degrees; beyond a distance of 60/cos 30 degrees there is backlash.
+    let document = json!({
+        "method": "three_dimensional",
+        "pair": { "center_distance_mm": 69.4, "helix_angle_deg": 30, "driving": gear(20), "driven": gear(40) },
+        "output_torques_n_m": [20],
+        "resolution": { "positions_per_mesh_period": 8, "face_order": 4, "face_slices": 10 },
+        "force_table": { "loads": 4 },
+    });
+    let submission = parse(&document).expect("valid");
+    let results = solve(&submission, &Library::default(), &Run::unattended()).expect("results");
+    let transverse = 1e3 * results.pair.backlash_transverse_mm;
+    assert!(transverse > 1.1e3 * results.pair.backlash_mm && transverse > 50.0);
+    let table = results.force_table.expect("asked for");
+    assert!(table.backlash_um.len() >= 8);
+    // Unmodified teeth have it at every position.
+    for backlash in table.backlash_um {
+        assert!(
+            (backlash / transverse - 1.0).abs() < 1e-6,
+            "{backlash} {transverse}"
+        );
+    }
+}
+
+#[test]
 fn documents_of_other_versions_are_read_and_what_they_do_not_tell_is_never_written() {
     let mut document: Value = serde_json::from_str(STUB).expect("JSON");
     document["later"] = json!({ "of": "a later version" });

@@ -205,6 +205,89 @@ fn gears_of_many_teeth_and_of_steep_flanks_are_taken() {
 }
 
 #[test]
+fn gears_at_the_bounds_of_teeth_and_of_pressure_angles_are_taken_and_one_beyond_is_refused() {
+    let toothed = |z: u32, alpha: f64, [x, addendum, dedendum]: [f64; 3]| {
+        json!({
+            "tooth_count": z, "module_mm": 1, "pressure_angle_deg": alpha, "profile_shift": x, "addendum_mm": addendum, "dedendum_mm": dedendum,
+            "rack_tip_radius_mm": 0.05, "face_width_mm": 10, "blank": { "bore_radius_mm": 0.06 * f64::from(z) },
+        })
+    };
+    let meshing = |teeth: [u32; 2], alpha: f64, profiles: [[f64; 3]; 2]| {
+        let [one, other] = [0, 1].map(|i| toothed(teeth[i], alpha, profiles[i]));
+        pair(
+            "flexible",
+            f64::from(teeth[0] + teeth[1]) / 2.0,
+            1.0,
+            [one, other],
+        )
+    };
+    let full = [0.0, 1.0, 1.25];
+    let four = |z: u32| meshing([z, 60], 30.0, [[0.5, 0.75, 1.05], [-0.5, 1.0, 1.05]]);
+    let steep = |alpha: f64| meshing([200, 400], alpha, [[0.0, 0.86, 0.905]; 2]);
+    // What the contact ratio is without undercut: (sqrt(r_a1² − r_b1²) + sqrt(r_a2² − r_b2²) − a sin α)/(π cos α).
+    let unlost = |teeth: [f64; 2], alpha: f64, addendum: f64| {
+        let alpha = alpha.to_radians();
+        let reach = teeth.map(|z| {
+            let (r, r_b) = (0.5 * z, 0.5 * z * alpha.cos());
+            ((r + addendum).powi(2) - r_b * r_b).sqrt()
+        });
+        let a = 0.5 * (teeth[0] + teeth[1]);
+        (reach[0] + reach[1] - a * alpha.sin()) / (std::f64::consts::PI * alpha.cos())
+    };
+    // Four teeth are always undercut: an own sampling of the trochoid, to four digits.
+    let few = taken(&four(4));
+    assert!(codes(&few).contains(&WarningCode::UndercutShortensPath));
+    assert!(few.pair.contact_ratio > 1.0 && few.pair.contact_ratio < 1.05);
+    for (document, teeth, alpha, addendum) in [
+        (
+            meshing([1000, 1000], 20.0, [full; 2]),
+            [1000.0, 1000.0],
+            20.0,
+            1.0,
+        ),
+        (
+            meshing([30, 1000], 20.0, [full; 2]),
+            [30.0, 1000.0],
+            20.0,
+            1.0,
+        ),
+        (steep(40.0), [200.0, 400.0], 40.0, 0.86),
+        (
+            meshing([200, 200], 10.0, [full; 2]),
+            [200.0, 200.0],
+            10.0,
+            1.0,
+        ),
+    ] {
+        near(
+            taken(&document).pair.contact_ratio,
+            unlost(teeth, alpha, addendum),
+            1e-9,
+        );
+    }
+    for (document, pointer, nearest) in [
+        (four(3), "/pair/driving/tooth_count", 4.0),
+        (
+            meshing([1001, 1000], 20.0, [full; 2]),
+            "/pair/driving/tooth_count",
+            1000.0,
+        ),
+        (steep(40.1), "/pair/driving/pressure_angle_deg", 40.0),
+        (
+            meshing([200, 200], 9.9, [full; 2]),
+            "/pair/driving/pressure_angle_deg",
+            10.0,
+        ),
+    ] {
+        let error = parse(&document).expect_err("beyond").errors.remove(0);
+        assert_eq!(
+            (&*error.pointer, error.code, error.nearest),
+            (pointer, Code::OutOfRange, Some(nearest))
+        );
+    }
+}
+
+#[test]
 fn a_rack_that_comes_to_a_point_is_told_the_dedendum_that_does_not() {
     let steep = json!({ "pressure_angle_deg": 38 });
     let gear = gear(25, 4.0, 30.0, 20.0, &steep);
@@ -289,6 +372,28 @@ fn hunting_teeth_on_uneven_blanks_are_computed_where_the_holes_superpose() {
     assert_eq!(error.code, Code::TooLarge);
     let span = ("/resolution", json!({ "span_mesh_periods": 500 }));
     taken(&with(hunting("flexible"), &[span]));
+    // Positions times torques, at the bound and just beyond it.
+    let sized = |span: u32, torques: &Value| {
+        let resolution = json!({ "positions_per_mesh_period": 100, "span_mesh_periods": span });
+        let changes = [
+            ("/resolution", resolution),
+            ("/output_torques_n_m", torques.clone()),
+        ];
+        parse(&with(hunting("projected_decomposition"), &changes))
+    };
+    for (span, torques) in [(2000, json!([50])), (1000, json!([50, 60]))] {
+        assert!(sized(span, &torques).is_ok(), "{span}");
+        let beyond = sized(span + 1, &torques)
+            .expect_err("too many")
+            .errors
+            .remove(0);
+        assert_eq!(beyond.code, Code::TooLarge);
+        assert!(
+            beyond.detail.contains("200000") || beyond.detail.contains("200,000"),
+            "{}",
+            beyond.detail
+        );
+    }
     // Teeth that deviate do not repeat with the mesh period.
     let mut deviating = hunting("projected_decomposition");
     let eccentric = json!({ "eccentricity": { "amount_um": 5 } });
@@ -433,6 +538,24 @@ fn a_thickness_may_be_said_by_a_span_or_by_balls_and_at_most_once() {
     let both = and(span, &json!({ "tooth_thickness_deviation_um": -50.0 }));
     let error = parse(&straight(&both)).expect_err("twice").errors.remove(0);
     assert_eq!(error.code, Code::ConflictingFields);
+    // Over balls of 3.5 mm (DIN 3960): d_b/cos α_K cos(90°/z) + D, inv α_K = inv α + D/(z m cos α) − e/(z m), with spaces 50 um wider.
+    let inv = |angle: f64| angle.tan() - angle;
+    let (alpha, z, m, ball) = (20_f64.to_radians(), 25.0, 2.0, 3.5);
+    let space = std::f64::consts::PI * m / 2.0 + 0.05;
+    let wanted = inv(alpha) + ball / (z * m * alpha.cos()) - space / (z * m);
+    let (mut low, mut high) = (0.0_f64, 1.0_f64);
+    for _ in 0..60 {
+        let middle = f64::midpoint(low, high);
+        *(if inv(middle) < wanted {
+            &mut low
+        } else {
+            &mut high
+        }) = middle;
+    }
+    let over = z * m * alpha.cos() / low.cos() * (90.0 / z).to_radians().cos() + ball;
+    let balls = json!({ "ball_measurement": { "ball_diameter_mm": ball, "over_balls_mm": over } });
+    let by_balls = taken(&straight(&balls)).pair;
+    near(by_balls.backlash_mm, deviation.backlash_mm, 1e-9);
     // A span over a tooth more or less is told with what the rack leaves.
     let wrong = json!({ "span_measurement": { "teeth": 4, "length_mm": length } });
     let error = parse(&straight(&wrong))
