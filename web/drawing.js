@@ -51,7 +51,7 @@ export class Drawing {
     this.setPosition(this.#position);
   }
 
-  /** Takes the forces from these curves. */
+  /** Takes the forces from this curve; null: none are known yet. */
   setCurve(curve) {
     this.#curve = curve;
     this.#drawForces();
