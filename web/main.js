@@ -188,6 +188,7 @@ function onResults(results, submission, { took, since, draft, asked }) {
   computed = submission;
   shown = { name: nameOf(submission), results, submission, asked, teeth: submission.pair.driven.tooth_count, look: 0 };
   if (!draft) live = shown;
+  document.body.classList.remove("empty");
   byId("position").max = results.pair.period_mesh_periods;
   draw(submission.pair);
   showDesigns(draft);

@@ -499,11 +499,16 @@ export async function shownSteps(service) {
     assert.match(await page.locator("#sheet > svg").getAttribute("aria-label"), /8×r7\.5@34/);
   });
 
-  for (const [width, height] of [[390, 844], [1280, 800], [1920, 1080]]) {
+  for (const [width, height] of [[390, 844], [1280, 800], [1920, 1080], [3840, 2160]]) {
     await step(`nothing moves that somebody reads at ${width} px, and the design is near its answers`, service, async (page) => {
       await page.addInitScript(() => {
-        window.shift = 0;
-        new PerformanceObserver((list) => { for (const each of list.getEntries()) if (!each.hadRecentInput) window.shift += each.value; }).observe({ type: "layout-shift", buffered: true });
+        [window.shift, window.moved] = [0, []];
+        new PerformanceObserver((list) => {
+          for (const { hadRecentInput, value, sources } of list.getEntries()) if (!hadRecentInput) {
+            window.shift += value;
+            window.moved.push(`${value.toFixed(3)}: ${sources.map(({ node, previousRect: from, currentRect: to }) => `${node?.nodeName}.${node?.className} ${from.y} to ${to.y} px`).join(", ")}`);
+          }
+        }).observe({ type: "layout-shift", buffered: true });
       });
       for (const design of [null, HELICAL]) {
         if (design) await openDesign(page, service, design);
@@ -512,7 +517,7 @@ export async function shownSteps(service) {
         await settled(page);
         await page.waitForTimeout(300);
         const shift = await page.evaluate(() => window.shift);
-        assert.ok(shift < 0.1, `layout shift ${shift.toFixed(3)}`);
+        assert.ok(shift < 0.1, `layout shift ${shift.toFixed(3)}: ${(await page.evaluate(() => window.moved)).join("; ")}`);
       }
       const top = await page.locator(".form-panel").evaluate((panel) => panel.getBoundingClientRect().top);
       assert.ok(top < height, `the form begins at ${top} px`);
