@@ -619,13 +619,25 @@ export async function shownSteps(service) {
 
   // Previews of a second: the flanks of a job may take four of these, or as long as the job.
   const short = await start({ MESHWRIGHT_PREVIEW_TIME_LIMIT_SECONDS: "1" });
-  await step("the contact pattern of a job comes however long it takes, with a clock", short, async (page) => {
+  await step("the contact pattern of a job comes however long it takes, with a clock, can be stopped, and is asked for again after a reload", short, async (page) => {
     await openDesign(page, short, { ...HELICAL, resolution: { ...HELICAL.resolution, positions_per_mesh_period: 40 } });
     await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
     await settled(page);
-    await page.locator("#chart-pattern button").click();
-    await page.locator("#chart-pattern [role=status]", { hasText: /at every position, about \d+ s more/ }).waitFor();
+    const button = page.locator("#chart-pattern button");
+    const clock = page.locator("#chart-pattern [role=status]", { hasText: /at every position, about \d+ s more/ });
+    await button.click();
+    await clock.waitFor();
+    assert.equal(await button.innerText(), "Stop");
+    await button.click();
+    await page.locator("#chart-pattern [role=status]", { hasText: "Stopped." }).waitFor();
+    assert.equal(await button.innerText(), "Show the flanks");
+    await button.click();
+    await clock.waitFor();
+    await page.reload();
     await page.locator("#chart-pattern svg").nth(1).waitFor();
+    assert.ok(await button.isHidden());
+    // What has come is not computed again at every reload.
+    assert.equal(await page.evaluate(() => sessionStorage.getItem("meshwright-flanks")), null);
   });
   await short.stop();
 }
