@@ -375,7 +375,7 @@ export async function shownSteps(service) {
     }
   });
 
-  await step("what was computed is found again after a reload: a sweep, a population, a search that runs, kept designs and the way back", service, async (page) => {
+  await step("what was computed is found again after a reload: a sweep, a study, a population, a search that runs, kept designs and the way back", service, async (page) => {
     await open(page, service);
     const from = await answer(page, "p-p");
     await page.locator("#pin").click();
@@ -394,6 +394,10 @@ export async function shownSteps(service) {
     await page.waitForFunction(() => /24 of 24 members, successful/.test(document.querySelector("#population [role=status]").innerText));
     const good = await page.locator("#population .out p").first().innerText();
     await tab(page, "study");
+    await page.locator("#axis-0-values").fill("6 9");
+    await page.locator("#study-run").click();
+    await page.waitForFunction(() => /2 of 2 designs, successful/.test(document.querySelector("#study [role=status]").innerText));
+    const studied = await page.locator("#study table tbody").first().innerText();
     await page.locator("#search summary").click();
     await page.locator("#search-evaluations").fill("4000");
     await page.locator("#search-run").click();
@@ -438,6 +442,9 @@ export async function shownSteps(service) {
     assert.equal(await page.locator("#sweep .out p").first().innerText(), found);
     assert.equal(await page.locator("#sweep-from").inputValue(), "20");
     assert.ok(await page.locator("#sweep .outdated").isVisible(), "the design is another one now");
+    await back("2 of 2");
+    await page.waitForFunction(() => /2 of 2 designs, successful/.test(document.querySelector("#study [role=status]").innerText));
+    assert.equal(await page.locator("#study table tbody").first().innerText(), studied);
     await back("as made");
     await page.locator("#population .scatter").first().waitFor();
     assert.equal(await page.locator("#population .out p").first().innerText(), good);
