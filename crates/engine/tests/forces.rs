@@ -652,9 +652,12 @@ fn resonances_of_the_mesh(teeth: ToothDeviations) -> (CurveDynamics, [usize; 2])
 
 #[test]
 fn a_tooth_that_stands_out_hides_no_order_of_the_mesh() {
-    let mut teeth = ToothDeviations::default();
-    teeth.cumulative_pitch = vec![0.0; 50];
-    teeth.cumulative_pitch[0] = 3e-6;
+    let mut cumulative_pitch = vec![0.0; 50];
+    cumulative_pitch[0] = 3e-6;
+    let teeth = ToothDeviations {
+        cumulative_pitch,
+        ..ToothDeviations::default()
+    };
     let (told, [found, expected]) = resonances_of_the_mesh(teeth);
     assert_eq!(found, expected);
     assert!(expected >= 16, "{expected}");
