@@ -99,11 +99,6 @@ export async function* events(path, signal) {
   }
 }
 
-/** The lines of an answer that is a document a line, as far as somebody reads them. */
-export async function* lines(path) {
-  for await (const line of pieces(await request(path), "\n")) if (line) yield JSON.parse(line);
-}
-
 const ENDED = ["successful", "failed", "dismissed"];
 
 /** Whether a job or a study with this status changes no more. */

@@ -51,7 +51,7 @@ export class Drawing {
     this.setPosition(this.#position);
   }
 
-  /** Takes the forces from these curves. */
+  /** Takes the forces from this curve; null: none are known yet. */
   setCurve(curve) {
     this.#curve = curve;
     this.#drawForces();
@@ -257,9 +257,9 @@ function text(words, [x, y], size, name) {
   return element;
 }
 
-/** The center distance where it is over neither gear: below the smaller one, or between two that are about alike. */
+/** The center distance where it is over neither gear: below the smaller one, or between two that are about alike, at the foot of the drawing, where they are farthest apart. */
 function dimension({ tip_mm: r1, pitch_mm: pitch }, { tip_mm: r2 }, a) {
-  const [x, y, anchor] = r1 < 0.8 * r2 ? [-r1, -0.94 * r2, "start"] : r2 < 0.8 * r1 ? [a + r2, -0.94 * r1, "end"] : [pitch, -0.94 * Math.min(r1, r2), "middle"];
+  const [x, y, anchor] = r1 < 0.8 * r2 ? [-r1, -0.94 * r2, "start"] : r2 < 0.8 * r1 ? [a + r2, -0.94 * r1, "end"] : [pitch, -1.01 * Math.max(r1, r2), "middle"];
   const element = text(`a = ${number(a, 7)} mm`, [x, y], (r1 + r2) / 16, "dimension");
   element.setAttribute("text-anchor", anchor);
   return element;

@@ -85,11 +85,22 @@ const deformation = new Deformation({
 /** The pair in space, once it has been asked for: its modules are fetched then. */
 let space = null;
 let outline = null;
+/** The pair that is drawn. */
+let drawn = null;
 
 function onOutline(made, { pair }) {
   outline = made;
   drawing.setOutline(made);
-  space?.setPair(made, pair);
+  draw(pair);
+}
+
+/** Draws a pair with the loads that are shown, if they are its own, or if a hand moves it and the next ones come at once. */
+function draw(pair) {
+  drawn = pair;
+  const curve = shown && (design.by === "drag" || same(shown.submission.pair, pair)) ? shown.results.curves[0] : null;
+  drawing.setCurve(curve);
+  if (outline) space?.setPair(outline, pair);
+  space?.setCurve(curve);
 }
 
 /** Shows the pair in space in place of its drawing, or takes it away. */
@@ -99,8 +110,7 @@ async function showSpace(on) {
   const { Space } = await import("./space.js");
   if (!space) {
     space = new Space(byId("drawing"), { live: current });
-    if (outline && shown) space.setPair(outline, shown.submission.pair);
-    if (shown) space.setCurve(shown.results.curves[0]);
+    if (drawn) draw(drawn);
     space.setPosition(position);
   }
   if (document.querySelector('[data-view="space"]').getAttribute("aria-pressed") === "true") space.show();
@@ -178,10 +188,9 @@ function onResults(results, submission, { took, since, draft, asked }) {
   computed = submission;
   shown = { name: nameOf(submission), results, submission, asked, teeth: submission.pair.driven.tooth_count, look: 0 };
   if (!draft) live = shown;
+  document.body.classList.remove("empty");
   byId("position").max = results.pair.period_mesh_periods;
-  drawing.setCurve(results.curves[0]);
-  if (outline) space?.setPair(outline, submission.pair);
-  space?.setCurve(results.curves[0]);
+  draw(submission.pair);
   showDesigns(draft);
   showProblem();
   clearTimeout(onExpect.timer);

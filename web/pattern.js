@@ -1,21 +1,26 @@
 // Where the flanks carry, and how much: the largest pressure of the period over face and diameter. A job tells it, so it is asked for by a press.
 
-import { json, patiently, post, ProblemError, solved } from "./api.js";
+import { hasEnded, json, patiently, post, ProblemError, request, solved } from "./api.js";
 import { same } from "./design.js";
 import { fixed, h, number, s, timeOf } from "./dom.js";
 import { cssOf, scaleOf } from "./face.js";
 import { figure } from "./figure.js";
 
 const HATCH = "sharp-edge";
+const SHOW = "Show the flanks";
+/** Of which design somebody waits for the flanks, so that a reload asks for them again. */
+const AWAITED = "meshwright-flanks";
 
 /** The flanks of the live design in `place`; `live` waits for it and gives it, or null where it cannot be computed. */
 export class Pattern {
   #shown = null;
+  /** Stops what is asked for; null while nothing is. */
+  #asking = null;
 
   constructor(place, { live }) {
     this.live = live;
     this.legend = h("p", { className: "legend" });
-    this.button = h("button", { type: "button", on: { click: () => this.#ask() } }, "Show the flanks");
+    this.button = h("button", { type: "button", on: { click: () => (this.#asking ? this.#asking.abort() : this.#ask()) } }, SHOW);
     this.state = h("p", { className: "note", role: "status" });
     this.flanks = h("div", { className: "columns" });
     this.element = h("figure", { className: "chart", id: "chart-pattern", hidden: true, aria: { label: "Contact pattern" } },
@@ -27,40 +32,54 @@ export class Pattern {
   show({ results, submission }) {
     this.element.hidden = !results.curves[0].face;
     if (this.#shown && same(this.#shown, submission)) return;
+    if (this.#shown) this.#asking?.abort();
     this.#shown = null;
     this.button.hidden = false;
     this.state.textContent = "";
     for (const part of [this.legend, this.flanks]) part.replaceChildren();
+    if (!this.element.hidden && !this.#asking && sessionStorage.getItem(AWAITED) === JSON.stringify(submission)) this.#ask();
   }
 
+  /** Asks for the flanks: of a job, and then of a request that computes them, which waits for them for as long as they take. */
   async #ask() {
-    this.button.hidden = true;
+    const asking = (this.#asking = new AbortController());
+    const { signal } = asking;
+    this.button.textContent = "Stop";
+    let [tick, job] = [null, null];
     const live = await this.live();
-    let tick = null;
+    const mine = () => this.#shown === live?.submission;
     try {
       if (!live) throw new ProblemError({ detail: "This design cannot be computed." });
       this.#shown = live.submission;
-      const mine = () => this.#shown === live.submission;
+      sessionStorage.setItem(AWAITED, JSON.stringify(live.submission));
       // Every position is solved again, by the whole method.
-      const { estimate } = await post("v1/validate", { ...live.asked, method: "three_dimensional" });
+      const { estimate } = await post("v1/validate", { ...live.asked, method: "three_dimensional" }, { signal });
       const begun = performance.now();
       const clock = () => {
         const left = 1000 * estimate.seconds - (performance.now() - begun);
-        if (mine()) this.state.textContent = `A job computes it at every position${left > 0 ? `, about ${timeOf(left)} more` : `, longer than the ${timeOf(1000 * estimate.seconds)} that were expected`}.`;
+        if (mine()) this.state.textContent = `It is computed at every position${left > 0 ? `, about ${timeOf(left)} more` : `, longer than the ${timeOf(1000 * estimate.seconds)} that were expected`}.`;
       };
       clock();
       tick = setInterval(clock, 1000);
-      const job = await solved(live.asked);
+      const told = (event, data) => { if (event === "status") job = data; };
+      const { id } = await solved(live.asked, { told, signal });
       const [{ output_torque_n_m: torque }] = live.results.curves;
-      const pattern = await patiently(() => json(`v1/jobs/${job.id}/results/contact-pattern.json?torque=${torque}`));
-      if (mine()) this.#draw(pattern);
+      const pattern = await patiently(() => json(`v1/jobs/${id}/results/contact-pattern.json?torque=${torque}`, { signal }));
+      if (!mine()) return;
+      this.#draw(pattern);
+      this.button.hidden = true;
     } catch (error) {
-      if (!(error instanceof ProblemError)) throw error;
-      if (live && this.#shown !== live.submission) return;
-      this.button.hidden = false;
-      this.state.textContent = error.problem.errors?.[0]?.detail ?? error.message;
+      if (error.name === "AbortError") {
+        if (job && !hasEnded(job.status)) request(`v1/jobs/${job.id}/cancel`, { method: "POST" }).catch(() => {});
+      } else if (!(error instanceof ProblemError)) throw error;
+      if (!live || mine()) this.state.textContent = signal.aborted ? "Stopped." : (error.problem.errors?.[0]?.detail ?? error.message);
     } finally {
       clearInterval(tick);
+      if (this.#asking === asking) {
+        this.#asking = null;
+        this.button.textContent = SHOW;
+        sessionStorage.removeItem(AWAITED);
+      }
     }
   }
 

@@ -1,13 +1,13 @@
 // How good the pairs will be that are made by a design: members drawn from laws and classes of accuracy, and what they come to.
 
-import { json, lines, post, ProblemError } from "./api.js";
+import { json, post, ProblemError } from "./api.js";
 import { apart, at, nameOf } from "./design.js";
 import { debounced, h, s, fixed, number, timeOf } from "./dom.js";
 import { figure } from "./figure.js";
 import { allGiven, given, numeric } from "./inputs.js";
 import { offer } from "./offer.js";
 import { inUnit, inWords, options, quantityOf, shown } from "./quantities.js";
-import { Question } from "./question.js";
+import { mostOften, Question } from "./question.js";
 
 /** What has come so far is fetched so often at most while members are computed, in milliseconds. */
 const PAUSE = 1000;
@@ -23,9 +23,6 @@ const TORQUES = [[1], [0.6, 1], [0.6, 1, 1.4], [0.4, 0.7, 1, 1.4]];
 
 /** What the members will take is asked for so long after the last change, in milliseconds. */
 const REST = 400;
-
-/** What most often cannot be computed is looked for among so many members. */
-const LOOKED_AT = 500;
 
 /** What the members have of their own, whatever the design gives. */
 const NOT_ASKED = ["/output_torques_n_m", "/resolution", "/pair/driving/tooth_deviations", "/pair/driven/tooth_deviations"];
@@ -57,7 +54,6 @@ export function population(place, design, form, limits, onOpen) {
       h("div", { className: "line" }, question.run, question.cancel)),
     ahead, question.state, question.of.element, missing, picker, out);
   let last = null;
-  let refusals = null;
 
   const suggest = () => {
     laws.forEach((each) => each.refresh());
@@ -116,7 +112,7 @@ export function population(place, design, form, limits, onOpen) {
   };
 
   function clear() {
-    [last, refusals] = [null, null];
+    last = null;
     missing.hidden = true;
     out.replaceChildren();
   }
@@ -132,30 +128,15 @@ export function population(place, design, form, limits, onOpen) {
     return question.resume(id, base, how);
   }
 
-  /** Says how many members are none, and why most of these. */
-  async function refused({ failed, size }, address) {
-    if (!failed || refusals?.failed === failed) return;
-    refusals = { failed, words: null };
-    const told = new Map();
-    try {
-      for await (const { problem, label } of lines(`${address}/results/table.ndjson`)) {
-        if (problem) told.set(problem.title, { count: (told.get(problem.title)?.count ?? 0) + 1, detail: told.get(problem.title)?.detail ?? problem.errors?.[0]?.detail ?? problem.detail });
-        if (Number(label.split(" ").pop()) >= LOOKED_AT) break;
-      }
-    } catch (error) {
-      if (!(error instanceof ProblemError)) throw error;
-    }
-    const [[title, { detail }] = ["", {}]] = [...told].sort(([, one], [, other]) => other.count - one.count);
-    const words = `${failed === size ? "None of the members can be computed" : `${failed} of ${size} members cannot be computed`}${title ? `, most often because ${title[0].toLowerCase()}${title.slice(1)} (${form.inWords(detail).replace(/\.$/, "")})` : ""}.${failed === size ? "" : " What stands below is of the others alone."}`;
-    if (refusals?.failed !== failed) return;
-    refusals.words = words;
-    missing.textContent = words;
-    missing.hidden = false;
+  /** Says how many members have no results, and why most of these. */
+  function missed({ failed, size, refusals }) {
+    missing.hidden = !failed;
+    missing.textContent = `${failed === size ? "None of the members can be computed" : `${failed} of ${size} members cannot be computed`}${mostOften(refusals, (detail) => form.inWords(detail))}.${failed === size ? "" : " What stands below is of the others alone."}`;
   }
 
   function show(results, address) {
     last = { results, address };
-    refused(results, address);
+    missed(results);
     const known = [...new Set(results.quantities.map((each) => each.output_torque_n_m).filter((each) => each !== null))];
     if (torque.options.length !== known.length || known.some((each, i) => Number(torque.options[i].value) !== each)) torque.replaceChildren(...known.map((each) => h("option", { value: each }, number(each))));
     const there = new Set(results.quantities.map(({ name }) => name));

@@ -74,3 +74,6 @@ export class Question {
     this.say(ended(found));
   }
 }
+
+/** Why most of those failed that did, behind how many: `refusals` are as the service has them, the most common first; `inWords` puts what they say into the words of the page. */
+export const mostOften = ([first], inWords) => (first ? `, most often: ${inWords(first.detail).replace(/\.$/, "")}` : "");

@@ -8,7 +8,7 @@ import { given, numeric } from "./inputs.js";
 import { offer } from "./offer.js";
 import { preview } from "./preview.js";
 import { inUnit, inWords, options, quantityOf } from "./quantities.js";
-import { Question } from "./question.js";
+import { mostOften, Question } from "./question.js";
 import { DASHES } from "./series.js";
 
 /** How a search stands is fetched so often at most, in milliseconds. */
@@ -82,11 +82,16 @@ export function search(place, design, form, onOpen) {
   }
 
   function show(found, address, about) {
-    const called = ({ quantity }) => quantityOf(quantity);
+    const called = ({ quantity, percent }) => {
+      const known = quantityOf(quantity ?? "Cost");
+      return percent ? { ...known, title: `${known.title} (p${percent})` } : known;
+    };
     const [parts, held] = [about.search.minimize, about.search.subject_to ?? []].map((asked) => asked.map(called));
     const told = (values, names) => names.map((quantity, i) => `${inWords(quantity)} ${values?.[i] === null || values?.[i] === undefined ? "?" : number(quantity.factor * values[i], 4)} ${quantity.printed}`.trim()).join(", ");
     const { best, front, confirmed, generations } = found;
-    if (!best) return out.replaceChildren();
+    const failed = [["designs", found.refusals], ["members of the others", found.member_refusals]].flatMap(([what, refusals = []]) => (refusals.length ? [`${refusals.reduce((sum, { count }) => sum + count, 0)} ${what} cannot be computed${mostOften(refusals, (detail) => form.inWords(detail))}.`] : []));
+    const missing = h("p", { className: "outdated", hidden: !failed.length }, failed.join(" "));
+    if (!best) return out.replaceChildren(missing);
     const rows = Object.entries(best.values).map(([path, value]) => h("tr", {}, h("th", { scope: "row" }, form.named(path)), h("td", {}, number(at(about.base, path) ?? null, 5)), h("td", {}, number(value, 5))));
     const table = h("table", {}, h("thead", {}, h("tr", {}, ...["Field", "Begun with", "Best so far"].map((words) => h("th", { scope: "col" }, words)))), h("tbody", {}, ...rows));
     const atEnd = about.search.variables.filter(({ path, low, high }) => [low, high].includes(best.values[path])).map(({ path }) => form.named(path));
@@ -101,7 +106,8 @@ export function search(place, design, form, onOpen) {
       ? `By the ${about.base.method.startsWith("three") ? "three-dimensional" : "flexible"} method on the fine grid: ${told(confirmed.goals, parts)}; another grid level changes the peak-to-peak value by ${fixed(confirmed.error_estimate.transmission_error_peak_to_peak_um, 4)} µm.`
       : `It could not be confirmed: ${confirmed.problem?.detail ?? "there are no results"}`);
     out.replaceChildren(
-      h("p", {}, h("strong", {}, told(best.goals, parts)), held.length ? `, with ${told(best.conditions, held)}` : "", best.feasible ? "" : ". No design so far keeps what has to hold; this one comes nearest to it"),
+      h("p", {}, h("strong", {}, told(best.goals, parts)), held.length ? `, with ${told(best.conditions, held)}` : "", best.feasible ? "" : ". No design so far keeps what has to hold; this one comes nearest to it", best.failed_share ? `. ${fixed(100 * best.failed_share, 1)} % of its members have no results, and count as beyond every bound` : ""),
+      missing,
       h("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Best design of the search" }, table),
       ...(atEnd.length && parts.length === 1 ? [h("p", { className: "note" }, `At an end of its range: ${atEnd.join("; ")}. A wider one may find better.`)] : []),
       h("div", { className: "buttons" }, use(best.row, "Use this design")),

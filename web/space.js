@@ -77,7 +77,7 @@ export class Space {
     this.#ask();
   }
 
-  /** The curve whose loads are shown. */
+  /** The curve whose loads are shown; null: none are known yet. */
   setCurve(curve) {
     [this.#curve, this.#pattern] = [curve, null];
     this.#fetch();
@@ -315,7 +315,7 @@ export class Space {
       const ends = `from z = ${fixed(points[0].z, 1)} to ${fixed(points.at(-1).z, 1)} mm`;
       return `line ${i + 1} ${ends}${face ? `, most at z = ${fixed(most.z, 1)} mm with ${number(most.load, 3)} N/mm` : ""}`;
     });
-    const loads = !face ? "The method tells no load along the face." : this.#pattern ? "Colors are the load on each line." : `Colors are the load on the face at that z${face.every ? "" : ", the mean over the positions"}, all lines together.`;
+    const loads = !this.#curve ? "Loads are not computed yet." : !face ? "The method tells no load along the face." : this.#pattern ? "Colors are the load on each line." : `Colors are the load on the face at that z${face.every ? "" : ", the mean over the positions"}, all lines together.`;
     this.words.textContent = `${this.#outline.driving.tooth_count} and ${this.#outline.driven.tooth_count} teeth, ${teeth}. At position ${fixed(this.#position, 2)} ${lines.length === 1 ? "one line of contact" : `${lines.length} lines of contact`}: ${each.join("; ")}. ${loads}`;
     this.legend.replaceChildren(...(face ? ["Load", scaleOf(this.#pattern ? this.#mostOfPattern() : face.most)] : [`${lines.length} ${lines.length === 1 ? "line" : "lines"} of contact`]));
     this.legend.title = loads;

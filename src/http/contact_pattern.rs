@@ -21,6 +21,7 @@ use super::problem::{Refusal, internal};
 #[into_params(parameter_in = Query)]
 pub(super) struct PatternParameters {
     /// One of the job's output torques, in N m, not 0; without it, all of them.
+    #[param(example = 115.0)]
     torque: Option<f64>,
 }
 

@@ -41,17 +41,18 @@ pub(super) struct ListParameters {
     ids: Option<String>,
     /// Jobs of the study of this id; `none` for jobs that belong to no study.
     #[param(
+        example = "none",
         pattern = "^(none|[0-9a-fA-F]{8}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{12})$"
     )]
     study: Option<String>,
     /// Jobs from the first one on that was submitted at this instant or later (RFC 3339).
-    #[param(format = DateTime)]
+    #[param(format = DateTime, example = "2026-01-01T00:00:00Z")]
     submitted_since: Option<String>,
     /// Jobs before the first one that was submitted at this instant or later (RFC 3339).
-    #[param(format = DateTime)]
+    #[param(format = DateTime, example = "2100-01-01T00:00:00Z")]
     submitted_before: Option<String>,
     /// So many jobs at most.
-    #[param(minimum = 1, maximum = 200, default = 50)]
+    #[param(minimum = 1, maximum = 200, default = 50, example = 20)]
     limit: Option<u32>,
     /// Where to go on: `next` of the list before.
     #[param(pattern = "^c[1-9a-f][0-9a-f]{0,14}$")]

@@ -26,13 +26,16 @@ const MOST_STAGES: usize = 20;
 #[into_params(parameter_in = Query)]
 pub(super) struct ModelParameters {
     /// The id of one cylindrical stage; without it, all of them.
+    #[param(example = 2)]
     stage: Option<i64>,
     /// The torque on the driven gear, in N m, instead of those of the model.
     #[param(example = 115.0)]
     torque: Option<f64>,
     /// The method, instead of the flexible one or that of the model.
+    #[param(example = "flexible")]
     method: Option<String>,
     /// The bore radius of both gears, in mm, instead of those of the model.
+    #[param(example = 16.0)]
     bore_radius_mm: Option<f64>,
 }
 

@@ -1,4 +1,4 @@
-"""The check of a signature that docs/integrate.md shows: done in Python, and written as a TypeScript program to the file given."""
+"""The check of a signature that docs/integrate.md shows: in Python, and done here, and as a TypeScript program, written to the file given."""
 
 import pathlib
 import re
@@ -26,12 +26,15 @@ def code(language, name):
 
 names = {}
 exec(code("python", "def is_signed"), names)
-for now, body, taken in CASES:
-    assert names["is_signed"](SECRET, HEADERS, body.encode(), now) is taken, (now, body)
-assert not names["is_signed"](SECRET, HEADERS | {"webhook-signature": ""}, BODY.encode(), CASES[0][0])
+is_signed = names["is_signed"]
 
-calls = [
-    f"if (isSigned({SECRET!r}, {HEADERS!r}, Buffer.from({body!r}), {now}) !== {str(taken).lower()}) throw new Error({f'{now} {body}'!r});"
-    for now, body, taken in CASES
-]
-pathlib.Path(sys.argv[1]).write_text(code("typescript", "function isSigned") + "\n".join(calls) + "\n", encoding="utf-8")
+if __name__ == "__main__":
+    for now, body, taken in CASES:
+        assert is_signed(SECRET, HEADERS, body.encode(), now) is taken, (now, body)
+    assert not is_signed(SECRET, HEADERS | {"webhook-signature": ""}, BODY.encode(), CASES[0][0])
+
+    calls = [
+        f"if (isSigned({SECRET!r}, {HEADERS!r}, Buffer.from({body!r}), {now}) !== {str(taken).lower()}) throw new Error({f'{now} {body}'!r});"
+        for now, body, taken in CASES
+    ]
+    pathlib.Path(sys.argv[1]).write_text(code("typescript", "function isSigned") + "\n".join(calls) + "\n", encoding="utf-8")

@@ -11,7 +11,9 @@ import { shownSteps } from "./shown.mjs";
 import { solidSteps } from "./solid.mjs";
 
 const DRAGS = 200;
-const WIDTHS = [[390, 844], [1280, 800], [3840, 2160]];
+const WIDTHS = [[390, 844], [1280, 800], [1920, 1080], [3840, 2160]];
+/** The pictures that guides show; those of other widths and themes lie beside this program, to be looked at. */
+const SHOWN = ["390-light", "390-dark", "1280-light", "1280-dark", "3840-light"];
 const HOLES = "/pair/driven/blank/holes";
 
 const service = await start();
@@ -386,10 +388,11 @@ for (const [width, height] of WIDTHS) {
         assert.deepEqual(cut, [], await each.innerText());
       }
       await tab(page, "curves");
-      if (process.argv.includes("--screenshots") && (width < 3840 || colorScheme === "light")) {
+      if (process.argv.includes("--screenshots")) {
+        const name = `${width}-${colorScheme}`;
         await page.locator("#position").fill("0.3");
         await page.evaluate(() => { document.activeElement.blur(); scrollTo(0, 0); });
-        await page.screenshot({ path: `${process.env.PICTURES}/page-${width}-${colorScheme}.png` });
+        await page.screenshot({ path: `${SHOWN.includes(name) ? process.env.PICTURES : import.meta.dirname}/page-${name}.png` });
       }
     }, { viewport: { width, height }, colorScheme });
   }

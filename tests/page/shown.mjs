@@ -129,7 +129,7 @@ export async function shownSteps(service) {
     assert.match(await page.locator("#sweep .scatter circle title").first().textContent(), /12\.5/);
   });
 
-  await step("numbers of another design are gray with a clock, and no half-typed design is computed that takes long", service, async (page) => {
+  await step("numbers of another design are gray 0.3 s after the last key, and no half-typed design is computed that takes long", service, async (page) => {
     await openDesign(page, service, HELICAL);
     await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
     await settled(page);
@@ -146,14 +146,105 @@ export async function shownSteps(service) {
       await torque.press(key);
       await page.waitForTimeout(250);
     }
-    await page.waitForTimeout(200);
-    const meanwhile = await standing(page);
-    assert.ok(meanwhile.other, "another design is in the form");
-    assert.equal(meanwhile.color, meanwhile.faint);
     await settled(page);
     assert.deepEqual(asked, [210]);
     assert.deepEqual(await page.evaluate(() => window.drawn), [210]);
     assert.ok(!(await standing(page)).other);
+  });
+
+  await step("by the clock: numbers are gray 300 to 400 ms after an edit, what takes over a second waits for 700, and Enter waits for nothing", service, async (page) => {
+    await page.clock.install();
+    await openDesign(page, service, HELICAL);
+    await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+    await settled(page);
+    const asked = [];
+    page.on("request", (request) => { if (/v1\/preview$/.test(request.url())) asked.push(JSON.parse(request.postData()).output_torques_n_m[0]); });
+    const torque = await field(page, "/output_torques_n_m");
+    for (const [value, hurried] of [[150, false], [160, true]]) {
+      await page.clock.pauseAt(await page.evaluate(() => Date.now() + 1000));
+      const planned = page.waitForResponse((response) => /v1\/validate$/.test(response.url()) && JSON.parse(response.request().postData()).method === "three_dimensional_projected");
+      await torque.fill(String(value));
+      await planned;
+      await page.clock.runFor(299);
+      assert.ok(!(await standing(page)).other, "numbers do not flicker at every key");
+      await page.clock.runFor(101);
+      const gray = await standing(page);
+      assert.ok(gray.other);
+      assert.equal(gray.color, gray.faint);
+      assert.match(gray.state, /^It takes about .*: computed when you rest, or at once with Enter\.$/);
+      await page.clock.runFor(200);
+      assert.ok(!asked.includes(value), `${asked} at 600 ms`);
+      const request = page.waitForRequest(/v1\/preview$/);
+      if (hurried) await torque.press("Enter");
+      else await page.clock.runFor(100);
+      await request;
+      assert.equal(asked.at(-1), value);
+      await page.clock.resume();
+      await settled(page);
+      assert.ok(!(await standing(page)).other);
+    }
+  });
+
+  await step("every view shows one design: while the form has another one it says so, or is empty", service, async (page) => {
+    const hold = async () => {
+      let go = null;
+      const waits = new Promise((resolve) => { go = resolve; });
+      await page.route("**/v1/preview", async (route) => { await waits; await route.continue(); });
+      return async () => { go(); await settled(page); await page.unroute("**/v1/preview"); };
+    };
+    /** What stands in each of these places as if it were of the design in the form: words that are not gray, and pictures that are not pale. */
+    const standingIn = (places) => page.evaluate((all) => {
+      const faint = getComputedStyle(document.querySelector("#state")).color;
+      return Object.fromEntries(Object.entries(all).map(([name, selector]) => {
+        const seen = [...document.querySelectorAll(selector)].filter((element) => element.checkVisibility({ visibilityProperty: true }) && (element.matches("canvas, svg, g") || [...element.childNodes].some(({ nodeType, data }) => nodeType === 3 && data.trim())));
+        const stands = (element) => {
+          let opacity = 1;
+          for (let each = element; each; each = each.parentElement) opacity *= getComputedStyle(each).opacity;
+          return opacity > 0.6 && (element.matches("canvas, svg, g") || getComputedStyle(element).color !== faint);
+        };
+        return [name, seen.filter(stands).map((element) => `${element.tagName} ${element.textContent.trim().slice(0, 30)}`)];
+      }));
+    }, places);
+    /** Each of these places shows the design, and once `edit` has made another one it does not stand as that. */
+    const marked = async (places, edit) => {
+      for (const [name, stands] of Object.entries(await standingIn(places))) assert.ok(stands.length, `${name} shows its design`);
+      const release = await hold();
+      await edit();
+      await page.waitForFunction(() => document.body.classList.contains("other"));
+      const left = Object.entries(await standingIn(places)).filter(([, stands]) => stands.length);
+      assert.deepEqual(left, []);
+      return release;
+    };
+    const typing = (pointer, text) => async () => (await field(page, pointer)).fill(text);
+
+    await openDesign(page, service, { ...HELICAL, method: "three_dimensional_projected" });
+    await settled(page);
+    await page.locator("#chart-pattern button").click();
+    await page.locator("#chart-pattern svg").nth(1).waitFor();
+    const curves = { headline: "#headline .value, #readout", curves: "#charts canvas, #charts svg", pattern: "#pattern svg" };
+    await (await marked({ ...curves, drawing: "#drawing .forces > *" }, typing("/output_torques_n_m", "130")))();
+    await tab(page, "compare");
+    await (await marked({ compare: "#table .live" }, typing("/output_torques_n_m", "140")))();
+    await tab(page, "geometry");
+    await (await marked({ geometry: "#geometry td:not(.unit)" }, typing("/output_torques_n_m", "150")))();
+    // In space the outline is that of the form as soon as it is there, and loads of another pair are not on it.
+    await page.locator("[data-view=space]").click();
+    const words = page.locator("#space-words");
+    await page.waitForFunction(() => /Colors are the load on each line/.test(document.querySelector("#space-words")?.textContent));
+    const outlined = page.waitForResponse(/v1\/outline$/);
+    const drawn = await marked({ space: "canvas.space, .in-space .legend" }, typing("/pair/helix_angle_deg", "18"));
+    await outlined;
+    await page.waitForFunction(() => /helical teeth of 18°.*Loads are not computed yet\.$/.test(document.querySelector("#space-words").textContent));
+    assert.doesNotMatch(await words.textContent(), /N\/mm/);
+    await drawn();
+    await page.waitForFunction(() => /helical teeth of 18°.*N\/mm/.test(document.querySelector("#space-words").textContent));
+
+    await open(page, service);
+    await tab(page, "run-up");
+    await page.locator("#run-up-ask").click();
+    await page.locator("#run-up .waterfall").waitFor();
+    await settled(page);
+    await (await marked({ "run-up": "#run-up svg, #run-up td, #run-up th, #run-up caption, #run-up output, #speed-readout" }, typing("/output_torques_n_m", "90")))();
   });
 
   await step("what takes over a second is computed at rest or at Enter, says how long it will take, and is stopped when it is overtaken", service, async (page) => {
@@ -284,7 +375,7 @@ export async function shownSteps(service) {
     }
   });
 
-  await step("what was computed is found again after a reload: a sweep, a population, a search that runs, kept designs and the way back", service, async (page) => {
+  await step("what was computed is found again after a reload: a sweep, a study, a population, a search that runs, kept designs and the way back", service, async (page) => {
     await open(page, service);
     const from = await answer(page, "p-p");
     await page.locator("#pin").click();
@@ -303,6 +394,10 @@ export async function shownSteps(service) {
     await page.waitForFunction(() => /24 of 24 members, successful/.test(document.querySelector("#population [role=status]").innerText));
     const good = await page.locator("#population .out p").first().innerText();
     await tab(page, "study");
+    await page.locator("#axis-0-values").fill("6 9");
+    await page.locator("#study-run").click();
+    await page.waitForFunction(() => /2 of 2 designs, successful/.test(document.querySelector("#study [role=status]").innerText));
+    const studied = await page.locator("#study table tbody").first().innerText();
     await page.locator("#search summary").click();
     await page.locator("#search-evaluations").fill("4000");
     await page.locator("#search-run").click();
@@ -347,6 +442,9 @@ export async function shownSteps(service) {
     assert.equal(await page.locator("#sweep .out p").first().innerText(), found);
     assert.equal(await page.locator("#sweep-from").inputValue(), "20");
     assert.ok(await page.locator("#sweep .outdated").isVisible(), "the design is another one now");
+    await back("2 of 2");
+    await page.waitForFunction(() => /2 of 2 designs, successful/.test(document.querySelector("#study [role=status]").innerText));
+    assert.equal(await page.locator("#study table tbody").first().innerText(), studied);
     await back("as made");
     await page.locator("#population .scatter").first().waitFor();
     assert.equal(await page.locator("#population .out p").first().innerText(), good);
@@ -408,11 +506,16 @@ export async function shownSteps(service) {
     assert.match(await page.locator("#sheet > svg").getAttribute("aria-label"), /8×r7\.5@34/);
   });
 
-  for (const [width, height] of [[390, 844], [1280, 800], [1920, 1080]]) {
+  for (const [width, height] of [[390, 844], [1280, 800], [1920, 1080], [3840, 2160]]) {
     await step(`nothing moves that somebody reads at ${width} px, and the design is near its answers`, service, async (page) => {
       await page.addInitScript(() => {
-        window.shift = 0;
-        new PerformanceObserver((list) => { for (const each of list.getEntries()) if (!each.hadRecentInput) window.shift += each.value; }).observe({ type: "layout-shift", buffered: true });
+        [window.shift, window.moved] = [0, []];
+        new PerformanceObserver((list) => {
+          for (const { hadRecentInput, value, sources } of list.getEntries()) if (!hadRecentInput) {
+            window.shift += value;
+            window.moved.push(`${value.toFixed(3)}: ${sources.map(({ node, previousRect: from, currentRect: to }) => `${node?.nodeName}.${node?.className} ${from.y} to ${to.y} px`).join(", ")}`);
+          }
+        }).observe({ type: "layout-shift", buffered: true });
       });
       for (const design of [null, HELICAL]) {
         if (design) await openDesign(page, service, design);
@@ -421,7 +524,7 @@ export async function shownSteps(service) {
         await settled(page);
         await page.waitForTimeout(300);
         const shift = await page.evaluate(() => window.shift);
-        assert.ok(shift < 0.1, `layout shift ${shift.toFixed(3)}`);
+        assert.ok(shift < 0.1, `layout shift ${shift.toFixed(3)}: ${(await page.evaluate(() => window.moved)).join("; ")}`);
       }
       const top = await page.locator(".form-panel").evaluate((panel) => panel.getBoundingClientRect().top);
       assert.ok(top < height, `the form begins at ${top} px`);
@@ -576,13 +679,25 @@ export async function shownSteps(service) {
 
   // Previews of a second: the flanks of a job may take four of these, or as long as the job.
   const short = await start({ MESHWRIGHT_PREVIEW_TIME_LIMIT_SECONDS: "1" });
-  await step("the contact pattern of a job comes however long it takes, with a clock", short, async (page) => {
+  await step("the contact pattern of a job comes however long it takes, with a clock, can be stopped, and is asked for again after a reload", short, async (page) => {
     await openDesign(page, short, { ...HELICAL, resolution: { ...HELICAL.resolution, positions_per_mesh_period: 40 } });
     await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
     await settled(page);
-    await page.locator("#chart-pattern button").click();
-    await page.locator("#chart-pattern [role=status]", { hasText: /at every position, about \d+ s more/ }).waitFor();
+    const button = page.locator("#chart-pattern button");
+    const clock = page.locator("#chart-pattern [role=status]", { hasText: /at every position, about \d+ s more/ });
+    await button.click();
+    await clock.waitFor();
+    assert.equal(await button.innerText(), "Stop");
+    await button.click();
+    await page.locator("#chart-pattern [role=status]", { hasText: "Stopped." }).waitFor();
+    assert.equal(await button.innerText(), "Show the flanks");
+    await button.click();
+    await clock.waitFor();
+    await page.reload();
     await page.locator("#chart-pattern svg").nth(1).waitFor();
+    assert.ok(await button.isHidden());
+    // What has come is not computed again at every reload.
+    assert.equal(await page.evaluate(() => sessionStorage.getItem("meshwright-flanks")), null);
   });
   await short.stop();
 }

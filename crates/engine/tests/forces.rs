@@ -22,8 +22,8 @@ use meshwright_engine::contact::face::{FaceModel, FlankYield};
 use meshwright_engine::contact::{MadePair, WarmStart};
 use meshwright_engine::dynamics::ForceTable;
 use meshwright_engine::gear::{
-    Alignment, Eccentricity, GearPair, Helix, LeadModification, Member, PairDeviations, SolidGear,
-    SolidPair, Web,
+    Alignment, Eccentricity, GearPair, Helix, LeadModification, Member, Normals, PairDeviations,
+    SolidGear, SolidPair, SpurGear, Tolerances, ToothDeviations, Web,
 };
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
@@ -624,18 +624,17 @@ fn told_at_speed(case: &Case, speeds: &[f64], largest: Option<f64>) -> (Analysis
     (analysis, told)
 }
 
-#[test]
-fn a_tooth_that_stands_out_hides_no_order_of_the_mesh() {
+/// The run-up of 50/50 with such teeth on the driving gear, and how many resonances of the mesh it has and should have: of ten multiples of the mesh order, each
+/// forced and each parametric, those within the speeds.
+fn resonances_of_the_mesh(teeth: ToothDeviations) -> (CurveDynamics, [usize; 2]) {
     let mut data = gear(50, 16e-3);
-    data.deviations.cumulative_pitch = vec![0.0; 50];
-    data.deviations.cumulative_pitch[0] = 3e-6;
+    data.deviations = teeth;
     let mut case = case(pair(data, gear(50, 16e-3), 100.5e-3), &[60.0]);
     case.model = model_by(Method::LoadDistribution, &case.model);
     case.resolution.positions_per_mesh_period = 10;
     let (_, told) = told_at_speed(&case, &[500.0, 2000.0, 8000.0], None);
     let critical = told.run_up.natural_frequency / 50.0 * 60.0;
     let in_range = |k: f64, times: f64| (500.0..=8000.0).contains(&(times * critical / k));
-    // Of ten multiples of the mesh order, each forced and each parametric.
     let expected = (1..=10)
         .flat_map(|k| [1.0, 2.0].map(|times| in_range(f64::from(k), times)))
         .filter(|in_range| *in_range)
@@ -646,17 +645,41 @@ fn a_tooth_that_stands_out_hides_no_order_of_the_mesh() {
             .and_then(|rest| rest.strip_suffix("Z2"));
         multiple.is_some_and(|k| k.is_empty() || k.parse::<u32>().is_ok())
     };
-    let resonances = &told.run_up.resonances;
-    let found = resonances
-        .iter()
-        .filter(|each| of_mesh(&told.labels[each.order]));
-    assert_eq!(found.count(), expected);
+    let all = told.run_up.resonances.iter();
+    let found = all.filter(|each| of_mesh(&told.labels[each.order])).count();
+    (told, [found, expected])
+}
+
+#[test]
+fn a_tooth_that_stands_out_hides_no_order_of_the_mesh() {
+    let mut cumulative_pitch = vec![0.0; 50];
+    cumulative_pitch[0] = 3e-6;
+    let teeth = ToothDeviations {
+        cumulative_pitch,
+        ..ToothDeviations::default()
+    };
+    let (told, [found, expected]) = resonances_of_the_mesh(teeth);
+    assert_eq!(found, expected);
     assert!(expected >= 16, "{expected}");
     for label in ["H_1", "H_3", "H_Z2-1", "H_Z2+2", "H_4Z2+1", "H_10Z2"] {
         assert!(told.labels.iter().any(|each| each == label), "{label}");
     }
+    let resonances = &told.run_up.resonances;
     assert!(resonances.is_sorted_by(|a, b| a.amplitude >= b.amplitude));
     assert!(resonances[0].amplitude > 10.0 * resonances[expected].amplitude);
+}
+
+#[test]
+fn a_gear_of_class_6_with_its_runout_keeps_the_resonances_of_its_mesh() {
+    // As a production of the class makes it: random pitches and slopes, and an eccentricity, whose orders are larger than most of the mesh.
+    let perfect = SpurGear::new(gear(50, 16e-3)).expect("a gear");
+    let teeth = Tolerances::of(&perfect, 6).draw(50, 1.0, Normals::new(1, 0));
+    let eccentricity = teeth.eccentricity.expect("drawn").amount;
+    let (told, [found, expected]) = resonances_of_the_mesh(teeth);
+    assert!(eccentricity > 1e-6, "{eccentricity:e}");
+    assert!(told.labels.iter().any(|each| each == "H_1"));
+    assert_eq!(found, expected);
+    assert!(expected >= 16, "{expected}");
 }
 
 #[test]

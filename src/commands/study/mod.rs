@@ -232,8 +232,8 @@ mod tests {
         );
     }
 
-    #[test]
-    fn a_population_leaves_what_its_members_come_to() {
+    /// Pairs of the paper, by formulas, whose center distances differ.
+    fn at_distances(low: f64, high: f64) -> Value {
         let mut document: Value =
             serde_json::from_str(meshwright_wire::examples::STUDY_SECTION_5).unwrap();
         document["base"]["method"] = json!("load_distribution");
@@ -241,8 +241,46 @@ mod tests {
         document.as_object_mut().unwrap().remove("constant_mass");
         document["name"] = json!("Center distances of the spring");
         document["population"] = json!({ "size": 80, "vary": [
-            { "path": "/pair/center_distance_mm", "kind": "uniform", "low": 100.45, "high": 100.55 }
+            { "path": "/pair/center_distance_mm", "kind": "uniform", "low": low, "high": high }
         ] });
+        document
+    }
+
+    #[test]
+    fn the_last_line_of_a_population_says_how_many_members_were_computed_and_why_others_failed() {
+        let document = at_distances(99.9, 101.0);
+        let study =
+            StudyDocument::parse(document.to_string().as_bytes(), &Run::unattended()).unwrap();
+        let computed = compute(&study, None).unwrap();
+        let failed: Vec<&Value> = computed
+            .rows
+            .iter()
+            .filter_map(|row| row.problem.as_ref())
+            .collect();
+        // Without profile shift teeth of 50 and 50 have no backlash at 100 mm.
+        let nearer = (0..study.total()).filter(|member| {
+            let design = study.design(*member).unwrap();
+            design.changes["/pair/center_distance_mm"].as_f64().unwrap() < 100.0
+        });
+        assert_eq!(failed.len(), nearer.count());
+        assert!(failed.len() > 4, "{}", failed.len());
+        let found = population(&study, &computed).expect("a population");
+        let text = spread_table(&found, Duration::from_secs(2));
+        let expected = format!(
+            "{} of 80 members computed in 2.00 s, {:.1} a second. {} members failed: {} {}; the first: {}",
+            80 - failed.len(),
+            (80 - failed.len()) as f64 / 2.0,
+            failed.len(),
+            failed.len(),
+            failed[0]["code"].as_str().unwrap(),
+            failed[0]["detail"].as_str().unwrap(),
+        );
+        assert_eq!(text.lines().last(), Some(&*expected));
+    }
+
+    #[test]
+    fn a_population_leaves_what_its_members_come_to() {
+        let mut document = at_distances(100.45, 100.55);
         let study =
             StudyDocument::parse(document.to_string().as_bytes(), &Run::unattended()).unwrap();
         let computed = compute(&study, None).unwrap();

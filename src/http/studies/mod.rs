@@ -95,13 +95,13 @@ pub(in crate::http) struct StudyListParameters {
     #[param(pattern = "^[^\\x00]*$")]
     tag: Option<String>,
     /// Studies from the first one on that was submitted at this instant or later (RFC 3339).
-    #[param(format = DateTime)]
+    #[param(format = DateTime, example = "2026-01-01T00:00:00Z")]
     submitted_since: Option<String>,
     /// Studies before the first one that was submitted at this instant or later (RFC 3339).
-    #[param(format = DateTime)]
+    #[param(format = DateTime, example = "2100-01-01T00:00:00Z")]
     submitted_before: Option<String>,
     /// So many studies at most.
-    #[param(minimum = 1, maximum = 200, default = 50)]
+    #[param(minimum = 1, maximum = 200, default = 50, example = 20)]
     limit: Option<u32>,
     /// Where to go on: `next` of the list before.
     #[param(pattern = "^c[1-9a-f][0-9a-f]{0,14}$")]

@@ -246,3 +246,26 @@ fn a_run_up_brings_the_usual_table_and_both_count() {
     assert_eq!((speeds.len(), speeds[0]), (400, 0.0));
     assert!((speeds[399] - 20_000.0 / 60.0).abs() < 1e-9);
 }
+
+#[test]
+fn stresses_are_refused_by_each_method_that_tells_none() {
+    let asking = |method: &str| {
+        with(
+            case_2(),
+            &[("/method", json!(method)), ("/stress", json!(true))],
+        )
+    };
+    for method in ["flexible", "three_dimensional"] {
+        assert!(parse(&asking(method)).is_ok(), "{method}");
+    }
+    for method in [
+        "decomposition",
+        "projected_decomposition",
+        "three_dimensional_projected",
+        "load_distribution",
+    ] {
+        fault(&asking(method), "/stress", Code::QuantityNotTold);
+        let silent = with(asking(method), &[("/stress", json!(false))]);
+        assert!(parse(&silent).is_ok(), "{method}");
+    }
+}
