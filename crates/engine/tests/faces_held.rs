@@ -6,10 +6,12 @@ use meshwright_engine::analysis::{Model, SectionHoles};
 use std::sync::Arc;
 use std::time::Instant;
 
-use cases::{along_faces, drawn, gear, helical};
+use cases::{
+    above_the_tenth_harmonic, along_faces, drawn, face_yields, gear, helical, helical_pair,
+};
 use meshwright_engine::analysis::{Analysis, Case, analyze};
 use meshwright_engine::assembly::{FaceResolution, FaceYield};
-use meshwright_engine::contact::face::{FaceContact, FaceModel, FlankYield, SLICES};
+use meshwright_engine::contact::face::{FaceContact, FaceModel, FlankYield, SLICES, SliceLoad};
 use meshwright_engine::gear::{
     Alignment, GearData, LeadModification, Member, ModificationData, ReliefData, ReliefShape,
     ReliefStart, SolidGear, SolidPair, Web,
@@ -309,23 +311,218 @@ fn the_error_estimate_covers_what_the_fine_level_changes() {
         face_order: 6,
         ..FaceResolution::STANDARD
     };
-    let mut case = along_faces(pair, (resolution, SLICES), &[60.0]);
+    let [standard, fine, estimate] =
+        with_estimate(along_faces(pair, (resolution, SLICES), &[60.0]));
+    let ([delta, _, stiffness], [finer, _, stiffer]) = (standard, fine);
+    // Levels differ, and by no more than is told.
+    assert!((finer / delta - 1.0).abs() > 1e-5);
+    assert!((finer - delta).abs() < estimate[0] && estimate[0] < 0.02 * delta);
+    assert!((stiffer - stiffness).abs() < estimate[2]);
+}
+
+/// The mean of δ, its peak-to-peak and the mean stiffness of `case` at the standard and at the fine level from eight positions, and the errors that the former
+/// estimates.
+fn with_estimate(mut case: Case) -> [[f64; 3]; 3] {
     case.resolution.positions_per_mesh_period = 8;
     case.resolution.error_estimate = true;
     let standard = solve(&case);
     case.resolution.error_estimate = false;
     case.resolution.grid = GridLevel::Fine;
     let fine = solve(&case);
+    assert!(fine.evidence.degrees_of_freedom > 2 * standard.evidence.degrees_of_freedom);
     let estimate = standard.evidence.error_estimate.expect("asked for");
     let of = |analysis: &Analysis| {
         let curve = &analysis.curves[0];
         let delta = curve.transmission_error_statistics;
-        (delta.mean, curve.mesh_stiffness_tangent_statistics.mean)
+        [
+            delta.mean,
+            delta.peak_to_peak,
+            curve.mesh_stiffness_tangent_statistics.mean,
+        ]
     };
-    let ((delta, stiffness), (finer, stiffer)) = (of(&standard), of(&fine));
-    // Levels differ, and by no more than is told.
-    assert!((finer / delta - 1.0).abs() > 1e-5);
-    assert!((finer - delta).abs() < estimate.mean && estimate.mean < 0.02 * delta);
-    assert!((stiffer - stiffness).abs() < estimate.mean_stiffness);
-    assert!(fine.evidence.degrees_of_freedom > 2 * standard.evidence.degrees_of_freedom);
+    [
+        of(&standard),
+        of(&fine),
+        [
+            estimate.mean,
+            estimate.peak_to_peak,
+            estimate.mean_stiffness,
+        ],
+    ]
+}
+
+/// Those of `seeds` of which the fine level changes the mean of δ, its peak-to-peak or the mean stiffness by more than the standard one estimates.
+fn beyond_the_estimate(seeds: impl Iterator<Item = u64>) -> Vec<u64> {
+    let beyond = seeds.filter(|&seed| {
+        let (pair, torque) = helical_pair(seed);
+        let resolution = FaceResolution {
+            face_order: 6,
+            ..FaceResolution::STANDARD
+        };
+        let case = along_faces(pair, (resolution, SLICES / 2), &[torque]);
+        let [standard, fine, estimate] = with_estimate(case);
+        let parts: [f64; 3] = std::array::from_fn(|i| (fine[i] - standard[i]).abs() / estimate[i]);
+        println!("{seed}: {parts:.2?} of {estimate:?} about {standard:?}");
+        parts.iter().any(|part| *part > 1.0)
+    });
+    beyond.collect()
+}
+
+#[test]
+fn what_the_fine_level_changes_of_pairs_drawn_at_random_lies_within_the_estimate() {
+    // Of the twenty the one whose peak-to-peak comes nearest to its estimate.
+    let beyond = beyond_the_estimate(6..7);
+    assert!(beyond.is_empty(), "{beyond:?}");
+}
+
+#[test]
+#[ignore = "three levels of twenty pairs take minutes"]
+fn what_the_fine_level_changes_of_pairs_drawn_at_random_lies_within_the_estimate_at_length() {
+    let beyond = beyond_the_estimate(0..20);
+    assert!(beyond.len() <= 2, "more than one in ten: {beyond:?}");
+}
+
+/// How far the contacts of a pair with the usual slices are from those with four times as many.
+#[derive(Debug)]
+struct Sliced {
+    /// What stands above the tenth mesh harmonic of the difference, rms: of δ in meters, of k over its mean.
+    above: [f64; 2],
+    /// The largest difference of δ over δ.
+    delta: f64,
+    /// Those of the largest pressure away from kinks, and of that of any slice, as [`apart_from_kinks`].
+    pressure: [f64; 2],
+    /// That of the pressure that is told at a position, and of the largest over all positions.
+    told: [f64; 2],
+}
+
+impl Sliced {
+    fn of(seed: u64, positions: usize) -> Self {
+        let (pair, torque) = helical_pair(seed);
+        let load = pair.section().load(torque);
+        let resolution = FaceResolution {
+            face_order: 4,
+            ..FaceResolution::DRAFT
+        };
+        let yields = face_yields(&pair, resolution);
+        let period: Vec<f64> = (0..positions)
+            .map(|i| i as f64 / positions as f64)
+            .collect();
+        let [usual, fine] = [1, 4].map(|times| {
+            let slices = times * SLICES;
+            let model = FaceModel::new(pair.clone(), yields.clone(), slices, FARTHEST_COUPLED);
+            let solved = model.contacts(load, &period, &Run::unattended());
+            solved.expect("a balance at every position")
+        });
+        let both = || usual.iter().zip(&fine);
+        let mean = fine.iter().map(|of| of.mesh.stiffness).sum::<f64>() / positions as f64;
+        let above = |value: fn(&FaceContact) -> f64| {
+            let apart: Vec<f64> = both().map(|(a, b)| value(a) - value(b)).collect();
+            above_the_tenth_harmonic(&apart)
+        };
+        let most = |of: &dyn Fn(&FaceContact, &FaceContact) -> f64| {
+            both().map(|(a, b)| of(a, b)).fold(0.0, f64::max)
+        };
+        let told = |of: &FaceContact| of.mesh.peak_pressure;
+        let largest = |of: &[FaceContact]| of.iter().filter_map(told).fold(0.0, f64::max);
+        Self {
+            above: [
+                above(|of| of.mesh.transmission_error),
+                above(|of| of.mesh.stiffness) / mean,
+            ],
+            delta: most(&|a, b| {
+                (a.mesh.transmission_error / b.mesh.transmission_error - 1.0).abs()
+            }),
+            pressure: [0, 1].map(|i| most(&|a, b| apart_from_kinks(&pair, a, b)[i])),
+            told: [
+                most(&|a, b| {
+                    let both = told(a).zip(told(b));
+                    both.map_or(0.0, |(a, b)| (a / b - 1.0).abs())
+                }),
+                (largest(&usual) / largest(&fine) - 1.0).abs(),
+            ],
+        }
+    }
+}
+
+/// By how much the pressures of slices of `one` are apart from those of `other`, which are shorter, in the mean over each, where flanks touch within the path and
+/// away from kinks: the largest from the largest, and of any slice under at least half of that, over it.
+fn apart_from_kinks(pair: &SolidPair, one: &FaceContact, other: &FaceContact) -> [f64; 2] {
+    let section = pair.section();
+    let (s_a, s_e) = section.path_of_contact();
+    let kinks = Member::BOTH.map(|member| section.gear(member).kinks());
+    let tangent = pair.base_helix_angle().tan();
+    let is_free = |slice: &&SliceLoad| {
+        let is_far = |member: Member, places: &[f64]| {
+            let s = slice.roll_lengths[member.index()];
+            // A roll length is that much shorter along the flank.
+            let along = s / section.gear(member).base_radius();
+            let away = 4.0 * slice.half_width / along + slice.length * tangent;
+            places.iter().all(|at| (at - s).abs() > away)
+        };
+        let s = slice.roll_lengths[0];
+        let on_path = s_a < s && s < s_e && is_far(Member::Driving, &[s_a, s_e]);
+        let mut members = Member::BOTH.into_iter();
+        on_path && members.all(|member| is_far(member, &kinks[member.index()]))
+    };
+    let free: Vec<&SliceLoad> = one.slices.iter().filter(is_free).collect();
+    let pressures = free.iter().filter_map(|slice| slice.pressure);
+    let largest = pressures.fold(0.0, f64::max);
+    // At an end of a contact pressure falls to nothing within one slice.
+    let is_pressed = |slice: &&&SliceLoad| slice.pressure > Some(0.5 * largest);
+    let apart = free.iter().filter(is_pressed).filter_map(|slice| {
+        let (mut sum, mut length) = (0.0, 0.0);
+        for within in other.slices.iter().filter(|of| of.pair == slice.pair) {
+            let [low, high] = [-0.5, 0.5].map(|half| {
+                let end = within.z + half * within.length;
+                end.clamp(slice.z - 0.5 * slice.length, slice.z + 0.5 * slice.length)
+            });
+            if high > low {
+                sum += (high - low) * within.pressure?;
+                length += high - low;
+            }
+        }
+        Some((slice.pressure?, sum / length))
+    });
+    let (mut most, mut fine) = (0.0_f64, 0.0_f64);
+    for (usual, shorter) in apart {
+        most = most.max((usual - shorter).abs() / largest);
+        fine = fine.max(shorter);
+    }
+    [(largest - fine).abs() / largest, most]
+}
+
+/// Those of `seeds` whose curves are rougher than asked, at so many positions: 0.3 nm and 0.1 % of the mean above the tenth harmonic, 0.1 % of δ, 1 % of the largest
+/// pressure away from kinks and 2 % of the largest of all.
+fn rough(seeds: impl Iterator<Item = u64>, positions: usize) -> Vec<String> {
+    let of = seeds.map(|seed| {
+        let sliced = Sliced::of(seed, positions);
+        println!("{seed}: {sliced:?}");
+        (seed, sliced)
+    });
+    let rough = of.filter(|(_, sliced)| {
+        let holds = sliced.above[0] < 0.3e-9
+            && sliced.above[1] < 1e-3
+            && sliced.delta < 1e-3
+            && sliced.pressure[0] < 1e-2
+            && sliced.pressure[1] < 3e-2
+            && sliced.told[1] < 2e-2;
+        !holds
+    });
+    rough
+        .map(|(seed, sliced)| format!("{seed}: {sliced:?}"))
+        .collect()
+}
+
+#[test]
+fn curves_of_pairs_drawn_at_random_are_as_smooth_as_with_four_times_as_many_slices() {
+    let rough = rough(0..2, 40);
+    assert!(rough.is_empty(), "{rough:#?}");
+}
+
+#[test]
+#[ignore = "240 positions of ten pairs with 40 and 160 slices take minutes"]
+fn curves_of_pairs_drawn_at_random_are_as_smooth_as_with_four_times_as_many_slices_at_length() {
+    let rough = rough(0..10, 240);
+    // δ of seed 6 is 0.105 % off at one position; 0.41 and 0.36 nm of seeds 7 and 9 stand above the tenth harmonic.
+    assert!(rough.len() <= 3, "{rough:#?}");
 }

@@ -6,7 +6,8 @@ use std::f64::consts::PI;
 use std::sync::{Arc, LazyLock, Mutex};
 
 use cases::{
-    case, faces_of, gear, helical, holed, model_by, pair, relieved, standard_pair, test_case,
+    case, face_model, faces_of, gear, helical, holed, model_by, pair, relieved, standard_pair,
+    test_case,
 };
 use meshwright_engine::analysis::at_speed::{
     CurveDynamics, DynamicsRequest, dynamics, equivalent_mass,
@@ -17,8 +18,7 @@ use meshwright_engine::analysis::forces::{
 use meshwright_engine::analysis::{
     Analysis, Case, Faces, Method, StiffnessRule, Warning, analyze, pair_model,
 };
-use meshwright_engine::assembly::{FaceResolution, FaceYield};
-use meshwright_engine::contact::face::{FaceModel, FlankYield};
+use meshwright_engine::assembly::FaceResolution;
 use meshwright_engine::contact::{MadePair, WarmStart};
 use meshwright_engine::dynamics::ForceTable;
 use meshwright_engine::gear::{
@@ -172,19 +172,6 @@ fn along_faces(beta: f64) -> Case {
     cases::along_faces(pair, (resolution, 40), &[40.0])
 }
 
-/// Its contact, asked position by position.
-fn face_model(faces: &Faces) -> FaceModel {
-    let yields = Member::BOTH.map(|member| {
-        let made = FaceYield::of(
-            faces.pair.gear(member),
-            faces.resolution,
-            &Run::unattended(),
-        );
-        Arc::new(made.expect("can be condensed")) as Arc<dyn FlankYield>
-    });
-    FaceModel::new(faces.pair.clone(), yields, faces.slices, 16)
-}
-
 #[test]
 fn along_faces_a_table_holds_where_it_was_not_computed() {
     for beta in [0.0, 0.3] {
@@ -200,6 +187,41 @@ fn along_faces_a_table_holds_where_it_was_not_computed() {
             "{beta}: {:?}",
             &missed[170..]
         );
+    }
+}
+
+#[test]
+fn along_faces_delta_rises_with_the_load_at_every_position_of_gears_whose_pitch_deviates() {
+    // Every third tooth stands out by 10 um: under a light load it carries alone, half a mesh period beside the path of contact. Without looking there, δ fell by up to
+    // 9 µm from no load to a light one, and all rows were moved onto the wrong one.
+    let (mut driving, driven) = (gear(30, 10e-3), gear(60, 10e-3));
+    driving.deviations.cumulative_pitch = (0..30)
+        .map(|i| if i % 3 == 0 { 10e-6 } else { 0.0 })
+        .collect();
+    let gears = [driving, driven].map(|data| helical(data, 0.0, 0.0));
+    let leads = [Vec::new(), Vec::new()];
+    let pair = SolidPair::new(gears, leads, 90.3e-3, Alignment::default()).expect("meshes");
+    let resolution = FaceResolution {
+        face_order: 4,
+        ..FaceResolution::DRAFT
+    };
+    let mut case = cases::along_faces(pair, (resolution, 8), &[50.0]);
+    case.resolution.positions_per_mesh_period = 8;
+    let request = ForceTableRequest {
+        loads: 8,
+        largest_output_torque: Some(100.0),
+    };
+    let table = force_table(&case, request, &*LIBRARY, &Run::unattended());
+    let table = table.expect("a table");
+    assert_eq!(table.loads()[0], 0.0);
+    let model = face_model(case.faces().expect("along its faces"));
+    for (i, eta) in table.mesh_positions().into_iter().enumerate() {
+        let row = |j: usize| table.loaded().delta[j][i];
+        for j in 1..table.loads().len() {
+            assert!(row(j) > row(j - 1), "at {eta}, load {j}");
+        }
+        let touch = model.least_touch(eta).expect("they face each other");
+        assert!((row(0) - touch).abs() < 1e-12, "at {eta}");
     }
 }
 

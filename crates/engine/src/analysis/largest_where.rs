@@ -90,9 +90,9 @@ impl LargestPressure {
             let along = s / gear.base_radius();
             let mut kinks = gear.kinks().into_iter();
             let kink = kinks.find(|kink| {
-                let beside = 1e-6 * gear.data().rack.module;
-                let turn = gear.removed_slope(kink + beside) - gear.removed_slope(kink - beside);
-                (kink - s).abs() * along < half_width && turn / along * radius > SHARP * half_width
+                let [before, beyond] = gear.slopes_beside(*kink);
+                let turn = (beyond - before) / along;
+                (kink - s).abs() * along < half_width && turn * radius > SHARP * half_width
             })?;
             Some((member, 2.0 * gear.flank().radius(kink)))
         })

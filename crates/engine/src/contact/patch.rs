@@ -496,6 +496,10 @@ const BESIDE: f64 = 1.3;
 /// How often cells are halved towards a kink, where pressure grows with the logarithm of the distance from it.
 const AT_KINK: u32 = 2;
 
+/// An edge that turns the flank by no more, as reliefs and measured profiles do, presses as a kink wherever in the contact it stands: the power with which
+/// pressure grows towards it is hardly one.
+const SHALLOW: f64 = 0.05;
+
 /// How often towards a corner that digs in, the tip's or a broken edge's, where it grows with a power.
 const AT_CORNER: u32 = 4;
 
@@ -520,7 +524,8 @@ fn ending_at_kinks([from, to]: [f64; 2], width: f64, facing: &Facing) -> Vec<f64
         if last != Some(before) && before < count {
             last = Some(before);
             let digs_in = |hollow: &Hollow| {
-                hollow.arc == *kink && hollow.openings.iter().all(|angle| *angle > 0.0)
+                let [down, up] = hollow.openings;
+                hollow.arc == *kink && down.min(up) > 0.0 && down + up > SHALLOW
             };
             let corner = facing.hollows.iter().any(digs_in);
             towards.push((*kink, if corner { AT_CORNER } else { AT_KINK }));
@@ -599,10 +604,34 @@ fn widen(chains: &mut Vec<Vec<f64>>, facing: &Facing, width: f64, times: usize) 
             _ => joined.push(ends.collect()),
         }
     }
+    // Where a core ends beside a kink it leaves a cell of any width.
+    let in_core =
+        |kink: f64| (0..firsts.len()).any(|i| firsts[i] + width < kink && kink < lasts[i] - width);
     for chain in &mut joined {
+        for (i, &kink) in kinks.iter().enumerate() {
+            let beside = [i.wrapping_sub(1), i + 1].map(|k| kinks.get(k));
+            let mut others = beside.into_iter().flatten();
+            if !in_core(kink) && others.all(|other| (other - kink).abs() > 2.0 * BESIDE * width) {
+                narrow_towards(kink, chain, width);
+            }
+        }
         leave_no_slivers(chain, kinks);
     }
     *chains = joined;
+}
+
+/// Lays `ends` anew about a `kink` among them, as [`ending_at_kinks`] does.
+fn narrow_towards(kink: f64, ends: &mut Vec<f64>, width: f64) {
+    let (first, last) = (ends[0], ends[ends.len() - 1]);
+    let inside = |end: f64| first < end && end < last;
+    if !inside(kink) {
+        return;
+    }
+    ends.retain(|&end| !inside(end) || (end - kink).abs() > BESIDE * width);
+    let parts = (0..=AT_KINK).map(|i| width * 0.5_f64.powi(i as i32));
+    let about = parts.flat_map(|part| [kink - part, kink + part]);
+    ends.extend(about.chain([kink]).filter(|end| inside(*end)));
+    ends.sort_by(f64::total_cmp);
 }
 
 /// Takes away ends that leave a cell far narrower than those beside it, as where a kink stands just before or beyond the stretch: it would carry what

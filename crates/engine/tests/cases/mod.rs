@@ -2,18 +2,23 @@
 
 #![allow(dead_code, reason = "each test and benchmark uses some of these")]
 
+use std::sync::Arc;
+
 use meshwright_engine::analysis::{
     BodyFormula, Case, ContactSolver, FaceHoles, Faces, Formulas, Method, Model, PlaneState,
     Resolution, SectionHoles, StiffnessRule, ToothFormula,
 };
-use meshwright_engine::assembly::FaceResolution;
+use meshwright_engine::assembly::{FaceResolution, FaceYield};
+use meshwright_engine::contact::face::{FaceModel, FlankYield};
 use meshwright_engine::contact::{MeshContact, PairModel, PositionError, WarmStart};
 use meshwright_engine::gear::{
-    BlankRegion, GearData, GearPair, Helix, HolePattern, Material, ModificationData,
-    PairDeviations, Rack, ReliefData, ReliefShape, ReliefStart, SolidGear, SolidPair, SpurGear,
-    TipEdge, ToothDeviations,
+    Alignment, BlankRegion, GearData, GearPair, Helix, HolePattern, LeadModification, Material,
+    Member, ModificationData, PairDeviations, Rack, ReliefData, ReliefShape, ReliefStart,
+    SolidGear, SolidPair, SpurGear, TipEdge, ToothDeviations,
 };
 use meshwright_engine::grid::GridLevel;
+use meshwright_engine::ring::teeth::FARTHEST_COUPLED;
+use meshwright_engine::run::Run;
 
 /// The gears of the paper and of CalculiX but for their tooth counts and blanks: m 2 mm, α 20°, b 20 mm.
 pub(crate) fn gear(tooth_count: u32, bore_radius: f64) -> GearData {
@@ -183,6 +188,23 @@ pub(crate) fn along_faces(
     }
 }
 
+/// How both gears of `pair` yield along their faces.
+pub(crate) fn face_yields(
+    pair: &SolidPair,
+    resolution: FaceResolution,
+) -> [Arc<dyn FlankYield>; 2] {
+    Member::BOTH.map(|member| {
+        let made = FaceYield::of(pair.gear(member), resolution, &Run::unattended());
+        Arc::new(made.expect("can be condensed")) as Arc<dyn FlankYield>
+    })
+}
+
+/// The contact along `faces`, asked position by position.
+pub(crate) fn face_model(faces: &Faces) -> FaceModel {
+    let yields = face_yields(&faces.pair, faces.resolution);
+    FaceModel::new(faces.pair.clone(), yields, faces.slices, FARTHEST_COUPLED)
+}
+
 /// The pair of `case` along its faces, to change.
 pub(crate) fn faces_of(case: &mut Case) -> &mut Faces {
     match &mut case.model {
@@ -235,4 +257,58 @@ pub(crate) fn drawn(seed: u64) -> impl FnMut() -> f64 {
         state ^= state << 17;
         (state >> 11) as f64 / (1u64 << 53) as f64
     }
+}
+
+/// The root mean square of what stands in `values`, one mesh period, above the tenth harmonic.
+pub(crate) fn above_the_tenth_harmonic(values: &[f64]) -> f64 {
+    let count = values.len() as f64;
+    let mut rest = values.to_vec();
+    for harmonic in 0..=10 {
+        let angle = |i: usize| 2.0 * std::f64::consts::PI * (harmonic * i) as f64 / count;
+        let part = if harmonic == 0 { 1.0 } else { 2.0 } / count;
+        let each = || values.iter().enumerate();
+        let cosine: f64 = each().map(|(i, value)| value * angle(i).cos()).sum();
+        let sine: f64 = each().map(|(i, value)| value * angle(i).sin()).sum();
+        for (i, rest) in rest.iter_mut().enumerate() {
+            *rest -= part * (cosine * angle(i).cos() + sine * angle(i).sin());
+        }
+    }
+    (rest.iter().map(|value| value * value).sum::<f64>() / count).sqrt()
+}
+
+/// A helical pair drawn at random and its output torque: 10 to 30 degrees, tip reliefs of both shapes, crowned and sloped leads.
+pub(crate) fn helical_pair(seed: u64) -> (SolidPair, f64) {
+    let mut draw = drawn(seed + 1);
+    let mut between = |low: f64, high: f64| low + (high - low) * draw();
+    let beta = between(10.0, 30.0).to_radians();
+    let width = between(12e-3, 28e-3);
+    let gears = [beta, -beta].map(|beta| {
+        let mut data = gear(between(19.0, 60.0) as u32, 8e-3);
+        data.face_width = width;
+        data.modifications = vec![ModificationData::TipRelief(ReliefData {
+            amount: between(3e-6, 15e-6),
+            shape: if between(0.0, 1.0) < 0.5 {
+                ReliefShape::Linear
+            } else {
+                ReliefShape::Parabolic
+            },
+            start: ReliefStart::RadialLength(between(0.6e-3, 1.4e-3)),
+        })];
+        helical(data, beta, 0.0)
+    });
+    let leads = [
+        vec![LeadModification::Crowning {
+            amount: between(2e-6, 8e-6),
+        }],
+        vec![LeadModification::Slope {
+            amount: between(-8e-6, 8e-6),
+        }],
+    ];
+    let [one, other] = gears
+        .each_ref()
+        .map(|gear| gear.section().reference_radius());
+    let pair = SolidPair::new(gears, leads, one + other + 0.1e-3, Alignment::default());
+    let pair = pair.expect("meshes");
+    let torque = width * between(50e3, 200e3) / pair.section().load(1.0);
+    (pair, torque)
 }

@@ -5,7 +5,7 @@ mod cases;
 
 use std::sync::Arc;
 
-use cases::drawn;
+use cases::{above_the_tenth_harmonic, drawn};
 
 use faer::Mat;
 use meshwright_engine::contact::face::{FaceContact, FaceModel, FlankYield, SLICES, SliceLoad};
@@ -278,6 +278,8 @@ fn flanks_of_pairs_drawn_at_random_penetrate_nowhere_on_a_net_of_points_over_bot
                 deviations.lead_slope = any(10e-6);
             }
         }
+        // F/(b m) of 600 N/mm² is several times what teeth bear: seed 2, under 960, comes to 4.5 % at a sharp edge.
+        let overloaded = load > 600e6 * 2e-3;
         let model = drawing.model();
         let load = model.pair().common_face_width() * drawing.scale * load;
         let positions = [0.1, 0.43, 0.77];
@@ -291,7 +293,11 @@ fn flanks_of_pairs_drawn_at_random_penetrate_nowhere_on_a_net_of_points_over_bot
             // Beside a sharp edge flanks yield as a wedge does, and where a contact is no longer than wide as no line does, which the half space
             // of the net leaves out. Where a line or a pair is missed they penetrate by all that load brings them together.
             let lines = net.are_lines();
-            let most = if lines { 0.01 } else { 0.05 };
+            let most = match lines {
+                true => 0.01,
+                false if overloaded => 0.05,
+                false => 0.03,
+            };
             assert!(
                 found.depth < most * pressed,
                 "seed {seed} at {eta}: {:e} at {:?} of {pressed:e}",
@@ -521,23 +527,6 @@ fn more_load_presses_farther_and_the_stiffness_is_the_slope() {
     }
 }
 
-/// The root mean square of what stands in `values`, one mesh period, above the tenth harmonic.
-fn above_the_tenth_harmonic(values: &[f64]) -> f64 {
-    let count = values.len() as f64;
-    let mut rest = values.to_vec();
-    for harmonic in 0..=10 {
-        let angle = |i: usize| 2.0 * std::f64::consts::PI * (harmonic * i) as f64 / count;
-        let part = if harmonic == 0 { 1.0 } else { 2.0 } / count;
-        let each = || values.iter().enumerate();
-        let cosine: f64 = each().map(|(i, value)| value * angle(i).cos()).sum();
-        let sine: f64 = each().map(|(i, value)| value * angle(i).sin()).sum();
-        for (i, rest) in rest.iter_mut().enumerate() {
-            *rest -= part * (cosine * angle(i).cos() + sine * angle(i).sin());
-        }
-    }
-    (rest.iter().map(|value| value * value).sum::<f64>() / count).sqrt()
-}
-
 #[test]
 fn curves_are_as_smooth_as_with_four_times_as_many_slices() {
     let drawing = Drawing {
@@ -569,6 +558,31 @@ fn curves_are_as_smooth_as_with_four_times_as_many_slices() {
     for (delta, fine) in delta.iter().zip(&fine) {
         assert!(delta.abs() < 1e-3 * fine.mesh.transmission_error);
     }
+}
+
+#[test]
+fn the_largest_pressure_at_the_start_of_a_relief_is_not_a_chance_of_where_slices_lie() {
+    // A line crosses it within one of its slices, which are longer than the contact is wide there.
+    let drawing = Drawing {
+        relief: 20e-6,
+        ..Drawing::default()
+    };
+    let positions = period(48);
+    let told = |slices: usize| -> Vec<f64> {
+        let contacts = contacts(&drawing.model_of(slices), 1500.0, &positions);
+        let told = contacts.iter().map(|contact| contact.mesh.peak_pressure);
+        told.map(|told| told.expect("no sharp edge carries"))
+            .collect()
+    };
+    let (usual, fine) = (told(40), told(160));
+    let apart = usual.iter().zip(&fine).map(|(a, b)| (a / b - 1.0).abs());
+    let mut apart: Vec<f64> = apart.collect();
+    println!("{apart:.4?}\n{usual:.0?}\n{fine:.0?}");
+    apart.sort_by(f64::total_cmp);
+    // Where a line that ends under load has the kink at that end, its load falls within one slice.
+    assert!(apart[43] < 0.01 && apart[47] < 0.05, "{apart:.4?}");
+    let largest = |of: &[f64]| of.iter().copied().fold(0.0, f64::max);
+    assert!((largest(&usual) / largest(&fine) - 1.0).abs() < 0.03);
 }
 
 #[test]

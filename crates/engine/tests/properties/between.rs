@@ -2,8 +2,9 @@
 
 use meshwright_engine::analysis::spectrum::harmonics;
 use meshwright_engine::analysis::{Case, Curve, pair_model};
-use meshwright_engine::assembly::MakeAll;
+use meshwright_engine::assembly::{FaceResolution, MakeAll};
 use meshwright_engine::contact::MeshContact;
+use meshwright_engine::contact::face::SLICES;
 use meshwright_engine::contact::positions::contacts;
 use meshwright_engine::gear::{GearData, GearPair, Member, SpurGear};
 use meshwright_engine::grid::GridLevel;
@@ -52,14 +53,31 @@ impl DrawnPair {
     }
 }
 
+/// Finds the contacts at some positions.
+type Solver = Box<dyn Fn(&[f64]) -> Vec<MeshContact>>;
+
+/// What finds those of `case`.
+fn solver(case: &Case) -> Solver {
+    let load = case.pair.load(case.output_torques[0]);
+    let Some(faces) = case.faces() else {
+        let model = pair_model(case, &MakeAll, &Run::unattended()).expect("a model");
+        return Box::new(move |positions| {
+            let solved = contacts(model.as_drawn(), load, positions, &Run::unattended());
+            solved.expect("contacts")
+        });
+    };
+    let model = cases::face_model(faces);
+    Box::new(move |positions| {
+        let solved = model.contacts(load, positions, &Run::unattended());
+        let solved = solved.expect("contacts").into_iter();
+        solved.map(|contact| contact.mesh).collect()
+    })
+}
+
 /// The contacts of `case` at `count` equal positions of a mesh period, and δ and k at some more about each event.
 fn dense(case: &Case, count: usize) -> (Vec<MeshContact>, Vec<MeshContact>) {
-    let run = Run::unattended();
-    let model = pair_model(case, &MakeAll, &run).expect("a model");
-    let load = case.pair.load(case.output_torques[0]);
+    let solved = solver(case);
     let step = 1.0 / count as f64;
-    let solved =
-        |positions: &[f64]| contacts(model.as_drawn(), load, positions, &run).expect("contacts");
     let positions: Vec<f64> = (0..count).map(|i| i as f64 * step).collect();
     let even = solved(&positions);
     let loaded = |contact: &MeshContact| contact.loaded_pairs();
@@ -118,10 +136,11 @@ fn apart(curve: &Curve, (even, further): &(Vec<MeshContact>, Vec<MeshContact>)) 
 }
 
 /// How far the curves of `drawn` at so many positions a mesh period are from the dense solution at `count`.
-fn compared(drawn: &DrawnPair, counts: [u32; 2], count: usize) -> [Apart; 2] {
+fn compared(drawn: &Case, counts: [u32; 2], count: usize) -> [Apart; 2] {
     let at = |positions: u32| {
-        let mut case = case(&drawn.pair, &[drawn.output_torque]);
+        let mut case = drawn.clone();
         case.resolution.positions_per_mesh_period = positions;
+        case.resolution.span_mesh_periods = Some(1);
         case.resolution.grid = GridLevel::Standard;
         case
     };
@@ -143,16 +162,43 @@ struct Out {
     told: Vec<String>,
 }
 
-/// Pairs that are out of what is allowed at 10 and at 40 positions, of those of `seeds`.
+impl Out {
+    fn is_empty(&self) -> bool {
+        [&self.wrong, &self.of_k, &self.told]
+            .iter()
+            .all(|list| list.is_empty())
+    }
+}
+
+/// A drawn pair in the plane.
+fn in_the_plane(seed: u64) -> Case {
+    let drawn = DrawnPair::of(seed).solid();
+    case(&drawn.pair, &[drawn.output_torque])
+}
+
+/// A helical one along its faces, of few functions over each flank. Fewer slices would leave steps in the stiffness, of which a dense curve finds more.
+fn along_faces(seed: u64) -> Case {
+    let (pair, torque) = cases::helical_pair(seed);
+    let resolution = FaceResolution {
+        face_order: 4,
+        ..FaceResolution::DRAFT
+    };
+    cases::along_faces(pair, (resolution, SLICES), &[torque])
+}
+
+/// Pairs that are out of what is allowed at 10 and at 40 positions, of those `drawn` by `seeds`.
 ///
 /// Allowed are 2 % and 0.5 % of the peak-to-peak of δ, 1 % of that of k at 40, 2 % and 0.5 % of the rms and of the largest line (of two lines, and of
 /// all that are compared), and errors of twice what is told. The tangent stiffness steps by some thousandths as one cell more touches or one less, so that the largest
 /// of very many k is that of a cell: beyond 1 % a step of it is allowed, and counted.
-fn out_of_bounds(seeds: impl Iterator<Item = u64>, count: usize) -> [Out; 2] {
+fn out_of_bounds(
+    drawn: fn(u64) -> Case,
+    seeds: impl Iterator<Item = u64>,
+    count: usize,
+) -> [Out; 2] {
     let mut out = [Out::default(), Out::default()];
     for seed in seeds {
-        let drawn = DrawnPair::of(seed).solid();
-        let both = compared(&drawn, [10, 40], count);
+        let both = compared(&drawn(seed), [10, 40], count);
         for (of, apart) in both.iter().enumerate() {
             let (of_delta, of_k, of_lines, lines) =
                 [(2e-2, 1.0, 2e-2, 2), (5e-3, 1e-2, 5e-3, HARMONICS)][of];
@@ -180,7 +226,7 @@ fn out_of_bounds(seeds: impl Iterator<Item = u64>, count: usize) -> [Out; 2] {
 
 #[test]
 fn extremes_and_lines_are_those_of_the_curve_between_its_positions() {
-    let out = out_of_bounds(0..8, 400);
+    let out = out_of_bounds(in_the_plane, 0..8, 400);
     let [few, many] = &out;
     assert!(few.wrong.is_empty() && many.wrong.is_empty(), "{out:#?}");
     assert!(many.of_k.is_empty() && many.told.is_empty(), "{out:#?}");
@@ -191,7 +237,7 @@ fn extremes_and_lines_are_those_of_the_curve_between_its_positions() {
 #[test]
 #[ignore = "2000 positions of each of 60 pairs take minutes"]
 fn extremes_and_lines_are_those_of_the_curve_between_its_positions_at_length() {
-    let out = out_of_bounds(0..60, 2000);
+    let out = out_of_bounds(in_the_plane, 0..60, 2000);
     println!("{out:#?}");
     let [few, many] = &out;
     assert!(many.wrong.is_empty());
@@ -235,4 +281,22 @@ fn the_peak_of_the_standard_pair_is_found_between_ten_and_between_forty_position
             );
         }
     }
+}
+
+#[test]
+fn along_faces_extremes_and_lines_are_those_of_the_curve_between_its_positions() {
+    let out = out_of_bounds(along_faces, 0..2, 200);
+    assert!(out.iter().all(Out::is_empty), "{out:#?}");
+}
+
+#[test]
+#[ignore = "300 positions of each of ten pairs along their faces take minutes"]
+fn along_faces_extremes_and_lines_are_those_of_the_curve_between_its_positions_at_length() {
+    let out = out_of_bounds(along_faces, 0..10, 300);
+    println!("{out:#?}");
+    let [few, many] = &out;
+    assert!(few.wrong.is_empty() && many.wrong.is_empty());
+    assert!(few.told.len() <= 1, "that of seed 5 is 0.8 nm for 3.5 nm");
+    assert!(many.of_k.len() <= 1, "that of seed 8 is 1.3 % off");
+    assert!(few.of_k.is_empty() && many.told.is_empty());
 }

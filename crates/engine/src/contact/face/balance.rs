@@ -16,7 +16,7 @@ use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatRef, Par};
 
 use super::compliance::half_space;
-use super::slice::{Carried, Place, Slice};
+use super::slice::{Carried, Place, Slice, Within};
 use crate::contact::{ContactError, PositionError};
 use crate::fem::dense::Cholesky;
 
@@ -77,6 +77,8 @@ pub(super) struct Balance {
     pub(super) iterations: u32,
     /// Whether springs carry more than they were made for.
     pub(super) is_strained: bool,
+    /// By how much the linear yield opens their middles.
+    opened: Vec<f64>,
     points: Vec<Point>,
     tangent: Tangent,
     lower: Mat<f64>,
@@ -255,23 +257,6 @@ impl Problem<'_> {
         }
     }
 
-    /// The slice beside slice `i` of the same line towards its beginning or its `end`, or itself.
-    fn beside(&self, i: usize, end: usize) -> usize {
-        let slice = &self.slices[i];
-        let other = if end == 0 {
-            i.checked_sub(1)
-        } else {
-            Some(i + 1)
-        };
-        let joins = |other: &usize| {
-            self.slices.get(*other).is_some_and(|other| {
-                let apart = (other.z - slice.z).abs();
-                other.pair == slice.pair && apart < 1.5 * slice.length
-            })
-        };
-        other.filter(joins).unwrap_or(i)
-    }
-
     /// The places that are loaded at `state`.
     fn points(&self, state: &State) -> Vec<Point> {
         let mut points = Vec::with_capacity(4 * self.slices.len());
@@ -279,7 +264,7 @@ impl Problem<'_> {
         for (i, slice) in self.slices.iter().enumerate() {
             let middle = pressed(slice.middle.gap, slice.middle.weights[1], state.opened[i]);
             for (end, edge) in slice.ends.iter().enumerate() {
-                let beside = self.beside(i, end);
+                let beside = beside(self.slices, i, end);
                 let opened = 0.5 * (state.opened[i] + state.opened[beside]);
                 let outer = pressed(edge.gap, edge.weights[1], opened);
                 let turn = middle / (middle - outer);
@@ -418,7 +403,7 @@ impl Problem<'_> {
             gaps.push(-middle);
             for (end, edge) in slice.ends.iter().enumerate() {
                 let sign = 2.0 * end as f64 - 1.0;
-                let opened = 0.5 * (state.opened[i] + state.opened[self.beside(i, end)]);
+                let opened = 0.5 * (state.opened[i] + state.opened[beside(self.slices, i, end)]);
                 let outer = state.delta * edge.weights[1] - edge.gap - opened;
                 let turn = sign * middle / (middle - outer);
                 let [low, high] = &mut carried[i].part;
@@ -459,6 +444,7 @@ impl Problem<'_> {
             transmission_error: state.delta,
             stiffness: tangent.stiffness,
             iterations,
+            opened: state.opened,
             points,
             tangent,
             lower: self.lower,
@@ -474,6 +460,14 @@ impl Point {
 }
 
 impl Balance {
+    /// How far flanks are pressed together at a place of slice `i`.
+    pub(super) fn depth(&self, slices: &[Slice], i: usize, within: &Within) -> f64 {
+        let beside = beside(slices, i, usize::from(within.at > 0.0));
+        let share = 0.5 * within.at.abs();
+        let opened = (1.0 - share) * self.opened[i] + share * self.opened[beside];
+        self.transmission_error * within.place.weights[1] - within.place.gap - opened
+    }
+
     /// How what each slice carries changes where gaps open so far, in the middle of each and at both of its ends, under the same load.
     pub(super) fn change(&self, opened: &[[f64; 3]]) -> Vec<f64> {
         let size = opened.len();
@@ -502,6 +496,23 @@ impl Balance {
         }
         changes
     }
+}
+
+/// The slice beside slice `i` of the same line towards its beginning or its `end`, or itself.
+fn beside(slices: &[Slice], i: usize, end: usize) -> usize {
+    let slice = &slices[i];
+    let other = if end == 0 {
+        i.checked_sub(1)
+    } else {
+        Some(i + 1)
+    };
+    let joins = |other: &usize| {
+        slices.get(*other).is_some_and(|other| {
+            let apart = (other.z - slice.z).abs();
+            other.pair == slice.pair && apart < 1.5 * slice.length
+        })
+    };
+    other.filter(joins).unwrap_or(i)
 }
 
 /// The load a length at a `place` between the middle of `slice` and one of its ends, closed up by `depth`, and how fast that grows with it.

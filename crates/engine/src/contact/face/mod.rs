@@ -32,7 +32,7 @@ use crate::run::Run;
 use balance::{Balance, balance, softened_balance};
 use compliance::compliance;
 pub use model::{FaceModel, FlankYield};
-use slice::{Loading, Slice, Stretches};
+use slice::{Loading, Place, Slice, Slicer, Stretches};
 
 /// How many slices the whole face is cut into, unless a case says otherwise.
 pub const SLICES: usize = 40;
@@ -48,14 +48,15 @@ const HEAVIEST: f64 = 200.0;
 const FINEST: usize = 4;
 
 /// Slices in balance.
-struct Balanced {
+struct Balanced<'a> {
+    slicer: Slicer<'a>,
     slices: Vec<Slice>,
     /// Their compliance without springs.
     compliance: Mat<f64>,
     balance: Balance,
 }
 
-impl Balanced {
+impl Balanced<'_> {
     /// The loaded part of each line of `of`, whose slices these are, if together they are less than half a face: they are cut finer then.
     fn loaded(&self, model: &FaceModel, of: &Stretches) -> Option<Stretches> {
         let carried = self.balance.carried.iter();
@@ -335,7 +336,7 @@ impl FaceModel {
             balanced = finer;
             loaded = balanced.loaded(self, &stretches);
         }
-        Ok(self.summary(&balanced.slices, &balanced.balance, load))
+        Ok(self.summary(&balanced, load))
     }
 
     /// The balance at the position `eta` under `load` of the slices of `stretches`.
@@ -347,11 +348,12 @@ impl FaceModel {
         eta: f64,
         load: f64,
         stretches: &Stretches,
-    ) -> Result<Balanced, PositionError> {
+    ) -> Result<Balanced<'_>, PositionError> {
         let mut heavier = HEAVIER;
         let mut shorter = None;
-        let (slices, compliance) = loop {
-            let slices = slice::slices_of(self, eta, stretches, Some(Loading { load, heavier }));
+        let (slicer, slices, compliance) = loop {
+            let slicer = Slicer::new(self, eta, stretches, Loading { load, heavier });
+            let slices = slicer.slices(stretches);
             let (Some(first), Some(last)) = (slices.first(), slices.last()) else {
                 break shorter.ok_or(PositionError::NoContact)?;
             };
@@ -364,25 +366,27 @@ impl FaceModel {
             }
             let compliance = compliance(self, &slices);
             if heavier >= HEAVIEST {
-                break (slices, compliance);
+                break (slicer, slices, compliance);
             }
             match balance(&compliance, &slices, load) {
                 Ok(balance) if !balance.is_strained => {
                     return Ok(Balanced {
                         balance,
+                        slicer,
                         slices,
                         compliance,
                     });
                 }
                 Ok(_) | Err(PositionError::Contact(ContactError::NotPositiveDefinite { .. })) => {
                     heavier *= HEAVIER;
-                    shorter = Some((slices, compliance));
+                    shorter = Some((slicer, slices, compliance));
                 }
                 Err(error) => return Err(error),
             }
         };
         Ok(Balanced {
             balance: softened_balance(&compliance, &slices, load)?,
+            slicer,
             slices,
             compliance,
         })
@@ -438,15 +442,21 @@ impl FaceModel {
         sums
     }
 
-    /// The contact of the mesh by `balance`.
-    fn summary(&self, slices: &[Slice], balance: &Balance, load: f64) -> FaceContact {
+    /// The contact of the mesh by what is `balanced`.
+    fn summary(&self, balanced: &Balanced<'_>, load: f64) -> FaceContact {
+        let Balanced {
+            slicer,
+            slices,
+            balance,
+            ..
+        } = balanced;
         let mut pairs: Vec<PairContact> = Vec::new();
-        let mut peak_pressure = None::<f64>;
+        let mut peak: Option<(f64, PeakPlace)> = None;
         let mut at_sharp_edge = false;
         let mut corner_shares = [0.0; 2];
         let mut loads = Vec::new();
         let mut driving_load = 0.0;
-        for (slice, carried) in slices.iter().zip(&balance.carried) {
+        for (i, (slice, carried)) in slices.iter().zip(&balance.carried).enumerate() {
             if pairs.last().is_none_or(|pair| pair.pair != slice.pair) {
                 pairs.push(PairContact {
                     pair: slice.pair,
@@ -474,21 +484,45 @@ impl FaceModel {
             }
             driving_load += slice.middle.weights[0] * carried.force;
             at_sharp_edge |= pressed.at_sharp_edge;
-            peak_pressure = match (peak_pressure, pressed.pressure) {
-                (Some(one), Some(other)) => Some(one.max(other)),
-                (one, other) => one.or(other),
-            };
             let edge = &slice.ends[usize::from(middle > 0.0)].roll_lengths;
+            let z = slice.z + 0.5 * middle * slice.length;
+            let roll_lengths = [0, 1].map(|g| {
+                let at = slice.middle.roll_lengths[g];
+                at + (edge[g] - at) * middle.abs()
+            });
+            let place = |z: f64, roll_lengths: [f64; 2], half_width: f64| PeakPlace {
+                pair: slice.pair,
+                roll_lengths,
+                z: Some(z),
+                half_width,
+            };
+            let in_middle = place(z, roll_lengths, pressed.half_width);
+            let mut largest = pressed.pressure.map(|pressure| (pressure, in_middle));
+            for within in slicer.at_kinks(slice, carried.part, pressed.half_width) {
+                let depth = balance.depth(slices, i, &within);
+                if depth <= 0.0 || largest.is_none() {
+                    continue;
+                }
+                let Place {
+                    roll_lengths,
+                    spring,
+                    ..
+                } = &within.place;
+                let pressed = spring.pressed(spring.load(depth)[0]);
+                let at_kink = place(within.z, *roll_lengths, pressed.half_width);
+                largest = larger(
+                    largest,
+                    pressed.pressure.map(|pressure| (pressure, at_kink)),
+                );
+            }
+            peak = larger(peak, largest);
             loads.push(SliceLoad {
                 pair: slice.pair,
-                z: slice.z + 0.5 * middle * slice.length,
+                z,
                 length: part * slice.length,
                 force: carried.weighed,
-                roll_lengths: [0, 1].map(|g| {
-                    let at = slice.middle.roll_lengths[g];
-                    at + (edge[g] - at) * middle.abs()
-                }),
-                pressure: pressed.pressure,
+                roll_lengths,
+                pressure: largest.map(|(pressure, _)| pressure),
                 at_sharp_edge: pressed.at_sharp_edge,
                 half_width: pressed.half_width,
                 normal: [carried.force, carried.rise],
@@ -508,15 +542,15 @@ impl FaceModel {
         let sum: f64 = balance.carried.iter().map(|carried| carried.weighed).sum();
         let carried = balance.carried.iter().zip(&balance.gaps);
         let complementarity = carried.map(|(carried, gap)| (carried.force * gap).abs());
-        let peak_pressure = peak_pressure.filter(|_| !at_sharp_edge);
+        let peak = peak.filter(|_| !at_sharp_edge);
         FaceContact {
             mesh: MeshContact {
                 transmission_error: balance.transmission_error,
                 stiffness: balance.stiffness,
                 driving_load,
                 pairs,
-                peak_pressure,
-                peak_place: PeakPlace::of_slices(&loads, peak_pressure),
+                peak_pressure: peak.map(|(pressure, _)| pressure),
+                peak_place: peak.map(|(_, place)| place),
                 equilibrium: (sum - load).abs() / load,
                 complementarity: complementarity.fold(0.0, f64::max),
                 penetration: balance.penetration(slices),
@@ -550,18 +584,13 @@ fn beyond(delta: f64, touch: f64) -> f64 {
     delta + BEYOND * (delta - touch).abs()
 }
 
-impl PeakPlace {
-    /// That of the first of `slices` under the largest pressure, which is `largest`.
-    fn of_slices(slices: &[SliceLoad], largest: Option<f64>) -> Option<Self> {
-        let mut slices = slices.iter();
-        let slice = slices.find(|slice| slice.pressure.is_some() && slice.pressure == largest)?;
-        Some(Self {
-            pair: slice.pair,
-            roll_lengths: slice.roll_lengths,
-            z: Some(slice.z),
-            half_width: slice.half_width,
-        })
-    }
+/// The larger of two pressures and its place; the first of two that are the same.
+fn larger(
+    one: Option<(f64, PeakPlace)>,
+    other: Option<(f64, PeakPlace)>,
+) -> Option<(f64, PeakPlace)> {
+    let is_less = |one: (f64, PeakPlace)| other.is_some_and(|other| other.0 > one.0);
+    one.filter(|one| !is_less(*one)).or(other)
 }
 
 #[cfg(test)]
@@ -608,10 +637,16 @@ mod tests {
                     let phases = [s_a, s_e].map(|s| model.pair.phase_at(s));
                     let lines = Stretches::whole(&model, eta, phases);
                     let heavier = HEAVIER;
-                    let slices =
-                        slice::slices_of(&model, eta, &lines, Some(Loading { load, heavier }));
-                    let balance = balance(&compliance(&model, &slices), &slices, load);
-                    model.summary(&slices, &balance.expect("a balance"), load)
+                    let slicer = Slicer::new(&model, eta, &lines, Loading { load, heavier });
+                    let slices = slicer.slices(&lines);
+                    let compliance = compliance(&model, &slices);
+                    let balanced = Balanced {
+                        balance: balance(&compliance, &slices, load).expect("a balance"),
+                        slicer,
+                        slices,
+                        compliance,
+                    };
+                    model.summary(&balanced, load)
                 })
                 .collect();
             let deltas = contacts

@@ -32,6 +32,9 @@ pub trait FlankYield: Send + Sync {
 /// Matrices of smooth yields that are kept.
 const MOST_KEPT: usize = 256;
 
+/// A profile that turns by less at a place has no kink there.
+const LEAST_TURN: f64 = 1e-6;
+
 /// Two gears with an extent along their axes, ready for contact.
 pub struct FaceModel {
     pub(super) pair: SolidPair,
@@ -43,7 +46,47 @@ pub struct FaceModel {
     pub(super) coupled: usize,
     /// One meter of the flanks as drawn.
     pub(super) long: GearPair,
+    /// The kinks of both profiles at which flanks press harder than beside them.
+    pub(super) kinks: Vec<Kink>,
     kept: Mutex<Vec<(Teeth, Arc<Mat<f64>>)>>,
+}
+
+/// A kink of a profile.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Kink {
+    /// The phase at which it stands in the middle of the contact, as drawn: flanks open alike on both of its sides.
+    pub(super) phase: f64,
+    /// How far it moves along its flank for each length along the line of action.
+    pub(super) along: f64,
+}
+
+impl Kink {
+    fn all(pair: &SolidPair) -> Vec<Self> {
+        let of = Member::BOTH.map(|member| {
+            let kinks = pair.section().gear(member).kinks().into_iter();
+            kinks.filter_map(move |s| Self::at(pair, member, s))
+        });
+        of.into_iter().flatten().collect()
+    }
+
+    /// That of `member` at the roll length `s`, if it stands out.
+    fn at(pair: &SolidPair, member: Member, s: f64) -> Option<Self> {
+        let (section, gear) = (pair.section(), pair.section().gear(member));
+        let [before, beyond] = gear.slopes_beside(s);
+        if beyond - before <= LEAST_TURN {
+            return None;
+        }
+        // Where two cylinders of the relative radius R are turned by φ, they touch R φ farther along the flank.
+        let along = s / gear.base_radius();
+        let mate = section.line_of_action() - s;
+        let radius = s * mate / (s + mate);
+        let middle = s + 0.5 * (before + beyond) / (along * along) * radius;
+        let phase = match member {
+            Member::Driving => pair.phase_at(middle),
+            Member::Driven => pair.phase_at(section.line_of_action() - middle),
+        };
+        Some(Self { phase, along })
+    }
 }
 
 /// So many teeth of a gear in the order of their pairs, from `first` on.
@@ -64,6 +107,7 @@ impl FaceModel {
         coupled: usize,
     ) -> Self {
         Self {
+            kinks: Kink::all(&pair),
             deviations: pair.section().deviations(),
             long: pair.section().long_slices(),
             pair,

@@ -40,6 +40,13 @@ pub(super) struct Place {
     pub(super) spring: Arc<Spring>,
 }
 
+/// A place within a slice, from its beginning (−1) to its end (1).
+pub(super) struct Within {
+    pub(super) at: f64,
+    pub(super) z: f64,
+    pub(super) place: Place,
+}
+
 /// The load on one slice.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Carried {
@@ -150,34 +157,14 @@ fn length(lines: &[ContactLine]) -> f64 {
     lengths.sum()
 }
 
-/// The slices of `stretches` of `model` at the position `eta`, with the springs for a load, or without one with Hertz's alone.
-///
-/// Slices of one line are equally long, so that they move with it.
-pub(super) fn slices_of(
-    model: &FaceModel,
-    eta: f64,
-    stretches: &Stretches,
-    loading: Option<Loading>,
-) -> Vec<Slice> {
-    // For each length along a contact line.
-    let total = length(&stretches.lines);
-    let densities = loading.map(|of| [1.0, of.heavier].map(|times| times * of.load / total));
-    let slicer = Slicer::new(model, densities, stretches);
-    let lines = stretches.lines.iter();
-    lines.flat_map(|line| slicer.line(eta, line)).collect()
-}
-
 /// What all slices of one position have in common.
-struct Slicer<'a> {
+pub(super) struct Slicer<'a> {
     model: &'a FaceModel,
+    eta: f64,
     cosine: f64,
     factor: f64,
-    /// In the mean, and at most.
-    densities: Option<[f64; 2]>,
-    /// The longest slice along the axis.
-    longest: f64,
-    /// How many slices a line has at least.
-    least: f64,
+    /// The line loads for which springs are made: in the mean, and at most.
+    densities: [f64; 2],
 }
 
 /// Whether a force between the flanks of `facing` at `phase` drives the driven gear on. Far off the path of contact it may turn it back; flanks
@@ -201,63 +188,66 @@ fn arms(view: &View<'_>, facing: &Facing) -> [f64; 2] {
 }
 
 impl<'a> Slicer<'a> {
-    fn new(model: &'a FaceModel, densities: Option<[f64; 2]>, stretches: &Stretches) -> Self {
+    /// Of `stretches` of `model` at the position `eta`, with springs for a load.
+    pub(super) fn new(
+        model: &'a FaceModel,
+        eta: f64,
+        stretches: &Stretches,
+        Loading { load, heavier }: Loading,
+    ) -> Self {
+        // For each length along a contact line.
+        let total = length(&stretches.lines);
         let factors = Member::BOTH.map(|member| {
             let modulus = model.long.gear(member).material().youngs_modulus;
             logarithm_factor(modulus, 1.0)
         });
         Self {
             model,
+            eta,
             cosine: model.pair.base_helix_angle().cos(),
             factor: factors[0] + factors[1],
-            densities,
-            longest: stretches.longest,
-            least: stretches.least,
+            densities: [1.0, heavier].map(|times| times * load / total),
         }
     }
 
-    fn line(&self, eta: f64, line: &ContactLine) -> Vec<Slice> {
+    /// The slices of `stretches`. Those of one line are equally long, so that they move with it.
+    pub(super) fn slices(&self, stretches: &Stretches) -> Vec<Slice> {
+        let lines = stretches.lines.iter();
+        lines.flat_map(|line| self.line(stretches, line)).collect()
+    }
+
+    fn line(&self, stretches: &Stretches, line: &ContactLine) -> Vec<Slice> {
         let [from, to] = line.heights;
         let pair = &self.model.pair;
-        let half_width = self.densities.map_or(0.0, |[_, density]| {
+        let half_width = {
             let s = 0.5 * pair.section().line_of_action();
-            hertz(density, 0.5 * s / self.cosine, self.factor, 1.0).0
-        });
-        let longest = ((to - from) / self.longest - 1e-9).ceil().max(self.least);
+            hertz(self.densities[1], 0.5 * s / self.cosine, self.factor, 1.0).0
+        };
+        let longest = ((to - from) / stretches.longest - 1e-9)
+            .ceil()
+            .max(stretches.least);
         let shortest = ((to - from) / (SHORTEST * half_width * self.cosine)).floor();
         let count = longest.min(shortest).max(1.0);
         let length = (to - from) / count;
         let along = length / self.cosine;
         let straight = pair.advance() == 0.0;
-        let mut known: Option<(Facing, Place)> = None;
+        let mut known: Option<Place> = None;
         let mut place = |z: f64| {
-            let phase = pair.phase(eta, line.pair, z);
-            let (facing, mut place) = match known.take().filter(|_| straight) {
+            let drawn = match known.take().filter(|_| straight) {
                 Some(known) => known,
-                None => {
-                    let facing = Facing::drawn(&self.model.long, phase)?;
-                    let place = self.place(phase, &facing, along);
-                    (facing, place)
-                }
+                None => self.drawn(line.pair, z, along)?,
             };
             if straight {
-                known = Some((facing, place.clone()));
+                known = Some(drawn.clone());
             }
-            place.gap += place.weights[1] * self.model.opening(line.pair, z, place.roll_lengths);
-            (place.weights[1] > 0.0).then_some(place)
+            self.standing(drawn, line.pair, z)
         };
-        // Ends are looked at only where something is pressed.
-        let is_pressed = self.densities.is_some();
-        let mut begin = if is_pressed { place(from) } else { None };
+        let mut begin = place(from);
         (0..count as usize)
             .filter_map(|i| {
                 let z = from + (i as f64 + 0.5) * length;
                 let middle = place(z);
-                let end = if is_pressed {
-                    place(z + 0.5 * length)
-                } else {
-                    None
-                };
+                let end = place(z + 0.5 * length);
                 let ends = [begin.take(), end.clone()];
                 begin = end;
                 let middle = middle?;
@@ -274,6 +264,46 @@ impl<'a> Slicer<'a> {
             .collect()
     }
 
+    /// The place of pair `n` at `z` as drawn, on a slice so long `along` the line; `None` where flanks do not face each other.
+    fn drawn(&self, n: i64, z: f64, along: f64) -> Option<Place> {
+        let phase = self.model.pair.phase(self.eta, n, z);
+        let facing = Facing::drawn(&self.model.long, phase)?;
+        Some(self.place(phase, &facing, along))
+    }
+
+    /// `place`, of pair `n` at `z`, with what leads, axes and deviations open it; `None` where a force would not drive on.
+    fn standing(&self, mut place: Place, n: i64, z: f64) -> Option<Place> {
+        place.gap += place.weights[1] * self.model.opening(n, z, place.roll_lengths);
+        (place.weights[1] > 0.0).then_some(place)
+    }
+
+    /// The places in the loaded part, from one place to another, of `slice` that are nearest to those at which a kink stands in the middle of the contact, if that
+    /// is nearer than the contact, of this `half_width`, is wide.
+    pub(super) fn at_kinks(
+        &self,
+        slice: &Slice,
+        [from, to]: [f64; 2],
+        half_width: f64,
+    ) -> Vec<Within> {
+        let (pair, half) = (&self.model.pair, 0.5 * slice.length);
+        let phase = pair.phase(self.eta, slice.pair, slice.z);
+        let across = pair.advance() * half;
+        let places = self.model.kinks.iter().filter_map(|kink| {
+            let at = (kink.phase - phase) / across;
+            let step = kink.along * across * pair.section().base_pitch();
+            let beside = (2.0 * half_width / step).abs();
+            if across == 0.0 || at < from - beside || at > to + beside {
+                return None;
+            }
+            let at = at.clamp(from, to);
+            let z = slice.z + at * half;
+            let place = self.drawn(slice.pair, z, slice.along)?;
+            let place = self.standing(place, slice.pair, z)?;
+            Some(Within { at, z, place })
+        });
+        places.collect()
+    }
+
     /// The place of a line where its section faces the other so, as drawn, on a slice so long `along` the line.
     fn place(&self, phase: f64, facing: &Facing, along: f64) -> Place {
         let view = view_of(&self.model.long, phase, facing);
@@ -284,14 +314,11 @@ impl<'a> Slicer<'a> {
             one * other / (one + other)
         };
         let of = (along, radius, self.factor);
-        let (spring, gap) = match self.densities {
-            Some(densities) if self.is_crowded(facing, densities[1], radius) => {
-                Spring::patch(&view, facing, self.cosine, of, densities)
-            }
-            densities => (
-                Spring::hertz(of, densities.unwrap_or([1.0; 2])),
-                hollow.touch * weights[1],
-            ),
+        let (spring, gap) = if self.is_crowded(facing, self.densities[1], radius) {
+            Spring::patch(&view, facing, self.cosine, of, self.densities)
+        } else {
+            let spring = Spring::hertz(of, self.densities);
+            (spring, hollow.touch * weights[1])
         };
         Place {
             roll_lengths: hollow.roll_lengths,
