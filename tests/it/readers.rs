@@ -323,6 +323,8 @@ async fn fields_of_gears_are_refused_where_they_never_fit_and_others_stay_in_the
     }
     assert!(sent > 0);
     let memory = process.peak_memory_mb();
-    println!("six fields of 60/60 teeth at once, --memory-mb 256: {sent} sent, at most {memory} MB");
+    println!(
+        "six fields of 60/60 teeth at once, --memory-mb 256: {sent} sent, at most {memory} MB"
+    );
     assert!(memory < LITTLE_MB, "{memory} MB");
 }
