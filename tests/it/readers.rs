@@ -310,8 +310,8 @@ async fn fields_of_gears_are_refused_where_they_never_fit_and_others_stay_in_the
     for file in ["fields.vtu", "edges.json"] {
         problem(fields(&large, file).await, 422, "too_large").await;
     }
-    let small = job(60).await;
-    let at_once = (0..6).map(|_| fields(&small, "fields.vtu"));
+    let small = job(30).await;
+    let at_once = (0..4).map(|_| fields(&small, "fields.vtu"));
     let answers = futures_util::future::join_all(at_once).await;
     let mut sent = 0;
     for answer in answers {
@@ -324,7 +324,7 @@ async fn fields_of_gears_are_refused_where_they_never_fit_and_others_stay_in_the
     assert!(sent > 0);
     let memory = process.peak_memory_mb();
     println!(
-        "six fields of 60/60 teeth at once, --memory-mb 256: {sent} sent, at most {memory} MB"
+        "four fields of 30/30 teeth at once, --memory-mb 256: {sent} sent, at most {memory} MB"
     );
     assert!(memory < LITTLE_MB, "{memory} MB");
 }
