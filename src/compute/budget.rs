@@ -135,6 +135,11 @@ impl Budget {
         (Queued { shared, number }, part)
     }
 
+    /// How much there is in all.
+    pub fn most(&self) -> u64 {
+        self.0.most
+    }
+
     /// How much `client` holds.
     pub fn held(&self, client: &str) -> u64 {
         self.0.state().held.get(client).copied().unwrap_or_default()

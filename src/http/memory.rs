@@ -84,6 +84,23 @@ impl BodyMemory {
         part(&self.made, client, weight(document)).await
     }
 
+    /// Refuses an answer of so many bytes that there is never memory for it.
+    ///
+    /// # Errors
+    ///
+    /// `too_large`.
+    pub(super) fn check_answer(&self, bytes: u64) -> Result<(), Problem> {
+        let most = self.answers.most();
+        if bytes <= most {
+            return Ok(());
+        }
+        let [bytes, most] = [bytes, most].map(|bytes| bytes.div_ceil(1_000_000));
+        let detail = format!(
+            "The file has up to {bytes} MB; all answers at the same time may have {most} MB here. A coarser grid or fewer teeth take less."
+        );
+        Err(Problem::new(Code::TooLarge, detail))
+    }
+
     /// The memory for an answer to `client` while it is made and until it has left: at most so many bytes.
     ///
     /// # Errors

@@ -6,7 +6,7 @@ use uuid::Uuid;
 
 use super::error::JobError;
 use super::queue::{Jobs, rough_cost};
-use super::store::{DocumentLine, NewJob, NewRow, StoredRow};
+use super::store::{Damaged, DocumentLine, NewJob, NewRow, StoredRow};
 
 /// So many designs are expanded and written in one transaction. Others write in between.
 pub(super) const CHUNK: usize = 500;
@@ -74,7 +74,7 @@ impl Jobs {
     ///
     /// # Errors
     ///
-    /// [`JobError::Unavailable`], [`JobError::Database`].
+    /// [`JobError::Damaged`], [`JobError::Unavailable`], [`JobError::Database`].
     pub async fn study_rows(
         &self,
         id: Uuid,
@@ -86,7 +86,8 @@ impl Jobs {
             .study_rows(id, position_before(after), most)
             .await?;
         // Hundreds of small documents are read here, which is more than a thread that answers requests should do.
-        blocking(move || rows.into_iter().map(row_state).collect()).await
+        let states = blocking(move || rows.into_iter().map(row_state).collect::<Result<_, _>>());
+        Ok(states.await??)
     }
 
     /// At most so many results of a study that was found, of the designs behind the position `after` that have results. None left:
@@ -167,7 +168,7 @@ fn position_before(count: u64) -> i64 {
     i64::try_from(count).unwrap_or(i64::MAX) - 1
 }
 
-fn row_state(row: StoredRow) -> RowState {
+fn row_state(row: StoredRow) -> Result<RowState, Damaged> {
     let problem: Option<serde_json::Value> = row
         .problem
         .and_then(|text| serde_json::from_str(&text).ok());
@@ -177,14 +178,13 @@ fn row_state(row: StoredRow) -> RowState {
         // The client has deleted the job.
         (None, None) => Status::Dismissed,
     };
-    RowState {
+    let summary = row.summary.transpose()?;
+    Ok(RowState {
         label: row.label,
         changes: serde_json::from_str(&row.changes).unwrap_or_default(),
         job: row.job.and_then(|id| id.parse().ok()),
         status,
-        summary: row
-            .summary
-            .and_then(|text| serde_json::from_str(&text).ok()),
+        summary: summary.and_then(|text| serde_json::from_str(&text).ok()),
         problem,
-    }
+    })
 }

@@ -97,8 +97,8 @@ impl Provider {
         let _ = self.fetch();
     }
 
-    /// The key of this name. Where there is none, or what is known is old, the keys are fetched, and not too often. All who need them
-    /// wait for one fetch, and take its answer.
+    /// The key of this name. Where there is none, or what is known is old, the keys are fetched, and not too often. Those who need them
+    /// wait for one fetch, and take its answer; a name that nobody waits for is unknown once keys were had.
     pub(super) async fn key(self: &Arc<Self>, id: &str, algorithm: Algorithm) -> Found {
         let (found, is_fresh) = self.look(id, algorithm);
         let is_known = matches!(found, Found::Key(_));
@@ -114,7 +114,11 @@ impl Provider {
             return found;
         }
         fetch.ended.cancelled().await;
-        self.look(id, algorithm).0
+        match self.look(id, algorithm).0 {
+            // It could not be looked for.
+            Found::Unknown if self.state().failed => Found::Unreachable,
+            found => found,
+        }
     }
 
     /// The fetch under way, and whether it begins now; none if the last one has just ended. It goes on to its end, also when nobody waits any
@@ -182,7 +186,6 @@ impl Provider {
         };
         let found = match keys.keys.iter().find(fits) {
             Some(known) => Found::Key(known.key.clone()),
-            None if state.failed => Found::Unreachable,
             None => Found::Unknown,
         };
         (found, age(keys) < FRESH)

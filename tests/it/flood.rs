@@ -17,11 +17,14 @@ use crate::bench::{Asked, Bench, PATIENCE, results};
 use crate::process::Process;
 use crate::stores;
 
-/// The program on a database of its own, and a key for each of two clients.
-pub(crate) async fn shared_by(clients: [&str; 2]) -> (TempDir, Process, [String; 2]) {
+/// The program on a database of its own, with `arguments`, and a key for each of two clients.
+pub(crate) async fn shared_by(
+    clients: [&str; 2],
+    arguments: &[&str],
+) -> (TempDir, Process, [String; 2]) {
     let folder = tempfile::tempdir().unwrap();
     let database = stores::place(&folder).await;
-    let process = Process::start(&database);
+    let process = Process::start_with(&database, arguments);
     let [one, other] = clients;
     let keys = [
         make_key(&database, one).await,

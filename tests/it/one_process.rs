@@ -39,10 +39,17 @@ async fn a_stored_document_that_was_changed_is_not_served() {
         "update documents set body = cast(substr(body, 1, 9) || x'07' || substr(body, 11) as blob)",
         "update submissions set body = replace(body, 'flexible', 'flexibme')",
         "update study_documents set body = replace(body, 'flexible', 'flexibme')",
+        "update summaries set body = replace(body, '0', '1')",
     ] {
         sqlx::query(words).execute(&mut file).await.unwrap();
     }
-    for path in [format!("{path}/results"), path, format!("{study}/document")] {
+    for path in [
+        format!("{path}/results"),
+        path,
+        format!("{study}/document"),
+        format!("{study}/results"),
+        format!("{study}/results/table.csv"),
+    ] {
         let answer = bench.get(&path).header("accept-encoding", "gzip");
         problem(answer.answer().await, 500, "document_damaged").await;
     }

@@ -12,6 +12,10 @@ use meshwright::jobs::DatabaseAddress;
 use crate::bench::{Asked, Said};
 use crate::stores;
 
+/// Little memory to share, and what a process with it takes at most.
+pub(crate) const LITTLE: [&str; 4] = ["--memory-mb", "256", "--cache-mb", "16"];
+pub(crate) const LITTLE_MB: u64 = 256 + 16 + 150;
+
 /// A service in a process of its own.
 pub(crate) struct Process {
     child: Child,

@@ -19,8 +19,10 @@ use ring::signature::{ECDSA_P256_SHA256_FIXED_SIGNING, EcdsaKeyPair, KeyPair};
 use serde_json::{Value, json};
 use tokio::net::TcpListener;
 
-use crate::bench::{Asked, Bench, problem, submission};
+use crate::bench::{Asked, Bench, PATIENCE, problem, submission};
 use crate::door::key_of;
+use crate::process::{LITTLE, LITTLE_MB, Process};
+use crate::stores;
 
 /// The audience of the service's tokens.
 const AUDIENCE: &str = "gears";
@@ -561,8 +563,15 @@ async fn a_provider_that_gives_no_keys_keeps_nobody_out_who_has_one_of_the_servi
         with(&bench, "/v1/jobs", &token).await.status(),
         StatusCode::OK
     );
-    let new = with(&bench, "/v1/jobs", &Signer::new("new").token(&claims)).await;
-    problem(new, 503, "identity_provider_unavailable").await;
+    // Between two fetches nobody looks for them: nobody is known to have them.
+    for (seconds, status, code) in [
+        (0, 401, "unauthorized"),
+        (6, 503, "identity_provider_unavailable"),
+    ] {
+        ahead.go(seconds);
+        let new = with(&bench, "/v1/jobs", &Signer::new("new").token(&claims)).await;
+        problem(new, status, code).await;
+    }
     ahead.go(3600);
     let old = with(&bench, "/v1/jobs", &token).await;
     problem(old, 503, "identity_provider_unavailable").await;
@@ -613,6 +622,84 @@ async fn of_the_tokens_that_a_silent_provider_cannot_check_sixty_four_wait_for_o
         problem(answer, 503, "identity_provider_unavailable").await;
     }
     assert_eq!(at_once, 100 - 64);
+    assert_eq!(provider.asked(), before + 1);
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_thousand_forged_tokens_that_a_silent_provider_cannot_check_take_little_memory() {
+    let provider = Provider::with(Keys::Silent).await;
+    let folder = tempfile::tempdir().unwrap();
+    let trusts = [
+        "--oidc-issuer",
+        &provider.issuer,
+        "--oidc-audience",
+        AUDIENCE,
+        "--requests-without-key",
+        "1000",
+    ];
+    let arguments = [&LITTLE[..], &trusts].concat();
+    let process = Process::start_with(&stores::place(&folder).await, &arguments);
+    let client = meshwright::client().timeout(PATIENCE).build().unwrap();
+    let mut claims = provider.claims("eve");
+    claims["much"] = "x".repeat(3000).into();
+    let token = Signer::new("forged").token(&claims);
+    let forged = (0..1000).map(|_| {
+        let request = client.get(format!("{}/v1/jobs", process.base));
+        request.bearer_auth(&token).send()
+    });
+    for answer in futures_util::future::join_all(forged)
+        .await
+        .into_iter()
+        .flatten()
+    {
+        assert!(!answer.status().is_success());
+    }
+    let memory = process.peak_memory_mb();
+    println!("1,000 forged tokens beside a silent provider: at most {memory} MB");
+    assert!(memory < LITTLE_MB, "{memory} MB");
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_provider_that_falls_silent_is_asked_once_in_five_seconds_for_keys_that_it_never_had() {
+    let (mut bench, provider, signer) = trusting().await;
+    let ahead = Ahead::default();
+    ahead.rule(&mut bench).await;
+    let known = signer.token(&provider.claims("ada"));
+    let status = async |token: &str| with(&bench, "/v1/jobs", token).await.status();
+    assert_eq!(status(&known).await, StatusCode::OK);
+    provider.give(Keys::Silent);
+    ahead.go(6);
+    let (before, start) = (provider.asked(), Instant::now());
+    let unknown = |i: usize| Signer::new(&format!("unknown-{i}")).token(&provider.claims("eve"));
+    let forged: Vec<_> = (0..100)
+        .map(|i| {
+            let request = bench.get("/v1/jobs").bearer_auth(unknown(i));
+            tokio::spawn(async move { request.answer().await.status() })
+        })
+        .collect();
+    tokio::time::sleep(Duration::from_millis(500)).await;
+    // Who has a key of the provider waits for none of it.
+    let asked = Instant::now();
+    assert_eq!(status(&known).await, StatusCode::OK);
+    assert!(asked.elapsed() < Duration::from_secs(1));
+    let mut statuses = Vec::new();
+    for answer in forged {
+        statuses.push(answer.await.unwrap());
+    }
+    assert!(
+        start.elapsed() < Duration::from_secs(8),
+        "one fetch takes five seconds"
+    );
+    let many = |of: StatusCode| statuses.iter().filter(|status| **status == of).count();
+    let (waited, refused) = (
+        many(StatusCode::SERVICE_UNAVAILABLE),
+        many(StatusCode::UNAUTHORIZED),
+    );
+    assert_eq!((waited, refused), (64, 36));
+    // Until the next fetch they are told at once that nobody knows them.
+    let asked = Instant::now();
+    assert_eq!(status(&unknown(100)).await, StatusCode::UNAUTHORIZED);
+    assert!(asked.elapsed() < Duration::from_secs(1));
     assert_eq!(provider.asked(), before + 1);
 }
 

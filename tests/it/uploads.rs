@@ -49,7 +49,7 @@ struct Borne {
 }
 
 async fn bear(count: usize, body: String) -> Borne {
-    let (_folder, process, [hog, other]) = shared_by(["hog", "other"]).await;
+    let (_folder, process, [hog, other]) = shared_by(["hog", "other"], &[]).await;
     let client = meshwright::client().timeout(6 * PATIENCE).build().unwrap();
     let url = |path: &str| format!("{}{path}", process.base);
     let (body, start) = (bytes::Bytes::from(body), Instant::now());
@@ -157,7 +157,7 @@ async fn slow_bodies(process: &Process, key: &str) -> Vec<TcpStream> {
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn who_sends_slowly_keeps_no_other_client_waiting() {
     let _alone = stores::ALONE.lock().await;
-    let (_folder, process, [hog, other]) = shared_by(["hog", "other"]).await;
+    let (_folder, process, [hog, other]) = shared_by(["hog", "other"], &[]).await;
     let client = meshwright::client().timeout(2 * PATIENCE).build().unwrap();
     let slow = slow_bodies(&process, &hog).await;
     // They are there, and wait.

@@ -1,160 +1,340 @@
 //! Displacements and stresses of both gears as a VTK unstructured grid, which ParaView, PyVista and meshio read.
 
+use std::io::{self, BufWriter, Write};
+use std::iter;
+
+use base64::engine::general_purpose::STANDARD;
+use base64::write::EncoderWriter;
 use meshwright_engine::analysis::fields::GearField;
 use meshwright_engine::fem::volume::{Volume, von_mises};
 use meshwright_engine::grid::ElementKind;
-use vtkio::model::{
-    Attribute, Attributes, ByteOrder, CellType, Cells, DataArray, DataSet, IOBuffer,
-    UnstructuredGridPiece, Version, VertexNumbers, Vtk,
-};
 
-/// A gear as the file has it: points in mm, in single precision.
-#[derive(Default)]
-pub struct Piece {
-    /// Three numbers a point.
-    points: Vec<f32>,
-    displacement: Vec<f32>,
-    /// Nine numbers a point.
-    stress: Vec<f32>,
-    von_mises: Vec<f32>,
-    cells: Vec<(CellType, Vec<u32>)>,
-    /// One a cell; none of a volume, which shows it.
-    thickness: Vec<f32>,
+/// A gear, as a plate or as a volume.
+#[derive(Clone, Copy)]
+pub enum Piece<'a> {
+    /// As plane methods see it.
+    Plate(&'a GearField),
+    /// As those see it that see the faces.
+    Volume(&'a Volume),
 }
 
-impl Piece {
-    fn count(&self) -> u64 {
-        self.von_mises.len() as u64
+impl<'a> Piece<'a> {
+    fn points(self) -> usize {
+        match self {
+            Self::Plate(gear) => gear.nodes.len(),
+            Self::Volume(gear) => gear.nodes.len(),
+        }
     }
-}
 
-impl From<&GearField> for Piece {
-    fn from(gear: &GearField) -> Self {
-        let elements = gear.elements.iter();
-        Self {
-            points: (gear.nodes.iter())
-                .flat_map(|node| [1e3 * node.x, 1e3 * node.y, 0.0].map(single))
-                .collect(),
-            displacement: (gear.displacements.iter())
-                .flat_map(|u| [1e6 * u.x, 1e6 * u.y, 0.0].map(single))
-                .collect(),
-            stress: (gear.stresses.iter())
-                .flat_map(|&[xx, yy, xy]| [xx, xy, 0.0, xy, yy, 0.0, 0.0, 0.0, 0.0].map(mpa))
-                .collect(),
-            von_mises: gear.von_mises.iter().copied().map(mpa).collect(),
-            cells: elements
-                .map(|element| {
-                    let kind = match element.kind() {
-                        ElementKind::Quadrilateral => CellType::QuadraticQuad,
-                        ElementKind::Triangle => CellType::QuadraticTriangle,
-                    };
-                    (kind, element.nodes().to_vec())
-                })
-                .collect(),
-            thickness: (gear.thicknesses.iter())
-                .map(|width| single(1e3 * width))
-                .collect(),
+    fn cells(self) -> usize {
+        match self {
+            Self::Plate(gear) => gear.elements.len(),
+            Self::Volume(gear) => gear.elements.len(),
+        }
+    }
+
+    /// Where a point lies, in mm.
+    fn point(self, number: usize) -> [f64; 3] {
+        match self {
+            Self::Plate(gear) => [gear.nodes[number].x, gear.nodes[number].y, 0.0],
+            Self::Volume(gear) => gear.nodes[number].into(),
+        }
+        .map(|x| 1e3 * x)
+    }
+
+    /// How it moves, in µm.
+    fn displacement(self, number: usize) -> [f64; 3] {
+        match self {
+            Self::Plate(gear) => {
+                let u = gear.displacements[number];
+                [u.x, u.y, 0.0]
+            }
+            Self::Volume(gear) => gear.displacements[number].into(),
+        }
+        .map(|u| 1e6 * u)
+    }
+
+    /// The stress tensor there, in MPa.
+    fn stress(self, number: usize) -> [f64; 9] {
+        match self {
+            Self::Plate(gear) => {
+                let [xx, yy, xy] = gear.stresses[number];
+                [xx, xy, 0.0, xy, yy, 0.0, 0.0, 0.0, 0.0]
+            }
+            Self::Volume(gear) => {
+                // Symmetric, so that rows are columns.
+                let stress = gear.stresses[number].as_slice();
+                std::array::from_fn(|place| stress[place])
+            }
+        }
+        .map(|stress| stress / 1e6)
+    }
+
+    /// The von Mises stress there, in MPa.
+    fn von_mises(self, number: usize) -> f64 {
+        let stress = match self {
+            Self::Plate(gear) => gear.von_mises[number],
+            Self::Volume(gear) => von_mises(&gear.stresses[number]),
+        };
+        stress / 1e6
+    }
+
+    /// What VTK calls the shape of a cell, and its points.
+    fn cell(self, number: usize) -> (u8, &'a [u32]) {
+        match self {
+            Self::Plate(gear) => {
+                let element = &gear.elements[number];
+                let shape = match element.kind() {
+                    ElementKind::Quadrilateral => QUADRATIC_QUAD,
+                    ElementKind::Triangle => QUADRATIC_TRIANGLE,
+                };
+                (shape, element.nodes())
+            }
+            Self::Volume(gear) => {
+                let element = &gear.elements[number];
+                let shape = match element.kind {
+                    ElementKind::Quadrilateral => QUADRATIC_HEXAHEDRON,
+                    ElementKind::Triangle => QUADRATIC_WEDGE,
+                };
+                (shape, &element.nodes)
+            }
+        }
+    }
+
+    /// The thickness of a cell in mm; none of a volume, which shows it.
+    fn thickness(self, number: usize) -> Option<f64> {
+        match self {
+            Self::Plate(gear) => Some(1e3 * gear.thicknesses[number]),
+            Self::Volume(_) => None,
         }
     }
 }
 
-impl From<&Volume> for Piece {
-    fn from(gear: &Volume) -> Self {
-        let elements = gear.elements.iter();
-        Self {
-            points: (gear.nodes.iter())
-                .flat_map(|node| [node.x, node.y, node.z].map(|x| single(1e3 * x)))
-                .collect(),
-            displacement: (gear.displacements.iter())
-                .flat_map(|u| [u.x, u.y, u.z].map(|u| single(1e6 * u)))
-                .collect(),
-            // Symmetric, so that rows are columns.
-            stress: (gear.stresses.iter())
-                .flat_map(|stress| stress.iter().copied().map(mpa))
-                .collect(),
-            von_mises: gear.stresses.iter().map(von_mises).map(mpa).collect(),
-            cells: elements
-                .map(|element| {
-                    let kind = match element.kind {
-                        ElementKind::Quadrilateral => CellType::QuadraticHexahedron,
-                        ElementKind::Triangle => CellType::QuadraticWedge,
-                    };
-                    (kind, element.nodes.clone())
-                })
-                .collect(),
-            thickness: Vec::new(),
-        }
-    }
-}
+/// Shapes of cells by their numbers in `vtkCellType.h`.
+const QUADRATIC_TRIANGLE: u8 = 22;
+const QUADRATIC_QUAD: u8 = 23;
+const QUADRATIC_HEXAHEDRON: u8 = 25;
+const QUADRATIC_WEDGE: u8 = 26;
 
-fn single(value: f64) -> f32 {
-    value as f32
-}
-
-fn mpa(stress: f64) -> f32 {
-    single(stress / 1e6)
-}
-
-/// The driving and the driven gear as one grid, in binary XML.
+/// Writes the driving and the driven gear as one grid, in binary XML. It is written number by number, so that no more of it is in memory than the gears.
 ///
-/// At points: `displacement_um` against the hub of the gear, `stress_mpa` (a symmetric tensor), `von_mises_mpa`. In cells: `gear`, 0 for the driving
-/// and 1 for the driven one, and of plates `thickness_mm`.
+/// At points: `displacement_um` against the hub of the gear, `stress_mpa` (a symmetric tensor), `von_mises_mpa`, in single precision. In cells: `gear`, 0
+/// for the driving and 1 for the driven one, and of plates `thickness_mm`.
 ///
 /// # Errors
 ///
-/// When the grid cannot be written, which the sizes of gears do not let happen.
-pub fn document(gears: [Piece; 2]) -> Result<Vec<u8>, vtkio::Error> {
-    let (mut connectivity, mut offsets, mut types) = (Vec::new(), Vec::new(), Vec::new());
-    let mut member = Vec::<u8>::new();
-    let mut both = Piece::default();
-    for (number, gear) in (0..).zip(gears) {
-        let first = both.count();
-        for (kind, nodes) in &gear.cells {
-            connectivity.extend(nodes.iter().map(|node| first + u64::from(*node)));
-            offsets.push(connectivity.len() as u64);
-            types.push(*kind);
-            member.push(number);
-        }
-        both.points.extend(gear.points);
-        both.displacement.extend(gear.displacement);
-        both.stress.extend(gear.stress);
-        both.von_mises.extend(gear.von_mises);
-        both.thickness.extend(gear.thickness);
-    }
-    let of_points = vec![
-        named(DataArray::vectors("displacement_um"), both.displacement),
-        named(DataArray::tensors("stress_mpa"), both.stress),
-        named(DataArray::scalars("von_mises_mpa", 1), both.von_mises),
-    ];
-    let mut of_cells = vec![named(DataArray::scalars("gear", 1), member)];
-    if !both.thickness.is_empty() {
-        of_cells.push(named(DataArray::scalars("thickness_mm", 1), both.thickness));
-    }
-    let grid = Vtk {
-        version: Version::new(),
-        title: String::new(),
-        byte_order: ByteOrder::LittleEndian,
-        file_path: None,
-        data: DataSet::inline(UnstructuredGridPiece {
-            points: both.points.into(),
-            cells: Cells {
-                cell_verts: VertexNumbers::XML {
-                    connectivity,
-                    offsets,
-                },
-                types,
-            },
-            data: Attributes {
-                point: of_points,
-                cell: of_cells,
-            },
-        }),
+/// Those of `out`.
+pub fn write(gears: [Piece<'_>; 2], out: impl Write) -> io::Result<()> {
+    let [driving, driven] = gears;
+    let of_points = || {
+        gears
+            .into_iter()
+            .flat_map(|gear| (0..gear.points()).map(move |i| (gear, i)))
     };
-    let mut text = Vec::new();
-    grid.write_xml(&mut text)?;
-    Ok(text)
+    let of_cells = || {
+        gears
+            .into_iter()
+            .flat_map(|gear| (0..gear.cells()).map(move |i| (gear, i)))
+    };
+    let points = driving.points() + driven.points();
+    let cells = driving.cells() + driven.cells();
+    let corners: usize = of_cells().map(|(gear, i)| gear.cell(i).1.len()).sum();
+    let single = |number: f64| (number as f32).to_le_bytes();
+
+    let mut file = File(BufWriter::new(out));
+    write!(
+        file.0,
+        r#"<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64"><UnstructuredGrid><Piece NumberOfPoints="{points}" NumberOfCells="{cells}"><PointData>"#
+    )?;
+    let displacements = of_points().flat_map(|(gear, i)| gear.displacement(i));
+    file.array(
+        "displacement_um",
+        ("Float32", 3),
+        3 * points,
+        displacements.map(single),
+    )?;
+    let stresses = of_points().flat_map(|(gear, i)| gear.stress(i));
+    file.array(
+        "stress_mpa",
+        ("Float32", 9),
+        9 * points,
+        stresses.map(single),
+    )?;
+    let von_mises = of_points().map(|(gear, i)| gear.von_mises(i));
+    file.array(
+        "von_mises_mpa",
+        ("Float32", 1),
+        points,
+        von_mises.map(single),
+    )?;
+    file.0.write_all(b"</PointData><CellData>")?;
+    let members = (0_u8..)
+        .zip(gears)
+        .flat_map(|(member, gear)| iter::repeat_n([member], gear.cells()));
+    file.array("gear", ("UInt8", 1), cells, members)?;
+    if of_cells()
+        .next()
+        .is_some_and(|(gear, i)| gear.thickness(i).is_some())
+    {
+        let thicknesses = of_cells().filter_map(|(gear, i)| gear.thickness(i));
+        file.array(
+            "thickness_mm",
+            ("Float32", 1),
+            cells,
+            thicknesses.map(single),
+        )?;
+    }
+    file.0.write_all(b"</CellData><Points>")?;
+    let at = of_points().flat_map(|(gear, i)| gear.point(i));
+    file.array("Points", ("Float32", 3), 3 * points, at.map(single))?;
+    file.0.write_all(b"</Points><Cells>")?;
+    let first = [0, driving.points() as u64];
+    let connectivity = first.into_iter().zip(gears).flat_map(|(first, gear)| {
+        let nodes = (0..gear.cells()).flat_map(move |i| gear.cell(i).1);
+        nodes.map(move |node| (first + u64::from(*node)).to_le_bytes())
+    });
+    file.array("connectivity", ("UInt64", 1), corners, connectivity)?;
+    let ends = of_cells().scan(0_u64, |end, (gear, i)| {
+        *end += gear.cell(i).1.len() as u64;
+        Some(end.to_le_bytes())
+    });
+    file.array("offsets", ("UInt64", 1), cells, ends)?;
+    let shapes = of_cells().map(|(gear, i)| [gear.cell(i).0]);
+    file.array("types", ("UInt8", 1), cells, shapes)?;
+    file.0
+        .write_all(b"</Cells></Piece></UnstructuredGrid></VTKFile>")?;
+    file.0.flush()
 }
 
-fn named(array: DataArray, values: impl Into<IOBuffer>) -> Attribute {
-    Attribute::DataArray(array.with_data(values))
+/// A file that is written array by array.
+struct File<W: Write>(BufWriter<W>);
+
+impl<W: Write> File<W> {
+    /// Writes `count` numbers of a type of VTK, so many of which belong together.
+    fn array<const BYTES: usize>(
+        &mut self,
+        name: &str,
+        (kind, components): (&str, usize),
+        count: usize,
+        numbers: impl Iterator<Item = [u8; BYTES]>,
+    ) -> io::Result<()> {
+        write!(
+            self.0,
+            r#"<DataArray type="{kind}" Name="{name}" NumberOfComponents="{components}" format="binary">"#
+        )?;
+        let mut encoder = EncoderWriter::new(&mut self.0, &STANDARD);
+        encoder.write_all(&((count * BYTES) as u64).to_le_bytes())?;
+        for number in numbers {
+            encoder.write_all(&number)?;
+        }
+        encoder.finish()?;
+        drop(encoder);
+        self.0.write_all(b"</DataArray>")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use meshwright_engine::gear::Vector;
+    use meshwright_engine::grid::Element;
+    use vtkio::model::{Attribute, DataSet, IOBuffer, Piece as Inline, Vtk};
+
+    use super::*;
+
+    /// A plate of one square, whose numbers are told apart by `sign`.
+    fn square(sign: f64) -> GearField {
+        let places = [
+            (0.0, 0.0),
+            (1.0, 0.0),
+            (1.0, 1.0),
+            (0.0, 1.0),
+            (0.5, 0.0),
+            (1.0, 0.5),
+            (0.5, 1.0),
+            (0.0, 0.5),
+        ];
+        GearField {
+            nodes: places.map(|(x, y)| sign * Vector::new(x, y)).to_vec(),
+            displacements: places
+                .map(|(x, y)| sign * 1e-6 * Vector::new(y, x))
+                .to_vec(),
+            stresses: places.map(|(x, y)| [x * 1e6, y * 1e6, sign * 1e6]).to_vec(),
+            von_mises: places.map(|(x, _)| (2.0 + sign * x) * 1e6).to_vec(),
+            elements: vec![Element::quadrilateral([0, 1, 2, 3, 4, 5, 6, 7])],
+            thicknesses: vec![0.02 + 0.01 * sign],
+            edges: Vec::new(),
+        }
+    }
+
+    /// vtkio reads it, which has a hand of its own in the format.
+    #[test]
+    fn what_is_written_is_read_by_another_program_as_the_numbers_of_both_gears() {
+        let gears = [square(1.0), square(-1.0)];
+        let mut text = Vec::new();
+        write(gears.each_ref().map(Piece::Plate), &mut text).expect("memory takes it");
+        let read = Vtk::parse_xml(&*text).expect("the format is right");
+        let DataSet::UnstructuredGrid { pieces, .. } = read.data else {
+            panic!("an unstructured grid");
+        };
+        let Inline::Inline(grid) = &pieces[0] else {
+            panic!("it stands in the file");
+        };
+        let all = |numbers: fn(&GearField) -> Vec<f64>| -> Vec<f32> {
+            gears
+                .iter()
+                .flat_map(numbers)
+                .map(|number| number as f32)
+                .collect()
+        };
+        let floats =
+            |buffer: &IOBuffer| buffer.clone().into_vec::<f32>().expect("single precision");
+        let named = |attributes: &[Attribute], name: &str| {
+            let found = attributes.iter().find_map(|attribute| match attribute {
+                Attribute::DataArray(array) if array.name == name => Some(array.data.clone()),
+                _ => None,
+            });
+            found.unwrap_or_else(|| panic!("{name}"))
+        };
+        let points = |name| floats(&named(&grid.data.point, name));
+        assert_eq!(
+            floats(&grid.points),
+            all(|gear| gear
+                .nodes
+                .iter()
+                .flat_map(|at| [1e3 * at.x, 1e3 * at.y, 0.0])
+                .collect())
+        );
+        assert_eq!(
+            points("displacement_um"),
+            all(|gear| gear
+                .displacements
+                .iter()
+                .flat_map(|u| [1e6 * u.x, 1e6 * u.y, 0.0])
+                .collect())
+        );
+        assert_eq!(
+            points("stress_mpa"),
+            all(|gear| {
+                let tensor = |[xx, yy, xy]: &[f64; 3]| {
+                    [*xx, *xy, 0.0, *xy, *yy, 0.0, 0.0, 0.0, 0.0].map(|it| it / 1e6)
+                };
+                gear.stresses.iter().flat_map(tensor).collect()
+            })
+        );
+        assert_eq!(
+            points("von_mises_mpa"),
+            all(|gear| gear.von_mises.iter().map(|it| it / 1e6).collect())
+        );
+        assert_eq!(
+            floats(&named(&grid.data.cell, "thickness_mm")),
+            [30.0, 10.0]
+        );
+        assert_eq!(
+            named(&grid.data.cell, "gear").into_vec::<u8>(),
+            Some(vec![0, 1])
+        );
+        let (nodes, ends) = grid.cells.cell_verts.clone().into_xml();
+        assert_eq!((nodes, ends), ((0..16).collect(), vec![8, 16]));
+        assert_eq!(grid.cells.types, [vtkio::model::CellType::QuadraticQuad; 2]);
+    }
 }

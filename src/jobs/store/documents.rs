@@ -92,7 +92,9 @@ pub(super) async fn insert_documents(
             "hash": hash, "starts": starts, "takes": takes, "size": document.size, "whole": i64::from(document.whole),
             "checksum": document.whole.then(|| checksum(&document.body)),
         }));
-        summaries.extend(summary.map(|summary| json!({ "hash": hash, "body": summary })));
+        summaries.extend(summary.map(|summary| {
+            json!({ "hash": hash, "body": summary, "checksum": checksum(summary.as_bytes()) })
+        }));
     }
     if rows.is_empty() {
         return Ok(());

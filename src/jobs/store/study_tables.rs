@@ -3,9 +3,10 @@
 use sqlx::Row;
 use uuid::Uuid;
 
+use super::documents::checked;
 use super::rows::from_row;
 use super::statement::{query_as, query_scalar};
-use super::{Document, Store, StoreError};
+use super::{Damaged, Document, Store, StoreError};
 
 /// A row as it is read.
 #[derive(Debug, Clone)]
@@ -14,18 +15,26 @@ pub(in crate::jobs) struct StoredRow {
     pub(in crate::jobs) changes: String,
     pub(in crate::jobs) job: Option<String>,
     pub(in crate::jobs) status: Option<String>,
-    pub(in crate::jobs) summary: Option<String>,
+    /// What is shown of its results, JSON, unless that is damaged.
+    pub(in crate::jobs) summary: Option<Result<String, Damaged>>,
     pub(in crate::jobs) problem: Option<String>,
 }
 
 from_row! {
     StoredRow, |row| {
+        let job: Option<String> = row.try_get("job")?;
+        let (summary, written): (Option<String>, _) =
+            (row.try_get("summary")?, row.try_get("checksum")?);
+        let summary = summary.map(|summary| {
+            let job = job.as_deref().unwrap_or_default();
+            checked(format_args!("that tables show of the job {job}"), (summary, written))
+        });
         Ok(Self {
             label: row.try_get("label")?,
             changes: row.try_get("changes")?,
-            job: row.try_get("job")?,
+            summary,
+            job,
             status: row.try_get("status")?,
-            summary: row.try_get("summary")?,
             problem: row.try_get("problem")?,
         })
     }
@@ -56,7 +65,7 @@ impl Store {
         limit: u32,
     ) -> Result<Vec<StoredRow>, StoreError> {
         let rows = query_as(
-            "select r.label, r.changes, r.job, j.status, s.body as summary,
+            "select r.label, r.changes, r.job, j.status, s.body as summary, s.checksum,
                     coalesce(r.problem, j.problem) as problem
              from study_rows r
              left join jobs j on j.id = r.job

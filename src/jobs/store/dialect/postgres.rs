@@ -169,8 +169,8 @@ pub(in crate::jobs::store) const INSERT_DOCUMENTS: Words = Some(
 );
 
 pub(in crate::jobs::store) const INSERT_SUMMARIES: Words = Some(
-    "insert into summaries (document, body)
-     select hash, body from json_to_recordset(cast($1 as json)) as given(hash text, body text) order by hash collate \"C\"
+    "insert into summaries (document, body, checksum)
+     select hash, body, checksum from json_to_recordset(cast($1 as json)) as given(hash text, body text, checksum bigint) order by hash collate \"C\"
      on conflict (document) do nothing",
 );
 

@@ -132,7 +132,8 @@ pub(in crate::jobs::store) const INSERT_DOCUMENTS: Words = Some(
 );
 
 pub(in crate::jobs::store) const INSERT_SUMMARIES: Words = Some(
-    "insert into summaries (document, body) select value ->> 'hash', value ->> 'body' from json_each($1) where true
+    "insert into summaries (document, body, checksum)
+     select value ->> 'hash', value ->> 'body', value ->> 'checksum' from json_each($1) where true
      on conflict (document) do nothing",
 );
 
