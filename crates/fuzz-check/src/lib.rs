@@ -87,7 +87,7 @@ mod tests {
     use super::*;
 
     /// So many inputs, the same in every run.
-    const INPUTS: usize = 8000;
+    const INPUTS: usize = 40_000;
 
     /// What may stand where a number or a word is expected.
     const TOKENS: &[&str] = &[
@@ -154,9 +154,18 @@ mod tests {
             from..behind(from, |part| !part)
         }
 
+        /// A number of `text`, by its ends; nothing where there is none.
+        fn number(&mut self, text: &[u8]) -> std::ops::Range<usize> {
+            let start = self.below(text.len() + 1);
+            let rest = text[start..].iter().position(u8::is_ascii_digit);
+            let from = rest.map_or(text.len(), |steps| start + steps);
+            let is_part = |byte: &&u8| byte.is_ascii_digit() || **byte == b'.';
+            from..from + text[from..].iter().take_while(is_part).count()
+        }
+
         /// `text` with something in it changed, or something of `other` put into it.
         fn change(&mut self, text: &mut Vec<u8>, other: &[u8]) {
-            match self.below(7) {
+            match self.below(12) {
                 0 => {
                     let at = self.below(text.len());
                     if let Some(byte) = text.get_mut(at) {
@@ -175,6 +184,11 @@ mod tests {
                     text.splice(at, piece);
                 }
                 4 => text.truncate(self.below(text.len() + 1)),
+                5..=8 => {
+                    let number = [0.0, 0.5, 1.0, 2.0, 17.0, 40.0, 1e-3, 1e6][self.below(8)]
+                        + self.below(100) as f64 / 16.0;
+                    text.splice(self.number(text), number.to_string().bytes());
+                }
                 _ => {
                     let token = TOKENS[self.below(TOKENS.len())];
                     text.splice(self.token(text), token.bytes());
@@ -213,7 +227,7 @@ mod tests {
         }
         // Else chance does not reach beyond the first brace.
         assert!(
-            (INPUTS / 50..INPUTS).contains(&read),
+            (INPUTS / 100..INPUTS).contains(&read),
             "{read} of them are submissions"
         );
     }
