@@ -218,10 +218,12 @@ impl<W: Write> File<W> {
         count: usize,
         numbers: impl Iterator<Item = [u8; BYTES]>,
     ) -> io::Result<()> {
-        write!(
-            self.0,
-            r#"<DataArray type="{kind}" Name="{name}" NumberOfComponents="{components}" format="binary">"#
-        )?;
+        write!(self.0, r#"<DataArray type="{kind}" Name="{name}""#)?;
+        // meshio makes a table of one column of numbers of which it is told that each stands alone.
+        if components > 1 {
+            write!(self.0, r#" NumberOfComponents="{components}""#)?;
+        }
+        self.0.write_all(br#" format="binary">"#)?;
         let mut encoder = EncoderWriter::new(&mut self.0, &STANDARD);
         encoder.write_all(&((count * BYTES) as u64).to_le_bytes())?;
         for number in numbers {
