@@ -45,7 +45,7 @@ impl Study {
         }
     }
 
-    /// Refuses what is wrong with a field of the base, or lacks there and is not set by each design.
+    /// Refuses what is wrong with a field of the base, unless each design sets it.
     fn check_base(&self, errors: &Errors) {
         let mended = |error: &FieldError| {
             let pointer = &error.pointer;
@@ -57,8 +57,8 @@ impl Study {
                     .all(|design| design.changes.iter().any(|(path, _)| is_set(path))),
                 _ => self.paths().any(is_set),
             };
-            // It may lack what comes with each design; what stands there is read as everywhere.
-            error.code == Code::MissingField
+            // A list that is too long is so whatever stands in it, and no base that anybody means.
+            error.code != Code::TooLarge
                 && (self.constant_mass.as_ref().is_some_and(by_rule) || by_designs())
         };
         for error in Submission::wrong_fields(&self.base) {
