@@ -80,6 +80,15 @@ export const STAGE = {
 /** The numbers of the headline, and whether they stand as those of another design. */
 const standing = (page) => page.evaluate(() => ({ other: document.body.classList.contains("other"), color: getComputedStyle(document.querySelector("#answer-p-p .value")).color, faint: getComputedStyle(document.querySelector("#state")).color, state: document.querySelector("#state").innerText }));
 
+/** Lets the service say of each design that it takes seconds, on whichever machine: three by the projected method, and more by the whole one. */
+const estimateSeconds = (page) => page.route("**/v1/validate", async (route) => {
+  const { method } = JSON.parse(route.request().postData());
+  const response = await route.fetch();
+  const json = await response.json();
+  if (json.estimate) json.estimate.seconds = method === "three_dimensional_projected" ? 3 : 8;
+  await route.fulfill({ response, json });
+});
+
 /** Remembers the torques and methods of all that is drawn. */
 const watch = (page) => page.evaluate(() => {
   window.drawn = [];
@@ -130,6 +139,7 @@ export async function shownSteps(service) {
   });
 
   await step("numbers of another design are gray 0.3 s after the last key, and no half-typed design is computed that takes long", service, async (page) => {
+    await estimateSeconds(page);
     await openDesign(page, service, HELICAL);
     await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
     await settled(page);
@@ -154,6 +164,7 @@ export async function shownSteps(service) {
 
   await step("by the clock: numbers are gray 300 to 400 ms after an edit, what takes over a second waits for 700, and Enter waits for nothing", service, async (page) => {
     await page.clock.install();
+    await estimateSeconds(page);
     await openDesign(page, service, HELICAL);
     await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
     await settled(page);
