@@ -314,7 +314,7 @@ fn the_error_estimate_covers_what_the_fine_level_changes() {
     let [standard, fine, estimate] =
         with_estimate(along_faces(pair, (resolution, SLICES), &[60.0]));
     let ([delta, _, stiffness], [finer, _, stiffer]) = (standard, fine);
-    // Levels differ, and by no more than is told.
+    // Levels differ, and by no more than their estimates.
     assert!((finer / delta - 1.0).abs() > 1e-5);
     assert!((finer - delta).abs() < estimate[0] && estimate[0] < 0.02 * delta);
     assert!((stiffer - stiffness).abs() < estimate[2]);
@@ -391,7 +391,7 @@ struct Sliced {
     delta: f64,
     /// Those of the largest pressure away from kinks, and of that of any slice, as [`apart_from_kinks`].
     pressure: [f64; 2],
-    /// That of the pressure that is told at a position, and of the largest over all positions.
+    /// That of the largest pressure at a position, and over all positions.
     told: [f64; 2],
 }
 
@@ -444,8 +444,8 @@ impl Sliced {
     }
 }
 
-/// By how much the pressures of slices of `one` are apart from those of `other`, which are shorter, in the mean over each, where flanks touch within the path and
-/// away from kinks: the largest from the largest, and of any slice under at least half of that, over it.
+/// How far the pressures of slices of `one` differ from those of `other`, whose shorter slices are averaged over each. Looked at are places within the path and away
+/// from kinks. First the largest of all, then that of any slice under at least half of it, over its own pressure.
 fn apart_from_kinks(pair: &SolidPair, one: &FaceContact, other: &FaceContact) -> [f64; 2] {
     let section = pair.section();
     let (s_a, s_e) = section.path_of_contact();

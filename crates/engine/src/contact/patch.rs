@@ -551,8 +551,7 @@ fn ending_at_kinks([from, to]: [f64; 2], width: f64, facing: &Facing) -> Vec<f64
         let high = towards
             .get(i + 1)
             .map_or(to, |next| f64::midpoint(place, next.0));
-        let parts = (0..=times).map(|i| width * 0.5_f64.powi(i as i32));
-        let about = parts.flat_map(|part| [place - part, place + part]);
+        let about = halved_about(place, width, times);
         ends.extend(about.filter(|end| low < *end && *end < high));
         ends.push(place);
     }
@@ -571,6 +570,12 @@ fn ending_at_kinks([from, to]: [f64; 2], width: f64, facing: &Facing) -> Vec<f64
         *end = to;
     }
     ends
+}
+
+/// The ends of cells on both sides of `place`, from `width` off it, halved so many times towards it.
+fn halved_about(place: f64, width: f64, times: u32) -> impl Iterator<Item = f64> {
+    let parts = (0..=times).map(move |i| width * 0.5_f64.powi(i as i32));
+    parts.flat_map(move |part| [place - part, place + part])
 }
 
 /// Adds cells that grow away from the `chains` on all their open sides, until they meet.
@@ -627,10 +632,11 @@ fn narrow_towards(kink: f64, ends: &mut Vec<f64>, width: f64) {
     if !inside(kink) {
         return;
     }
-    ends.retain(|&end| !inside(end) || (end - kink).abs() > BESIDE * width);
-    let parts = (0..=AT_KINK).map(|i| width * 0.5_f64.powi(i as i32));
-    let about = parts.flat_map(|part| [kink - part, kink + part]);
-    ends.extend(about.chain([kink]).filter(|end| inside(*end)));
+    // A fringe begins anew at the kink, and its first cell is just as wide: it goes, however that is rounded.
+    let away = (BESIDE + SLIVER) * width;
+    ends.retain(|&end| !inside(end) || (end - kink).abs() > away);
+    let about = halved_about(kink, width, AT_KINK).chain([kink]);
+    ends.extend(about.filter(|end| inside(*end)));
     ends.sort_by(f64::total_cmp);
 }
 

@@ -158,13 +158,13 @@ struct Out {
     wrong: Vec<String>,
     /// The peak-to-peak of k, a step or not.
     of_k: Vec<String>,
-    /// The error that is told.
-    told: Vec<String>,
+    /// The estimate of the error.
+    estimate: Vec<String>,
 }
 
 impl Out {
     fn is_empty(&self) -> bool {
-        [&self.wrong, &self.of_k, &self.told]
+        [&self.wrong, &self.of_k, &self.estimate]
             .iter()
             .all(|list| list.is_empty())
     }
@@ -189,7 +189,7 @@ fn along_faces(seed: u64) -> Case {
 /// Pairs that are out of what is allowed at 10 and at 40 positions, of those `drawn` by `seeds`.
 ///
 /// Allowed are 2 % and 0.5 % of the peak-to-peak of δ, 1 % of that of k at 40, 2 % and 0.5 % of the rms and of the largest line (of two lines, and of
-/// all that are compared), and errors of twice what is told. The tangent stiffness steps by some thousandths as one cell more touches or one less, so that the largest
+/// all that are compared), and errors of twice their estimate. The tangent stiffness steps by some thousandths as one cell more touches or one less, so that the largest
 /// of very many k is that of a cell: beyond 1 % a step of it is allowed, and counted.
 fn out_of_bounds(
     drawn: fn(u64) -> Case,
@@ -213,7 +213,7 @@ fn out_of_bounds(
             for (list, holds) in [
                 (&mut out.wrong, holds),
                 (&mut out.of_k, apart.peak_to_peak_of_k <= of_k),
-                (&mut out.told, apart.of_delta <= 2.0 * apart.told),
+                (&mut out.estimate, apart.of_delta <= 2.0 * apart.told),
             ] {
                 if !holds {
                     list.push(told.clone());
@@ -229,9 +229,9 @@ fn extremes_and_lines_are_those_of_the_curve_between_its_positions() {
     let out = out_of_bounds(in_the_plane, 0..8, 400);
     let [few, many] = &out;
     assert!(few.wrong.is_empty() && many.wrong.is_empty(), "{out:#?}");
-    assert!(many.of_k.is_empty() && many.told.is_empty(), "{out:#?}");
-    // The error that is told at few positions is an estimate, which may be missed once.
-    assert!(few.told.len() <= 1, "{out:#?}");
+    assert!(many.of_k.is_empty() && many.estimate.is_empty(), "{out:#?}");
+    // An estimate from few positions may be missed once.
+    assert!(few.estimate.len() <= 1, "{out:#?}");
 }
 
 #[test]
@@ -247,7 +247,7 @@ fn extremes_and_lines_are_those_of_the_curve_between_its_positions_at_length() {
         "those of which k has a step of a cell"
     );
     assert!(
-        few.told.len() <= 3 && many.told.len() <= 3,
+        few.estimate.len() <= 3 && many.estimate.len() <= 3,
         "more than one in twenty"
     );
 }
@@ -296,7 +296,10 @@ fn along_faces_extremes_and_lines_are_those_of_the_curve_between_its_positions_a
     println!("{out:#?}");
     let [few, many] = &out;
     assert!(few.wrong.is_empty() && many.wrong.is_empty());
-    assert!(few.told.len() <= 1, "that of seed 5 is 0.8 nm for 3.5 nm");
+    assert!(
+        few.estimate.len() <= 1,
+        "that of seed 5 is 0.8 nm for 3.5 nm"
+    );
     assert!(many.of_k.len() <= 1, "that of seed 8 is 1.3 % off");
-    assert!(few.of_k.is_empty() && many.told.is_empty());
+    assert!(few.of_k.is_empty() && many.estimate.is_empty());
 }

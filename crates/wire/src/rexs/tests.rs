@@ -556,24 +556,13 @@ fn a_helix_crowning_that_differs_at_the_ends_is_refused() {
     );
 }
 
-/// Equal words, and numbers equal but for the last bits of the conversions, which contact answers with some more: along faces a cell more or less about a
-/// kink moves δ by a tenth of a nanometer, and pressures and shares by some hundred-thousandths.
+/// Equal words, and numbers equal but for the last bits of the conversions, which contact answers with some more.
 fn assert_alike(one: &Value, other: &Value, place: &str) {
     match (one, other) {
         (Value::Number(a), Value::Number(b)) => {
             let [a, b] = [a, b].map(|number| number.as_f64().unwrap_or(f64::NAN));
-            // What contact answers, by the names of curves.
-            let names = [
-                "pressure",
-                "transmission_error",
-                "stiffness",
-                "share",
-                "load_n",
-            ];
-            let is_answer = names.iter().any(|name| place.contains(name));
-            let part = if is_answer { 1e-4 } else { 1e-6 };
             assert!(
-                (a - b).abs() <= part * a.abs().max(b.abs()).max(1e-3),
+                (a - b).abs() <= 1e-6 * a.abs().max(b.abs()).max(1e-3),
                 "{place}: {a} and {b}"
             );
         }

@@ -57,6 +57,32 @@ struct Balanced<'a> {
 }
 
 impl Balanced<'_> {
+    /// The largest pressure on slice `i` and its place: that `in_middle` of its loaded part, or one where a kink stands in the middle of the contact.
+    fn largest_pressure(&self, i: usize, in_middle: (f64, PeakPlace)) -> (f64, PeakPlace) {
+        let (part, half_width) = (self.balance.carried[i].part, in_middle.1.half_width);
+        let kinks = self.slicer.at_kinks(&self.slices[i], part, half_width);
+        let at_kinks = kinks.iter().filter_map(|within| {
+            let depth = self.balance.depth(&self.slices, i, within);
+            if depth <= 0.0 {
+                return None;
+            }
+            let Place {
+                roll_lengths,
+                spring,
+                ..
+            } = &within.place;
+            let pressed = spring.pressed(spring.load(depth)[0]);
+            let place = PeakPlace {
+                roll_lengths: *roll_lengths,
+                z: Some(within.z),
+                half_width: pressed.half_width,
+                ..in_middle.1
+            };
+            Some((pressed.pressure?, place))
+        });
+        at_kinks.fold(in_middle, larger)
+    }
+
     /// The loaded part of each line of `of`, whose slices these are, if together they are less than half a face: they are cut finer then.
     fn loaded(&self, model: &FaceModel, of: &Stretches) -> Option<Stretches> {
         let carried = self.balance.carried.iter();
@@ -445,10 +471,7 @@ impl FaceModel {
     /// The contact of the mesh by what is `balanced`.
     fn summary(&self, balanced: &Balanced<'_>, load: f64) -> FaceContact {
         let Balanced {
-            slicer,
-            slices,
-            balance,
-            ..
+            slices, balance, ..
         } = balanced;
         let mut pairs: Vec<PairContact> = Vec::new();
         let mut peak: Option<(f64, PeakPlace)> = None;
@@ -490,32 +513,19 @@ impl FaceModel {
                 let at = slice.middle.roll_lengths[g];
                 at + (edge[g] - at) * middle.abs()
             });
-            let place = |z: f64, roll_lengths: [f64; 2], half_width: f64| PeakPlace {
+            let in_middle = PeakPlace {
                 pair: slice.pair,
                 roll_lengths,
                 z: Some(z),
-                half_width,
+                half_width: pressed.half_width,
             };
-            let in_middle = place(z, roll_lengths, pressed.half_width);
-            let mut largest = pressed.pressure.map(|pressure| (pressure, in_middle));
-            for within in slicer.at_kinks(slice, carried.part, pressed.half_width) {
-                let depth = balance.depth(slices, i, &within);
-                if depth <= 0.0 || largest.is_none() {
-                    continue;
-                }
-                let Place {
-                    roll_lengths,
-                    spring,
-                    ..
-                } = &within.place;
-                let pressed = spring.pressed(spring.load(depth)[0]);
-                let at_kink = place(within.z, *roll_lengths, pressed.half_width);
-                largest = larger(
-                    largest,
-                    pressed.pressure.map(|pressure| (pressure, at_kink)),
-                );
-            }
-            peak = larger(peak, largest);
+            let largest = pressed.pressure;
+            let largest =
+                largest.map(|pressure| balanced.largest_pressure(i, (pressure, in_middle)));
+            peak = match (peak, largest) {
+                (Some(one), Some(other)) => Some(larger(one, other)),
+                (one, other) => one.or(other),
+            };
             loads.push(SliceLoad {
                 pair: slice.pair,
                 z,
@@ -584,13 +594,9 @@ fn beyond(delta: f64, touch: f64) -> f64 {
     delta + BEYOND * (delta - touch).abs()
 }
 
-/// The larger of two pressures and its place; the first of two that are the same.
-fn larger(
-    one: Option<(f64, PeakPlace)>,
-    other: Option<(f64, PeakPlace)>,
-) -> Option<(f64, PeakPlace)> {
-    let is_less = |one: (f64, PeakPlace)| other.is_some_and(|other| other.0 > one.0);
-    one.filter(|one| !is_less(*one)).or(other)
+/// The larger of two pressures, each with its place; the first of two that are the same.
+fn larger(one: (f64, PeakPlace), other: (f64, PeakPlace)) -> (f64, PeakPlace) {
+    if other.0 > one.0 { other } else { one }
 }
 
 #[cfg(test)]

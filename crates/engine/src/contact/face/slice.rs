@@ -219,10 +219,8 @@ impl<'a> Slicer<'a> {
     fn line(&self, stretches: &Stretches, line: &ContactLine) -> Vec<Slice> {
         let [from, to] = line.heights;
         let pair = &self.model.pair;
-        let half_width = {
-            let s = 0.5 * pair.section().line_of_action();
-            hertz(self.densities[1], 0.5 * s / self.cosine, self.factor, 1.0).0
-        };
+        let radius = 0.25 * pair.section().line_of_action() / self.cosine;
+        let half_width = hertz(self.densities[1], radius, self.factor, 1.0).0;
         let longest = ((to - from) / stretches.longest - 1e-9)
             .ceil()
             .max(stretches.least);
