@@ -8,7 +8,7 @@ export type Results = Schemas["Results"];
 export type Job = Schemas["Job"];
 export type Problem = Schemas["Problem"];
 /** The base may lack what every design gives. */
-export type Study = Omit<Schemas["Study"], "base"> & { base: Partial<Submission> | Record<string, unknown> };
+export type Study = Schemas["Study"];
 export type SubmittedStudy = Schemas["SubmittedStudy"];
 export type StudyResults = Schemas["StudyResults"];
 export type Validation = Schemas["Validation"];

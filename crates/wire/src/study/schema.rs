@@ -20,8 +20,8 @@ impl utoipa::PartialSchema for Study {
             &TAGS,
         );
         let base = json!({
-            "description": "A submission as for POST /v1/jobs. It may lack what every design gives.",
-            "$ref": "#/components/schemas/Submission",
+            "description": "A submission as for POST /v1/jobs. What every design sets it may lack, and need not have right.",
+            "anyOf": [{ "$ref": "#/components/schemas/Submission" }, { "type": "object" }],
         });
         let optional = |name, schema| Property::new(name, or_null(schema), false);
         let properties = vec![
