@@ -50,6 +50,7 @@ mod fleet;
 mod flood;
 mod frozen;
 mod generated;
+mod mangled;
 mod memory;
 mod one_process;
 mod operators;

@@ -33,8 +33,8 @@ const STRAIGHT_MM: f64 = 1e-6;
 /// The most lines and arcs.
 const MOST_SIDES: usize = 20_000;
 
-/// So many faults are told at most; nobody reads more before mending some.
-const MOST_TOLD: usize = 20;
+/// The most faults in a refusal; nobody reads more before mending some.
+const MOST_FAULTS: usize = 20;
 
 /// What a drawing comes to.
 #[derive(Debug, Clone, PartialEq)]
@@ -64,10 +64,10 @@ pub struct Refused(pub Vec<String>);
 impl fmt::Display for Refused {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "The drawing cannot be taken.")?;
-        for detail in self.0.iter().take(MOST_TOLD) {
+        for detail in self.0.iter().take(MOST_FAULTS) {
             writeln!(f, "  {detail}")?;
         }
-        match self.0.len().saturating_sub(MOST_TOLD) {
+        match self.0.len().saturating_sub(MOST_FAULTS) {
             0 => Ok(()),
             more => writeln!(f, "  and {more} more"),
         }
@@ -107,8 +107,8 @@ pub fn outline(bytes: &[u8], layers: &[String]) -> Result<Outline, Refused> {
     );
     let pieces = drawing.pieces(layers)?;
     let within = WITHIN_MM / drawing.in_mm();
-    let loops = loops(&pieces, within, MOST_TOLD + 1)
-        .map_err(|open| Refused(open.iter().map(|open| drawing.told(open)).collect()))?;
+    let loops = loops(&pieces, within, MOST_FAULTS + 1)
+        .map_err(|open| Refused(open.iter().map(|open| drawing.fault(open)).collect()))?;
     let loops = drawing.sorted(loops)?;
     Ok(Outline {
         loops: loops.iter().map(|sides| drawing.written(sides)).collect(),
@@ -116,7 +116,7 @@ pub fn outline(bytes: &[u8], layers: &[String]) -> Result<Outline, Refused> {
     })
 }
 
-/// A drawing, and what is to be told of it.
+/// A drawing, and remarks on it.
 struct Drawing<'a> {
     entities: &'a [Entity<'a>],
     unit: Option<Unit>,
@@ -200,7 +200,7 @@ impl Drawing<'_> {
     /// That there is no line and no arc.
     fn nothing(&self, layers: &[String]) -> String {
         let known: BTreeSet<&str> = self.entities.iter().map(Entity::layer).collect();
-        let known: Vec<&str> = known.into_iter().take(MOST_TOLD).collect();
+        let known: Vec<&str> = known.into_iter().take(MOST_FAULTS).collect();
         let on = match layers {
             [] => String::new(),
             layers => format!(" on layer {}", layers.join(" or ")),
@@ -212,7 +212,7 @@ impl Drawing<'_> {
     }
 
     /// What prevents loops at an end.
-    fn told(&self, open: &Open) -> String {
+    fn fault(&self, open: &Open) -> String {
         let point = |at: &Vector| format!("({}, {})", significant(at.x, 9), significant(at.y, 9));
         match open {
             Open::End {
@@ -343,7 +343,7 @@ impl Drawing<'_> {
             .collect())
     }
 
-    /// A length as it is told, in mm.
+    /// A length in sentences, in mm.
     fn mm(&self, length: f64) -> f64 {
         significant(length * self.in_mm(), 6)
     }
