@@ -154,11 +154,11 @@ impl Driver {
         }
     }
 
-    /// The designs one step beside the best one that nobody has asked for, once no more than a third of the evaluations and two rounds of them are `left`;
+    /// The designs one step beside the best one that nobody has asked for, once no more than two fifths of the evaluations, and three rounds of them, are `left`;
     /// none of two goals, and none where a variable is continuous.
     fn beside_the_best(&self, left: usize) -> Vec<Vec<f64>> {
         let axes = &self.problem.axes;
-        let is_late = left <= 4 * axes.len() && 3 * left <= self.problem.evaluations as usize;
+        let is_late = left <= 6 * axes.len() && 5 * left <= 2 * self.problem.evaluations as usize;
         let Some((best, _)) = &self.best else {
             return Vec::new();
         };

@@ -348,26 +348,24 @@ fn the_front_of_two_goals_is_far_nearer_than_that_of_designs_at_random() {
     }
 }
 
-/// The coarsest classes, of eleven on each axis, that keep a bound: the sum of the variables is to be large, and the bound is an ellipse.
-fn classes(u: &[f64]) -> Outcome {
-    let class = |u: f64| 1.0 + (10.0 * u).round();
-    let [a, b] = [class(u[0]), class(u[1])];
-    computed(vec![-(a + b)], &[(1.3 * a * a + 1.7 * b * b).sqrt() / 8.0 - 1.0])
-}
-
 #[test]
-fn of_designs_with_steps_nothing_one_step_beside_the_best_is_better_and_unasked() {
-    let mut came = Vec::new();
-    for seed in 0..40 {
-        let problem = Problem {
+fn a_search_of_steps_has_looked_one_step_beside_what_it_ends_with() {
+    let mut missed = 0;
+    for seed in 0..60 {
+        let stepped = Problem {
             axes: vec![Axis::Steps(10); 2],
             ..problem(2, 1, 30, seed)
         };
-        let all = searched(&problem, classes);
+        let all = searched(&stepped, classes);
         assert_eq!(all.len(), 30, "seed {seed}");
-        came.push(kept(&found(&problem, classes).1));
+        let (best, outcome) = found(&stepped, classes);
+        let beside = [[0.1, 0.0], [-0.1, 0.0], [0.0, 0.1], [0.0, -0.1]];
+        let is_better = beside.iter().any(|by| {
+            let design = [0, 1].map(|i| (best[i] + by[i]).clamp(0.0, 1.0));
+            classes(&design).order(&outcome).is_lt()
+        });
+        missed += usize::from(is_better);
     }
-    // By trying all 121: 5 and 4 (64 > 1.3 * 25 + 1.7 * 16 = 59.7) is one of those with a sum of 9, and none has 10. Thirty designs are a quarter of them.
-    came.sort_by(f64::total_cmp);
-    assert!(came[35] == -9.0, "{came:?}");
+    // 2 have, whose last designs were still improving; 8 had when no search looked there on purpose.
+    assert!(missed <= 4, "{missed} of 60");
 }

@@ -233,6 +233,43 @@ fn a_pointer_that_names_nothing_is_refused_with_its_place() {
 }
 
 #[test]
+fn one_design_of_the_wrong_type_among_many_of_the_right_one_is_found() {
+    let counts = [
+        json!(8),
+        json!(9),
+        json!(1e6),
+        json!(10),
+        json!(8.5),
+        json!(7),
+        json!("9"),
+    ];
+    let designs = counts.iter().enumerate().map(|(i, count)| {
+        json!({ "label": i.to_string(), "changes": { "/pair/driven/blank/holes/count": count } })
+    });
+    let places =
+        [4, 6].map(|i| format!("/designs/{i}/changes/~1pair~1driven~1blank~1holes~1count"));
+    let document = listed(designs.collect());
+    refuses(&document, Code::WrongType, &[&places[0], &places[1]]);
+    // Of torques each may have digits; what comes first is beyond its bounds, which is the matter of its design.
+    let torques = [
+        json!([-1.5]),
+        json!([1.5]),
+        json!([2.25]),
+        json!(["1.5"]),
+        json!([3.5]),
+    ];
+    let designs = torques.iter().enumerate().map(|(i, torques)| {
+        json!({ "label": i.to_string(), "changes": { "/output_torques_n_m": torques } })
+    });
+    let document = listed(designs.collect());
+    refuses(
+        &document,
+        Code::WrongType,
+        &["/designs/3/changes/~1output_torques_n_m"],
+    );
+}
+
+#[test]
 fn values_of_the_wrong_type_are_refused_with_their_place() {
     let document = axes(json!([
         { "path": "/pair/driven/tooth_count", "values": [50, "50", 50.5, null] },
