@@ -1,34 +1,34 @@
 // The page: one design, drawn and computed while it changes, and the views that show it.
 
-import { hasKey, json, onKeyNeeded, patiently, post, ProblemError, setKey } from "./api.js";
-import { Brush } from "./brush.js";
-import { byId, debounced, fixed, h, number, remaining, timeOf } from "./dom.js";
-import { Charts } from "./charts.js";
-import { Compare } from "./compare.js";
-import { isSolid, needsSolid } from "./dimensions.js";
-import { Design, fromFragment, nameOf, same, toFragment } from "./design.js";
-import { Deformation } from "./deformed.js";
-import { fileOfDesign, save } from "./download.js";
-import { Drawing, indexAt } from "./drawing.js";
-import { exporting } from "./export.js";
-import { cured, wordsOfCure } from "./face.js";
-import { fileOf, pictureOf } from "./figure.js";
-import { Form } from "./form.js";
-import { Geometry } from "./geometry.js";
-import { Headline } from "./headline.js";
-import { jobs } from "./jobs.js";
-import { remember, remembered } from "./kept.js";
-import { Pattern } from "./pattern.js";
-import { population } from "./population.js";
-import { alike, Follower, resultsOf } from "./preview.js";
-import { fetchQuantities } from "./quantities.js";
-import { RunUp } from "./runup.js";
-import { bare, openapi, usualAt } from "./schema.js";
-import { stresses } from "./series.js";
-import { sheetOf } from "./sheet.js";
-import { copied } from "./snippets.js";
-import { study } from "./study.js";
-import { isSweep, sweep } from "./sweep.js";
+import { hasKey, json, onKeyNeeded, patiently, post, ProblemError, setKey } from "./state/api.js";
+import { Brush } from "./draw/brush.js";
+import { byId, debounced, fixed, h, number, remaining, timeOf } from "./draw/dom.js";
+import { Charts } from "./draw/charts.js";
+import { Compare } from "./views/compare.js";
+import { isSolid, needsSolid } from "./state/dimensions.js";
+import { Design, fromFragment, nameOf, same, toFragment } from "./state/design.js";
+import { Deformation } from "./draw/deformed.js";
+import { fileOfDesign, save } from "./draw/download.js";
+import { Drawing, indexAt } from "./draw/drawing.js";
+import { exporting } from "./views/export.js";
+import { cured, wordsOfCure } from "./draw/face.js";
+import { fileOf, pictureOf } from "./draw/figure.js";
+import { Form } from "./views/form.js";
+import { Geometry } from "./views/geometry.js";
+import { Headline } from "./views/headline.js";
+import { jobs } from "./panels/jobs.js";
+import { remember, remembered } from "./state/kept.js";
+import { Pattern } from "./views/pattern.js";
+import { population } from "./panels/population.js";
+import { alike, Follower, resultsOf } from "./state/preview.js";
+import { fetchQuantities } from "./state/quantities.js";
+import { RunUp } from "./views/runup.js";
+import { bare, openapi, usualAt } from "./state/schema.js";
+import { stresses } from "./state/series.js";
+import { sheetOf } from "./views/sheet.js";
+import { copied } from "./state/snippets.js";
+import { study } from "./panels/study.js";
+import { isSweep, sweep } from "./panels/sweep.js";
 
 const FIRST_EXAMPLE = "test-case-2";
 const NEW_PAIR = "new pair";
@@ -107,7 +107,7 @@ function draw(pair) {
 async function showSpace(on) {
   drawing.element.toggleAttribute("hidden", on);
   if (!on) return space?.hide();
-  const { Space } = await import("./space.js");
+  const { Space } = await import("./draw/space.js");
   if (!space) {
     space = new Space(byId("drawing"), { live: current });
     if (drawn) draw(drawn);

@@ -1032,7 +1032,7 @@ export async function benchSteps(service) {
   await step("a search over members says how many of its designs and of their members cannot be computed, and why most of these", service, async (page) => {
     await open(page, service);
     const found = await page.evaluate(async () => {
-      const { follow, json, post } = await import(new URL("web/api.js", document.baseURI));
+      const { follow, json, post } = await import(new URL("web/state/api.js", document.baseURI));
       const gear = { tooth_count: 50, module_mm: 2, face_width_mm: 20, blank: { bore_radius_mm: 16 } };
       const base = { method: "load_distribution", pair: { center_distance_mm: 100.5, driving: { ...gear, tip_relief: { amount_um: 5, shape: "linear", start: { radial_length_mm: 1.75 } } }, driven: gear }, output_torques_n_m: [115], resolution: { positions_per_mesh_period: 10 } };
       // Pairs at less than 100.15 mm have no backlash, and a relief longer than the flank is none.

@@ -366,7 +366,7 @@ export async function shownSteps(service) {
   await step("the time that is left is that of the pace at which it goes now", service, async (page) => {
     await page.goto(service.url);
     const said = await page.evaluate(async () => {
-      const { remaining } = await import(new URL("web/dom.js", document.baseURI));
+      const { remaining } = await import(new URL("web/draw/dom.js", document.baseURI));
       // 60 s for the gears, of which 3 % tell, then a percent each 0.65 s: 65 s before the end.
       let now = 0;
       const left = remaining(null, () => now);
@@ -467,7 +467,7 @@ export async function shownSteps(service) {
     await open(page, service);
     const found = await page.evaluate(async () => {
       const of = (name) => import(new URL(`web/${name}.js`, document.baseURI));
-      const [{ placedNames, linesOf, PANELS }, { looks }] = await Promise.all([of("series"), of("charts")]);
+      const [{ placedNames, linesOf, PANELS }, { looks }] = await Promise.all([of("state/series"), of("draw/charts")]);
       // A name of a low order between tall neighbors.
       const stems = [[40, 0.5], [50, 0.1], [60, 0.6], [100, 0.3]].map(([order, value]) => ({ order, value }));
       const names = stems.map(({ order, value }) => ({ order, value, label: `H_${order}` }));
@@ -673,7 +673,7 @@ export async function shownSteps(service) {
     // Marked as projected, and to the last digit what the service says of it.
     assert.ok(await page.locator("#projected").isVisible());
     const { statistics, face } = await page.evaluate(async (submission) => {
-      const { resultsOf } = await import(new URL("web/preview.js", document.baseURI));
+      const { resultsOf } = await import(new URL("web/state/preview.js", document.baseURI));
       return (await resultsOf(submission)).curves[0];
     }, { ...design, method: "three_dimensional_projected" });
     assert.equal(await answer(page, "p-p"), Number(statistics.transmission_error_um.peak_to_peak.toFixed(3)));

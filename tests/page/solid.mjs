@@ -127,7 +127,7 @@ export async function solidSteps(service) {
     assert.doesNotMatch(svg, /Peak contact pressure/);
     // However long the period, it is drawn: with no more cells than are seen, and none of the peaks lost.
     const [cells, most, right] = await page.evaluate(async () => {
-      const [{ cellsOf, faceOf }, { figure }] = await Promise.all(["face", "figure"].map((name) => import(new URL(`web/${name}.js`, document.baseURI))));
+      const [{ cellsOf, faceOf }, { figure }] = await Promise.all(["draw/face", "draw/figure"].map((name) => import(new URL(`web/${name}.js`, document.baseURI))));
       const positions = Array.from({ length: 20_000 }, (_, i) => i / 40);
       const face = faceOf({ mesh_position: positions, face: { z_mm: [-1, 0, 1], load_n_per_mm: positions.map((_, i) => [i === 4321 ? 9 : 1, 1, 1]), face_load_factor: 1, load_centroid_mm: [] } });
       const all = cellsOf(face, [0, 500], 500 / 700);
@@ -142,7 +142,7 @@ export async function solidSteps(service) {
     await page.locator("#chart-pattern svg").nth(1).waitFor();
     const flanks = await page.locator("#chart-pattern svg").evaluateAll((all) => all.map((svg) => [svg.getAttribute("aria-label"), svg.querySelectorAll("rect[fill^='url']").length, svg.querySelectorAll("rect[fill^=rgb]").length]));
     const { curves: [computed], z_mm: z, driving } = await page.evaluate(async (submission) => {
-      const { solved, json } = await import(new URL("web/api.js", document.baseURI));
+      const { solved, json } = await import(new URL("web/state/api.js", document.baseURI));
       return json(`v1/jobs/${(await solved(submission)).id}/results/contact-pattern.json`);
     }, HELICAL);
     const all = computed.driving.pressure_mpa.flat();
@@ -202,7 +202,7 @@ export async function solidSteps(service) {
     await openDesign(page, service, HELICAL);
     await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
     await settled(page);
-    assert.ok(!fetched.includes("/web/space.js") && !fetched.includes("/web/raster.js"), "it costs nothing before it is asked for");
+    assert.ok(!fetched.includes("/web/draw/space.js") && !fetched.includes("/web/draw/raster.js"), "it costs nothing before it is asked for");
     await page.locator("[data-view=space]").focus();
     await page.keyboard.press("Enter");
     const canvas = page.locator("canvas.space");
@@ -247,7 +247,7 @@ export async function solidSteps(service) {
     // What the page finds for its lines is what the service computed: which pairs touch, and where along the face.
     const [drawn, told] = await page.evaluate(async (submission) => {
       const of = (name) => import(new URL(`web/${name}.js`, document.baseURI));
-      const [{ solved, json, post }, { alongAxis, contactLines }] = await Promise.all([of("api"), of("solid")]);
+      const [{ solved, json, post }, { alongAxis, contactLines }] = await Promise.all([of("state/api"), of("draw/solid")]);
       const outline = await post("v1/outline", submission);
       const job = await solved(submission);
       const { curves } = await json(`v1/jobs/${job.id}/results/contact-pattern.json`);
@@ -274,7 +274,7 @@ export async function solidSteps(service) {
     await openDesign(page, service, HELICAL);
     const ratios = await page.evaluate(async (submission) => {
       const of = (name) => import(new URL(`web/${name}.js`, document.baseURI));
-      const [{ post }, { alongAxis, surfaceOf }] = await Promise.all([of("api"), of("solid")]);
+      const [{ post }, { alongAxis, surfaceOf }] = await Promise.all([of("state/api"), of("draw/solid")]);
       const [outline, { pair }] = await Promise.all([post("v1/outline", submission), post("v1/validate", submission)]);
       const along = alongAxis(submission.pair, outline);
       return ["driving", "driven"].map((member) => {
@@ -386,7 +386,7 @@ export async function solidSteps(service) {
   await step("the colors of loads are told apart by lightness alone, with deuteranopia too", service, async (page) => {
     await openDesign(page, service, HELICAL);
     const ramp = await page.evaluate(async () => {
-      const { rampAt } = await import(new URL("web/face.js", document.baseURI));
+      const { rampAt } = await import(new URL("web/draw/face.js", document.baseURI));
       return Array.from({ length: 11 }, (_, i) => rampAt(i / 10));
     });
     const lightness = ramp.map((color) => seenByDeuteranopia(color)[0]);

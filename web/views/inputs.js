@@ -1,7 +1,7 @@
 // What is typed into a control, as a value of the design, and back.
 
-import { ProblemError } from "./api.js";
-import { h } from "./dom.js";
+import { ProblemError } from "../state/api.js";
+import { h } from "../draw/dom.js";
 
 /** A number with a decimal point, or with a decimal comma. */
 const POINT = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;

@@ -1,12 +1,12 @@
 // The form of a submission, made from the schema: every field with its unit, bounds, default and words.
 
-import { Beginnings } from "./beginnings.js";
-import { at, HELIX } from "./design.js";
-import { helix, intoPlane, intoSolid, isSolid, kindOfTeeth, needsThird, offers, teeth } from "./dimensions.js";
+import { Beginnings } from "../state/beginnings.js";
+import { at, HELIX } from "../state/design.js";
+import { helix, intoPlane, intoSolid, isSolid, kindOfTeeth, needsThird, offers, teeth } from "../state/dimensions.js";
 import { deviations } from "./deviations.js";
-import { h, number, unit } from "./dom.js";
+import { h, number, unit } from "../draw/dom.js";
 import { numeric, parsed, read, stepped, unreadable, write } from "./inputs.js";
-import { help, kindOf, resolve, saidDefault, schemaAt } from "./schema.js";
+import { help, kindOf, resolve, saidDefault, schemaAt } from "../state/schema.js";
 
 /** Fields that a designer looks for first; they stand above the others of their object. */
 const FIRST = ["holes", "tip_relief", "tooth_count", "profile_shift"];

@@ -1,7 +1,7 @@
 // A figure as a drawing of its own, with title, axes, units and legend: for small charts on the page, for files and for print.
 
 import { extent, number, s } from "./dom.js";
-import { placedNames } from "./series.js";
+import { placedNames } from "../state/series.js";
 
 const FRAME = { left: 62, right: 14, top: 14, bottom: 44 };
 const LETTER = 11;

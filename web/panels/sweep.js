@@ -1,10 +1,10 @@
 // The peak-to-peak transmission error over the torque, and where it is least: a study over the torque, which is found again as others are.
 
-import { ProblemError } from "./api.js";
-import { apart, nameOf } from "./design.js";
-import { h, fixed, number } from "./dom.js";
-import { figure } from "./figure.js";
-import { given, numeric } from "./inputs.js";
+import { ProblemError } from "../state/api.js";
+import { apart, nameOf } from "../state/design.js";
+import { h, fixed, number } from "../draw/dom.js";
+import { figure } from "../draw/figure.js";
+import { given, numeric } from "../views/inputs.js";
 import { Question } from "./question.js";
 
 const MOST_TORQUES = 24;

@@ -1,6 +1,6 @@
 // A choice of one field of the design among many.
 
-import { h } from "./dom.js";
+import { h } from "../draw/dom.js";
 
 /** The part of the form that the field at a pointer stands in. */
 function partOf(pointer) {

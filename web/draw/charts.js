@@ -1,10 +1,10 @@
 // Curves over the true period and the spectrum, one design beside the other, zoomed together.
 
-import uPlot from "./vendor/uplot.js";
+import uPlot from "../vendor/uplot.js";
 import { extent, fixed, h, number, s } from "./dom.js";
 import { cellsOf, cssOf, faceOf, SCALE, scaleOf, wordsOfFace } from "./face.js";
 import { figure } from "./figure.js";
-import { linesOf, namesOf, ordersOf, PANELS, partialSpectrum, placedNames, wordsOf, wordsOfSpectrum } from "./series.js";
+import { linesOf, namesOf, ordersOf, PANELS, partialSpectrum, placedNames, wordsOf, wordsOfSpectrum } from "../state/series.js";
 
 /** Where a mesh period has fewer pixels the curve is shown by its envelope. */
 const LEAST_PIXELS = 14;

@@ -1,7 +1,7 @@
 // The pair under load: how it deforms at the position shown, many times enlarged, its edges colored by stress.
 
-import { json, ProblemError, solved } from "./api.js";
-import { isSolid } from "./dimensions.js";
+import { json, ProblemError, solved } from "../state/api.js";
+import { isSolid } from "../state/dimensions.js";
 import { debounced, h, number, s } from "./dom.js";
 
 /** Stresses are told apart in so many steps. */

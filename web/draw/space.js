@@ -1,6 +1,6 @@
 // The pair in space: turned by hand, touch and keys, with its lines of contact at the position shown. Made when it is first asked for, painted when something changes.
 
-import { json, ProblemError, solved } from "./api.js";
+import { json, ProblemError, solved } from "../state/api.js";
 import { debounced, extent, fixed, h, number } from "./dom.js";
 import { indexAt } from "./drawing.js";
 import { faceOf, rampAt, scaleOf } from "./face.js";

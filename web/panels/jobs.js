@@ -1,11 +1,11 @@
 // The jobs of this client: submitted, followed by their events, cancelled, opened, run again.
 
-import { follow, hasEnded, json, post, ProblemError, request } from "./api.js";
-import { differences, nameOf, told } from "./design.js";
-import { debounced, h, number } from "./dom.js";
-import { fileOfDesign } from "./download.js";
-import { filesOf, saveFile } from "./files.js";
-import { read } from "./inputs.js";
+import { follow, hasEnded, json, post, ProblemError, request } from "../state/api.js";
+import { differences, nameOf, told } from "../state/design.js";
+import { debounced, h, number } from "../draw/dom.js";
+import { fileOfDesign } from "../draw/download.js";
+import { filesOf, saveFile } from "../state/files.js";
+import { read } from "../views/inputs.js";
 
 const SHOWN = 20;
 /** So many are followed at a time; a client may have few streams. */

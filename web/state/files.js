@@ -2,7 +2,7 @@
 
 import { request } from "./api.js";
 import { isSolid } from "./dimensions.js";
-import { save } from "./download.js";
+import { save } from "../draw/download.js";
 
 const isInThree = ({ method }) => isSolid(method);
 const runsUp = ({ dynamics }) => dynamics;

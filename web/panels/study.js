@@ -1,16 +1,16 @@
 // Many designs at once: axes of values over any fields, a table, a picture of two of its columns, and which designs no other beats; or a search
 // that chooses the values itself.
 
-import { json, request } from "./api.js";
-import { h, number } from "./dom.js";
-import { at, nameOf, withValue } from "./design.js";
-import { fileOfDesign, save } from "./download.js";
-import { figure } from "./figure.js";
-import { allGiven, given, numeric } from "./inputs.js";
+import { json, request } from "../state/api.js";
+import { h, number } from "../draw/dom.js";
+import { at, nameOf, withValue } from "../state/design.js";
+import { fileOfDesign, save } from "../draw/download.js";
+import { figure } from "../draw/figure.js";
+import { allGiven, given, numeric } from "../views/inputs.js";
 import { offer } from "./offer.js";
-import { calledOf, inRow, inUnit, inWords, options, quantityOf, shown, worstInRow } from "./quantities.js";
+import { calledOf, inRow, inUnit, inWords, options, quantityOf, shown, worstInRow } from "../state/quantities.js";
 import { Question } from "./question.js";
-import { usualAt } from "./schema.js";
+import { usualAt } from "../state/schema.js";
 import { search } from "./search.js";
 
 /** A table is fetched so often at most while a study runs, in milliseconds. */

@@ -1,7 +1,7 @@
 // Which mesh periods are shown: a strip of the whole true period with a window on it, drawn over, moved, or set by buttons.
 
 import { h, number, s } from "./dom.js";
-import { linesOf, PANELS } from "./series.js";
+import { linesOf, PANELS } from "../state/series.js";
 
 const [WIDTH, HEIGHT] = [1000, 40];
 /** Shorter periods need no strip. */

@@ -1,6 +1,6 @@
 // What the curves of designs are made of: their points, names, units and what a listener should know of them.
 
-import { fixed, number } from "./dom.js";
+import { fixed, number } from "../draw/dom.js";
 
 /** What lies below is noise of the solution, in um. */
 export const LEAST_AMPLITUDE = 1e-4;

@@ -1,7 +1,7 @@
 // Which design an answer is of, where that design may change while the answer stands.
 
-import { apart, same, withValue } from "./design.js";
-import { h } from "./dom.js";
+import { apart, same, withValue } from "../state/design.js";
+import { h } from "../draw/dom.js";
 
 /** A line over an answer of `design` that appears once the design is another one than the one asked about. `ignored` are fields that the answer does not depend on. */
 export function outdated(design, ignored = []) {

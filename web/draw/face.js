@@ -1,7 +1,7 @@
 // The load along the face: as a map over mesh position and z, as a curve where only its mean is known, in words, and as a scale of colors.
 
 import { extent, fixed, h, number } from "./dom.js";
-import { spanOf } from "./series.js";
+import { spanOf } from "../state/series.js";
 
 /** Colors from little to much: their lightness alone tells them apart, so that every eye and gray paper do. */
 export const RAMP = ["#0d1b4c", "#28437f", "#5b6b8a", "#8f8f7f", "#c9b458", "#fff08a"];

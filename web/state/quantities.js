@@ -1,7 +1,7 @@
 // The numbers of designs as the service names them: what they are called, their units, and where results and rows of tables have them.
 
 import { json } from "./api.js";
-import { extent, fixed, h, number, unit } from "./dom.js";
+import { extent, fixed, h, number, unit } from "../draw/dom.js";
 
 /** Units that are printed as multiples of the service's, and what numbers are multiplied by. */
 const MULTIPLES = { "N/m": ["N/µm", 1e-6], "kg m^2": ["kg cm²", 1e4] };

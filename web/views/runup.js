@@ -1,12 +1,12 @@
 // The motion of the gears over speed: both branches beside those of kept designs, a waterfall of orders with their resonances named, and one speed that is
 // looked at, turned and heard.
 
-import { looks } from "./charts.js";
-import { debounced, fixed, h, number, s } from "./dom.js";
-import { figure, ticks } from "./figure.js";
-import { motionAt } from "./motion.js";
-import { wordsOf } from "./orders.js";
-import { Tones } from "./sound.js";
+import { looks } from "../draw/charts.js";
+import { debounced, fixed, h, number, s } from "../draw/dom.js";
+import { figure, ticks } from "../draw/figure.js";
+import { motionAt } from "../state/motion.js";
+import { wordsOf } from "../state/orders.js";
+import { Tones } from "../draw/sound.js";
 
 /** What is drawn over speed: name, unit, and how a branch tells it. */
 const QUANTITIES = {

@@ -1,14 +1,14 @@
 // What is on the screen for other programs: curves, orders, tables, pictures, files of a job, and the request as a program.
 
-import { ProblemError, solved } from "./api.js";
-import { looks } from "./charts.js";
+import { ProblemError, solved } from "../state/api.js";
+import { looks } from "../draw/charts.js";
 import { designsCsv } from "./compare.js";
-import { csv, drawingOf, fileOfDesign, ordersCsv, save } from "./download.js";
-import { h } from "./dom.js";
-import { fileOf, pictureOf, stacked } from "./figure.js";
-import { filesOf, saveFile } from "./files.js";
+import { csv, drawingOf, fileOfDesign, ordersCsv, save } from "../draw/download.js";
+import { h } from "../draw/dom.js";
+import { fileOf, pictureOf, stacked } from "../draw/figure.js";
+import { filesOf, saveFile } from "../state/files.js";
 import { inLight } from "./sheet.js";
-import { copied, snippets } from "./snippets.js";
+import { copied, snippets } from "../state/snippets.js";
 
 const LANGUAGES = { curl: "curl", python: "Python", typescript: "TypeScript" };
 

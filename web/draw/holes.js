@@ -1,6 +1,6 @@
 // The holes of a gear: seen, dragged and moved by keys.
 
-import { at } from "./design.js";
+import { at } from "../state/design.js";
 import { s, number } from "./dom.js";
 
 const TURN = Math.PI / 180;

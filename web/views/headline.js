@@ -1,6 +1,6 @@
 // The answers in a line: what a designer looks at first, each with its change against the design that it is compared with.
 
-import { extent, fixed, h, number } from "./dom.js";
+import { extent, fixed, h, number } from "../draw/dom.js";
 
 const named = (curve, pattern) => curve.spectrum?.named.find(({ label }) => pattern.test(label))?.transmission_error_um ?? null;
 const mega = (value) => (value === null || value === undefined ? null : value * 1e-6);

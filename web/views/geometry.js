@@ -1,6 +1,6 @@
 // The geometry report: what a gear engineer checks first, of both gears.
 
-import { h, fixed, number } from "./dom.js";
+import { h, fixed, number } from "../draw/dom.js";
 
 const twice = (radius) => 2 * radius;
 

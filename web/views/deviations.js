@@ -1,7 +1,7 @@
 // The deviations of a gear's teeth: drawn by an accuracy class, pasted from a spreadsheet, or dropped as a file of a measurement.
 
-import { post, ProblemError } from "./api.js";
-import { fixed, h, number } from "./dom.js";
+import { post, ProblemError } from "../state/api.js";
+import { fixed, h, number } from "../draw/dom.js";
 import { given, numeric } from "./inputs.js";
 
 /** What a column of measured teeth may be called, and the field that it is. */

@@ -1,7 +1,7 @@
 // What the panels share that ask for many designs: one question at a time, how far it is, why it was refused, and of which design its answer is.
 
-import { follow, hasEnded, json, post, ProblemError, request } from "./api.js";
-import { h, remaining } from "./dom.js";
+import { follow, hasEnded, json, post, ProblemError, request } from "../state/api.js";
+import { h, remaining } from "../draw/dom.js";
 import { outdated } from "./outdated.js";
 
 export class Question {

@@ -1,10 +1,10 @@
 // Designs beside each other: their numbers under names that the user gives, and the fields in which they differ.
 
-import { extent, h, number } from "./dom.js";
-import { differences, told } from "./design.js";
-import { csvOf, fileOfDesign, save } from "./download.js";
-import { looks } from "./charts.js";
-import { calledOf, inResults, quantities, shown } from "./quantities.js";
+import { extent, h, number } from "../draw/dom.js";
+import { differences, told } from "../state/design.js";
+import { csvOf, fileOfDesign, save } from "../draw/download.js";
+import { looks } from "../draw/charts.js";
+import { calledOf, inResults, quantities, shown } from "../state/quantities.js";
 
 /** What differs by less than this part is the same. */
 const SAME = 1e-3;
