@@ -36,7 +36,10 @@ const METHODS = ["flexible", "decomposition", "projected_decomposition", "load_d
 const THEME = "meshwright-theme";
 /** What is wrong while somebody types is told so many milliseconds after the last key. */
 const HALF_TYPED = 500;
-/** Numbers of another design than the one in the form are gray after so many milliseconds, and what was wrong with another one is told no more. */
+/**
+ * Numbers of another design than the one in the form are gray after so many milliseconds, and what was wrong with
+ * another one is told no more.
+ */
 const OTHER = 300;
 /** So long a notice is shown, in milliseconds, once it offers no way back. */
 const NOTICE = 12_000;
@@ -45,12 +48,24 @@ const PERIOD = 2000;
 
 /** What no drawing leaves out, and nothing else. */
 function newPair() {
-  const gear = (tooth_count, bore_radius_mm) => ({ tooth_count, module_mm: 2, face_width_mm: 20, blank: { bore_radius_mm } });
-  return { method: "flexible", pair: { center_distance_mm: 75.2, driving: gear(25, 10), driven: gear(50, 16) }, output_torques_n_m: [100] };
+  const gear = (tooth_count, bore_radius_mm) => ({
+    tooth_count,
+    module_mm: 2,
+    face_width_mm: 20,
+    blank: { bore_radius_mm },
+  });
+  return {
+    method: "flexible",
+    pair: { center_distance_mm: 75.2, driving: gear(25, 10), driven: gear(50, 16) },
+    output_torques_n_m: [100],
+  };
 }
 
 const design = new Design();
-/** What is shown: the results of the design as it is, or those that the hand has passed through. `live` are never a draft. */
+/**
+ * What is shown: the results of the design as it is, or those that the hand has passed through. `live` are never a
+ * draft.
+ */
 let shown = null;
 let live = null;
 /** What is wrong with the design as it stands, and the last one that could be computed. */
@@ -67,15 +82,28 @@ let tab = "curves";
 
 const drawing = new Drawing(byId("drawing"), design, { onTurn: (to) => turn(to) });
 const brush = new Brush(byId("brush"), (range) => charts.zoom(range));
-const charts = new Charts(byId("charts"), { onPosition: (to) => turn(to), onRange: (range) => brush.setRange(range), onEveryPosition: () => design.set("/face_load", "positions", "mend") });
+const charts = new Charts(byId("charts"), {
+  onPosition: (to) => turn(to),
+  onRange: (range) => brush.setRange(range),
+  onEveryPosition: () => design.set("/face_load", "positions", "mend"),
+});
 const pattern = new Pattern(byId("pattern"), { live: current });
 const headline = new Headline(byId("headline"));
 const geometry = new Geometry(byId("geometry"), { onPrint: print, onPicture: picture });
-const compare = new Compare(byId("compare"), { onKept: changeKept, onOpen: ({ submission, results, asked }) => open(submission, results, asked), onMethods: compareMethods, named: (pointer) => form?.named(pointer) ?? pointer, usual: (submission, pointer) => (form ? usualAt(form.api, submission, pointer) : undefined) });
+const compare = new Compare(byId("compare"), {
+  onKept: changeKept,
+  onOpen: ({ submission, results, asked }) => open(submission, results, asked),
+  onMethods: compareMethods,
+  named: (pointer) => form?.named(pointer) ?? pointer,
+  usual: (submission, pointer) => (form ? usualAt(form.api, submission, pointer) : undefined),
+});
 const follower = new Follower({ onResults, onOutline, onProblem, onValid, onExpect, onBusy, onProgress });
 
 const deformation = new Deformation({
-  drawing, button: byId("deformed"), note: byId("deformed-note"), position: () => position,
+  drawing,
+  button: byId("deformed"),
+  note: byId("deformed-note"),
+  position: () => position,
   live: async () => {
     await follower.settled();
     return live;
@@ -94,7 +122,10 @@ function onOutline(made, { pair }) {
   draw(pair);
 }
 
-/** Draws a pair with the loads that are shown, if they are its own, or if a hand moves it and the next ones come at once. */
+/**
+ * Draws a pair with the loads that are shown, if they are its own, or if a hand moves it and the next ones come at
+ * once.
+ */
 function draw(pair) {
   drawn = pair;
   const curve = shown && (design.by === "drag" || same(shown.submission.pair, pair)) ? shown.results.curves[0] : null;
@@ -122,12 +153,22 @@ async function current() {
   return live && !problem && same(live.submission, design.submission) ? live : null;
 }
 
-/** Says of everything on the page whether it is of the design in the form: numbers of another one are gray, and what was wrong with another one is told no more. */
+/**
+ * Says of everything on the page whether it is of the design in the form: numbers of another one are gray, and what was
+ * wrong with another one is told no more.
+ */
 function look() {
   clearTimeout(look.timer);
-  const waits = (one, isIts) => (one && !isIts(one.submission) ? Math.max(0, OTHER - (performance.now() - (left.get(one.submission) ?? performance.now()))) : null);
+  const waits = (one, isIts) =>
+    one && !isIts(one.submission)
+      ? Math.max(0, OTHER - (performance.now() - (left.get(one.submission) ?? performance.now())))
+      : null;
   const isLike = (submission) => alike(submission, design.submission);
-  const [other, unsettled, wrong] = [waits(shown, isLike), waits(live, isLike), waits(problem, (submission) => submission === design.submission)];
+  const [other, unsettled, wrong] = [
+    waits(shown, isLike),
+    waits(live, isLike),
+    waits(problem, (submission) => submission === design.submission),
+  ];
   document.body.classList.toggle("other", other === 0);
   document.body.classList.toggle("unsettled", unsettled === 0);
   if (wrong === 0) {
@@ -145,15 +186,22 @@ function onValid(submission) {
   showProblem();
 }
 
-/** How long the design takes that is computed now, `{ seconds, since, rests }`, told as a clock where it is more than a moment. */
+/**
+ * How long the design takes that is computed now, `{ seconds, since, rests }`, told as a clock where it is more than a
+ * moment.
+ */
 function onExpect(expected) {
   clearTimeout(onExpect.timer);
-  if (!expected || expected.seconds < 2 * OTHER / 1000) return;
+  if (!expected || expected.seconds < (2 * OTHER) / 1000) return;
   const whole = timeOf(1000 * expected.seconds);
   const tick = () => {
     if (!byId("progress").hidden) return;
     const over = 1000 * expected.seconds - (performance.now() - expected.since);
-    byId("state").textContent = expected.rests ? `It takes about ${whole}: computed when you rest, or at once with Enter.` : over > 0 ? `Computing, about ${timeOf(over)} more` : `Computing, longer than the ${whole} that were expected`;
+    byId("state").textContent = expected.rests
+      ? `It takes about ${whole}: computed when you rest, or at once with Enter.`
+      : over > 0
+        ? `Computing, about ${timeOf(over)} more`
+        : `Computing, longer than the ${whole} that were expected`;
     onExpect.timer = setTimeout(tick, 1000);
   };
   onExpect.timer = setTimeout(tick, expected.rests ? 0 : Math.max(0, OTHER - (performance.now() - expected.since)));
@@ -179,8 +227,19 @@ function showReadout() {
   const i = indexAt(curve, position);
   const pressure = curve.peak_contact_pressure_mpa[i];
   const pairs = curve.pairs_in_contact[i];
-  byId("position").setAttribute("aria-valuetext", `${fixed(position, 2)} mesh periods, transmission error ${fixed(curve.transmission_error_um[i], 2)} micrometers`);
-  byId("readout").textContent = `Transmission error ${fixed(curve.transmission_error_um[i], 3)} µm, stiffness ${fixed(curve.mesh_stiffness_tangent_n_per_m[i] * 1e-6, 1)} N/µm, ${pairs} ${pairs === 1 ? "pair" : "pairs"} in contact, ${pressure === null ? "a tip corner carries" : `${fixed(pressure, 0)} MPa`}.${stresses(curve).map(({ name, values }, j) => `${j ? "," : " Stress in MPa:"} ${fixed(values[i], 1)} at a ${name.replace(",", " of the")}`).join("")}${curve.stress ? "." : ""}`;
+  byId("position").setAttribute(
+    "aria-valuetext",
+    `${fixed(position, 2)} mesh periods, transmission error ${fixed(curve.transmission_error_um[i], 2)} micrometers`,
+  );
+  byId("readout").textContent =
+    `Transmission error ${fixed(curve.transmission_error_um[i], 3)} µm, stiffness ${fixed(curve.mesh_stiffness_tangent_n_per_m[i] * 1e-6, 1)} N/µm, ${pairs} ${pairs === 1 ? "pair" : "pairs"} in contact, ${pressure === null ? "a tip corner carries" : `${fixed(pressure, 0)} MPa`}.${stresses(
+      curve,
+    )
+      .map(
+        ({ name, values }, j) =>
+          `${j ? "," : " Stress in MPa:"} ${fixed(values[i], 1)} at a ${name.replace(",", " of the")}`,
+      )
+      .join("")}${curve.stress ? "." : ""}`;
 }
 
 function onResults(results, submission, { took, since, draft, asked }) {
@@ -194,7 +253,8 @@ function onResults(results, submission, { took, since, draft, asked }) {
   showDesigns(draft);
   showProblem();
   clearTimeout(onExpect.timer);
-  byId("state").textContent = `${results.curves[0].mesh_position.length} positions ${took === null ? "as computed before" : took < 2000 ? `in ${fixed(took, 0)} ms` : `in ${fixed(took / 1000, 1)} s`}${results.curves.length > 1 ? `; answers at ${number(results.curves[0].output_torque_n_m)} N m` : ""}${draft ? ", a draft under the hand" : ""}`;
+  byId("state").textContent =
+    `${results.curves[0].mesh_position.length} positions ${took === null ? "as computed before" : took < 2000 ? `in ${fixed(took, 0)} ms` : `in ${fixed(took / 1000, 1)} s`}${results.curves.length > 1 ? `; answers at ${number(results.curves[0].output_torque_n_m)} N m` : ""}${draft ? ", a draft under the hand" : ""}`;
   byId("projected").hidden = draft || asked.method === submission.method;
   // A draft has few positions of its own accord.
   showWarnings(draft ? results.warnings.filter(({ code }) => code !== "few_positions") : results.warnings);
@@ -202,7 +262,11 @@ function onResults(results, submission, { took, since, draft, asked }) {
   turn(position);
   look();
   // For those who measure: the curve of a change is on the screen.
-  requestAnimationFrame(() => document.dispatchEvent(new CustomEvent("drawn", { detail: { submission, draft, milliseconds: performance.now() - since } })));
+  requestAnimationFrame(() =>
+    document.dispatchEvent(
+      new CustomEvent("drawn", { detail: { submission, draft, milliseconds: performance.now() - since } }),
+    ),
+  );
 }
 
 /** Which lead would even the load along the face, and the button that gives it to the design. */
@@ -212,7 +276,15 @@ function showCure({ face }) {
   place.hidden = !words;
   if (!words) return place.replaceChildren();
   const leads = "/pair/driving/lead_modifications";
-  place.replaceChildren(words, " ", h("button", { type: "button", on: { click: () => design.set(leads, cured(design.get(leads), face.cure), "mend") } }, "Apply"));
+  place.replaceChildren(
+    words,
+    " ",
+    h(
+      "button",
+      { type: "button", on: { click: () => design.set(leads, cured(design.get(leads), face.cure), "mend") } },
+      "Apply",
+    ),
+  );
 }
 
 function showWarnings(warnings) {
@@ -220,10 +292,32 @@ function showWarnings(warnings) {
   button.hidden = warnings.length === 0;
   button.textContent = `${warnings.length} ${warnings.length === 1 ? "warning" : "warnings"}`;
   const guide = (path) => (path ? [" ", h("a", { href: path.replace(/^\//, "") }, "The guide says why")] : []);
-  const solid = (code) => (code === "web_outside_plane_model" ? [" ", h("button", { type: "button", on: { click: () => form?.compute(true) } }, "Compute it in three dimensions")] : []);
+  const solid = (code) =>
+    code === "web_outside_plane_model"
+      ? [
+          " ",
+          h("button", { type: "button", on: { click: () => form?.compute(true) } }, "Compute it in three dimensions"),
+        ]
+      : [];
   // What would mend it, by the pointers of the fields.
-  const change = (changes = {}) => (Object.keys(changes).length ? [" ", h("button", { type: "button", on: { click: () => form?.take(changes) } }, `Use ${Object.entries(changes).map(([pointer, value]) => `${form?.named(pointer) ?? pointer} ${number(value, 7)}`).join(", ")}`)] : []);
-  byId("warnings").replaceChildren(...warnings.map(({ code, detail, guide: path, changes }) => h("li", {}, form?.inWords(detail) ?? detail, ...guide(path), ...solid(code), ...change(changes))));
+  const change = (changes = {}) =>
+    Object.keys(changes).length
+      ? [
+          " ",
+          h(
+            "button",
+            { type: "button", on: { click: () => form?.take(changes) } },
+            `Use ${Object.entries(changes)
+              .map(([pointer, value]) => `${form?.named(pointer) ?? pointer} ${number(value, 7)}`)
+              .join(", ")}`,
+          ),
+        ]
+      : [];
+  byId("warnings").replaceChildren(
+    ...warnings.map(({ code, detail, guide: path, changes }) =>
+      h("li", {}, form?.inWords(detail) ?? detail, ...guide(path), ...solid(code), ...change(changes)),
+    ),
+  );
   if (!warnings.length) showWarned(false);
 }
 
@@ -238,7 +332,9 @@ function onProblem(found, submission) {
   // What is half typed is no mistake: it is told once the hand rests, unless something else has come.
   clearTimeout(onProblem.timer);
   if (design.by !== "form" || !byId("problem").hidden) return showProblem();
-  onProblem.timer = setTimeout(() => { if (problem?.submission === submission) showProblem(); }, HALF_TYPED);
+  onProblem.timer = setTimeout(() => {
+    if (problem?.submission === submission) showProblem();
+  }, HALF_TYPED);
 }
 
 function onBusy(busy) {
@@ -259,7 +355,13 @@ function onProgress(job) {
   onProgress.id = id;
   // Between two events time goes on.
   const tick = () => {
-    byId("state").textContent = away ? "The service does not answer; a job goes on." : status === "accepted" ? "A job waits for its turn." : done < 100 ? `A job: ${done} %${onProgress.left(done, 100)}.` : "A job: every position is solved, and the results are put together.";
+    byId("state").textContent = away
+      ? "The service does not answer; a job goes on."
+      : status === "accepted"
+        ? "A job waits for its turn."
+        : done < 100
+          ? `A job: ${done} %${onProgress.left(done, 100)}.`
+          : "A job: every position is solved, and the results are put together.";
   };
   tick();
   onProgress.timer = setInterval(tick, 1000);
@@ -274,15 +376,60 @@ function showProblem() {
   drawing.refreshHoles(errors.map(({ pointer }) => pointer));
   place.hidden = !problem;
   if (!problem) return place.replaceChildren();
-  const entries = errors.slice(0, 4).map((error) => h("li", {}, form?.inWords(error.detail) ?? error.detail, " ", h("button", { type: "button", className: "mend", on: { click: () => form?.focus(error.pointer) } }, "Show the field")));
+  const entries = errors
+    .slice(0, 4)
+    .map((error) =>
+      h(
+        "li",
+        {},
+        form?.inWords(error.detail) ?? error.detail,
+        " ",
+        h(
+          "button",
+          { type: "button", className: "mend", on: { click: () => form?.focus(error.pointer) } },
+          "Show the field",
+        ),
+      ),
+    );
   const codes = new Set(errors.map(({ code }) => code));
   const turn = (inSolid, words) => h("button", { type: "button", on: { click: () => form?.compute(inSolid) } }, words);
-  const dimensions = codes.has("needs_three_dimensions") ? [h("p", {}, turn(true, "Compute it in three dimensions"), " ", turn(false, "Leave out what has an extent along the axis"))]
-    : codes.has("not_in_three_dimensions") ? [h("p", {}, turn(true, "Leave out what three dimensions do not know"), " ", turn(false, "Compute it in the plane"))] : [];
-  const back = computed && !same(computed, design.submission) ? h("button", { type: "button", on: { click: () => design.replace(computed, "open") } }, "Go back to it") : null;
+  const dimensions = codes.has("needs_three_dimensions")
+    ? [
+        h(
+          "p",
+          {},
+          turn(true, "Compute it in three dimensions"),
+          " ",
+          turn(false, "Leave out what has an extent along the axis"),
+        ),
+      ]
+    : codes.has("not_in_three_dimensions")
+      ? [
+          h(
+            "p",
+            {},
+            turn(true, "Leave out what three dimensions do not know"),
+            " ",
+            turn(false, "Compute it in the plane"),
+          ),
+        ]
+      : [];
+  const back =
+    computed && !same(computed, design.submission)
+      ? h("button", { type: "button", on: { click: () => design.replace(computed, "open") } }, "Go back to it")
+      : null;
   place.replaceChildren(
-    h("p", {}, h("strong", {}, problem.title), ...(shown ? [". Curves and numbers are those of the last design that could be computed; nothing is exported. ", back] : [])),
-    entries.length ? h("ul", {}, ...entries) : h("p", {}, problem.detail), ...dimensions);
+    h(
+      "p",
+      {},
+      h("strong", {}, problem.title),
+      ...(shown
+        ? [". Curves and numbers are those of the last design that could be computed; nothing is exported. ", back]
+        : []),
+    ),
+    entries.length ? h("ul", {}, ...entries) : h("p", {}, problem.detail),
+    ...dimensions,
+  );
   byId("state").textContent = "";
 }
 
@@ -290,7 +437,10 @@ function showDesigns(moving = false) {
   const designs = besideKept(shown);
   if (!design.kept.includes(against)) against = design.kept[0] ?? null;
   const seen = designs.filter(({ hidden }) => !hidden);
-  charts.show(seen.map((each) => ({ ...each, name: legendOf(each, seen) })), moving);
+  charts.show(
+    seen.map((each) => ({ ...each, name: legendOf(each, seen) })),
+    moving,
+  );
   const [curve] = shown.results.curves;
   headline.show(curve, against && { name: against.name, curve: atTorqueOf(curve, against.results) }, moving);
   // Numbers that change with every move cannot be read, and a new table lays the page out.
@@ -300,7 +450,9 @@ function showDesigns(moving = false) {
   compare.show(designs);
   geometry.show(shown);
   const choice = byId("against");
-  choice.replaceChildren(...design.kept.map((each, i) => h("option", { value: i, selected: each === against }, nameBeside(curve, each))));
+  choice.replaceChildren(
+    ...design.kept.map((each, i) => h("option", { value: i, selected: each === against }, nameBeside(curve, each))),
+  );
   byId("against-label").hidden = design.kept.length === 0;
   if (["export", "run-up", "population"].includes(tab)) panels[tab]?.refresh();
 }
@@ -312,7 +464,8 @@ function besideKept(one) {
 }
 
 /** The curve of `results` at the torque of another one; the first where there is none. */
-const atTorqueOf = ({ output_torque_n_m: torque }, { curves }) => curves.find((each) => each.output_torque_n_m === torque) ?? curves[0];
+const atTorqueOf = ({ output_torque_n_m: torque }, { curves }) =>
+  curves.find((each) => each.output_torque_n_m === torque) ?? curves[0];
 
 /** What a kept design is called beside `curve`: with its torque, where that is another one. */
 function nameBeside(curve, { name, results }) {
@@ -326,7 +479,10 @@ function legendOf({ name, results }, designs) {
   return differ ? `${name} ${results.method.replace(/_/g, " ")}` : name;
 }
 
-/** The address carries the design, and which change of it that is: packing takes a while, and a newer one may be done before. */
+/**
+ * The address carries the design, and which change of it that is: packing takes a while, and a newer one may be done
+ * before.
+ */
 async function address() {
   const { changes, submission } = design;
   const fragment = await toFragment(submission);
@@ -371,7 +527,41 @@ design.onRest(async () => {
 /** Says what else has happened, with a way back. */
 function notify(text, undoable = true) {
   const place = byId("notice");
-  place.replaceChildren(text, " ", ...(undoable ? [h("button", { type: "button", className: "undo", on: { click: () => { design.undo(); place.hidden = true; } } }, "Undo")] : []), h("button", { type: "button", ariaLabel: "Close the notice", on: { click: () => { place.hidden = true; } } }, "×"));
+  place.replaceChildren(
+    text,
+    " ",
+    ...(undoable
+      ? [
+          h(
+            "button",
+            {
+              type: "button",
+              className: "undo",
+              on: {
+                click: () => {
+                  design.undo();
+                  place.hidden = true;
+                },
+              },
+            },
+            "Undo",
+          ),
+        ]
+      : []),
+    h(
+      "button",
+      {
+        type: "button",
+        ariaLabel: "Close the notice",
+        on: {
+          click: () => {
+            place.hidden = true;
+          },
+        },
+      },
+      "×",
+    ),
+  );
   place.hidden = false;
   if (undoable) clearTimeout(fade.timer);
   else fade();
@@ -380,7 +570,9 @@ function notify(text, undoable = true) {
 /** What a notice tells of stays until something else has been changed, and a while longer. */
 function fade() {
   clearTimeout(fade.timer);
-  fade.timer = setTimeout(() => { byId("notice").hidden = true; }, NOTICE);
+  fade.timer = setTimeout(() => {
+    byId("notice").hidden = true;
+  }, NOTICE);
 }
 
 /** Takes a design whose results are known, so that they are shown and not computed again. */
@@ -396,7 +588,10 @@ function resume(id, study) {
   panels[name].resume(id, study);
 }
 
-/** Takes the design of a job or a study, where every default is filled in: without them, so that it is compared with others by what somebody has chosen. */
+/**
+ * Takes the design of a job or a study, where every default is filled in: without them, so that it is compared with
+ * others by what somebody has chosen.
+ */
 async function openFilled(submission, results) {
   try {
     open(await bare(await openapi(), submission), results);
@@ -411,7 +606,9 @@ function keep(entry) {
   const taken = design.kept.map(({ look }) => look);
   const look = Array.from({ length: taken.length + 1 }, (_, i) => i + 1).find((each) => !taken.includes(each));
   const names = design.kept.map(({ name }) => name);
-  const name = [entry.name, ...Array.from({ length: 99 }, (_, i) => `${entry.name} (${i + 2})`)].find((each) => !names.includes(each));
+  const name = [entry.name, ...Array.from({ length: 99 }, (_, i) => `${entry.name} (${i + 2})`)].find(
+    (each) => !names.includes(each),
+  );
   design.keep([...design.kept, { ...entry, name, look }]);
 }
 
@@ -427,7 +624,11 @@ async function compareMethods() {
   const base = await current();
   if (!base) return;
   for (const method of METHODS.filter((each) => each !== base.submission.method)) {
-    if (isSolid(base.submission.method) && needsSolid(design)) return notify("Plane methods do not know what this pair has along its axis, so there is nothing to compare.", false);
+    if (isSolid(base.submission.method) && needsSolid(design))
+      return notify(
+        "Plane methods do not know what this pair has along its axis, so there is nothing to compare.",
+        false,
+      );
     try {
       const asked = { ...base.submission, method };
       keep({ name: nameOf(asked), results: await resultsOf(asked), submission: asked, teeth: base.teeth });
@@ -453,7 +654,8 @@ async function print() {
   window.print();
 }
 
-// However somebody prints, a report comes of it: of the design, or where that is not computed yet of the one before, under its name.
+// However somebody prints, a report comes of it: of the design, or where that is not computed yet of the one before,
+// under its name.
 addEventListener("beforeprint", () => {
   if (live && form) byId("sheet").replaceChildren(sheet(live));
 });
@@ -470,7 +672,12 @@ async function share() {
   await address();
   const done = await copied(location.href);
   button.textContent = done ? "Link copied" : "Copy it from the address bar";
-  setTimeout(() => { button.textContent = "Copy link"; }, done ? 2000 : 6000);
+  setTimeout(
+    () => {
+      button.textContent = "Copy link";
+    },
+    done ? 2000 : 6000,
+  );
 }
 
 function setUpButtons() {
@@ -482,7 +689,9 @@ function setUpButtons() {
   });
   byId("share").addEventListener("click", share);
   byId("whole").addEventListener("click", () => follower.whole(design.submission));
-  byId("form").addEventListener("keydown", (event) => { if (event.key === "Enter") follower.hurry(); });
+  byId("form").addEventListener("keydown", (event) => {
+    if (event.key === "Enter") follower.hurry();
+  });
   byId("undo").addEventListener("click", () => design.undo());
   byId("redo").addEventListener("click", () => design.redo());
   byId("open-file").addEventListener("change", async (event) => {
@@ -498,7 +707,8 @@ function setUpButtons() {
   });
   for (const button of document.querySelectorAll("button[data-view]")) {
     button.addEventListener("click", () => {
-      for (const other of document.querySelectorAll("button[data-view]")) other.setAttribute("aria-pressed", String(other === button));
+      for (const other of document.querySelectorAll("button[data-view]"))
+        other.setAttribute("aria-pressed", String(other === button));
       const inSpace = button.dataset.view === "space";
       // What lies inside is drawn in the plane alone.
       if (inSpace) deformation.off();
@@ -623,10 +833,20 @@ function setUpTabs() {
 function setUpStart(examples, given) {
   const select = byId("start");
   const buildable = examples.filter(({ valid }) => valid);
-  select.replaceChildren(h("option", { value: NEW_PAIR }, "a new pair, all by default"), ...buildable.map(({ name }) => h("option", { value: name }, name.replace(/-/g, " "))), h("option", { value: "" }, "Your own"));
-  const note = () => { byId("start-note").textContent = select.value === NEW_PAIR ? "Only what no drawing leaves out is given; everything else has its default." : (buildable.find(({ name }) => name === select.value)?.description ?? ""); };
+  select.replaceChildren(
+    h("option", { value: NEW_PAIR }, "a new pair, all by default"),
+    ...buildable.map(({ name }) => h("option", { value: name }, name.replace(/-/g, " "))),
+    h("option", { value: "" }, "Your own"),
+  );
+  const note = () => {
+    byId("start-note").textContent =
+      select.value === NEW_PAIR
+        ? "Only what no drawing leaves out is given; everything else has its default."
+        : (buildable.find(({ name }) => name === select.value)?.description ?? "");
+  };
   select.addEventListener("change", () => {
-    const example = select.value === NEW_PAIR ? { submission: newPair() } : buildable.find(({ name }) => name === select.value);
+    const example =
+      select.value === NEW_PAIR ? { submission: newPair() } : buildable.find(({ name }) => name === select.value);
     note();
     if (example) design.replace(example.submission, "start");
   });
@@ -650,22 +870,49 @@ async function openFile(file) {
       design.replace(document.submission ?? document, "open");
       return;
     }
-    const { submissions, not_read: left, assumed, refused } = await post("v1/rexs", file, { headers: { "content-type": "application/octet-stream" } });
+    const {
+      submissions,
+      not_read: left,
+      assumed,
+      refused,
+    } = await post("v1/rexs", file, { headers: { "content-type": "application/octet-stream" } });
     const [submission] = submissions;
-    if (!submission) throw new ProblemError({ detail: refused.map(({ place, detail }) => `${place}: ${detail}`).join(" ") || "The model has no pair of external gears." });
+    if (!submission)
+      throw new ProblemError({
+        detail:
+          refused.map(({ place, detail }) => `${place}: ${detail}`).join(" ") ||
+          "The model has no pair of external gears.",
+      });
     design.replace(submission, "open");
     const more = submissions.length > 1 ? [`The first of ${submissions.length} pairs.`] : [];
-    note.replaceChildren([...more, ...assumed, ...(left.length ? [`Not read: ${left.map(({ component, attribute }) => [component, attribute].filter(Boolean).join(" ")).join(", ")}.`] : [])].join(" "));
+    note.replaceChildren(
+      [
+        ...more,
+        ...assumed,
+        ...(left.length
+          ? [
+              `Not read: ${left.map(({ component, attribute }) => [component, attribute].filter(Boolean).join(" ")).join(", ")}.`,
+            ]
+          : []),
+      ].join(" "),
+    );
   } catch (error) {
     if (!(error instanceof ProblemError || error instanceof SyntaxError)) throw error;
-    const why = error instanceof SyntaxError ? `${file.name} is neither a model of a gearbox nor a submission: ${error.message}` : (error.problem.errors?.[0]?.detail ?? error.message);
+    const why =
+      error instanceof SyntaxError
+        ? `${file.name} is neither a model of a gearbox nor a submission: ${error.message}`
+        : (error.problem.errors?.[0]?.detail ?? error.message);
     note.replaceChildren(h("span", { className: "field-error" }, why));
   }
 }
 
-/** An address that carries no design, because it is cut or leads to a place of the page, carries the one that is shown from now on. */
+/**
+ * An address that carries no design, because it is cut or leads to a place of the page, carries the one that is shown
+ * from now on.
+ */
 function unreadable() {
-  if (/^#design/.test(location.hash)) notify("The address carries a design that cannot be read: it may have been cut.", false);
+  if (/^#design/.test(location.hash))
+    notify("The address carries a design that cannot be read: it may have been cut.", false);
   carry();
 }
 
@@ -675,7 +922,12 @@ async function begin() {
   setUpKey();
   const lay = setUpTabs();
   const fetched = (work) => patiently(work, onProblem);
-  const [given, before, { items: examples }] = await Promise.all([fromFragment(location.hash), remembered(), fetched(() => json("v1/examples")), fetched(fetchQuantities)]);
+  const [given, before, { items: examples }] = await Promise.all([
+    fromFragment(location.hash),
+    remembered(),
+    fetched(() => json("v1/examples")),
+    fetched(fetchQuantities),
+  ]);
   if (!given) unreadable();
   setUpStart(examples, given);
   const first = given ?? examples.find(({ name }) => name === FIRST_EXAMPLE).submission;
@@ -690,7 +942,11 @@ async function begin() {
     ask: () => form.begin("/dynamics"),
     asked: () => Boolean(design.get("/dynamics")) && !problem,
     focus: () => form.focus("/dynamics/driving_speed_rpm"),
-    stage: { turn: (by) => turn(position + by), move: (factorAt) => drawing.setMotion(factorAt), rest: () => drawing.setMotion(null) },
+    stage: {
+      turn: (by) => turn(position + by),
+      move: (factorAt) => drawing.setMotion(factorAt),
+      rest: () => drawing.setMotion(null),
+    },
   });
   panels = {
     "run-up": runUp,
@@ -698,7 +954,14 @@ async function begin() {
     study: study(byId("study"), design, form, openFilled),
     population: population(byId("population"), design, form, limits, openFilled),
     jobs: jobs(byId("jobs"), design, form, openFilled, resume),
-    export: exporting(byId("export"), { current, designs: () => besideKept(live), drawing, charts, position: () => position, sheet }),
+    export: exporting(byId("export"), {
+      current,
+      designs: () => besideKept(live),
+      drawing,
+      charts,
+      position: () => position,
+      sheet,
+    }),
   };
   addEventListener("hashchange", async () => {
     const other = await fromFragment(location.hash);

@@ -21,16 +21,29 @@ export async function start(env = {}) {
   const folder = mkdtempSync(join(tmpdir(), "meshwright-"));
   const program = process.env.MESHWRIGHT;
   const port = await freePort();
-  const all = { ...process.env, MESHWRIGHT_LOG: "warn", MESHWRIGHT_PREVIEW_TIME_LIMIT_SECONDS: "60", MESHWRIGHT_LISTEN: `127.0.0.1:${port}`, MESHWRIGHT_DATABASE: join(folder, "jobs.db"), ...env };
+  const all = {
+    ...process.env,
+    MESHWRIGHT_LOG: "warn",
+    MESHWRIGHT_PREVIEW_TIME_LIMIT_SECONDS: "60",
+    MESHWRIGHT_LISTEN: `127.0.0.1:${port}`,
+    MESHWRIGHT_DATABASE: join(folder, "jobs.db"),
+    ...env,
+  };
   const child = spawn(program, ["serve"], { cwd: folder, env: all, stdio: ["ignore", "ignore", "inherit"] });
   const ended = new Promise((resolve) => child.once("exit", resolve));
   const url = `http://127.0.0.1:${port}/`;
   const deadline = Date.now() + PATIENCE;
-  while (!(await fetch(`${url}health/ready`).then((answer) => answer.ok, () => false))) {
+  while (
+    !(await fetch(`${url}health/ready`).then(
+      (answer) => answer.ok,
+      () => false,
+    ))
+  ) {
     if (Date.now() > deadline || child.exitCode !== null) throw new Error("the service does not start");
     await new Promise((resolve) => setTimeout(resolve, 50));
   }
-  const key = (name) => execFileSync(program, ["keys", "create", name], { cwd: folder, env: all, encoding: "utf8" }).match(/mw_\w+/)[0];
+  const key = (name) =>
+    execFileSync(program, ["keys", "create", name], { cwd: folder, env: all, encoding: "utf8" }).match(/mw_\w+/)[0];
   const stop = async () => {
     child.kill("SIGTERM");
     await ended;

@@ -1,4 +1,5 @@
-// Which mesh periods are shown: a strip of the whole true period with a window on it, drawn over, moved, or set by buttons.
+// Which mesh periods are shown: a strip of the whole true period with a window on it, drawn over, moved, or set by
+// buttons.
 
 import { h, number, s } from "./dom.js";
 import { linesOf, PANELS } from "../state/series.js";
@@ -16,22 +17,43 @@ export class Brush {
     Object.assign(this, { place, onRange });
     this.path = s("path", { class: "strip" });
     this.window = s("rect", { class: "window", y: 0, height: HEIGHT });
-    this.svg = s("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, preserveAspectRatio: "none", "aria-hidden": "true" }, this.path, this.window);
+    this.svg = s(
+      "svg",
+      { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, preserveAspectRatio: "none", "aria-hidden": "true" },
+      this.path,
+      this.window,
+    );
     this.words = h("output", { className: "note" });
-    const button = (name, label, work) => h("button", { type: "button", ariaLabel: label, title: label, on: { click: work } }, name);
-    place.append(this.svg, h("div", { className: "buttons" },
-      button("◀", "Earlier mesh periods", () => this.#move(-0.5)), button("▶", "Later mesh periods", () => this.#move(0.5)),
-      button("+", "Zoom in", () => this.#scale(0.5)), button("−", "Zoom out", () => this.#scale(2)), button("All", "All mesh periods", () => this.onRange(null)), this.words));
+    const button = (name, label, work) =>
+      h("button", { type: "button", ariaLabel: label, title: label, on: { click: work } }, name);
+    place.append(
+      this.svg,
+      h(
+        "div",
+        { className: "buttons" },
+        button("◀", "Earlier mesh periods", () => this.#move(-0.5)),
+        button("▶", "Later mesh periods", () => this.#move(0.5)),
+        button("+", "Zoom in", () => this.#scale(0.5)),
+        button("−", "Zoom out", () => this.#scale(2)),
+        button("All", "All mesh periods", () => this.onRange(null)),
+        this.words,
+      ),
+    );
     this.svg.addEventListener("pointerdown", (event) => this.#draw(event));
   }
 
-  /** Shows the transmission error of the live design, which stands first, over the longest period of all that are shown. */
+  /**
+   * Shows the transmission error of the live design, which stands first, over the longest period of all that are shown.
+   */
   show(designs) {
     const [line] = linesOf(PANELS[0], designs);
     this.#whole = line.span;
     this.place.hidden = line.span < LEAST_PERIODS;
     if (this.place.hidden) return;
-    const [least, most] = line.values.reduce(([a, b], value) => [Math.min(a, value), Math.max(b, value)], [Infinity, -Infinity]);
+    const [least, most] = line.values.reduce(
+      ([a, b], value) => [Math.min(a, value), Math.max(b, value)],
+      [Infinity, -Infinity],
+    );
     const columns = Array.from({ length: Math.min(500, line.values.length) }, () => [Infinity, -Infinity]);
     line.values.forEach((value, i) => {
       const column = columns[Math.floor((i * columns.length) / line.values.length)];
@@ -51,7 +73,9 @@ export class Brush {
     const [from, to] = this.#window();
     this.window.setAttribute("x", (from / this.#whole) * WIDTH);
     this.window.setAttribute("width", ((to - from) / this.#whole) * WIDTH);
-    this.words.textContent = range ? `periods ${number(from, 3)} to ${number(to, 3)} of ${number(this.#whole)}` : `all ${number(this.#whole)} mesh periods; draw over a curve to zoom`;
+    this.words.textContent = range
+      ? `periods ${number(from, 3)} to ${number(to, 3)} of ${number(this.#whole)}`
+      : `all ${number(this.#whole)} mesh periods; draw over a curve to zoom`;
   }
 
   #window() {

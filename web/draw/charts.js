@@ -4,7 +4,16 @@ import uPlot from "../vendor/uplot.js";
 import { extent, fixed, h, number, s } from "./dom.js";
 import { cellsOf, cssOf, faceOf, SCALE, scaleOf, wordsOfFace } from "./face.js";
 import { figure } from "./figure.js";
-import { linesOf, namesOf, ordersOf, PANELS, partialSpectrum, placedNames, wordsOf, wordsOfSpectrum } from "../state/series.js";
+import {
+  linesOf,
+  namesOf,
+  ordersOf,
+  PANELS,
+  partialSpectrum,
+  placedNames,
+  wordsOf,
+  wordsOfSpectrum,
+} from "../state/series.js";
 
 /** Where a mesh period has fewer pixels the curve is shown by its envelope. */
 const LEAST_PIXELS = 14;
@@ -14,12 +23,16 @@ const SPECTRUM = { id: "spectrum", title: "Spectrum of the transmission error", 
 const X_TITLE = "mesh position in mesh periods";
 const ORDER_TITLE = "order per revolution of the driven gear";
 
-/** So many colors of designs are chosen; further ones go around the circle of hues by the golden angle, so that no two are the same. */
+/**
+ * So many colors of designs are chosen; further ones go around the circle of hues by the golden angle, so that no two
+ * are the same.
+ */
 const CHOSEN = 7;
 const further = (look, lightness) => `oklch(${lightness} ${0.1 + 0.03 * (look % 3)} ${(look * 137.508) % 360})`;
 
 /** The color of a line: of its design, or of the part that it is of, which never has that of a design. */
-const colorOf = ({ look, part }, colors) => (part === undefined ? colors.series(look) : colors.parts[part % colors.parts.length]);
+const colorOf = ({ look, part }, colors) =>
+  part === undefined ? colors.series(look) : colors.parts[part % colors.parts.length];
 
 /** The colors and letters of the page as it looks now. */
 export function looks() {
@@ -27,10 +40,16 @@ export function looks() {
   const rem = parseFloat(style.fontSize);
   const of = (name) => style.getPropertyValue(name).trim();
   return {
-    ink: of("--ink"), grid: of("--grid"), faint: of("--faint"), accent: of("--accent"), panel: of("--panel"),
+    ink: of("--ink"),
+    grid: of("--grid"),
+    faint: of("--faint"),
+    accent: of("--accent"),
+    panel: of("--panel"),
     series: (look) => (look < CHOSEN ? of(`--series-${look + 1}`) : further(look, of("--lightness"))),
     parts: ["--line-of-action", "--faint", "--steel-2-edge", "--steel-edge"].map(of),
-    rem, height: parseFloat(of("--chart-height")), font: `${0.75 * rem}px system-ui, sans-serif`,
+    rem,
+    height: parseFloat(of("--chart-height")),
+    font: `${0.75 * rem}px system-ui, sans-serif`,
   };
 }
 
@@ -42,8 +61,8 @@ export class Charts {
   decibels = false;
 
   /**
-   * Charts in `place`. `onPosition` is told where a pointer is, `onRange` which mesh periods are shown: two numbers, or null for all; `onEveryPosition` that
-   * the load along the face is wanted at every position.
+   * Charts in `place`. `onPosition` is told where a pointer is, `onRange` which mesh periods are shown: two numbers, or
+   * null for all; `onEveryPosition` that the load along the face is wanted at every position.
    */
   constructor(place, { onPosition, onRange, onEveryPosition }) {
     Object.assign(this, { place, onPosition, onRange, onEveryPosition });
@@ -57,13 +76,45 @@ export class Charts {
       const legend = h("p", { className: "legend" });
       const words = h("p", { className: "visually-hidden", id: `words-${panel.id}` });
       const below = h("p", { className: "note", hidden: true });
-      const element = h("figure", { className: "chart", id: `chart-${panel.id}`, hidden: isRare(panel), aria: { label: panel.title, describedby: words.id } },
-        h("figcaption", {}, h("strong", {}, panel.title), ...(panel === SPECTRUM ? [h("label", {}, "in ", this.#scale())] : [` in ${panel.unit}`]), legend), canvas, below, words);
+      const element = h(
+        "figure",
+        {
+          className: "chart",
+          id: `chart-${panel.id}`,
+          hidden: isRare(panel),
+          aria: { label: panel.title, describedby: words.id },
+        },
+        h(
+          "figcaption",
+          {},
+          h("strong", {}, panel.title),
+          ...(panel === SPECTRUM ? [h("label", {}, "in ", this.#scale())] : [` in ${panel.unit}`]),
+          legend,
+        ),
+        canvas,
+        below,
+        words,
+      );
       place.append(element);
-      this.#panels.set(panel.id, { ...panel, canvas, legend, words, below, figure: element, plot: null, shape: "", width: null, seen: true, late: false });
+      this.#panels.set(panel.id, {
+        ...panel,
+        canvas,
+        legend,
+        words,
+        below,
+        figure: element,
+        plot: null,
+        shape: "",
+        width: null,
+        seen: true,
+        late: false,
+      });
     }
     new ResizeObserver(() => this.#resize()).observe(place);
-    const sight = new IntersectionObserver((entries) => entries.forEach(({ target, isIntersecting }) => this.#sees(target, isIntersecting)), { rootMargin: "100px" });
+    const sight = new IntersectionObserver(
+      (entries) => entries.forEach(({ target, isIntersecting }) => this.#sees(target, isIntersecting)),
+      { rootMargin: "100px" },
+    );
     for (const panel of this.#panels.values()) sight.observe(panel.figure);
   }
 
@@ -73,7 +124,12 @@ export class Charts {
       this.decibels = event.target.value === "db";
       if (this.shown) this.show(this.shown);
     };
-    return h("select", { id: "spectrum-scale", ariaLabel: "Scale of the spectrum", on: { change: choose } }, h("option", { value: "um" }, "µm"), h("option", { value: "db" }, `dB re ${REFERENCE} µm`));
+    return h(
+      "select",
+      { id: "spectrum-scale", ariaLabel: "Scale of the spectrum", on: { change: choose } },
+      h("option", { value: "um" }, "µm"),
+      h("option", { value: "db" }, `dB re ${REFERENCE} µm`),
+    );
   }
 
   /** Draws everything anew, because the page looks different. */
@@ -82,7 +138,10 @@ export class Charts {
     if (this.shown) this.show(this.shown);
   }
 
-  /** Shows designs: `{ name, results, look, teeth }`, the live one first. While a hand moves, curves out of sight wait until they are looked at. */
+  /**
+   * Shows designs: `{ name, results, look, teeth }`, the live one first. While a hand moves, curves out of sight wait
+   * until they are looked at.
+   */
   show(designs, moving = false) {
     this.shown = designs;
     const colors = looks();
@@ -95,7 +154,14 @@ export class Charts {
     }
     this.setPosition(this.#position);
     if (moving) return;
-    for (const panel of this.#panels.values()) panel.words.textContent = panel.figure.hidden ? "" : panel.id === "spectrum" ? wordsOfSpectrum(designs) : panel.along ? wordsOfFace(faceOf(designs[0].results.curves[0])) : wordsOf(panel, designs);
+    for (const panel of this.#panels.values())
+      panel.words.textContent = panel.figure.hidden
+        ? ""
+        : panel.id === "spectrum"
+          ? wordsOfSpectrum(designs)
+          : panel.along
+            ? wordsOfFace(faceOf(designs[0].results.curves[0]))
+            : wordsOf(panel, designs);
   }
 
   /** Shows the mesh periods from one position to another alone, or all of them. */
@@ -122,16 +188,36 @@ export class Charts {
   /** The curves that are shown as drawings with titles, units and legends. */
   figures({ width = 760, height = 300, ids = null } = {}) {
     const colors = looks();
-    const shown = [...this.#panels.values()].filter((panel) => !panel.figure.hidden && !panel.empty && (!ids || ids.includes(panel.id)));
+    const shown = [...this.#panels.values()].filter(
+      (panel) => !panel.figure.hidden && !panel.empty && (!ids || ids.includes(panel.id)),
+    );
     return shown.map((panel) => {
       const common = { title: panel.title, y: `${panel.title} in ${panel.unit}`, colors, width, height, heading: true };
       if (panel.id === "spectrum") {
         const spectra = this.#spectra();
-        const stems = spectra.map(({ name, look, orders }) => ({ name, color: colors.series(look), x: orders.map(([order]) => order), y: orders.map(([, value]) => this.#level(value)) }));
-        return figure({ ...common, y: `${panel.title} in ${this.#unit()}`, yRange: this.decibels ? this.#levels(spectra) : null, x: ORDER_TITLE, stems, names: this.#names(spectra) });
+        const stems = spectra.map(({ name, look, orders }) => ({
+          name,
+          color: colors.series(look),
+          x: orders.map(([order]) => order),
+          y: orders.map(([, value]) => this.#level(value)),
+        }));
+        return figure({
+          ...common,
+          y: `${panel.title} in ${this.#unit()}`,
+          yRange: this.decibels ? this.#levels(spectra) : null,
+          x: ORDER_TITLE,
+          stems,
+          names: this.#names(spectra),
+        });
       }
-      if (panel.along) return faceFigure(faceOf(this.shown[0].results.curves[0]), { ...common, xRange: this.#range, panel });
-      const lines = linesOf(panel, this.shown, this.#crowded(panel, linesOf(panel, this.shown), width)).map((line) => ({ ...line, color: colorOf(line, colors), x: closed(line), y: [...line.values, line.open ? null : line.values[0]] }));
+      if (panel.along)
+        return faceFigure(faceOf(this.shown[0].results.curves[0]), { ...common, xRange: this.#range, panel });
+      const lines = linesOf(panel, this.shown, this.#crowded(panel, linesOf(panel, this.shown), width)).map((line) => ({
+        ...line,
+        color: colorOf(line, colors),
+        x: closed(line),
+        y: [...line.values, line.open ? null : line.values[0]],
+      }));
       return figure({ ...common, x: X_TITLE, lines, xRange: this.#range });
     });
   }
@@ -173,9 +259,18 @@ export class Charts {
     panel.span = Math.max(...wanted.map(({ span }) => span));
     const [from, end] = this.#range ?? [0, panel.span];
     const [many, to] = [crowded, end];
-    const lines = many ? wanted.flatMap((line) => envelopeOf(line, from, to)) : wanted.map((line) => ({ ...line, at: closed(line), values: [...line.values, line.open ? null : line.values[0]] }));
+    const lines = many
+      ? wanted.flatMap((line) => envelopeOf(line, from, to))
+      : wanted.map((line) => ({
+          ...line,
+          at: closed(line),
+          values: [...line.values, line.open ? null : line.values[0]],
+        }));
     const tables = lines.map((line) => [line.at, line.values]);
-    const data = uPlot.join(tables, tables.map(() => [2]));
+    const data = uPlot.join(
+      tables,
+      tables.map(() => [2]),
+    );
     const shape = JSON.stringify([many, lines.map(({ name, look, dash }) => [name, look, dash])]);
     if (panel.shape !== shape || !panel.plot) {
       this.#make(panel, data, lines, colors, many);
@@ -185,7 +280,10 @@ export class Charts {
     }
     panel.plot.setScale("x", { min: from, max: to });
     const note = many ? (panel.whole ? "that of most load; zoom in for each" : "envelope; zoom in") : panel.note;
-    panel.legend.replaceChildren(...(note ? [h("span", {}, note)] : []), ...(wanted.length > 1 && panel.ofLive && !panel.note ? wanted.map((line) => sample(line, colors)) : []));
+    panel.legend.replaceChildren(
+      ...(note ? [h("span", {}, note)] : []),
+      ...(wanted.length > 1 && panel.ofLive && !panel.note ? wanted.map((line) => sample(line, colors)) : []),
+    );
   }
 
   /** Whether so many mesh periods are shown that they cannot be told apart. */
@@ -197,9 +295,26 @@ export class Charts {
   #make(panel, data, lines, colors, many) {
     panel.plot?.destroy();
     const options = {
-      ...this.#common(panel, colors, X_TITLE), scales: { x: { time: false, auto: false }, y: { range: yRange } },
-      series: [{}, ...lines.map(({ name, dash, ...line }) => ({ label: name, stroke: colorOf(line, colors), width: (many ? 0.05 : 0.1) * colors.rem, dash: many ? [] : dash, points: { show: false }, spanGaps: false }))],
-      bands: many ? lines.flatMap((line, i) => (i % 2 ? [] : [{ series: [i + 1, i + 2], fill: `color-mix(in srgb, ${colorOf(line, colors)} 35%, transparent)` }])) : [],
+      ...this.#common(panel, colors, X_TITLE),
+      scales: { x: { time: false, auto: false }, y: { range: yRange } },
+      series: [
+        {},
+        ...lines.map(({ name, dash, ...line }) => ({
+          label: name,
+          stroke: colorOf(line, colors),
+          width: (many ? 0.05 : 0.1) * colors.rem,
+          dash: many ? [] : dash,
+          points: { show: false },
+          spanGaps: false,
+        })),
+      ],
+      bands: many
+        ? lines.flatMap((line, i) =>
+            i % 2
+              ? []
+              : [{ series: [i + 1, i + 2], fill: `color-mix(in srgb, ${colorOf(line, colors)} 35%, transparent)` }],
+          )
+        : [],
       hooks: { setCursor: [(plot) => this.#follow(plot)], setSelect: [(plot) => this.#select(plot)] },
     };
     panel.plot = new uPlot(options, data, panel.canvas);
@@ -210,11 +325,34 @@ export class Charts {
 
   /** What all plots have. */
   #common(panel, colors, title) {
-    const axis = { stroke: colors.ink, font: colors.font, grid: { stroke: colors.grid, width: 1 }, ticks: { stroke: colors.grid, size: 4 } };
+    const axis = {
+      stroke: colors.ink,
+      font: colors.font,
+      grid: { stroke: colors.grid, width: 1 },
+      ticks: { stroke: colors.grid, size: 4 },
+    };
     return {
-      width: this.#width(panel), height: colors.height, legend: { show: false }, padding: [10, 14, 0, 0],
+      width: this.#width(panel),
+      height: colors.height,
+      legend: { show: false },
+      padding: [10, 14, 0, 0],
       cursor: { y: false, points: { size: 7 }, drag: { x: true, y: false, setScale: false, dist: 6 } },
-      axes: [{ ...axis, label: title, labelFont: colors.font, labelSize: 1.25 * colors.rem, size: 1.9 * colors.rem, space: 2.8 * colors.rem }, { ...axis, size: 3.6 * colors.rem, space: 2.1 * colors.rem, values: (_, splits) => splits.map((value) => number(value, 6)) }],
+      axes: [
+        {
+          ...axis,
+          label: title,
+          labelFont: colors.font,
+          labelSize: 1.25 * colors.rem,
+          size: 1.9 * colors.rem,
+          space: 2.8 * colors.rem,
+        },
+        {
+          ...axis,
+          size: 3.6 * colors.rem,
+          space: 2.1 * colors.rem,
+          values: (_, splits) => splits.map((value) => number(value, 6)),
+        },
+      ],
     };
   }
 
@@ -240,13 +378,19 @@ export class Charts {
     panel.figure.hidden = !face;
     if (!face) return;
     panel.below.hidden = face.every;
-    panel.legend.replaceChildren(h("span", {}, `K_Hβ ${fixed(face.factor, 3)}`), face.every ? scaleOf(face.most) : h("span", {}, "mean over the positions"));
+    panel.legend.replaceChildren(
+      h("span", {}, `K_Hβ ${fixed(face.factor, 3)}`),
+      face.every ? scaleOf(face.most) : h("span", {}, "mean over the positions"),
+    );
     if (!face.every) {
       panel.plot?.destroy();
       Object.assign(panel, { plot: null, now: null, shape: "mean" });
       const { title, unit } = panel;
       panel.canvas.replaceChildren(faceFigure(face, { title, y: `${title} in ${unit}`, panel }));
-      panel.below.replaceChildren("How it changes while the teeth pass is told where every position is asked for. ", h("button", { type: "button", on: { click: () => this.onEveryPosition() } }, "Show every position"));
+      panel.below.replaceChildren(
+        "How it changes while the teeth pass is told where every position is asked for. ",
+        h("button", { type: "button", on: { click: () => this.onEveryPosition() } }, "Show every position"),
+      );
       return;
     }
     panel.span = face.span;
@@ -269,10 +413,25 @@ export class Charts {
     const common = this.#common(panel, colors, X_TITLE);
     const [across, along] = common.axes;
     const options = {
-      ...common, scales: { x: { time: false, auto: false }, y: { range: () => [panel.face.edges[0], panel.face.edges.at(-1)] } },
-      axes: [across, { ...along, label: "z in mm", labelFont: colors.font, labelSize: 1.25 * colors.rem, size: 2.6 * colors.rem, grid: { show: false } }].map((axis) => ({ ...axis, grid: { show: false } })),
+      ...common,
+      scales: { x: { time: false, auto: false }, y: { range: () => [panel.face.edges[0], panel.face.edges.at(-1)] } },
+      axes: [
+        across,
+        {
+          ...along,
+          label: "z in mm",
+          labelFont: colors.font,
+          labelSize: 1.25 * colors.rem,
+          size: 2.6 * colors.rem,
+          grid: { show: false },
+        },
+      ].map((axis) => ({ ...axis, grid: { show: false } })),
       series: [{}, { label: panel.title, paths: () => null, points: { show: false } }],
-      hooks: { drawClear: [(plot) => drawCells(plot, panel.face)], setCursor: [(plot) => this.#follow(plot)], setSelect: [(plot) => this.#select(plot)] },
+      hooks: {
+        drawClear: [(plot) => drawCells(plot, panel.face)],
+        setCursor: [(plot) => this.#follow(plot)],
+        setSelect: [(plot) => this.#select(plot)],
+      },
     };
     panel.plot = new uPlot(options, data, panel.canvas);
     panel.now = h("div", { className: "now on-map" });
@@ -285,7 +444,10 @@ export class Charts {
     return 4.4 * this.shown[0].teeth;
   }
 
-  /** The spectra of the designs, each with its orders out of the noise; of the live one an estimate where its span is part of the true period. */
+  /**
+   * The spectra of the designs, each with its orders out of the noise; of the live one an estimate where its span is
+   * part of the true period.
+   */
   #spectra() {
     const last = this.#lastOrder();
     return this.shown.flatMap(({ name, results, look, teeth }, i) => {
@@ -308,7 +470,9 @@ export class Charts {
 
   /** From what is noise, or what is a thousandth of the largest, to the largest, in steps of 10 dB. */
   #levels(spectra) {
-    const [least, most] = extent(spectra.flatMap(({ orders }) => orders.map(([, value]) => this.#level(value)))) ?? [0, 20];
+    const [least, most] = extent(spectra.flatMap(({ orders }) => orders.map(([, value]) => this.#level(value)))) ?? [
+      0, 20,
+    ];
     const top = 10 * Math.ceil(most / 10 + 0.3);
     return [Math.max(10 * Math.floor(least / 10), top - 80), top];
   }
@@ -324,7 +488,13 @@ export class Charts {
     const last = this.#lastOrder();
     panel.names = this.#names(wanted);
     panel.levels = this.decibels ? this.#levels(wanted) : null;
-    const data = uPlot.join(wanted.map(({ orders }) => (orders.length ? [orders.map(([order]) => order), orders.map(([, value]) => this.#level(value))] : [[this.shown[0].teeth], [null]])));
+    const data = uPlot.join(
+      wanted.map(({ orders }) =>
+        orders.length
+          ? [orders.map(([order]) => order), orders.map(([, value]) => this.#level(value))]
+          : [[this.shown[0].teeth], [null]],
+      ),
+    );
     const shape = JSON.stringify([wanted.map(({ name, look }) => [name, look]), last, panel.levels]);
     if (panel.shape !== shape || !panel.plot) {
       this.#makeSpectrum(panel, data, wanted, colors, last);
@@ -335,18 +505,51 @@ export class Charts {
     const part = wanted.some(({ partial }) => partial);
     // Of several torques it has the first alone.
     const several = this.shown.some(({ results }) => results.curves.length > 1);
-    panel.legend.replaceChildren(...(several ? this.shown.map(({ name, look, results: { curves: [curve] } }, i) => sample({ name: `${name}, ${number(curve.output_torque_n_m)} N m`, look: look ?? i, dash: [] }, colors)) : []));
+    panel.legend.replaceChildren(
+      ...(several
+        ? this.shown.map(
+            (
+              {
+                name,
+                look,
+                results: {
+                  curves: [curve],
+                },
+              },
+              i,
+            ) => sample({ name: `${name}, ${number(curve.output_torque_n_m)} N m`, look: look ?? i, dash: [] }, colors),
+          )
+        : []),
+    );
     panel.below.hidden = !part;
-    if (part) panel.below.textContent = "Over the periods that were computed (Hann window): lines are wider than they are. For the whole spectrum clear Mesh periods under Load and method; a job computes it.";
+    if (part)
+      panel.below.textContent =
+        "Over the periods that were computed (Hann window): lines are wider than they are. For the whole spectrum clear Mesh periods under Load and method; a job computes it.";
   }
 
   #makeSpectrum(panel, data, wanted, colors, last) {
     panel.plot?.destroy();
     const options = {
-      ...this.#common(panel, colors, ORDER_TITLE), padding: [16, 14, 0, 0],
+      ...this.#common(panel, colors, ORDER_TITLE),
+      padding: [16, 14, 0, 0],
       cursor: { y: false, drag: { x: true, y: false, dist: 6 } },
-      scales: { x: { time: false, range: ({ data: [orders] }, least, most) => (least === orders[0] && most === orders.at(-1) ? [0, last] : [Math.max(0, least), Math.min(last, most)]) }, y: { range: (_, __, most) => panel.levels ?? [0, (most ?? 1) * 1.15] } },
-      series: [{}, ...wanted.map(({ name, look }) => ({ label: name, stroke: colors.series(look), paths: () => null, points: { show: false } }))],
+      scales: {
+        x: {
+          time: false,
+          range: ({ data: [orders] }, least, most) =>
+            least === orders[0] && most === orders.at(-1) ? [0, last] : [Math.max(0, least), Math.min(last, most)],
+        },
+        y: { range: (_, __, most) => panel.levels ?? [0, (most ?? 1) * 1.15] },
+      },
+      series: [
+        {},
+        ...wanted.map(({ name, look }) => ({
+          label: name,
+          stroke: colors.series(look),
+          paths: () => null,
+          points: { show: false },
+        })),
+      ],
       hooks: { draw: [(plot) => drawStems(plot, panel.names, colors)] },
     };
     panel.plot = new uPlot(options, data, panel.canvas);
@@ -361,7 +564,12 @@ export class Charts {
   #resize() {
     for (const panel of this.#panels.values()) {
       panel.width = null;
-      if (panel.plot && !panel.figure.hidden && (panel.plot.width !== this.#width(panel) || panel.plot.height !== looks().height)) panel.plot.setSize({ width: this.#width(panel), height: looks().height });
+      if (
+        panel.plot &&
+        !panel.figure.hidden &&
+        (panel.plot.width !== this.#width(panel) || panel.plot.height !== looks().height)
+      )
+        panel.plot.setSize({ width: this.#width(panel), height: looks().height });
     }
     this.setPosition(this.#position);
   }
@@ -376,7 +584,12 @@ function drawCells(plot, face) {
   ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
   ctx.clip();
   for (const { x, width, z, height, part } of cellsOf(face, [min, max], (max - min) / bbox.width)) {
-    const [left, right, foot, top] = [plot.valToPos(x, "x", true), plot.valToPos(x + width, "x", true), plot.valToPos(z, "y", true), plot.valToPos(z + height, "y", true)];
+    const [left, right, foot, top] = [
+      plot.valToPos(x, "x", true),
+      plot.valToPos(x + width, "x", true),
+      plot.valToPos(z, "y", true),
+      plot.valToPos(z + height, "y", true),
+    ];
     ctx.fillStyle = cssOf(part);
     // No seams where edges lie between pixels.
     ctx.fillRect(left, top, right - left + 0.6, foot - top + 0.6);
@@ -386,11 +599,27 @@ function drawCells(plot, face) {
 
 /** The load along a face as a drawing: the map, or the mean. */
 function faceFigure(face, { panel, xRange = null, ...common }) {
-  if (!face.every) return figure({ ...common, x: "z in mm", lines: [{ x: face.z, y: face.rows[0], color: common.colors?.series(0) }] });
+  if (!face.every)
+    return figure({
+      ...common,
+      x: "z in mm",
+      lines: [{ x: face.z, y: face.rows[0], color: common.colors?.series(0) }],
+    });
   const [from, to] = xRange ?? [0, face.span];
   // As many cells as can be seen: each position of a long period would make a file of megabytes.
-  const cells = cellsOf(face, [from, to], (to - from) / common.width).map(({ z, part, ...cell }) => ({ ...cell, y: z, color: cssOf(part) }));
-  return figure({ ...common, title: `${panel.title}, K_Hβ ${fixed(face.factor, 3)}`, x: X_TITLE, y: "z in mm", cells, scale: { colors: SCALE, words: ["0", `${number(face.most, 3)} ${panel.unit}`] } });
+  const cells = cellsOf(face, [from, to], (to - from) / common.width).map(({ z, part, ...cell }) => ({
+    ...cell,
+    y: z,
+    color: cssOf(part),
+  }));
+  return figure({
+    ...common,
+    title: `${panel.title}, K_Hβ ${fixed(face.factor, 3)}`,
+    x: X_TITLE,
+    y: "z in mm",
+    cells,
+    scale: { colors: SCALE, words: ["0", `${number(face.most, 3)} ${panel.unit}`] },
+  });
 }
 
 /** The positions of a line with the end of its span, where the first comes again. */
@@ -422,8 +651,21 @@ function yRange(_, least, most) {
 /** A piece of a line beside its name. */
 function sample({ name, dash, ...line }, colors) {
   const color = colorOf(line, colors);
-  const stroke = s("line", { x1: 0, x2: 36, y1: 4, y2: 4, stroke: color, "stroke-width": 2.5, "stroke-dasharray": dash?.length ? dash.join(" ") : null });
-  return h("span", { className: "entry" }, s("svg", { viewBox: "0 0 36 8", width: "2.25rem", height: "0.5rem", "aria-hidden": "true" }, stroke), name);
+  const stroke = s("line", {
+    x1: 0,
+    x2: 36,
+    y1: 4,
+    y2: 4,
+    stroke: color,
+    "stroke-width": 2.5,
+    "stroke-dasharray": dash?.length ? dash.join(" ") : null,
+  });
+  return h(
+    "span",
+    { className: "entry" },
+    s("svg", { viewBox: "0 0 36 8", width: "2.25rem", height: "0.5rem", "aria-hidden": "true" }, stroke),
+    name,
+  );
 }
 
 function drawStems(plot, names, colors) {
@@ -474,7 +716,22 @@ function drawNames(plot, names, colors, ratio) {
   ctx.fillStyle = colors.ink;
   ctx.textAlign = "center";
   const shown = names.filter(({ order }) => order >= plot.scales.x.min && order <= plot.scales.x.max);
-  const stems = plot.data.slice(1).flatMap((values, i) => plot.data[0].flatMap((order, j) => (values[j] === null || values[j] === undefined ? [] : [{ order, value: values[j], design: i }])));
-  const placed = placedNames(shown, { stems, mark: 2.6 * ratio, px: (order) => plot.valToPos(order, "x", true), py: (value) => plot.valToPos(value, "y", true), left: bbox.left, right: bbox.left + bbox.width, letter, widthOf: (label) => ctx.measureText(label).width });
+  const stems = plot.data
+    .slice(1)
+    .flatMap((values, i) =>
+      plot.data[0].flatMap((order, j) =>
+        values[j] === null || values[j] === undefined ? [] : [{ order, value: values[j], design: i }],
+      ),
+    );
+  const placed = placedNames(shown, {
+    stems,
+    mark: 2.6 * ratio,
+    px: (order) => plot.valToPos(order, "x", true),
+    py: (value) => plot.valToPos(value, "y", true),
+    left: bbox.left,
+    right: bbox.left + bbox.width,
+    letter,
+    widthOf: (label) => ctx.measureText(label).width,
+  });
   for (const { label, x, y } of placed) ctx.fillText(label, x, y);
 }

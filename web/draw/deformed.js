@@ -8,7 +8,10 @@ import { debounced, h, number, s } from "./dom.js";
 const STEPS = 6;
 /** The largest displacement is drawn at most this part of a tooth's height. */
 const REACH = 0.4;
-/** Fillets lie below this part of a tooth's height; above, contacts press on the flanks, which the grid does not resolve. */
+/**
+ * Fillets lie below this part of a tooth's height; above, contacts press on the flanks, which the grid does not
+ * resolve.
+ */
 const FILLETS = 0.2;
 /** Milliseconds until a position counts as chosen. */
 const REST = 200;
@@ -19,7 +22,9 @@ export class Deformation {
   /** Counts what was asked, so that an answer that nobody waits for any more is left. */
   #asked = 0;
 
-  /** `live` waits for the results that are shown and gives them with their submission, `position` is the mesh position. */
+  /**
+   * `live` waits for the results that are shown and gives them with their submission, `position` is the mesh position.
+   */
   constructor({ drawing, button, note, live, position }) {
     Object.assign(this, { drawing, button, note, live, position });
     this.later = debounced(REST, () => this.#show());
@@ -66,7 +71,9 @@ export class Deformation {
       const edges = await json(`v1/jobs/${job.id}/results/edges.json?mesh_position=${this.position().toFixed(4)}`);
       if (!wanted()) return;
       const { scale, top } = this.drawing.setDeformed(edges);
-      const section = isSolid(submission.method) ? "In the section through the middle of the common face; parts that end before it, where they end. " : "";
+      const section = isSolid(submission.method)
+        ? "In the section through the middle of the common face; parts that end before it, where they end. "
+        : "";
       this.note.replaceChildren(section, ...words(edges, scale, top));
     } catch (error) {
       if (!(error instanceof ProblemError)) throw error;
@@ -77,38 +84,68 @@ export class Deformation {
 
 /** What is seen, in words and as a scale of colors. */
 function words({ output_torque_n_m: torque, mesh_position: position, driving, driven }, scale, top) {
-  const most = (gear) => Math.max(...[...gear.teeth, ...gear.openings].flatMap((edge) => edge.displacement_um.map((u) => Math.hypot(...u))));
+  const most = (gear) =>
+    Math.max(...[...gear.teeth, ...gear.openings].flatMap((edge) => edge.displacement_um.map((u) => Math.hypot(...u))));
   const colors = Array.from({ length: STEPS }, (_, i) => h("span", { className: `stress-step level-${i}` }));
   return [
     `At ${number(torque)} N m and position ${number(position, 4)}, displacements ${scale} times enlarged, the driven gear turned back by the transmission error; dashed without load. `,
     `Against its hub the driving gear moves by ${number(most(driving), 3)} µm at most, the driven one by ${number(most(driven), 3)} µm. `,
-    "Von Mises stress at the edges: ", h("span", { className: "stress-scale" }, "0 ", ...colors, ` ${number(top, 3)} MPa`), ", the most at fillets and holes. ",
+    "Von Mises stress at the edges: ",
+    h("span", { className: "stress-scale" }, "0 ", ...colors, ` ${number(top, 3)} MPa`),
+    ", the most at fillets and holes. ",
     "Near a contact, where it is higher, the grid does not resolve it.",
   ];
 }
 
-/** A drawing of `edges`: its element, how many times displacements are enlarged, and the stress at which the color ends. */
+/**
+ * A drawing of `edges`: its element, how many times displacements are enlarged, and the stress at which the color ends.
+ */
 export function deformedShape(edges, outline) {
   const gears = ["driving", "driven"].map((member) => moved(edges, outline, member));
   const all = gears.flatMap(({ teeth, openings }) => [...teeth, ...openings]);
   const { tip_mm: tip, root_mm: root } = outline.driving.circles;
   const scale = rounded((REACH * (tip - root)) / Math.max(...all.flatMap(({ by }) => by.map((u) => Math.hypot(...u)))));
-  const top = Math.max(...gears.flatMap(({ member, teeth, openings }) => [...openings.flatMap(({ stress }) => stress), ...teeth.flatMap((edge) => belowFlanks(edge, outline[member]))]));
+  const top = Math.max(
+    ...gears.flatMap(({ member, teeth, openings }) => [
+      ...openings.flatMap(({ stress }) => stress),
+      ...teeth.flatMap((edge) => belowFlanks(edge, outline[member])),
+    ]),
+  );
   const shapes = gears.flatMap(({ member, teeth, openings, bore }) => {
     const ring = teeth.flatMap((edge) => placed(edge, scale));
     const holes = openings.map((edge) => pathOf(placed(edge, scale)));
-    const body = s("path", { class: `strained ${member}`, "fill-rule": "evenodd", d: [pathOf(ring), ...holes, ...(openings.length ? [] : [bore])].map((path) => `${path}Z`).join("") });
+    const body = s("path", {
+      class: `strained ${member}`,
+      "fill-rule": "evenodd",
+      d: [pathOf(ring), ...holes, ...(openings.length ? [] : [bore])].map((path) => `${path}Z`).join(""),
+    });
     return [body, ...colored([...teeth, ...openings], scale, top)];
   });
   return { element: s("g", { class: "deformation", "aria-hidden": "true" }, ...shapes), scale, top };
 }
 
-/** The edges of a gear with the displacement of each node in mm, that of the driven gear with its turn by the transmission error. */
+/**
+ * The edges of a gear with the displacement of each node in mm, that of the driven gear with its turn by the
+ * transmission error.
+ */
 function moved(edges, outline, member) {
-  const { center_mm: [x0, y0], circles, bore_radius_mm: bore } = outline[member];
+  const {
+    center_mm: [x0, y0],
+    circles,
+    bore_radius_mm: bore,
+  } = outline[member];
   const turn = member === "driven" ? (1e-3 * edges.transmission_error_um) / circles.base_mm : 0;
-  const of = ({ at_mm: at, displacement_um: u, von_mises_mpa: stress }) => ({ at, stress, by: at.map(([x, y], i) => [1e-3 * u[i][0] - turn * (y - y0), 1e-3 * u[i][1] + turn * (x - x0)]) });
-  return { member, teeth: edges[member].teeth.map(of), openings: edges[member].openings.map(of), bore: `M${x0 - bore} ${y0}a${bore} ${bore} 0 1 0 ${2 * bore} 0a${bore} ${bore} 0 1 0 ${-2 * bore} 0` };
+  const of = ({ at_mm: at, displacement_um: u, von_mises_mpa: stress }) => ({
+    at,
+    stress,
+    by: at.map(([x, y], i) => [1e-3 * u[i][0] - turn * (y - y0), 1e-3 * u[i][1] + turn * (x - x0)]),
+  });
+  return {
+    member,
+    teeth: edges[member].teeth.map(of),
+    openings: edges[member].openings.map(of),
+    bore: `M${x0 - bore} ${y0}a${bore} ${bore} 0 1 0 ${2 * bore} 0a${bore} ${bore} 0 1 0 ${-2 * bore} 0`,
+  };
 }
 
 /** The stresses of a tooth at its fillets. */

@@ -1,6 +1,9 @@
 // Elements, numbers and units as readers want them.
 
-/** An element with properties and children; `on` holds its listeners, `data` its data attributes, `aria` its ARIA attributes. */
+/**
+ * An element with properties and children; `on` holds its listeners, `data` its data attributes, `aria` its ARIA
+ * attributes.
+ */
 export function h(tag, properties = {}, ...children) {
   return dress(document.createElement(tag), properties, children);
 }
@@ -63,12 +66,15 @@ export function unit(name) {
 /** A time in milliseconds as somebody who waits wants it. */
 export function timeOf(milliseconds) {
   if (milliseconds < 90_000) return `${Math.max(1, Math.round(milliseconds / 1000))} s`;
-  return milliseconds < 5_400_000 ? `${Math.round(milliseconds / 60_000)} min` : `${fixed(milliseconds / 3_600_000, 1)} h`;
+  return milliseconds < 5_400_000
+    ? `${Math.round(milliseconds / 60_000)} min`
+    : `${fixed(milliseconds / 3_600_000, 1)} h`;
 }
 
 /**
- * Says how long the rest takes, in words that go on from others, of how much is done of a total; `expected` milliseconds were thought to be needed before anything was known. The pace
- * is that of the last tenth that has been done: what is made once, as a gear is for all of its positions, says nothing of what follows.
+ * Says how long the rest takes, in words that go on from others, of how much is done of a total; `expected`
+ * milliseconds were thought to be needed before anything was known. The pace is that of the last tenth that has been
+ * done: what is made once, as a gear is for all of its positions, says nothing of what follows.
  */
 export function remaining(expected = null, now = () => performance.now()) {
   const begun = now();

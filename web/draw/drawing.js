@@ -25,7 +25,13 @@ export class Drawing {
     this.svg = s("svg", { class: "gears", role: "group", "aria-label": "The gear pair from its true geometry" });
     this.overlay = s("g", { class: "overlay", "aria-hidden": "true" });
     this.forces = s("g", { class: "forces", "aria-hidden": "true" });
-    this.world = s("g", { transform: "scale(1 -1)" }, ...MEMBERS.map((member) => this.#gear(member)), this.overlay, this.forces);
+    this.world = s(
+      "g",
+      { transform: "scale(1 -1)" },
+      ...MEMBERS.map((member) => this.#gear(member)),
+      this.overlay,
+      this.forces,
+    );
     this.svg.append(this.world);
     place.replaceChildren(this.svg);
     this.#turnByHand();
@@ -66,7 +72,10 @@ export class Drawing {
     return this.#deformed;
   }
 
-  /** Shows forces as they are in motion: `factorAt` gives them over the static ones at a mesh position; null shows the static ones. */
+  /**
+   * Shows forces as they are in motion: `factorAt` gives them over the static ones at a mesh position; null shows the
+   * static ones.
+   */
   setMotion(factorAt) {
     this.#factorAt = factorAt;
     this.#drawForces();
@@ -98,7 +107,18 @@ export class Drawing {
     const cross = s("path", { class: "cross" });
     const holes = new HoleHandles(member, this.design, (event) => this.#inGear(member, event));
     const marks = s("g", { class: "circles", "aria-hidden": "true" }, pitch, base);
-    const rotor = s("g", { class: `rotor ${member}`, "data-member": member }, body, web, marks, bore, openings, holes.element, cross, tooth0);
+    const rotor = s(
+      "g",
+      { class: `rotor ${member}`, "data-member": member },
+      body,
+      web,
+      marks,
+      bore,
+      openings,
+      holes.element,
+      cross,
+      tooth0,
+    );
     const gear = { rotor, holes, outline: null, drawn: null };
     // All points of the profile are painted anew at every move of a hole, so that there are no more than can be seen.
     gear.draw = () => {
@@ -111,11 +131,24 @@ export class Drawing {
     };
     gear.show = (outline) => {
       const { tip_mm: tip, root_mm: root, pitch_mm, base_mm } = outline.circles;
-      const same = JSON.stringify(outline.tooth_mm) === JSON.stringify(gear.outline?.tooth_mm) && outline.tooth_count === gear.outline.tooth_count;
+      const same =
+        JSON.stringify(outline.tooth_mm) === JSON.stringify(gear.outline?.tooth_mm) &&
+        outline.tooth_count === gear.outline.tooth_count;
       gear.outline = outline;
       if (!same) gear.draw();
-      for (const [circle, r] of [[pitch, pitch_mm], [base, base_mm], [bore, outline.bore_radius_mm], [tooth0, (tip - root) / 9]]) circle.setAttribute("r", r);
-      openings.setAttribute("d", openingsOf(outline, this.design.get(`/pair/${member}/blank`)).map((line) => `M${line.map((point) => point.join(" ")).join("L")}Z`).join(""));
+      for (const [circle, r] of [
+        [pitch, pitch_mm],
+        [base, base_mm],
+        [bore, outline.bore_radius_mm],
+        [tooth0, (tip - root) / 9],
+      ])
+        circle.setAttribute("r", r);
+      openings.setAttribute(
+        "d",
+        openingsOf(outline, this.design.get(`/pair/${member}/blank`))
+          .map((line) => `M${line.map((point) => point.join(" ")).join("L")}Z`)
+          .join(""),
+      );
       web.setAttribute("d", outline.web ? ringPath(outline.web) : "");
       tooth0.setAttribute("cx", (root + tip) / 2);
       cross.setAttribute("d", `M${-0.12 * root} 0H${0.12 * root}M0 ${-0.12 * root}V${0.12 * root}`);
@@ -130,8 +163,12 @@ export class Drawing {
     this.overlay.replaceChildren(
       s("path", { d: `M${line.from_mm.join(" ")}L${line.to_mm.join(" ")}`, class: "action" }),
       s("path", { d: `M${driving.center_mm.join(" ")}L${driven.center_mm.join(" ")}`, class: "centers" }),
-      ...line.points.map((point) => s("circle", { cx: point.at_mm[0], cy: point.at_mm[1], r: size / 16, class: "mark" })),
-      ...line.points.map((point) => text(point.name, [point.at_mm[0] + size * 0.12, point.at_mm[1] + size * 0.03], size / 4.5, "letter")),
+      ...line.points.map((point) =>
+        s("circle", { cx: point.at_mm[0], cy: point.at_mm[1], r: size / 16, class: "mark" }),
+      ),
+      ...line.points.map((point) =>
+        text(point.name, [point.at_mm[0] + size * 0.12, point.at_mm[1] + size * 0.03], size / 4.5, "letter"),
+      ),
       dimension(driving.circles, driven.circles, driven.center_mm[0]),
     );
   }
@@ -232,7 +269,10 @@ export function thinned(points, tolerance) {
   const beside = points.map(([x, y]) => Math.abs((x - x0) * (y1 - y0) - (y - y0) * (x1 - x0)) / length);
   const farthest = beside.indexOf(Math.max(...beside));
   if (!(beside[farthest] > tolerance)) return [points[0], points.at(-1)];
-  return [...thinned(points.slice(0, farthest + 1), tolerance).slice(0, -1), ...thinned(points.slice(farthest), tolerance)];
+  return [
+    ...thinned(points.slice(0, farthest + 1), tolerance).slice(0, -1),
+    ...thinned(points.slice(farthest), tolerance),
+  ];
 }
 
 function outlinePath(tooth, count) {
@@ -240,7 +280,8 @@ function outlinePath(tooth, count) {
   for (let i = 0; i < count; i += 1) {
     const [cos, sin] = [Math.cos((2 * Math.PI * i) / count), Math.sin((2 * Math.PI * i) / count)];
     // The last point of a tooth is the first of the next.
-    for (const [x, y] of tooth.slice(0, -1)) points.push(`${(x * cos - y * sin).toFixed(4)} ${(x * sin + y * cos).toFixed(4)}`);
+    for (const [x, y] of tooth.slice(0, -1))
+      points.push(`${(x * cos - y * sin).toFixed(4)} ${(x * sin + y * cos).toFixed(4)}`);
   }
   return `M${points.join("L")}Z`;
 }
@@ -257,9 +298,17 @@ function text(words, [x, y], size, name) {
   return element;
 }
 
-/** The center distance where it is over neither gear: below the smaller one, or between two that are about alike, at the foot of the drawing, where they are farthest apart. */
+/**
+ * The center distance where it is over neither gear: below the smaller one, or between two that are about alike, at the
+ * foot of the drawing, where they are farthest apart.
+ */
 function dimension({ tip_mm: r1, pitch_mm: pitch }, { tip_mm: r2 }, a) {
-  const [x, y, anchor] = r1 < 0.8 * r2 ? [-r1, -0.94 * r2, "start"] : r2 < 0.8 * r1 ? [a + r2, -0.94 * r1, "end"] : [pitch, -1.01 * Math.max(r1, r2), "middle"];
+  const [x, y, anchor] =
+    r1 < 0.8 * r2
+      ? [-r1, -0.94 * r2, "start"]
+      : r2 < 0.8 * r1
+        ? [a + r2, -0.94 * r1, "end"]
+        : [pitch, -1.01 * Math.max(r1, r2), "middle"];
   const element = text(`a = ${number(a, 7)} mm`, [x, y], (r1 + r2) / 16, "dimension");
   element.setAttribute("text-anchor", anchor);
   return element;
@@ -269,5 +318,10 @@ function arrow(from, to, [ux, uy], head) {
   const base = [to[0] - head * ux, to[1] - head * uy];
   const side = [-uy * head * 0.4, ux * head * 0.4];
   const tip = `M${to.join(" ")}L${base[0] + side[0]} ${base[1] + side[1]}L${base[0] - side[0]} ${base[1] - side[1]}Z`;
-  return s("g", { class: "force" }, s("path", { d: `M${from.join(" ")}L${base.join(" ")}`, class: "shaft" }), s("path", { d: tip, class: "head" }));
+  return s(
+    "g",
+    { class: "force" },
+    s("path", { d: `M${from.join(" ")}L${base.join(" ")}`, class: "shaft" }),
+    s("path", { d: tip, class: "head" }),
+  );
 }

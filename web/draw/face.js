@@ -1,4 +1,5 @@
-// The load along the face: as a map over mesh position and z, as a curve where only its mean is known, in words, and as a scale of colors.
+// The load along the face: as a map over mesh position and z, as a curve where only its mean is known, in words, and as
+// a scale of colors.
 
 import { extent, fixed, h, number } from "./dom.js";
 import { spanOf } from "../state/series.js";
@@ -26,15 +27,32 @@ function edgesOf(z) {
   return [...z.map((middle) => middle - step / 2), z.at(-1) + step / 2];
 }
 
-/** The load of a curve over its face; null where its method does not see faces. `rows` has a row for each position, or one, their mean. */
+/**
+ * The load of a curve over its face; null where its method does not see faces. `rows` has a row for each position, or
+ * one, their mean.
+ */
 export function faceOf({ face, mesh_position: positions, ...curve }) {
   if (!face) return null;
   const { z_mm: z, load_n_per_mm: rows } = face;
   const most = Math.max(extent(rows.flat())[1], 1e-9);
-  return { z, rows, most, edges: edgesOf(z), every: rows.length === positions.length && rows.length > 1, positions, span: spanOf({ mesh_position: positions, ...curve }), factor: face.face_load_factor, centroid: face.load_centroid_mm, cure: face.cure ?? null };
+  return {
+    z,
+    rows,
+    most,
+    edges: edgesOf(z),
+    every: rows.length === positions.length && rows.length > 1,
+    positions,
+    span: spanOf({ mesh_position: positions, ...curve }),
+    factor: face.face_load_factor,
+    centroid: face.load_centroid_mm,
+    cure: face.cure ?? null,
+  };
 }
 
-/** The rectangles of the map between two mesh positions, each at least so wide: `{ x, width, z, height, part }`. One that several positions share tells the most of each z, so that no peak is lost. */
+/**
+ * The rectangles of the map between two mesh positions, each at least so wide: `{ x, width, z, height, part }`. One
+ * that several positions share tells the most of each z, so that no peak is lost.
+ */
 export function cellsOf({ rows, positions, edges, most, span }, [from, to], least = 0) {
   const step = span / positions.length;
   const taken = Math.max(1, Math.ceil(least / step));
@@ -45,7 +63,11 @@ export function cellsOf({ rows, positions, edges, most, span }, [from, to], leas
     const [x, end] = [Math.max(middle - step / 2, from), Math.min(middle + (taken - 0.5) * step, to)];
     if (end <= x) continue;
     const shared = Array.from({ length: taken }, (_, k) => rows[(i + k) % positions.length]);
-    shared[0].map((_, j) => Math.max(...shared.map((row) => row[j]))).forEach((load, j) => cells.push({ x, width: end - x, z: edges[j], height: edges[j + 1] - edges[j], part: load / most }));
+    shared[0]
+      .map((_, j) => Math.max(...shared.map((row) => row[j])))
+      .forEach((load, j) =>
+        cells.push({ x, width: end - x, z: edges[j], height: edges[j + 1] - edges[j], part: load / most }),
+      );
   }
   return cells;
 }
@@ -56,22 +78,34 @@ export function wordsOfFace({ z, rows, positions, most, every, factor, centroid,
   const [least, heaviest] = extent(mean);
   const where = (value) => `z = ${number(z[mean.indexOf(value)], 3)} mm`;
   const peak = every ? rows.map((row) => Math.max(...row)) : null;
-  const at = every ? ` The largest of all is ${number(most, 4)} N/mm, at position ${fixed(positions[peak.indexOf(most)], 2)}.` : "";
-  const wander = `The middle of the load lies from z = ${extent(centroid).map((each) => fixed(each, 2)).join(" to ")} mm.`;
+  const at = every
+    ? ` The largest of all is ${number(most, 4)} N/mm, at position ${fixed(positions[peak.indexOf(most)], 2)}.`
+    : "";
+  const wander = `The middle of the load lies from z = ${extent(centroid)
+    .map((each) => fixed(each, 2))
+    .join(" to ")} mm.`;
   return `Load along the face from z = ${number(edges[0])} to ${number(edges.at(-1))} mm, in N/mm, the mean over the positions: most at ${where(heaviest)}, ${number(heaviest, 4)}; least at ${where(least)}, ${number(least, 4)}.${at} ${wander} The face load factor is ${fixed(factor, 3)}.`;
 }
 
-/** What a slope and a crowning of the driving leads would make of the load, in words; null where nothing is told or won. */
+/**
+ * What a slope and a crowning of the driving leads would make of the load, in words; null where nothing is told or won.
+ */
 export function wordsOfCure({ cure, face_load_factor: factor } = {}) {
   if (!cure || !(cure.face_load_factor < 0.995 * factor)) return null;
-  const parts = [["a slope", cure.lead_slope_um], ["a crowning", cure.crowning_um]].filter(([, amount]) => Math.abs(amount) >= 0.05);
+  const parts = [
+    ["a slope", cure.lead_slope_um],
+    ["a crowning", cure.crowning_um],
+  ].filter(([, amount]) => Math.abs(amount) >= 0.05);
   return `K_Hβ would be ${fixed(cure.face_load_factor, 2)} with ${parts.map(([name, amount]) => `${name} of ${fixed(amount, 1)} µm`).join(" and ")} more on the leads of the driving gear.`;
 }
 
 /** `modifications` of a lead with what a cure adds: to the slope and the crowning that are there, or as new ones. */
 export function cured(modifications, { lead_slope_um: slope, crowning_um: crowning }) {
   const leads = (modifications ?? []).map((each) => ({ ...each }));
-  for (const [kind, more] of [["slope", slope], ["crowning", crowning]]) {
+  for (const [kind, more] of [
+    ["slope", slope],
+    ["crowning", crowning],
+  ]) {
     const there = leads.find((each) => each.kind === kind);
     const amount = Number(((there?.amount_um ?? 0) + more).toFixed(2));
     if (there) there.amount_um = amount;

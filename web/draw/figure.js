@@ -1,4 +1,5 @@
-// A figure as a drawing of its own, with title, axes, units and legend: for small charts on the page, for files and for print.
+// A figure as a drawing of its own, with title, axes, units and legend: for small charts on the page, for files and for
+// print.
 
 import { extent, number, s } from "./dom.js";
 import { placedNames } from "../state/series.js";
@@ -15,7 +16,8 @@ export function ticks(low, high, count = 5) {
   const power = 10 ** Math.floor(Math.log10(raw));
   const step = [1, 2, 5, 10].find((each) => each * power >= raw * (1 - 1e-9)) * power;
   const found = [];
-  for (let value = Math.ceil(low / step - 1e-9) * step; value <= high + step * 1e-9; value += step) found.push(Math.abs(value) < step * 1e-9 ? 0 : value);
+  for (let value = Math.ceil(low / step - 1e-9) * step; value <= high + step * 1e-9; value += step)
+    found.push(Math.abs(value) < step * 1e-9 ? 0 : value);
   return found;
 }
 
@@ -26,52 +28,177 @@ function range(values, room) {
 }
 
 /**
- * A figure of `cells` `{ x, y, width, height, color }`, of `lines` `{ name, color, dash, width, parted, x, y }`, where null breaks a line, of `points` `{ x, y, label, strong, open }`, where `open` is what a press of one does, and of `stems` `{ name, color, x, y }`, over named
- * axes, with `names` `{ order, label, value }` over stems, and a `scale` `{ colors, words }` of the colors of cells from their least to their most. Looks come from `colors`, or from the style sheet where there are none. Its `frame` tells where a value of x is, and which value is at a place.
+ * A figure of `cells` `{ x, y, width, height, color }`, of `lines` `{ name, color, dash, width, parted, x, y }`, where
+ * null breaks a line, of `points` `{ x, y, label, strong, open }`, where `open` is what a press of one does, and of
+ * `stems` `{ name, color, x, y }`, over named axes, with `names` `{ order, label, value }` over stems, and a `scale` `{
+ * colors, words }` of the colors of cells from their least to their most. Looks come from `colors`, or from the style
+ * sheet where there are none. Its `frame` tells where a value of x is, and which value is at a place.
  */
-export function figure({ title, x, y, cells = [], lines = [], points = [], stems = [], names = [], scale = null, colors = null, width = 520, height = 300, heading = false, xRange = null, yRange = null, label = title }) {
+export function figure({
+  title,
+  x,
+  y,
+  cells = [],
+  lines = [],
+  points = [],
+  stems = [],
+  names = [],
+  scale = null,
+  colors = null,
+  width = 520,
+  height = 300,
+  heading = false,
+  xRange = null,
+  yRange = null,
+  label = title,
+}) {
   const named = [...lines, ...stems].filter(({ name }) => name);
   const legend = named.length > 1 ? legendRows(named, width) : [];
   const frame = { ...FRAME, top: FRAME.top + (heading ? 18 : 0) + 15 * legend.length };
-  let [left, right] = xRange ?? range([...points.map((each) => each.x), ...lines.flatMap((line) => line.x), ...stems.flatMap((each) => each.x), ...cells.flatMap((each) => [each.x, each.x + each.width])], points.length ? 0.08 : 0);
-  const ys = [...points.map((each) => each.y), ...lines.flatMap((line) => line.y.filter((value, i) => value !== null && line.x[i] >= left && line.x[i] <= right)), ...stems.flatMap((each) => [0, ...each.y]), ...cells.flatMap((each) => [each.y, each.y + each.height])];
+  let [left, right] =
+    xRange ??
+    range(
+      [
+        ...points.map((each) => each.x),
+        ...lines.flatMap((line) => line.x),
+        ...stems.flatMap((each) => each.x),
+        ...cells.flatMap((each) => [each.x, each.x + each.width]),
+      ],
+      points.length ? 0.08 : 0,
+    );
+  const ys = [
+    ...points.map((each) => each.y),
+    ...lines.flatMap((line) => line.y.filter((value, i) => value !== null && line.x[i] >= left && line.x[i] <= right)),
+    ...stems.flatMap((each) => [0, ...each.y]),
+    ...cells.flatMap((each) => [each.y, each.y + each.height]),
+  ];
   let [low, high] = yRange ?? range(ys, cells.length ? 0 : 0.08);
   if (stems.length) [left, low] = [0, yRange ? low : 0];
   const px = (value) => frame.left + ((value - left) / (right - left || 1)) * (width - frame.left - frame.right);
   const py = (value) => height - frame.bottom - ((value - low) / (high - low)) * (height - frame.top - frame.bottom);
   const ink = colors ? { fill: colors.ink, "font-family": FONT, "font-size": LETTER } : {};
-  const line = (attributes, name) => s("line", { ...attributes, class: name, ...(colors ? { stroke: colors.grid } : {}) });
-  const svg = s("svg", { viewBox: `0 0 ${width} ${height}`, width: colors ? width : undefined, height: colors ? height : undefined, class: "scatter", role: points.some(({ open }) => open) ? "group" : "img", "aria-label": label, xmlns: "http://www.w3.org/2000/svg" });
+  const line = (attributes, name) =>
+    s("line", { ...attributes, class: name, ...(colors ? { stroke: colors.grid } : {}) });
+  const svg = s("svg", {
+    viewBox: `0 0 ${width} ${height}`,
+    width: colors ? width : undefined,
+    height: colors ? height : undefined,
+    class: "scatter",
+    role: points.some(({ open }) => open) ? "group" : "img",
+    "aria-label": label,
+    xmlns: "http://www.w3.org/2000/svg",
+  });
   if (heading) svg.append(words(title, { ...ink, x: frame.left, y: 16, "font-weight": 600, "font-size": LETTER + 2 }));
-  for (const { x: at, y: foot, width: wide, height: tall, color } of cells) svg.append(s("rect", { x: px(at).toFixed(2), y: py(foot + tall).toFixed(2), width: (px(at + wide) - px(at) + 0.3).toFixed(2), height: (py(foot) - py(foot + tall) + 0.3).toFixed(2), fill: color, "shape-rendering": "crispEdges" }));
+  for (const { x: at, y: foot, width: wide, height: tall, color } of cells)
+    svg.append(
+      s("rect", {
+        x: px(at).toFixed(2),
+        y: py(foot + tall).toFixed(2),
+        width: (px(at + wide) - px(at) + 0.3).toFixed(2),
+        height: (py(foot) - py(foot + tall) + 0.3).toFixed(2),
+        fill: color,
+        "shape-rendering": "crispEdges",
+      }),
+    );
   for (const value of ticks(left, right)) {
-    svg.append(line({ x1: px(value), x2: px(value), y1: frame.top, y2: height - frame.bottom }, "grid"), words(number(value), { ...ink, x: Math.min(px(value), width - 3.3 * number(value).length), y: height - frame.bottom + 16, "text-anchor": "middle" }));
+    svg.append(
+      line({ x1: px(value), x2: px(value), y1: frame.top, y2: height - frame.bottom }, "grid"),
+      words(number(value), {
+        ...ink,
+        x: Math.min(px(value), width - 3.3 * number(value).length),
+        y: height - frame.bottom + 16,
+        "text-anchor": "middle",
+      }),
+    );
   }
   for (const value of ticks(low, high)) {
-    svg.append(line({ x1: frame.left, x2: width - frame.right, y1: py(value), y2: py(value) }, "grid"), words(number(value, 6), { ...ink, x: frame.left - 6, y: py(value) + 4, "text-anchor": "end" }));
+    svg.append(
+      line({ x1: frame.left, x2: width - frame.right, y1: py(value), y2: py(value) }, "grid"),
+      words(number(value, 6), { ...ink, x: frame.left - 6, y: py(value) + 4, "text-anchor": "end" }),
+    );
   }
   svg.append(
     words(x, { ...ink, x: (frame.left + width - frame.right) / 2, y: height - 8, "text-anchor": "middle" }),
-    words(y, { ...ink, transform: `translate(14 ${(frame.top + height - frame.bottom) / 2}) rotate(-90)`, "text-anchor": "middle" }));
-  legend.forEach((row, i) => row.forEach(({ name, color, dash, at }) => {
-    const level = frame.top - 15 * (legend.length - i) + 2;
-    svg.append(s("line", { x1: frame.left + at, x2: frame.left + at + 22, y1: level, y2: level, stroke: color, "stroke-width": 2, "stroke-dasharray": dash?.length ? dash.join(" ") : null }), words(name, { ...ink, x: frame.left + at + 27, y: level + 4 }));
-  }));
-  for (const each of lines) svg.append(s("path", { d: pathOf(each, px, py, [left, right]), fill: "none", class: each.parted ? "parted-line" : each.color ? undefined : "line", stroke: each.color, "stroke-width": each.width ?? 1.5, "stroke-dasharray": each.dash?.length ? each.dash.join(" ") : null }));
-  stems.forEach((each, k) => each.x.forEach((place, i) => {
-    if (place < left || place > right) return;
-    svg.append(s("line", { x1: px(place) + 2 * k, x2: px(place) + 2 * k, y1: py(low), y2: py(each.y[i]), stroke: each.color, "stroke-width": 1.5 }));
-  }));
-  for (const { label: name, x: at, y: level } of placedNames(names, { stems: stems.flatMap((each) => each.x.map((order, i) => ({ order, value: each.y[i] }))), px, py, left: frame.left, right: width - frame.right, letter: LETTER, widthOf: (text) => 6.6 * text.length })) svg.append(words(name, { ...ink, x: at, y: level, "text-anchor": "middle" }));
+    words(y, {
+      ...ink,
+      transform: `translate(14 ${(frame.top + height - frame.bottom) / 2}) rotate(-90)`,
+      "text-anchor": "middle",
+    }),
+  );
+  legend.forEach((row, i) =>
+    row.forEach(({ name, color, dash, at }) => {
+      const level = frame.top - 15 * (legend.length - i) + 2;
+      svg.append(
+        s("line", {
+          x1: frame.left + at,
+          x2: frame.left + at + 22,
+          y1: level,
+          y2: level,
+          stroke: color,
+          "stroke-width": 2,
+          "stroke-dasharray": dash?.length ? dash.join(" ") : null,
+        }),
+        words(name, { ...ink, x: frame.left + at + 27, y: level + 4 }),
+      );
+    }),
+  );
+  for (const each of lines)
+    svg.append(
+      s("path", {
+        d: pathOf(each, px, py, [left, right]),
+        fill: "none",
+        class: each.parted ? "parted-line" : each.color ? undefined : "line",
+        stroke: each.color,
+        "stroke-width": each.width ?? 1.5,
+        "stroke-dasharray": each.dash?.length ? each.dash.join(" ") : null,
+      }),
+    );
+  stems.forEach((each, k) =>
+    each.x.forEach((place, i) => {
+      if (place < left || place > right) return;
+      svg.append(
+        s("line", {
+          x1: px(place) + 2 * k,
+          x2: px(place) + 2 * k,
+          y1: py(low),
+          y2: py(each.y[i]),
+          stroke: each.color,
+          "stroke-width": 1.5,
+        }),
+      );
+    }),
+  );
+  for (const { label: name, x: at, y: level } of placedNames(names, {
+    stems: stems.flatMap((each) => each.x.map((order, i) => ({ order, value: each.y[i] }))),
+    px,
+    py,
+    left: frame.left,
+    right: width - frame.right,
+    letter: LETTER,
+    widthOf: (text) => 6.6 * text.length,
+  }))
+    svg.append(words(name, { ...ink, x: at, y: level, "text-anchor": "middle" }));
   if (scale) svg.append(scaleAt(scale, width - frame.right, 8, ink));
   // Those that stand out are over the others.
   for (const point of [...points].sort((a, b) => Number(a.strong ?? false) - Number(b.strong ?? false))) {
-    const dot = s("circle", { cx: px(point.x), cy: py(point.y), r: point.strong ? 5 : 3.2, class: point.strong ? "dot strong" : "dot" });
+    const dot = s("circle", {
+      cx: px(point.x),
+      cy: py(point.y),
+      r: point.strong ? 5 : 3.2,
+      class: point.strong ? "dot strong" : "dot",
+    });
     const told = `${point.label}: ${number(point.x)}, ${number(point.y)}`;
     dot.append(Object.assign(s("title"), { textContent: told }));
     svg.append(dot);
     if (point.open) {
-      for (const [name, value] of Object.entries({ role: "button", tabindex: 0, "aria-label": `Open ${told}`, class: `${dot.getAttribute("class")} opens`, r: point.strong ? 7 : 5.5 })) dot.setAttribute(name, value);
+      for (const [name, value] of Object.entries({
+        role: "button",
+        tabindex: 0,
+        "aria-label": `Open ${told}`,
+        class: `${dot.getAttribute("class")} opens`,
+        r: point.strong ? 7 : 5.5,
+      }))
+        dot.setAttribute(name, value);
       dot.addEventListener("click", point.open);
       dot.addEventListener("keydown", (event) => {
         if (!["Enter", " "].includes(event.key)) return;
@@ -81,10 +208,23 @@ export function figure({ title, x, y, cells = [], lines = [], points = [], stems
     }
     if (point.strong) {
       const atEnd = px(point.x) > width * 0.75;
-      svg.append(words(point.label, { x: px(point.x) + (atEnd ? -8 : 8), y: py(point.y) - 7, "text-anchor": atEnd ? "end" : "start", class: "name" }));
+      svg.append(
+        words(point.label, {
+          x: px(point.x) + (atEnd ? -8 : 8),
+          y: py(point.y) - 7,
+          "text-anchor": atEnd ? "end" : "start",
+          class: "name",
+        }),
+      );
     }
   }
-  svg.frame = { x: [left, right], px, valueAt: (at) => left + ((at - frame.left) / (width - frame.left - frame.right)) * (right - left), top: frame.top, bottom: height - frame.bottom };
+  svg.frame = {
+    x: [left, right],
+    px,
+    valueAt: (at) => left + ((at - frame.left) / (width - frame.left - frame.right)) * (right - left),
+    top: frame.top,
+    bottom: height - frame.bottom,
+  };
   return svg;
 }
 
@@ -92,7 +232,13 @@ export function figure({ title, x, y, cells = [], lines = [], points = [], stems
 function scaleAt({ colors, words: [least, most] }, right, y, ink) {
   const step = 72 / colors.length;
   const left = right - 6.6 * most.length - 72 - 5;
-  return s("g", {}, words(least, { ...ink, x: left - 5, y: y + 8, "text-anchor": "end" }), ...colors.map((color, i) => s("rect", { x: left + i * step, y, width: step + 0.3, height: 9, fill: color })), words(most, { ...ink, x: right, y: y + 8, "text-anchor": "end" }));
+  return s(
+    "g",
+    {},
+    words(least, { ...ink, x: left - 5, y: y + 8, "text-anchor": "end" }),
+    ...colors.map((color, i) => s("rect", { x: left + i * step, y, width: step + 0.3, height: 9, fill: color })),
+    words(most, { ...ink, x: right, y: y + 8, "text-anchor": "end" }),
+  );
 }
 
 /** The names of lines in rows that fit. */
@@ -134,7 +280,11 @@ export function fileOf(svg) {
 export function stacked(figures, background) {
   const sizes = figures.map((each) => each.viewBox.baseVal);
   const [width, height] = [Math.max(...sizes.map((box) => box.width)), sizes.reduce((sum, box) => sum + box.height, 0)];
-  const sheet = s("svg", { viewBox: `0 0 ${width} ${height}`, width, height, xmlns: "http://www.w3.org/2000/svg" }, s("rect", { width, height, fill: background }));
+  const sheet = s(
+    "svg",
+    { viewBox: `0 0 ${width} ${height}`, width, height, xmlns: "http://www.w3.org/2000/svg" },
+    s("rect", { width, height, fill: background }),
+  );
   let y = 0;
   for (const [i, each] of figures.entries()) {
     each.setAttribute("y", y);
@@ -152,7 +302,10 @@ export async function pictureOf(svg, scale = 2) {
   const image = new Image();
   image.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(fileOf(svg))}`;
   await image.decode();
-  const canvas = Object.assign(document.createElement("canvas"), { width: Math.round(scale * width), height: Math.round(scale * height) });
+  const canvas = Object.assign(document.createElement("canvas"), {
+    width: Math.round(scale * width),
+    height: Math.round(scale * height),
+  });
   canvas.getContext("2d").drawImage(image, 0, 0, canvas.width, canvas.height);
   return new Promise((resolve) => canvas.toBlob(resolve, "image/png"));
 }

@@ -26,7 +26,9 @@ export class HoleHandles {
   patterns() {
     const given = this.design.get(this.pointer);
     if (!given) return [];
-    return Array.isArray(given) ? given.map((pattern, i) => [`${this.pointer}/${i}`, pattern]) : [[this.pointer, given]];
+    return Array.isArray(given)
+      ? given.map((pattern, i) => [`${this.pointer}/${i}`, pattern])
+      : [[this.pointer, given]];
   }
 
   refresh(wrong) {
@@ -36,25 +38,33 @@ export class HoleHandles {
     const shape = JSON.stringify(patterns.map(([, pattern]) => anglesOf(pattern).length + (pattern.slot ? "s" : "r")));
     if (shape !== this.drawn) {
       this.drawn = shape;
-      this.element.replaceChildren(...patterns.flatMap(([pointer, pattern]) => anglesOf(pattern).map((_, i) => this.#handle(pointer, i))));
+      this.element.replaceChildren(
+        ...patterns.flatMap(([pointer, pattern]) => anglesOf(pattern).map((_, i) => this.#handle(pointer, i))),
+      );
     }
     this.element.classList.toggle("wrong", isWrong);
     const handles = [...this.element.children];
-    for (const [, pattern] of patterns) for (const angle of anglesOf(pattern)) place(handles.shift(), pattern, angle, this.bounds);
+    for (const [, pattern] of patterns)
+      for (const angle of anglesOf(pattern)) place(handles.shift(), pattern, angle, this.bounds);
   }
 
   /** Where circles of holes can lie: between the bore and the root circle. */
   #bounds() {
     const gear = this.design.get(`/pair/${this.member}`) ?? {};
-    const root = gear.module_mm * (gear.tooth_count / 2 + (gear.profile_shift ?? 0)) - (gear.dedendum_mm ?? 1.25 * gear.module_mm);
+    const root =
+      gear.module_mm * (gear.tooth_count / 2 + (gear.profile_shift ?? 0)) - (gear.dedendum_mm ?? 1.25 * gear.module_mm);
     this.bounds = [gear.blank?.bore_radius_mm ?? 0, Number.isFinite(root) ? Number(root.toPrecision(6)) : 0];
   }
 
   #handle(pointer, index) {
     const first = index === 0;
     const handle = s("path", {
-      class: "hole", tabindex: first ? 0 : undefined, role: first ? "slider" : undefined,
-      "aria-label": first ? `Holes ${/\d+$/.test(pointer) ? `${Number(/\d+$/.exec(pointer)[0]) + 1} ` : ""}of the ${this.member} gear: arrow keys up and down move the circle, left and right the phase, plus and minus change the radius, or the width of slots, brackets the number` : undefined,
+      class: "hole",
+      tabindex: first ? 0 : undefined,
+      role: first ? "slider" : undefined,
+      "aria-label": first
+        ? `Holes ${/\d+$/.test(pointer) ? `${Number(/\d+$/.exec(pointer)[0]) + 1} ` : ""}of the ${this.member} gear: arrow keys up and down move the circle, left and right the phase, plus and minus change the radius, or the width of slots, brackets the number`
+        : undefined,
     });
     handle.append(s("title"));
     handle.addEventListener("pointerdown", (event) => this.#drag(event, pointer, index));
@@ -76,11 +86,17 @@ export class HoleHandles {
     this.design.hold();
     const move = (moved) => {
       const place = this.inGear(moved);
-      if (atRim) return this.design.set(`${pointer}/radius_mm`, Math.max(0.05, round(Math.hypot(place[0] - center[0], place[1] - center[1]), 0.05)), "drag");
+      if (atRim)
+        return this.design.set(
+          `${pointer}/radius_mm`,
+          Math.max(0.05, round(Math.hypot(place[0] - center[0], place[1] - center[1]), 0.05)),
+          "drag",
+        );
       const to = place.map((value, i) => value - grip[i]);
       const turned = wrap((Math.atan2(to[1], to[0]) - angle) / TURN);
       // A hand that means the circle is not to turn the holes.
-      const phase = Math.abs(turned) < 2 ? (pattern.phase_deg ?? 0) : wrap(round((pattern.phase_deg ?? 0) + turned, 0.5));
+      const phase =
+        Math.abs(turned) < 2 ? (pattern.phase_deg ?? 0) : wrap(round((pattern.phase_deg ?? 0) + turned, 0.5));
       const values = { [`${pointer}/circle_radius_mm`]: Math.max(0.1, round(Math.hypot(...to), 0.05)) };
       if (pattern.count) values[`${pointer}/phase_deg`] = phase;
       this.design.setAll(values, "drag");
@@ -98,7 +114,12 @@ export class HoleHandles {
 
   #press(event, pointer) {
     const pattern = this.design.get(pointer);
-    const add = (field, by, least) => this.design.set(`${pointer}/${field}`, Math.max(least, Number(((at(pattern, `/${field}`) ?? 0) + by).toFixed(6))), "drag");
+    const add = (field, by, least) =>
+      this.design.set(
+        `${pointer}/${field}`,
+        Math.max(least, Number(((at(pattern, `/${field}`) ?? 0) + by).toFixed(6))),
+        "drag",
+      );
     const size = pattern.slot ? "slot/width_mm" : "radius_mm";
     const actions = {
       ArrowUp: () => add("circle_radius_mm", 0.25, 0.1),
@@ -132,8 +153,16 @@ function place(handle, pattern, angle, [least, most]) {
   handle.setAttribute("d", pattern.slot ? slotPath(pattern, angle) : diskPath(pattern, angle));
   handle.querySelector("title").textContent = `${words}, R ${number(pattern.circle_radius_mm)} mm`;
   if (handle.getAttribute("role")) {
-    for (const [name, value] of [["min", least], ["max", most], ["now", pattern.circle_radius_mm]]) handle.setAttribute(`aria-value${name}`, value);
-    handle.setAttribute("aria-valuetext", `${pattern.count ?? pattern.at_deg?.length} holes, circle radius ${pattern.circle_radius_mm} mm, ${words}`);
+    for (const [name, value] of [
+      ["min", least],
+      ["max", most],
+      ["now", pattern.circle_radius_mm],
+    ])
+      handle.setAttribute(`aria-value${name}`, value);
+    handle.setAttribute(
+      "aria-valuetext",
+      `${pattern.count ?? pattern.at_deg?.length} holes, circle radius ${pattern.circle_radius_mm} mm, ${words}`,
+    );
   }
 }
 
@@ -150,7 +179,10 @@ function slotPath({ circle_radius_mm: R, slot }, angle) {
   return `M${at(R + r, -half)}A${R + r} ${R + r} 0 ${large} 1 ${at(R + r, half)}A${r} ${r} 0 0 1 ${at(R - r, half)}A${R - r} ${R - r} 0 ${large} 0 ${at(R - r, -half)}A${r} ${r} 0 0 1 ${at(R + r, -half)}Z`;
 }
 
-/** The outlines of the openings of a blank that are no holes of its patterns: the service tells them behind those, from spokes and from an outline. */
+/**
+ * The outlines of the openings of a blank that are no holes of its patterns: the service tells them behind those, from
+ * spokes and from an outline.
+ */
 export function openingsOf({ holes = [] }, blank) {
   const patterns = blank?.holes ? [blank.holes].flat() : [];
   const known = patterns.reduce((count, pattern) => count + anglesOf(pattern).length, 0);
@@ -166,10 +198,27 @@ export function lineOf({ circle_radius_mm: R, radius_mm, slot }, angle) {
   if (!slot) return circle(radius_mm, ROUND_OF_HOLE).map(([x, y]) => [x + x0, y + y0]);
   const [r, half] = [slot.width_mm / 2, (slot.angle_deg * TURN) / 2];
   const along = Math.max(2, Math.ceil(half / 0.08));
-  const arc = (radius, from, to) => Array.from({ length: along + 1 }, (_, i) => from + ((to - from) * i) / along).map((turned) => [radius * Math.cos(turned), radius * Math.sin(turned)]);
-  const end = (at, from) => Array.from({ length: 7 }, (_, i) => from + (Math.PI * (i + 1)) / 8).map((turned) => [R * Math.cos(at) + r * Math.cos(turned), R * Math.sin(at) + r * Math.sin(turned)]);
-  return [...arc(R + r, angle - half, angle + half), ...end(angle + half, angle + half), ...arc(R - r, angle + half, angle - half), ...end(angle - half, angle - half + Math.PI)];
+  const arc = (radius, from, to) =>
+    Array.from({ length: along + 1 }, (_, i) => from + ((to - from) * i) / along).map((turned) => [
+      radius * Math.cos(turned),
+      radius * Math.sin(turned),
+    ]);
+  const end = (at, from) =>
+    Array.from({ length: 7 }, (_, i) => from + (Math.PI * (i + 1)) / 8).map((turned) => [
+      R * Math.cos(at) + r * Math.cos(turned),
+      R * Math.sin(at) + r * Math.sin(turned),
+    ]);
+  return [
+    ...arc(R + r, angle - half, angle + half),
+    ...end(angle + half, angle + half),
+    ...arc(R - r, angle + half, angle - half),
+    ...end(angle - half, angle - half + Math.PI),
+  ];
 }
 
 /** A circle as a closed line. */
-export const circle = (radius, corners) => Array.from({ length: corners }, (_, i) => [radius * Math.cos((2 * Math.PI * i) / corners), radius * Math.sin((2 * Math.PI * i) / corners)]);
+export const circle = (radius, corners) =>
+  Array.from({ length: corners }, (_, i) => [
+    radius * Math.cos((2 * Math.PI * i) / corners),
+    radius * Math.sin((2 * Math.PI * i) / corners),
+  ]);

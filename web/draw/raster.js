@@ -1,4 +1,5 @@
-// Triangles and lines with a depth to each pixel, in an image of a canvas: the same picture with a graphics card and without one.
+// Triangles and lines with a depth to each pixel, in an image of a canvas: the same picture with a graphics card and
+// without one.
 
 export class Raster {
   #width = 0;
@@ -77,8 +78,18 @@ export class Raster {
     for (let k = 0; k <= steps; k += 1) {
       const t = k / steps;
       const [x, y, z] = [ax + t * (bx - ax), ay + t * (by - ay), az + t * (bz - az) + lift];
-      for (let row = Math.max(0, Math.round(y - r)), last = Math.min(height - 1, Math.max(Math.round(y - r), Math.round(y + r) - 1)); row <= last; row += 1) {
-        for (let i = Math.max(0, Math.round(x - r)), stop = Math.min(width - 1, Math.max(Math.round(x - r), Math.round(x + r) - 1)); i <= stop; i += 1) {
+      for (
+        let row = Math.max(0, Math.round(y - r)),
+          last = Math.min(height - 1, Math.max(Math.round(y - r), Math.round(y + r) - 1));
+        row <= last;
+        row += 1
+      ) {
+        for (
+          let i = Math.max(0, Math.round(x - r)),
+            stop = Math.min(width - 1, Math.max(Math.round(x - r), Math.round(x + r) - 1));
+          i <= stop;
+          i += 1
+        ) {
           const place = row * width + i;
           if (z >= this.depth[place]) {
             this.depth[place] = z;

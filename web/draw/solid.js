@@ -1,4 +1,5 @@
-// The surface of a gear in space: teeth along their helix, end faces, web, hub, holes. Points are in the frame of the gear, in mm; z is that of its face.
+// The surface of a gear in space: teeth along their helix, end faces, web, hub, holes. Points are in the frame of the
+// gear, in mm; z is that of its face.
 
 import { thinned } from "./drawing.js";
 import { anglesOf, circle, lineOf, openingsOf } from "./holes.js";
@@ -41,7 +42,12 @@ class Surface {
 
   /** A flat face at `z` between two heights, left and right of each; `up` is seen from +z. */
   trapezoid([low, high], [lowLeft, lowRight, highLeft, highRight], z, up) {
-    const corners = [this.point(lowLeft, low, z), this.point(lowRight, low, z), this.point(highRight, high, z), this.point(highLeft, high, z)];
+    const corners = [
+      this.point(lowLeft, low, z),
+      this.point(lowRight, low, z),
+      this.point(highRight, high, z),
+      this.point(highLeft, high, z),
+    ];
     if (up) this.facet(...corners);
     else this.facet(...corners.reverse());
   }
@@ -54,13 +60,19 @@ export function holesOf(blank) {
 }
 
 /**
- * The rings of a blank from its bore, or the axis of its shaft, to `rim`: `{ radii, heights }`, where the first of hub and web that covers a radius decides, and else the face.
+ * The rings of a blank from its bore, or the axis of its shaft, to `rim`: `{ radii, heights }`, where the first of hub
+ * and web that covers a radius decides, and else the face.
  */
 export function ringsOf({ bore_radius_mm: bore = 0, web, hub }, face, rim) {
   const around = (offset, width) => [(offset ?? 0) - width / 2, (offset ?? 0) + width / 2];
   const whole = [-face / 2, face / 2];
-  const parts = [...(hub ? [[bore, hub.outer_radius_mm, around(hub.offset_mm, hub.width_mm)]] : []), ...(web ? [[web.inner_radius_mm, web.outer_radius_mm, around(web.offset_mm, web.thickness_mm)]] : [])];
-  const ends = [...new Set([bore, ...parts.flatMap(([from, to]) => [from, to]), rim])].filter((radius) => radius >= bore && radius <= rim).sort((a, b) => a - b);
+  const parts = [
+    ...(hub ? [[bore, hub.outer_radius_mm, around(hub.offset_mm, hub.width_mm)]] : []),
+    ...(web ? [[web.inner_radius_mm, web.outer_radius_mm, around(web.offset_mm, web.thickness_mm)]] : []),
+  ];
+  const ends = [...new Set([bore, ...parts.flatMap(([from, to]) => [from, to]), rim])]
+    .filter((radius) => radius >= bore && radius <= rim)
+    .sort((a, b) => a - b);
   return ends.slice(1).map((to, i) => {
     const middle = (ends[i] + to) / 2;
     return { radii: [ends[i], to], heights: parts.find(([low, high]) => middle > low && middle < high)?.[2] ?? whole };
@@ -70,23 +82,37 @@ export function ringsOf({ bore_radius_mm: bore = 0, web, hub }, face, rim) {
 /** A flat ring without its holes, as pieces between heights of y: each where the ring is, less where holes are. */
 function pieces([inner, outer], holes) {
   const lines = [outer, inner, ...holes];
-  const heights = [...new Set(lines.flatMap((line) => line.map(([, y]) => Number(y.toFixed(3)))))].sort((a, b) => a - b);
-  const edges = lines.map((line) => line.map(([x, y], i) => {
-    const [x1, y1] = line[(i + 1) % line.length];
-    return y < y1 ? [x, y, x1, y1] : [x1, y1, x, y];
-  }));
+  const heights = [...new Set(lines.flatMap((line) => line.map(([, y]) => Number(y.toFixed(3)))))].sort(
+    (a, b) => a - b,
+  );
+  const edges = lines.map((line) =>
+    line.map(([x, y], i) => {
+      const [x1, y1] = line[(i + 1) % line.length];
+      return y < y1 ? [x, y, x1, y1] : [x1, y1, x, y];
+    }),
+  );
   const found = [];
   for (let i = 0; i + 1 < heights.length; i += 1) {
     const [low, high] = [heights[i], heights[i + 1]];
     const middle = (low + high) / 2;
     const at = ([x0, y0, x1, y1], y) => x0 + ((Math.min(Math.max(y, y0), y1) - y0) / (y1 - y0)) * (x1 - x0);
-    const spans = edges.map((all) => all.filter(([, y0, , y1]) => y0 < middle && y1 > middle).sort((a, b) => at(a, middle) - at(b, middle)));
+    const spans = edges.map((all) =>
+      all.filter(([, y0, , y1]) => y0 < middle && y1 > middle).sort((a, b) => at(a, middle) - at(b, middle)),
+    );
     const [[from, to] = [], ...openings] = spans;
     if (!from) continue;
-    const gaps = openings.flatMap((crossings) => Array.from({ length: crossings.length >> 1 }, (_, k) => [crossings[2 * k], crossings[2 * k + 1]])).sort((a, b) => at(a[0], middle) - at(b[0], middle));
+    const gaps = openings
+      .flatMap((crossings) =>
+        Array.from({ length: crossings.length >> 1 }, (_, k) => [crossings[2 * k], crossings[2 * k + 1]]),
+      )
+      .sort((a, b) => at(a[0], middle) - at(b[0], middle));
     let left = from;
     for (const [start, stop] of [...gaps, [to, to]]) {
-      if (at(start, middle) > at(left, middle)) found.push([[low, high], [at(left, low), at(start, low), at(left, high), at(start, high)]]);
+      if (at(start, middle) > at(left, middle))
+        found.push([
+          [low, high],
+          [at(left, low), at(start, low), at(left, high), at(start, high)],
+        ]);
       if (at(stop, middle) > at(left, middle)) left = stop;
     }
   }
@@ -94,8 +120,8 @@ function pieces([inner, outer], holes) {
 }
 
 /**
- * The surface of a gear whose `outline` is that of the service, of `gear` in the submission. `twist` is by how much its sections turn with z, in radians a mm,
- * from the section at `mid`. Gives points, triangles and edges as flat lists.
+ * The surface of a gear whose `outline` is that of the service, of `gear` in the submission. `twist` is by how much its
+ * sections turn with z, in radians a mm, from the section at `mid`. Gives points, triangles and edges as flat lists.
  */
 export function surfaceOf(outline, gear, twist, mid) {
   const surface = new Surface();
@@ -106,8 +132,11 @@ export function surfaceOf(outline, gear, twist, mid) {
   const count = outline.tooth_count;
   const holes = [...holesOf(blank), ...openingsOf(outline, blank)];
   const reach = Math.max(0, ...holes.flat().map(([x, y]) => Math.hypot(x, y)));
-  const rim = Math.max(outline.circles.root_mm - 0.25 * module, Math.min(reach + 0.01 * module, 0.999 * outline.circles.root_mm));
-  const sections = Math.min(MOST_PIECES, Math.max(1, Math.ceil(Math.abs(twist) * face / PIECE)));
+  const rim = Math.max(
+    outline.circles.root_mm - 0.25 * module,
+    Math.min(reach + 0.01 * module, 0.999 * outline.circles.root_mm),
+  );
+  const sections = Math.min(MOST_PIECES, Math.max(1, Math.ceil((Math.abs(twist) * face) / PIECE)));
   const line = Array.from({ length: count }, (_, i) => {
     const [cos, sin] = [Math.cos((2 * Math.PI * i) / count), Math.sin((2 * Math.PI * i) / count)];
     return tooth.slice(0, -1).map(([x, y]) => [x * cos - y * sin, x * sin + y * cos]);
@@ -117,9 +146,15 @@ export function surfaceOf(outline, gear, twist, mid) {
     const [cos, sin] = [Math.cos(twist * (z - mid)), Math.sin(twist * (z - mid))];
     return line.map(([x, y]) => surface.point(x * cos - y * sin, x * sin + y * cos, z));
   });
-  for (let k = 0; k < sections; k += 1) line.forEach((_, i) => surface.facet(rows[k][i], rows[k][(i + 1) % line.length], rows[k + 1][(i + 1) % line.length], rows[k + 1][i]));
+  for (let k = 0; k < sections; k += 1)
+    line.forEach((_, i) =>
+      surface.facet(rows[k][i], rows[k][(i + 1) % line.length], rows[k + 1][(i + 1) % line.length], rows[k + 1][i]),
+    );
   // The end faces from the teeth to the rim.
-  for (const [k, up] of [[0, false], [sections, true]]) {
+  for (const [k, up] of [
+    [0, false],
+    [sections, true],
+  ]) {
     const inner = rows[k].map((point) => {
       const [x, y, z] = surface.points.slice(3 * point, 3 * point + 3);
       const part = rim / Math.hypot(x, y);
@@ -140,7 +175,12 @@ export function surfaceOf(outline, gear, twist, mid) {
     });
     // Corners of the last ring lie beyond the rim: it has other corners, and no gap stays between them.
     const beyond = i + 1 < rings.length ? 1 : 1 / Math.cos(Math.PI / ROUND);
-    for (const [span, corners] of pieces([circle(radii[0], ROUND), circle(beyond * radii[1], ROUND)], inside)) for (const [z, up] of [[heights[0], false], [heights[1], true]]) surface.trapezoid(span, corners, z, up);
+    for (const [span, corners] of pieces([circle(radii[0], ROUND), circle(beyond * radii[1], ROUND)], inside))
+      for (const [z, up] of [
+        [heights[0], false],
+        [heights[1], true],
+      ])
+        surface.trapezoid(span, corners, z, up);
     for (const hole of inside) surface.wall(hole, heights, true);
     // Where a ring is wider than its neighbor its wall is seen.
     const before = rings[i - 1]?.heights;
@@ -154,10 +194,17 @@ export function surfaceOf(outline, gear, twist, mid) {
       wall(Math.max(heights[1], before[0]), before[1], false);
     }
   }
-  return { points: Float64Array.from(surface.points), triangles: Uint32Array.from(surface.triangles), edges: Uint32Array.from(surface.edges) };
+  return {
+    points: Float64Array.from(surface.points),
+    triangles: Uint32Array.from(surface.triangles),
+    edges: Uint32Array.from(surface.edges),
+  };
 }
 
-/** By how much the sections of both gears turn with z, in radians a mm, and where the common face lies: `{ twists, mid, half, offset, advance }`; `advance` is in mesh periods a mm. */
+/**
+ * By how much the sections of both gears turn with z, in radians a mm, and where the common face lies: `{ twists, mid,
+ * half, offset, advance }`; `advance` is in mesh periods a mm.
+ */
 export function alongAxis(pair, outline) {
   const angle = (pair.helix_angle_deg ?? 0) * TURN;
   const offset = pair.axial_offset_mm ?? 0;
@@ -165,28 +212,58 @@ export function alongAxis(pair, outline) {
   const [from, to] = [Math.max(-one, offset - other), Math.min(one, offset + other)];
   const twistOf = (member) => Math.tan(angle) / outline[member].circles.reference_mm;
   const twists = { driving: twistOf("driving"), driven: -twistOf("driven") };
-  return { twists, mid: (from + to) / 2, half: Math.max(0, (to - from) / 2), offset, advance: (twists.driving * outline.driving.tooth_count) / (2 * Math.PI) };
+  return {
+    twists,
+    mid: (from + to) / 2,
+    half: Math.max(0, (to - from) / 2),
+    offset,
+    advance: (twists.driving * outline.driving.tooth_count) / (2 * Math.PI),
+  };
 }
 
-/** Where pair `pair` touches at a mesh position and a z from the middle of the common face, on the line of action of that section or beyond its ends. */
-export function contactAt({ line_of_action: { points: [a, , , , e] } }, { advance }, position, pair, z) {
+/**
+ * Where pair `pair` touches at a mesh position and a z from the middle of the common face, on the line of action of
+ * that section or beyond its ends.
+ */
+export function contactAt(
+  {
+    line_of_action: {
+      points: [a, , , , e],
+    },
+  },
+  { advance },
+  position,
+  pair,
+  z,
+) {
   const phase = position - Math.floor(position) - pair + z * advance;
   const t = (phase - a.mesh_position) / (e.mesh_position - a.mesh_position);
   return [0, 1].map((i) => a.at_mm[i] + t * (e.at_mm[i] - a.at_mm[i]));
 }
 
 /**
- * The lines of contact at a mesh position, those on the path of contact: `{ pair, points }`, each point `{ z, at }` with z from the middle of the common face and its
- * place in the transverse section, in mm.
+ * The lines of contact at a mesh position, those on the path of contact: `{ pair, points }`, each point `{ z, at }`
+ * with z from the middle of the common face and its place in the transverse section, in mm.
  */
 export function contactLines(outline, along, position, steps = 24) {
   const { half, advance } = along;
-  const { points: [a, , , , e] } = outline.line_of_action;
+  const {
+    points: [a, , , , e],
+  } = outline.line_of_action;
   const period = position - Math.floor(position);
   const beside = half * Math.abs(advance);
   const lines = [];
-  for (let pair = Math.ceil(period - e.mesh_position - beside - 1e-9); pair <= Math.floor(period - a.mesh_position + beside + 1e-9); pair += 1) {
-    const ends = Math.abs(advance) < 1e-12 ? [-half, half] : [a, e].map(({ mesh_position: phase }) => Math.min(half, Math.max(-half, (phase - period + pair) / advance))).sort((x, y) => x - y);
+  for (
+    let pair = Math.ceil(period - e.mesh_position - beside - 1e-9);
+    pair <= Math.floor(period - a.mesh_position + beside + 1e-9);
+    pair += 1
+  ) {
+    const ends =
+      Math.abs(advance) < 1e-12
+        ? [-half, half]
+        : [a, e]
+            .map(({ mesh_position: phase }) => Math.min(half, Math.max(-half, (phase - period + pair) / advance)))
+            .sort((x, y) => x - y);
     const middle = period - pair + ((ends[0] + ends[1]) / 2) * advance;
     if (!(ends[1] - ends[0] > 1e-9) || middle < a.mesh_position - 1e-9 || middle > e.mesh_position + 1e-9) continue;
     const points = Array.from({ length: steps + 1 }, (_, k) => {

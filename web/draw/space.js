@@ -1,4 +1,5 @@
-// The pair in space: turned by hand, touch and keys, with its lines of contact at the position shown. Made when it is first asked for, painted when something changes.
+// The pair in space: turned by hand, touch and keys, with its lines of contact at the position shown. Made when it is
+// first asked for, painted when something changes.
 
 import { json, ProblemError, solved } from "../state/api.js";
 import { debounced, extent, fixed, h, number } from "./dom.js";
@@ -37,15 +38,48 @@ export class Space {
   /** In `place`; `live` waits for the results of the design and gives them, or null. */
   constructor(place, { live }) {
     this.live = live;
-    this.canvas = h("canvas", { className: "space", tabIndex: 0, role: "application", aria: { label: "The pair in space: arrows turn it, plus and minus zoom, 0 goes back to the beginning", describedby: "space-words" } });
+    this.canvas = h("canvas", {
+      className: "space",
+      tabIndex: 0,
+      role: "application",
+      aria: {
+        label: "The pair in space: arrows turn it, plus and minus zoom, 0 goes back to the beginning",
+        describedby: "space-words",
+      },
+    });
     this.words = h("p", { className: "visually-hidden", id: "space-words" });
     this.legend = h("p", { className: "legend" });
-    const button = (name, label, work) => h("button", { type: "button", ariaLabel: label, title: label, on: { click: work } }, name);
-    const gears = h("select", { id: "space-gears", on: { change: () => this.#choose(gears.value) } }, ...[["both", "both gears"], ["driving", "driving gear"], ["driven", "driven gear"]].map(([value, name]) => h("option", { value }, name)));
-    this.element = h("div", { className: "in-space", hidden: true }, this.canvas, h("div", { className: "line" },
-      button("◀", "Turn to the left", () => this.#turn(-15, 0)), button("▶", "Turn to the right", () => this.#turn(15, 0)), button("▲", "Turn up", () => this.#turn(0, 15)), button("▼", "Turn down", () => this.#turn(0, -15)),
-      button("+", "Zoom in", () => this.#zoom(1.3)), button("−", "Zoom out", () => this.#zoom(1 / 1.3)), button("Reset", "Reset the view", () => this.#reset()),
-      h("label", { htmlFor: gears.id }, "Show"), gears, this.legend), this.words);
+    const button = (name, label, work) =>
+      h("button", { type: "button", ariaLabel: label, title: label, on: { click: work } }, name);
+    const gears = h(
+      "select",
+      { id: "space-gears", on: { change: () => this.#choose(gears.value) } },
+      ...[
+        ["both", "both gears"],
+        ["driving", "driving gear"],
+        ["driven", "driven gear"],
+      ].map(([value, name]) => h("option", { value }, name)),
+    );
+    this.element = h(
+      "div",
+      { className: "in-space", hidden: true },
+      this.canvas,
+      h(
+        "div",
+        { className: "line" },
+        button("◀", "Turn to the left", () => this.#turn(-15, 0)),
+        button("▶", "Turn to the right", () => this.#turn(15, 0)),
+        button("▲", "Turn up", () => this.#turn(0, 15)),
+        button("▼", "Turn down", () => this.#turn(0, -15)),
+        button("+", "Zoom in", () => this.#zoom(1.3)),
+        button("−", "Zoom out", () => this.#zoom(1 / 1.3)),
+        button("Reset", "Reset the view", () => this.#reset()),
+        h("label", { htmlFor: gears.id }, "Show"),
+        gears,
+        this.legend,
+      ),
+      this.words,
+    );
     place.append(this.element);
     this.raster = new Raster(this.canvas);
     this.settle = debounced(REST, () => this.#paint(true));
@@ -94,7 +128,10 @@ export class Space {
     this.#ask();
   }
 
-  /** The loads on each line by themselves, which a job tells; until then, and without it, the load on the face stands for them. */
+  /**
+   * The loads on each line by themselves, which a job tells; until then, and without it, the load on the face stands
+   * for them.
+   */
   async #fetch() {
     this.#asked += 1;
     const asked = this.#asked;
@@ -104,7 +141,9 @@ export class Space {
       if (!live || asked !== this.#asked) return;
       const job = await solved(live.submission);
       if (asked !== this.#asked) return;
-      const { curves } = await json(`v1/jobs/${job.id}/results/contact-pattern.json?torque=${live.results.curves[0].output_torque_n_m}`);
+      const { curves } = await json(
+        `v1/jobs/${job.id}/results/contact-pattern.json?torque=${live.results.curves[0].output_torque_n_m}`,
+      );
       if (asked !== this.#asked) return;
       this.#pattern = curves[0] ?? null;
       this.#ask();
@@ -136,7 +175,15 @@ export class Space {
 
   #press(event) {
     const by = event.shiftKey ? 15 : 5;
-    const work = { ArrowLeft: () => this.#turn(-by, 0), ArrowRight: () => this.#turn(by, 0), ArrowUp: () => this.#turn(0, by), ArrowDown: () => this.#turn(0, -by), "+": () => this.#zoom(1.2), "-": () => this.#zoom(1 / 1.2), 0: () => this.#reset() }[event.key];
+    const work = {
+      ArrowLeft: () => this.#turn(-by, 0),
+      ArrowRight: () => this.#turn(by, 0),
+      ArrowUp: () => this.#turn(0, by),
+      ArrowDown: () => this.#turn(0, -by),
+      "+": () => this.#zoom(1.2),
+      "-": () => this.#zoom(1 / 1.2),
+      0: () => this.#reset(),
+    }[event.key];
     if (!work || event.ctrlKey || event.metaKey || event.altKey) return;
     event.preventDefault();
     work();
@@ -162,12 +209,17 @@ export class Space {
       if (before) this.#zoom(apart() / before);
       else this.#turn((event.clientX - last[0]) * 0.5, (event.clientY - last[1]) * 0.5);
     });
-    for (const name of ["pointerup", "pointercancel"]) this.canvas.addEventListener(name, (event) => held.delete(event.pointerId));
-    this.canvas.addEventListener("wheel", (event) => {
-      if (!event.ctrlKey) return;
-      event.preventDefault();
-      this.#zoom(Math.exp(-event.deltaY / 200));
-    }, { passive: false });
+    for (const name of ["pointerup", "pointercancel"])
+      this.canvas.addEventListener(name, (event) => held.delete(event.pointerId));
+    this.canvas.addEventListener(
+      "wheel",
+      (event) => {
+        if (!event.ctrlKey) return;
+        event.preventDefault();
+        this.#zoom(Math.exp(-event.deltaY / 200));
+      },
+      { passive: false },
+    );
   }
 
   /** Paints with the next frame: coarse while something moves, and fine when it rests. */
@@ -193,7 +245,8 @@ export class Space {
     const along = alongAxis(this.#pair, this.#outline);
     const project = this.#projection(w, hgt);
     const style = getComputedStyle(document.documentElement);
-    for (const member of MEMBERS.filter((each) => this.#members.has(each))) this.#paintGear(member, along, project, style, scale);
+    for (const member of MEMBERS.filter((each) => this.#members.has(each)))
+      this.#paintGear(member, along, project, style, scale);
     this.#paintLines(along, project, scale);
     this.raster.done();
     // For those who test: what was painted last.
@@ -234,7 +287,11 @@ export class Space {
     const seen = new Float32Array(points.length);
     for (let i = 0; i < count; i += 1) {
       const [x, y, z] = [points[3 * i], points[3 * i + 1], points[3 * i + 2]];
-      const [px, py, pz] = project.point(outline.center_mm[0] + x * cos - y * sin, outline.center_mm[1] + x * sin + y * cos, z + shift);
+      const [px, py, pz] = project.point(
+        outline.center_mm[0] + x * cos - y * sin,
+        outline.center_mm[1] + x * sin + y * cos,
+        z + shift,
+      );
       seen[3 * i] = px;
       seen[3 * i + 1] = py;
       seen[3 * i + 2] = pz;
@@ -244,7 +301,9 @@ export class Space {
       return [1, 3, 5].map((i) => parseInt(text.length > 4 ? text.slice(i, i + 2) : text[(i + 1) / 2].repeat(2), 16));
     };
     const base = colorOf(member === "driving" ? "--steel" : "--steel-2");
-    const shades = Array.from({ length: 65 }, (_, i) => pixelOf(base.map((value) => Math.min(255, Math.round(value * (AMBIENT + (1.12 - AMBIENT) * (i / 64)))))));
+    const shades = Array.from({ length: 65 }, (_, i) =>
+      pixelOf(base.map((value) => Math.min(255, Math.round(value * (AMBIENT + (1.12 - AMBIENT) * (i / 64)))))),
+    );
     for (let t = 0; t < triangles.length; t += 3) {
       const [a, b, c] = [3 * triangles[t], 3 * triangles[t + 1], 3 * triangles[t + 2]];
       // Two sides in the view, whose y points down there.
@@ -254,13 +313,34 @@ export class Space {
       if (nz <= 0) continue;
       const [nx, ny] = [uy * vz - uz * vy, uz * vx - ux * vz];
       const light = Math.max(0, (nx * LIGHT[0] + ny * LIGHT[1] + nz * LIGHT[2]) / Math.hypot(nx, ny, nz));
-      this.raster.triangle(seen[a], seen[a + 1], seen[a + 2], seen[b], seen[b + 1], seen[b + 2], seen[c], seen[c + 1], seen[c + 2], shades[Math.round(light * 64)]);
+      this.raster.triangle(
+        seen[a],
+        seen[a + 1],
+        seen[a + 2],
+        seen[b],
+        seen[b + 1],
+        seen[b + 2],
+        seen[c],
+        seen[c + 1],
+        seen[c + 2],
+        shades[Math.round(light * 64)],
+      );
     }
     const edge = pixelOf(colorOf(member === "driving" ? "--steel-edge" : "--steel-2-edge"));
     const lift = 0.002 * project.size * this.#outline.driven.circles.tip_mm;
     for (let i = 0; i < edges.length; i += 2) {
       const [a, b] = [3 * edges[i], 3 * edges[i + 1]];
-      this.raster.line(seen[a], seen[a + 1], seen[a + 2], seen[b], seen[b + 1], seen[b + 2], Math.max(1, 0.7 * scale), lift, edge);
+      this.raster.line(
+        seen[a],
+        seen[a + 1],
+        seen[a + 2],
+        seen[b],
+        seen[b + 1],
+        seen[b + 2],
+        Math.max(1, 0.7 * scale),
+        lift,
+        edge,
+      );
     }
   }
 
@@ -268,10 +348,17 @@ export class Space {
   #paintLines(along, project, scale) {
     const lines = this.#loaded(along);
     // Each after the one below it, however their depths are rounded.
-    const paint = ({ points }, wide, lift, colorOf) => points.slice(1).forEach((to, i) => {
-      const from = points[i];
-      this.raster.line(...project.point(...from.at, from.z + along.mid), ...project.point(...to.at, to.z + along.mid), wide, lift, colorOf((from.part + to.part) / 2));
-    });
+    const paint = ({ points }, wide, lift, colorOf) =>
+      points.slice(1).forEach((to, i) => {
+        const from = points[i];
+        this.raster.line(
+          ...project.point(...from.at, from.z + along.mid),
+          ...project.point(...to.at, to.z + along.mid),
+          wide,
+          lift,
+          colorOf((from.part + to.part) / 2),
+        );
+      });
     const dark = pixelOf([16, 16, 20]);
     for (const line of lines) paint(line, 6 * scale, 1e6, () => dark);
     for (const line of lines) paint(line, 4 * scale, 2e6, (part) => pixelOf(rampAt(part)));
@@ -282,23 +369,44 @@ export class Space {
     if (this.#pattern) {
       // As they were computed: under load they reach a little beyond the line of action.
       const [{ lines }, most] = [this.#nearestPosition(), this.#mostOfPattern()];
-      return lines.map(({ pair_offset: pair, z_mm: z, load_n_per_mm: loads }) => ({ pair, points: z.map((each, i) => ({ z: each, at: contactAt(this.#outline, along, this.#position, pair, each), load: loads[i], part: loads[i] / most })) }));
+      return lines.map(({ pair_offset: pair, z_mm: z, load_n_per_mm: loads }) => ({
+        pair,
+        points: z.map((each, i) => ({
+          z: each,
+          at: contactAt(this.#outline, along, this.#position, pair, each),
+          load: loads[i],
+          part: loads[i] / most,
+        })),
+      }));
     }
     const face = this.#curve && faceOf(this.#curve);
     const row = face && (face.every ? face.rows[indexAt(this.#curve, this.#position)] : face.rows[0]);
     const loadAt = (z) => (row ? at(face.z, row, z) : 0);
-    return contactLines(this.#outline, along, this.#position).map((line) => ({ ...line, points: line.points.map((point) => ({ ...point, load: loadAt(point.z), part: row ? loadAt(point.z) / face.most : 0 })) }));
+    return contactLines(this.#outline, along, this.#position).map((line) => ({
+      ...line,
+      points: line.points.map((point) => ({
+        ...point,
+        load: loadAt(point.z),
+        part: row ? loadAt(point.z) / face.most : 0,
+      })),
+    }));
   }
 
   #nearestPosition() {
     const { positions } = this.#pattern;
-    const span = positions.length > 1 ? positions.length * (positions[1].mesh_position - positions[0].mesh_position) : 1;
-    const apart = ({ mesh_position: each }) => Math.abs(((((each - this.#position) % span) + 1.5 * span) % span) - span / 2);
+    const span =
+      positions.length > 1 ? positions.length * (positions[1].mesh_position - positions[0].mesh_position) : 1;
+    const apart = ({ mesh_position: each }) =>
+      Math.abs(((((each - this.#position) % span) + 1.5 * span) % span) - span / 2);
     return positions.reduce((best, each) => (apart(each) < apart(best) ? each : best));
   }
 
   #mostOfPattern() {
-    this.#pattern.most ??= Math.max(extent(this.#pattern.positions.flatMap(({ lines }) => lines.flatMap(({ load_n_per_mm: loads }) => loads)))?.[1] ?? 0, 1e-9);
+    this.#pattern.most ??= Math.max(
+      extent(this.#pattern.positions.flatMap(({ lines }) => lines.flatMap(({ load_n_per_mm: loads }) => loads)))?.[1] ??
+        0,
+      1e-9,
+    );
     return this.#pattern.most;
   }
 
@@ -308,16 +416,28 @@ export class Space {
     const along = alongAxis(this.#pair, this.#outline);
     const lines = this.#loaded(along);
     const angle = this.#pair.helix_angle_deg ?? 0;
-    const teeth = angle ? `helical teeth of ${number(Math.abs(angle))}°, the driving gear ${angle > 0 ? "right" : "left"}-handed` : "straight teeth";
+    const teeth = angle
+      ? `helical teeth of ${number(Math.abs(angle))}°, the driving gear ${angle > 0 ? "right" : "left"}-handed`
+      : "straight teeth";
     const face = this.#curve && faceOf(this.#curve);
     const each = lines.map(({ points }, i) => {
       const most = points.reduce((best, point) => (point.load > best.load ? point : best));
       const ends = `from z = ${fixed(points[0].z, 1)} to ${fixed(points.at(-1).z, 1)} mm`;
       return `line ${i + 1} ${ends}${face ? `, most at z = ${fixed(most.z, 1)} mm with ${number(most.load, 3)} N/mm` : ""}`;
     });
-    const loads = !this.#curve ? "Loads are not computed yet." : !face ? "The method tells no load along the face." : this.#pattern ? "Colors are the load on each line." : `Colors are the load on the face at that z${face.every ? "" : ", the mean over the positions"}, all lines together.`;
+    const loads = !this.#curve
+      ? "Loads are not computed yet."
+      : !face
+        ? "The method tells no load along the face."
+        : this.#pattern
+          ? "Colors are the load on each line."
+          : `Colors are the load on the face at that z${face.every ? "" : ", the mean over the positions"}, all lines together.`;
     this.words.textContent = `${this.#outline.driving.tooth_count} and ${this.#outline.driven.tooth_count} teeth, ${teeth}. At position ${fixed(this.#position, 2)} ${lines.length === 1 ? "one line of contact" : `${lines.length} lines of contact`}: ${each.join("; ")}. ${loads}`;
-    this.legend.replaceChildren(...(face ? ["Load", scaleOf(this.#pattern ? this.#mostOfPattern() : face.most)] : [`${lines.length} ${lines.length === 1 ? "line" : "lines"} of contact`]));
+    this.legend.replaceChildren(
+      ...(face
+        ? ["Load", scaleOf(this.#pattern ? this.#mostOfPattern() : face.most)]
+        : [`${lines.length} ${lines.length === 1 ? "line" : "lines"} of contact`]),
+    );
     this.legend.title = loads;
   }
 }

@@ -12,7 +12,12 @@ const SHOWN = 20;
 const FOLLOWED = 3;
 
 /** The files that a row offers at once. */
-const IN_ROW = [["JSON", "results.json"], ["CSV", "ste.csv"], ["SVG", "ste.svg"], ["VTU", "fields.vtu"]];
+const IN_ROW = [
+  ["JSON", "results.json"],
+  ["CSV", "ste.csv"],
+  ["SVG", "ste.svg"],
+  ["VTU", "fields.vtu"],
+];
 
 /** The documents of so many jobs are kept: what was asked never changes. */
 const DOCUMENTS = 200;
@@ -20,19 +25,51 @@ const DOCUMENTS = 200;
 const FIELDS = 4;
 const REST = 300;
 
-/** The jobs and studies in `place`; `form` names fields, the results of a finished job are opened by `onOpen`, and a study that is given by its id and document by `onStudy`. */
+/**
+ * The jobs and studies in `place`; `form` names fields, the results of a finished job are opened by `onOpen`, and a
+ * study that is given by its id and document by `onStudy`.
+ */
 export function jobs(place, design, form, onOpen, onStudy) {
   const out = h("div", { className: "scroll", id: "jobs-list", tabIndex: 0, role: "region", ariaLabel: "Jobs" });
   const state = h("p", { className: "note", role: "status" });
-  const tags = h("input", { type: "text", id: "jobs-tags", maxLength: 200, spellcheck: false, on: { change: () => design.set("/tags", read(tags, { kind: "texts" }), "mend") } });
-  const submit = h("button", { type: "button", className: "primary", on: { click: () => act(() => post("v1/jobs", design.submission)) } }, "Submit this design as a job");
+  const tags = h("input", {
+    type: "text",
+    id: "jobs-tags",
+    maxLength: 200,
+    spellcheck: false,
+    on: { change: () => design.set("/tags", read(tags, { kind: "texts" }), "mend") },
+  });
+  const submit = h(
+    "button",
+    { type: "button", className: "primary", on: { click: () => act(() => post("v1/jobs", design.submission)) } },
+    "Submit this design as a job",
+  );
   const ofStudies = h("input", { type: "checkbox", id: "jobs-of-studies", on: { change: () => refresh() } });
   const look = h("button", { type: "button", on: { click: () => refresh() } }, "Look again");
   const older = h("button", { type: "button", hidden: true, on: { click: () => more() } }, "Older jobs");
-  const studies = h("div", { className: "scroll", id: "studies", tabIndex: 0, role: "region", ariaLabel: "Sweeps, studies, searches and populations" });
+  const studies = h("div", {
+    className: "scroll",
+    id: "studies",
+    tabIndex: 0,
+    role: "region",
+    ariaLabel: "Sweeps, studies, searches and populations",
+  });
   const olderStudies = h("button", { type: "button", hidden: true, on: { click: () => moreStudies() } }, "Older ones");
-  place.replaceChildren(h("p", { className: "note" }, "A job is kept: its results can be fetched and linked to for weeks. What the page shows while you change numbers is not. A design that is too large to follow the hand is submitted by itself when the hand rests."),
-    h("div", { className: "line" }, submit, h("label", { htmlFor: tags.id }, "with the tags"), tags), h("div", { className: "line" }, look, h("label", {}, ofStudies, " those of studies too")), state, out, older, h("h3", {}, "Sweeps, studies, searches and populations"), studies, olderStudies);
+  place.replaceChildren(
+    h(
+      "p",
+      { className: "note" },
+      "A job is kept: its results can be fetched and linked to for weeks. What the page shows while you change numbers is not. A design that is too large to follow the hand is submitted by itself when the hand rests.",
+    ),
+    h("div", { className: "line" }, submit, h("label", { htmlFor: tags.id }, "with the tags"), tags),
+    h("div", { className: "line" }, look, h("label", {}, ofStudies, " those of studies too")),
+    state,
+    out,
+    older,
+    h("h3", {}, "Sweeps, studies, searches and populations"),
+    studies,
+    olderStudies,
+  );
   const rows = new Map();
   const followed = new Map();
   const documents = new Map();
@@ -44,13 +81,23 @@ export function jobs(place, design, form, onOpen, onStudy) {
   let live = null;
   let telling = 0;
 
-  design.onChange(debounced(REST, () => { if (!place.hidden) tell(); }));
+  design.onChange(
+    debounced(REST, () => {
+      if (!place.hidden) tell();
+    }),
+  );
 
-  /** Says of each job which design it is of. The list does not say it: each document is asked for once, the newest first. */
+  /**
+   * Says of each job which design it is of. The list does not say it: each document is asked for once, the newest
+   * first.
+   */
   async function tell() {
     telling += 1;
     const turn = telling;
-    const filled = await post("v1/validate", design.submission).then(({ submission }) => submission, () => null);
+    const filled = await post("v1/validate", design.submission).then(
+      ({ submission }) => submission,
+      () => null,
+    );
     if (turn !== telling) return;
     live = filled;
     for (const job of listed) {
@@ -68,14 +115,28 @@ export function jobs(place, design, form, onOpen, onStudy) {
   /** Which design a job is of: its tags, its name, and in which fields it differs from the design on the page. */
   function designOf({ id, tags: given, method }) {
     const submission = documents.get(id);
-    const cell = h("td", { className: "of-design" }, ...(given.length ? [h("strong", {}, given.join(", ")), " "] : []), submission ? nameOf(submission) : "", h("small", {}, ` ${method.replace(/_/g, " ")}`));
+    const cell = h(
+      "td",
+      { className: "of-design" },
+      ...(given.length ? [h("strong", {}, given.join(", ")), " "] : []),
+      submission ? nameOf(submission) : "",
+      h("small", {}, ` ${method.replace(/_/g, " ")}`),
+    );
     if (!submission || !live) return cell;
     const all = differences([live, submission]).filter(({ pointer }) => pointer !== "/tags");
     // The true period is filled in too: it goes with what has been changed.
     const others = all.length > 1 ? all.filter(({ pointer }) => pointer !== "/resolution/span_mesh_periods") : all;
-    const shown = others.slice(0, FIELDS).map(({ pointer, values: [, value] }) => `${form.named(pointer)} ${told(value)}`);
+    const shown = others
+      .slice(0, FIELDS)
+      .map(({ pointer, values: [, value] }) => `${form.named(pointer)} ${told(value)}`);
     const rest = others.length - shown.length;
-    cell.append(h("small", { className: "differs" }, others.length ? `${shown.join("; ")}${rest ? `; and ${rest} more` : ""}` : "the design on the page"));
+    cell.append(
+      h(
+        "small",
+        { className: "differs" },
+        others.length ? `${shown.join("; ")}${rest ? `; and ${rest} more` : ""}` : "the design on the page",
+      ),
+    );
     return cell;
   }
 
@@ -107,27 +168,53 @@ export function jobs(place, design, form, onOpen, onStudy) {
   /** The next page of the list of studies, each with the way back to it. */
   async function moreStudies() {
     await attempt(async () => {
-      const page = await json(`v1/studies?limit=${SHOWN}${nextStudies ? `&cursor=${encodeURIComponent(nextStudies)}` : ""}`);
+      const page = await json(
+        `v1/studies?limit=${SHOWN}${nextStudies ? `&cursor=${encodeURIComponent(nextStudies)}` : ""}`,
+      );
       listedStudies = [...listedStudies, ...page.items];
       nextStudies = page.next;
       olderStudies.hidden = !nextStudies;
-      const head = h("tr", {}, ...["Submitted", "What", "State", "Actions"].map((name) => h("th", { scope: "col" }, name)));
-      studies.replaceChildren(listedStudies.length ? h("table", {}, h("thead", {}, head), h("tbody", {}, ...listedStudies.map(studyRow))) : h("p", { className: "note" }, "There are none yet."));
+      const head = h(
+        "tr",
+        {},
+        ...["Submitted", "What", "State", "Actions"].map((name) => h("th", { scope: "col" }, name)),
+      );
+      studies.replaceChildren(
+        listedStudies.length
+          ? h("table", {}, h("thead", {}, head), h("tbody", {}, ...listedStudies.map(studyRow)))
+          : h("p", { className: "note" }, "There are none yet."),
+      );
     });
   }
 
   function studyRow({ id, name, status, done, total, submitted_at: at }) {
     const what = name ?? `study ${id.slice(-6)}`;
-    const button = (words, work) => h("button", { type: "button", ariaLabel: `${words} ${what}`, on: { click: () => attempt(work) } }, words);
+    const button = (words, work) =>
+      h("button", { type: "button", ariaLabel: `${words} ${what}`, on: { click: () => attempt(work) } }, words);
     const buttons = [button("Go to it", async () => onStudy(id, await json(`v1/studies/${id}/document`)))];
-    if (!hasEnded(status)) buttons.push(button("Cancel", async () => { await request(`v1/studies/${id}/cancel`, { method: "POST" }); await refresh(); }));
-    return h("tr", {}, h("th", { scope: "row" }, new Date(at).toLocaleString()), h("td", { className: "of-design" }, what), h("td", {}, `${status}, ${done} of ${total}`), h("td", { className: "actions" }, ...buttons));
+    if (!hasEnded(status))
+      buttons.push(
+        button("Cancel", async () => {
+          await request(`v1/studies/${id}/cancel`, { method: "POST" });
+          await refresh();
+        }),
+      );
+    return h(
+      "tr",
+      {},
+      h("th", { scope: "row" }, new Date(at).toLocaleString()),
+      h("td", { className: "of-design" }, what),
+      h("td", {}, `${status}, ${done} of ${total}`),
+      h("td", { className: "actions" }, ...buttons),
+    );
   }
 
   /** The next page of the list. */
   async function more() {
     try {
-      const page = await json(`v1/jobs?limit=${SHOWN}${ofStudies.checked ? "" : "&study=none"}${next ? `&cursor=${encodeURIComponent(next)}` : ""}`);
+      const page = await json(
+        `v1/jobs?limit=${SHOWN}${ofStudies.checked ? "" : "&study=none"}${next ? `&cursor=${encodeURIComponent(next)}` : ""}`,
+      );
       listed = [...listed, ...page.items];
       next = page.next;
       older.hidden = !next;
@@ -162,29 +249,87 @@ export function jobs(place, design, form, onOpen, onStudy) {
   }
 
   function tableOf(items) {
-    const head = h("tr", {}, ...["Submitted", "Design, and what differs from the one on the page", "State", "Actions"].map((name) => h("th", { scope: "col" }, name)));
+    const head = h(
+      "tr",
+      {},
+      ...["Submitted", "Design, and what differs from the one on the page", "State", "Actions"].map((name) =>
+        h("th", { scope: "col" }, name),
+      ),
+    );
     return h("table", {}, h("thead", {}, head), h("tbody", {}, ...items.map(rowOf)));
   }
 
   function rowOf(job) {
     const address = `v1/jobs/${job.id}`;
-    const button = (name, work) => h("button", { type: "button", on: { click: () => act(work) }, ariaLabel: `${name} ${job.id.slice(-6)}` }, name);
+    const button = (name, work) =>
+      h("button", { type: "button", on: { click: () => act(work) }, ariaLabel: `${name} ${job.id.slice(-6)}` }, name);
     // A file changes no job: the rows stay as they are under the pointer.
-    const file = (words, name) => h("button", { type: "button", ariaLabel: `${words} ${job.id.slice(-6)}`, on: { click: () => attempt(() => saveFile(job.id, name, fileOfDesign(documents.has(job.id) ? nameOf(documents.get(job.id)) : "", `${job.id.slice(-6)}-`))) } }, words);
-    const open = async () => onOpen((await json(address)).submission, job.status === "successful" ? await json(`${address}/results`) : null);
+    const file = (words, name) =>
+      h(
+        "button",
+        {
+          type: "button",
+          ariaLabel: `${words} ${job.id.slice(-6)}`,
+          on: {
+            click: () =>
+              attempt(() =>
+                saveFile(
+                  job.id,
+                  name,
+                  fileOfDesign(documents.has(job.id) ? nameOf(documents.get(job.id)) : "", `${job.id.slice(-6)}-`),
+                ),
+              ),
+          },
+        },
+        words,
+      );
+    const open = async () =>
+      onOpen((await json(address)).submission, job.status === "successful" ? await json(`${address}/results`) : null);
     // What else there is depends on what was asked for.
-    const more = h("button", { type: "button", ariaLabel: `More files of ${job.id.slice(-6)}`, on: { click: () => attempt(async () => {
-      const files = filesOf((await json(address)).submission).filter(({ name }) => !IN_ROW.some(([, shown]) => shown === name));
-      more.replaceWith(...files.map(({ name, title }) => file(title, name)));
-    }) } }, "More files");
+    const more = h(
+      "button",
+      {
+        type: "button",
+        ariaLabel: `More files of ${job.id.slice(-6)}`,
+        on: {
+          click: () =>
+            attempt(async () => {
+              const files = filesOf((await json(address)).submission).filter(
+                ({ name }) => !IN_ROW.some(([, shown]) => shown === name),
+              );
+              more.replaceWith(...files.map(({ name, title }) => file(title, name)));
+            }),
+        },
+      },
+      "More files",
+    );
     const buttons = [button("Open", open)];
     if (!hasEnded(job.status)) buttons.push(button("Cancel", () => request(`${address}/cancel`, { method: "POST" })));
     else buttons.push(button("Run again", async () => post("v1/jobs", (await json(address)).submission)));
     if (job.status === "successful") buttons.push(...IN_ROW.map(([words, name]) => file(words, name)), more);
-    const took = job.links.same_as ? h("small", {}, " as computed before") : (job.wall_time_seconds ?? null) === null ? null : h("small", {}, ` in ${number(job.wall_time_seconds, 2)} s`);
-    const progress = hasEnded(job.status) ? job.status : h("span", {}, `${job.status} `, h("progress", { max: 100, value: job.progress_percent, ariaLabel: "Progress" }), ` ${job.progress_percent} %`);
+    const took = job.links.same_as
+      ? h("small", {}, " as computed before")
+      : (job.wall_time_seconds ?? null) === null
+        ? null
+        : h("small", {}, ` in ${number(job.wall_time_seconds, 2)} s`);
+    const progress = hasEnded(job.status)
+      ? job.status
+      : h(
+          "span",
+          {},
+          `${job.status} `,
+          h("progress", { max: 100, value: job.progress_percent, ariaLabel: "Progress" }),
+          ` ${job.progress_percent} %`,
+        );
     const why = job.problem ? h("small", {}, ` ${job.problem.detail}`) : null;
-    const row = h("tr", {}, h("th", { scope: "row" }, new Date(job.submitted_at).toLocaleString()), designOf(job), h("td", {}, progress, took, why), h("td", { className: "actions" }, ...buttons));
+    const row = h(
+      "tr",
+      {},
+      h("th", { scope: "row" }, new Date(job.submitted_at).toLocaleString()),
+      designOf(job),
+      h("td", {}, progress, took, why),
+      h("td", { className: "actions" }, ...buttons),
+    );
     rows.set(job.id, row);
     return row;
   }

@@ -8,10 +8,21 @@ function partOf(pointer) {
   return member ? `${member === "driving" ? "Driving" : "Driven"} gear` : place ? "Pair" : "Load and method";
 }
 
-/** The options of `select`: `none`, which is no field, and `fields` `{ pointer, title }` under the parts of the form. What is chosen stays where it is offered; whether it was says the answer. */
+/**
+ * The options of `select`: `none`, which is no field, and `fields` `{ pointer, title }` under the parts of the form.
+ * What is chosen stays where it is offered; whether it was says the answer.
+ */
 export function offer(select, none, fields) {
   const chosen = select.value;
-  const groups = ["Pair", "Driving gear", "Driven gear", "Load and method"].map((label) => h("optgroup", { label }, ...fields.filter(({ pointer }) => partOf(pointer) === label).map(({ pointer, title }) => h("option", { value: pointer }, title))));
+  const groups = ["Pair", "Driving gear", "Driven gear", "Load and method"].map((label) =>
+    h(
+      "optgroup",
+      { label },
+      ...fields
+        .filter(({ pointer }) => partOf(pointer) === label)
+        .map(({ pointer, title }) => h("option", { value: pointer }, title)),
+    ),
+  );
   select.replaceChildren(h("option", { value: "" }, none), ...groups.filter((group) => group.children.length));
   const stays = fields.some(({ pointer }) => pointer === chosen);
   select.value = stays ? chosen : "";

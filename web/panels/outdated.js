@@ -3,13 +3,28 @@
 import { apart, same, withValue } from "../state/design.js";
 import { h } from "../draw/dom.js";
 
-/** A line over an answer of `design` that appears once the design is another one than the one asked about. `ignored` are fields that the answer does not depend on. */
+/**
+ * A line over an answer of `design` that appears once the design is another one than the one asked about. `ignored` are
+ * fields that the answer does not depend on.
+ */
 export function outdated(design, ignored = []) {
   let asked = null;
-  const bare = (submission) => ignored.reduce((rest, pointer) => withValue(rest, pointer, undefined), apart(submission).curves);
-  const back = h("button", { type: "button", on: { click: () => design.replace(asked, "open") } }, "Go back to that design");
-  const element = h("p", { className: "note outdated", role: "status", hidden: true }, "The design has changed since: what stands below is of the one before. ", back);
-  const look = () => { element.hidden = asked === null || same(bare(asked), bare(design.submission)); };
+  const bare = (submission) =>
+    ignored.reduce((rest, pointer) => withValue(rest, pointer, undefined), apart(submission).curves);
+  const back = h(
+    "button",
+    { type: "button", on: { click: () => design.replace(asked, "open") } },
+    "Go back to that design",
+  );
+  const element = h(
+    "p",
+    { className: "note outdated", role: "status", hidden: true },
+    "The design has changed since: what stands below is of the one before. ",
+    back,
+  );
+  const look = () => {
+    element.hidden = asked === null || same(bare(asked), bare(design.submission));
+  };
   design.onChange(look);
   return {
     element,

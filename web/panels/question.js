@@ -1,4 +1,5 @@
-// What the panels share that ask for many designs: one question at a time, how far it is, why it was refused, and of which design its answer is.
+// What the panels share that ask for many designs: one question at a time, how far it is, why it was refused, and of
+// which design its answer is.
 
 import { follow, hasEnded, json, post, ProblemError, request } from "../state/api.js";
 import { h, remaining } from "../draw/dom.js";
@@ -7,7 +8,10 @@ import { outdated } from "./outdated.js";
 export class Question {
   #cancel = () => {};
 
-  /** A question about `design`: its button says `words`, and `id` begins what its parts are called; `inWords` puts what the service says into the words of the page; answers do not depend on the fields `ignored`. */
+  /**
+   * A question about `design`: its button says `words`, and `id` begins what its parts are called; `inWords` puts what
+   * the service says into the words of the page; answers do not depend on the fields `ignored`.
+   */
   constructor(design, { id, words, inWords = (detail) => detail, ignored = [] }) {
     this.inWords = inWords;
     this.run = h("button", { type: "submit", id: `${id}-run`, className: "primary" }, words);
@@ -21,10 +25,15 @@ export class Question {
   }
 
   refuse(...details) {
-    this.state.replaceChildren(...details.map((detail) => h("span", { className: "field-error" }, this.inWords(detail), " ")));
+    this.state.replaceChildren(
+      ...details.map((detail) => h("span", { className: "field-error" }, this.inWords(detail), " ")),
+    );
   }
 
-  /** Does `work` on a design, which is given what tells how to cancel it; nothing else is asked meanwhile, and a refusal is told. */
+  /**
+   * Does `work` on a design, which is given what tells how to cancel it; nothing else is asked meanwhile, and a refusal
+   * is told.
+   */
   async ask(work, submission = undefined) {
     this.run.disabled = true;
     this.of.renew(submission);
@@ -35,7 +44,9 @@ export class Question {
       });
     } catch (error) {
       if (!(error instanceof ProblemError)) throw error;
-      this.refuse(...(error.problem.errors?.length ? error.problem.errors.map(({ detail }) => detail) : [error.message]));
+      this.refuse(
+        ...(error.problem.errors?.length ? error.problem.errors.map(({ detail }) => detail) : [error.message]),
+      );
     } finally {
       this.run.disabled = false;
       this.cancel.hidden = true;
@@ -43,8 +54,9 @@ export class Question {
   }
 
   /**
-   * Asks for the study that `asked` gives and shows it as its events tell of it: `show` is given what `part` of it tells, once in `pause` milliseconds at most, and its
-   * address; `progress` says how far it is of `done` and `total`, and `ended` how it ended.
+   * Asks for the study that `asked` gives and shows it as its events tell of it: `show` is given what `part` of it
+   * tells, once in `pause` milliseconds at most, and its address; `progress` says how far it is of `done` and `total`,
+   * and `ended` how it ended.
    */
   study(asked, how) {
     return this.ask(async (cancelling) => this.#watch(await post("v1/studies", asked()), how, cancelling));
@@ -65,7 +77,10 @@ export class Question {
       if (total) this.say(progress(done, total, left));
       if (performance.now() - shown < pause) return;
       shown = performance.now();
-      json(address + part).then((found) => whole || show(found, address), () => {});
+      json(address + part).then(
+        (found) => whole || show(found, address),
+        () => {},
+      );
     };
     if (!hasEnded(made.status)) await follow(address, told);
     const found = await json(address + part);
@@ -75,5 +90,9 @@ export class Question {
   }
 }
 
-/** Why most of those failed that did, behind how many: `refusals` are as the service has them, the most common first; `inWords` puts what they say into the words of the page. */
-export const mostOften = ([first], inWords) => (first ? `, most often: ${inWords(first.detail).replace(/\.$/, "")}` : "");
+/**
+ * Why most of those failed that did, behind how many: `refusals` are as the service has them, the most common first;
+ * `inWords` puts what they say into the words of the page.
+ */
+export const mostOften = ([first], inWords) =>
+  first ? `, most often: ${inWords(first.detail).replace(/\.$/, "")}` : "";

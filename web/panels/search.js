@@ -1,4 +1,5 @@
-// A search: fields that may differ, what is to be small and what has to hold; the service chooses which designs to compute.
+// A search: fields that may differ, what is to be small and what has to hold; the service chooses which designs to
+// compute.
 
 import { json, ProblemError, request } from "../state/api.js";
 import { apart, at, nameOf, withValue } from "../state/design.js";
@@ -17,18 +18,36 @@ const PAUSE = 500;
 /** What is made small unless somebody chooses otherwise. */
 const FIRST_GOAL = "transmission_error_um.peak_to_peak";
 
-/** Fields that are searched first, as far as a design has them: each variable begins with the first that no other has. */
-const FIRST = ["/pair/driving/tip_relief/amount_um", "/pair/driven/tip_relief/amount_um", "/pair/driving/lead_modifications/0/amount_um", "/pair/driving/profile_modifications/0/amount_um", "/pair/driven/blank/holes/radius_mm", "/pair/driven/blank/web/thickness_mm"];
+/**
+ * Fields that are searched first, as far as a design has them: each variable begins with the first that no other has.
+ */
+const FIRST = [
+  "/pair/driving/tip_relief/amount_um",
+  "/pair/driven/tip_relief/amount_um",
+  "/pair/driving/lead_modifications/0/amount_um",
+  "/pair/driving/profile_modifications/0/amount_um",
+  "/pair/driven/blank/holes/radius_mm",
+  "/pair/driven/blank/web/thickness_mm",
+];
 const VARIABLES = 3;
 /** So many of them begin with a field. */
 const BEGUN = 2;
 
-const chosen = (id, label, none) => h("select", { id, ariaLabel: label }, ...(none ? [h("option", { value: "" }, none)] : []), ...options(none ? "" : FIRST_GOAL));
+const chosen = (id, label, none) =>
+  h(
+    "select",
+    { id, ariaLabel: label },
+    ...(none ? [h("option", { value: "" }, none)] : []),
+    ...options(none ? "" : FIRST_GOAL),
+  );
 
 /** The search of `design` in `place`; `form` knows the fields, `onOpen` opens a design. */
 export function search(place, design, form, onOpen) {
   const variables = Array.from({ length: VARIABLES }, (_, i) => variable(i, design, form));
-  const goals = [chosen("search-goal", "What is to be small", null), chosen("search-goal-2", "And what besides", "nothing else")];
+  const goals = [
+    chosen("search-goal", "What is to be small", null),
+    chosen("search-goal-2", "And what besides", "nothing else"),
+  ];
   const conditions = ["", "-2"].map(condition);
   const evaluations = h("input", { type: "number", id: "search-evaluations", value: 150, min: 2, max: 20000, step: 1 });
   const question = new Question(design, { id: "search", words: "Search", inWords: (detail) => form.inWords(detail) });
@@ -36,28 +55,83 @@ export function search(place, design, form, onOpen) {
   /** The design that the search began with and the best one, drawn beside each other; which row that is. */
   const beside = h("div", { className: "beside", id: "search-beside" });
   let drawn = null;
-  /** What the design has beside its curves: no design that is looked at needs it, and the one that is opened has it again. */
+  /**
+   * What the design has beside its curves: no design that is looked at needs it, and the one that is opened has it
+   * again.
+   */
   let further = {};
   place.replaceChildren(
-    h("p", { className: "note" }, "Each generation of designs is chosen by what came of those before; it begins with this design. ", h("a", { href: "guides/find-a-design" }, "Find a design")),
-    h("form", { on: { submit: (event) => { event.preventDefault(); start(); } } },
+    h(
+      "p",
+      { className: "note" },
+      "Each generation of designs is chosen by what came of those before; it begins with this design. ",
+      h("a", { href: "guides/find-a-design" }, "Find a design"),
+    ),
+    h(
+      "form",
+      {
+        on: {
+          submit: (event) => {
+            event.preventDefault();
+            start();
+          },
+        },
+      },
       ...variables.map((each) => each.element),
-      h("div", { className: "line" }, h("label", { htmlFor: goals[0].id }, "for the least"), goals[0], h("label", { htmlFor: goals[1].id }, "and"), goals[1]),
+      h(
+        "div",
+        { className: "line" },
+        h("label", { htmlFor: goals[0].id }, "for the least"),
+        goals[0],
+        h("label", { htmlFor: goals[1].id }, "and"),
+        goals[1],
+      ),
       ...conditions.map((each) => each.element),
-      h("div", { className: "line" }, h("label", { htmlFor: evaluations.id }, "Designs"), evaluations, question.run, question.cancel)),
-    question.state, question.of.element, out);
+      h(
+        "div",
+        { className: "line" },
+        h("label", { htmlFor: evaluations.id }, "Designs"),
+        evaluations,
+        question.run,
+        question.cancel,
+      ),
+    ),
+    question.state,
+    question.of.element,
+    out,
+  );
 
   function asked() {
-    const minimize = goals.map(({ value }) => value).filter(Boolean).map((quantity) => ({ quantity }));
+    const minimize = goals
+      .map(({ value }) => value)
+      .filter(Boolean)
+      .map((quantity) => ({ quantity }));
     const subject_to = conditions.flatMap((each) => each.read());
     // What is asked for by a goal or a bound is told; gears are what they are.
-    const needs = [...minimize, ...subject_to].flatMap(({ quantity }) => quantityOf(quantity).needs).filter((pointer) => !pointer.startsWith("/pair/"));
-    const give = (base, pointer) => withValue(base, pointer, at(design.submission, pointer) || pointer === "/stress" || form.beginnings.object(pointer, null));
-    return { base: needs.reduce(give, apart(design.submission).curves), name: `${nameOf(design.submission)}, searched`, search: { variables: variables.flatMap((each) => each.read()), minimize, subject_to, evaluations: Number(evaluations.value) } };
+    const needs = [...minimize, ...subject_to]
+      .flatMap(({ quantity }) => quantityOf(quantity).needs)
+      .filter((pointer) => !pointer.startsWith("/pair/"));
+    const give = (base, pointer) =>
+      withValue(
+        base,
+        pointer,
+        at(design.submission, pointer) || pointer === "/stress" || form.beginnings.object(pointer, null),
+      );
+    return {
+      base: needs.reduce(give, apart(design.submission).curves),
+      name: `${nameOf(design.submission)}, searched`,
+      search: {
+        variables: variables.flatMap((each) => each.read()),
+        minimize,
+        subject_to,
+        evaluations: Number(evaluations.value),
+      },
+    };
   }
 
   const how = (about) => ({
-    pause: PAUSE, show: (study, address) => show(study.search, address, about()),
+    pause: PAUSE,
+    show: (study, address) => show(study.search, address, about()),
     progress: (done, total, left) => `${done} of at most ${total} designs${left(done, total)}`,
     ended: (study) => study.problem?.detail ?? `${study.search.evaluations} designs looked at, ${study.status}`,
   });
@@ -72,13 +146,20 @@ export function search(place, design, form, onOpen) {
   function start() {
     clear();
     let about = null;
-    return question.study(() => (about = asked()), how(() => about));
+    return question.study(
+      () => (about = asked()),
+      how(() => about),
+    );
   }
 
   /** Shows a search that was asked for before. */
   function resume(id, about) {
     clear();
-    return question.resume(id, about.base, how(() => about));
+    return question.resume(
+      id,
+      about.base,
+      how(() => about),
+    );
   }
 
   function show(found, address, about) {
@@ -87,50 +168,163 @@ export function search(place, design, form, onOpen) {
       return percent ? { ...known, title: `${known.title} (p${percent})` } : known;
     };
     const [parts, held] = [about.search.minimize, about.search.subject_to ?? []].map((asked) => asked.map(called));
-    const told = (values, names) => names.map((quantity, i) => `${inWords(quantity)} ${values?.[i] === null || values?.[i] === undefined ? "?" : number(quantity.factor * values[i], 4)} ${quantity.printed}`.trim()).join(", ");
+    const told = (values, names) =>
+      names
+        .map((quantity, i) =>
+          `${inWords(quantity)} ${values?.[i] === null || values?.[i] === undefined ? "?" : number(quantity.factor * values[i], 4)} ${quantity.printed}`.trim(),
+        )
+        .join(", ");
     const { best, front, confirmed, generations } = found;
-    const failed = [["designs", found.refusals], ["members of the others", found.member_refusals]].flatMap(([what, refusals = []]) => (refusals.length ? [`${refusals.reduce((sum, { count }) => sum + count, 0)} ${what} cannot be computed${mostOften(refusals, (detail) => form.inWords(detail))}.`] : []));
+    const failed = [
+      ["designs", found.refusals],
+      ["members of the others", found.member_refusals],
+    ].flatMap(([what, refusals = []]) =>
+      refusals.length
+        ? [
+            `${refusals.reduce((sum, { count }) => sum + count, 0)} ${what} cannot be computed${mostOften(refusals, (detail) => form.inWords(detail))}.`,
+          ]
+        : [],
+    );
     const missing = h("p", { className: "outdated", hidden: !failed.length }, failed.join(" "));
     if (!best) return out.replaceChildren(missing);
-    const rows = Object.entries(best.values).map(([path, value]) => h("tr", {}, h("th", { scope: "row" }, form.named(path)), h("td", {}, number(at(about.base, path) ?? null, 5)), h("td", {}, number(value, 5))));
-    const table = h("table", {}, h("thead", {}, h("tr", {}, ...["Field", "Begun with", "Best so far"].map((words) => h("th", { scope: "col" }, words)))), h("tbody", {}, ...rows));
-    const atEnd = about.search.variables.filter(({ path, low, high }) => [low, high].includes(best.values[path])).map(({ path }) => form.named(path));
+    const rows = Object.entries(best.values).map(([path, value]) =>
+      h(
+        "tr",
+        {},
+        h("th", { scope: "row" }, form.named(path)),
+        h("td", {}, number(at(about.base, path) ?? null, 5)),
+        h("td", {}, number(value, 5)),
+      ),
+    );
+    const table = h(
+      "table",
+      {},
+      h(
+        "thead",
+        {},
+        h("tr", {}, ...["Field", "Begun with", "Best so far"].map((words) => h("th", { scope: "col" }, words))),
+      ),
+      h("tbody", {}, ...rows),
+    );
+    const atEnd = about.search.variables
+      .filter(({ path, low, high }) => [low, high].includes(best.values[path]))
+      .map(({ path }) => form.named(path));
     const open = async (row) => onOpen({ ...(await json(`${address}/designs/${row}`)), ...further }, null);
     const use = (row, words) => h("button", { type: "button", on: { click: () => open(row) } }, words);
     drawBeside(address, best.row, about.base);
-    const reached = generations.map((each, i) => [i + 1, each.best === null ? null : parts[0].factor * each.best]).filter(([, value]) => value !== null);
-    const pictures = front.length > 1
-      ? [figure({ points: front.map(({ goals: [x, y], row }) => ({ x: parts[0].factor * x, y: parts[1].factor * y, label: `design ${row}`, strong: row === best.row, open: () => open(row) })), x: inUnit(parts[0]), y: inUnit(parts[1]), title: "The front: no design found is better in both; the large point is the best compromise. Press a point to open its design" }), frontOf(front, parts, use)]
-      : reached.length > 1 ? [figure({ lines: [{ x: reached.map(([i]) => i), y: reached.map(([, value]) => value) }], x: "generation", y: inUnit(parts[0]), title: "The best so far, generation by generation" })] : [];
-    const fine = confirmed && (confirmed.error_estimate
-      ? `By the ${about.base.method.startsWith("three") ? "three-dimensional" : "flexible"} method on the fine grid: ${told(confirmed.goals, parts)}; another grid level changes the peak-to-peak value by ${fixed(confirmed.error_estimate.transmission_error_peak_to_peak_um, 4)} µm.`
-      : `It could not be confirmed: ${confirmed.problem?.detail ?? "there are no results"}`);
+    const reached = generations
+      .map((each, i) => [i + 1, each.best === null ? null : parts[0].factor * each.best])
+      .filter(([, value]) => value !== null);
+    const pictures =
+      front.length > 1
+        ? [
+            figure({
+              points: front.map(({ goals: [x, y], row }) => ({
+                x: parts[0].factor * x,
+                y: parts[1].factor * y,
+                label: `design ${row}`,
+                strong: row === best.row,
+                open: () => open(row),
+              })),
+              x: inUnit(parts[0]),
+              y: inUnit(parts[1]),
+              title:
+                "The front: no design found is better in both; the large point is the best compromise. Press a point to open its design",
+            }),
+            frontOf(front, parts, use),
+          ]
+        : reached.length > 1
+          ? [
+              figure({
+                lines: [{ x: reached.map(([i]) => i), y: reached.map(([, value]) => value) }],
+                x: "generation",
+                y: inUnit(parts[0]),
+                title: "The best so far, generation by generation",
+              }),
+            ]
+          : [];
+    const fine =
+      confirmed &&
+      (confirmed.error_estimate
+        ? `By the ${about.base.method.startsWith("three") ? "three-dimensional" : "flexible"} method on the fine grid: ${told(confirmed.goals, parts)}; another grid level changes the peak-to-peak value by ${fixed(confirmed.error_estimate.transmission_error_peak_to_peak_um, 4)} µm.`
+        : `It could not be confirmed: ${confirmed.problem?.detail ?? "there are no results"}`);
     out.replaceChildren(
-      h("p", {}, h("strong", {}, told(best.goals, parts)), held.length ? `, with ${told(best.conditions, held)}` : "", best.feasible ? "" : ". No design so far keeps what has to hold; this one comes nearest to it", best.failed_share ? `. ${fixed(100 * best.failed_share, 1)} % of its members have no results, and count as beyond every bound` : ""),
+      h(
+        "p",
+        {},
+        h("strong", {}, told(best.goals, parts)),
+        held.length ? `, with ${told(best.conditions, held)}` : "",
+        best.feasible ? "" : ". No design so far keeps what has to hold; this one comes nearest to it",
+        best.failed_share
+          ? `. ${fixed(100 * best.failed_share, 1)} % of its members have no results, and count as beyond every bound`
+          : "",
+      ),
       missing,
       h("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Best design of the search" }, table),
-      ...(atEnd.length && parts.length === 1 ? [h("p", { className: "note" }, `At an end of its range: ${atEnd.join("; ")}. A wider one may find better.`)] : []),
+      ...(atEnd.length && parts.length === 1
+        ? [h("p", { className: "note" }, `At an end of its range: ${atEnd.join("; ")}. A wider one may find better.`)]
+        : []),
       h("div", { className: "buttons" }, use(best.row, "Use this design")),
-      ...(fine ? [h("p", {}, fine)] : []), beside, ...pictures);
+      ...(fine ? [h("p", {}, fine)] : []),
+      beside,
+      ...pictures,
+    );
   }
 
-  /** Draws the design of a row beside the one that the search began with, and their curves where a preview takes them. */
+  /**
+   * Draws the design of a row beside the one that the search began with, and their curves where a preview takes them.
+   */
   async function drawBeside(address, row, base) {
     if (drawn === `${address} ${row}`) return;
     const asked = (drawn = `${address} ${row}`);
     try {
       const best = await json(`${address}/designs/${row}`);
-      const both = [["Begun with", base], ["Best so far", best]];
-      const pictures = await Promise.all(both.map(async ([name, submission]) => {
-        const text = await (await request("v1/outline", { method: "POST", body: submission, headers: { accept: "image/svg+xml" } })).text();
-        return h("figure", {}, h("img", { src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(text)}`, alt: `${name}: ${nameOf(submission)}` }), h("figcaption", {}, name));
-      }));
+      const both = [
+        ["Begun with", base],
+        ["Best so far", best],
+      ];
+      const pictures = await Promise.all(
+        both.map(async ([name, submission]) => {
+          const text = await (
+            await request("v1/outline", { method: "POST", body: submission, headers: { accept: "image/svg+xml" } })
+          ).text();
+          return h(
+            "figure",
+            {},
+            h("img", {
+              src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(text)}`,
+              alt: `${name}: ${nameOf(submission)}`,
+            }),
+            h("figcaption", {}, name),
+          );
+        }),
+      );
       if (asked !== drawn) return;
       beside.replaceChildren(...pictures);
-      const curves = await Promise.all(both.map(async ([name, submission]) => ({ name, curve: (await preview(submission)).curves[0] })));
+      const curves = await Promise.all(
+        both.map(async ([name, submission]) => ({ name, curve: (await preview(submission)).curves[0] })),
+      );
       if (asked !== drawn) return;
-      const lines = curves.map(({ name, curve }, i) => ({ name, x: curve.mesh_position, y: curve.transmission_error_um, color: `var(--series-${i + 1})`, dash: DASHES[i] }));
-      beside.append(h("figure", {}, figure({ lines, x: "mesh position in mesh periods", y: "transmission error in µm", title: "Transmission error of the design that the search began with and of the best so far" }), h("figcaption", {}, "Their transmission error")));
+      const lines = curves.map(({ name, curve }, i) => ({
+        name,
+        x: curve.mesh_position,
+        y: curve.transmission_error_um,
+        color: `var(--series-${i + 1})`,
+        dash: DASHES[i],
+      }));
+      beside.append(
+        h(
+          "figure",
+          {},
+          figure({
+            lines,
+            x: "mesh position in mesh periods",
+            y: "transmission error in µm",
+            title: "Transmission error of the design that the search began with and of the best so far",
+          }),
+          h("figcaption", {}, "Their transmission error"),
+        ),
+      );
     } catch (error) {
       // A search goes on without its pictures.
       if (!(error instanceof ProblemError)) throw error;
@@ -139,9 +333,22 @@ export function search(place, design, form, onOpen) {
 
   /** The designs of a front, each to be used. */
   function frontOf(front, parts, use) {
-    const head = [...parts.map(inUnit), ""].map((words) => h("th", { scope: "col" }, words || h("span", { className: "visually-hidden" }, "Actions")));
-    const rows = front.map(({ row, goals }) => h("tr", {}, ...goals.map((value, i) => h("td", {}, number(parts[i].factor * value, 4))), h("td", {}, use(row, "Use"))));
-    return h("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Designs of the front" }, h("table", {}, h("thead", {}, h("tr", {}, ...head)), h("tbody", {}, ...rows)));
+    const head = [...parts.map(inUnit), ""].map((words) =>
+      h("th", { scope: "col" }, words || h("span", { className: "visually-hidden" }, "Actions")),
+    );
+    const rows = front.map(({ row, goals }) =>
+      h(
+        "tr",
+        {},
+        ...goals.map((value, i) => h("td", {}, number(parts[i].factor * value, 4))),
+        h("td", {}, use(row, "Use")),
+      ),
+    );
+    return h(
+      "div",
+      { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Designs of the front" },
+      h("table", {}, h("thead", {}, h("tr", {}, ...head)), h("tbody", {}, ...rows)),
+    );
   }
 
   const refresh = () => variables.forEach((each) => each.refresh());
@@ -152,10 +359,25 @@ export function search(place, design, form, onOpen) {
 /** A quantity and the bound that it has to keep. */
 function condition(end, index) {
   const bounded = chosen(`search-bounded${end}`, "What has to hold", index ? "nothing else" : "nothing");
-  const side = h("select", { id: `search-side${end}`, ariaLabel: "Side of the bound" }, h("option", { value: "at_least" }, "at least"), h("option", { value: "at_most" }, "at most"));
+  const side = h(
+    "select",
+    { id: `search-side${end}`, ariaLabel: "Side of the bound" },
+    h("option", { value: "at_least" }, "at least"),
+    h("option", { value: "at_most" }, "at most"),
+  );
   const bound = numeric({ id: `search-bound${end}`, ariaLabel: "Bound" });
-  const element = h("div", { className: "line" }, h("label", { htmlFor: bounded.id }, index ? "and" : "with"), bounded, side, bound);
-  const read = () => (bounded.value && bound.value ? [{ quantity: bounded.value, [side.value]: given(bound) / quantityOf(bounded.value).factor }] : []);
+  const element = h(
+    "div",
+    { className: "line" },
+    h("label", { htmlFor: bounded.id }, index ? "and" : "with"),
+    bounded,
+    side,
+    bound,
+  );
+  const read = () =>
+    bounded.value && bound.value
+      ? [{ quantity: bounded.value, [side.value]: given(bound) / quantityOf(bounded.value).factor }]
+      : [];
   return { element, read };
 }
 
@@ -163,9 +385,33 @@ function condition(end, index) {
 function variable(index, design, form) {
   const id = `variable-${index}`;
   // Until somebody chooses one the field is one that the design has, whichever design that is.
-  const field = h("select", { id, on: { change: () => { field.dataset.chosen = "yes"; suggest(); } } });
-  const [low, high, step] = ["low", "high", "step"].map((name) => numeric({ id: `${id}-${name}`, ariaLabel: `${{ low: "Smallest", high: "Largest", step: "Step of the" }[name]} value of variable ${index + 1}` }));
-  const element = h("div", { className: "line" }, h("label", { htmlFor: id }, index ? "and" : "Choose"), field, h("label", { htmlFor: low.id }, "from"), low, h("label", { htmlFor: high.id }, "to"), high, h("label", { htmlFor: step.id }, "in steps of"), step);
+  const field = h("select", {
+    id,
+    on: {
+      change: () => {
+        field.dataset.chosen = "yes";
+        suggest();
+      },
+    },
+  });
+  const [low, high, step] = ["low", "high", "step"].map((name) =>
+    numeric({
+      id: `${id}-${name}`,
+      ariaLabel: `${{ low: "Smallest", high: "Largest", step: "Step of the" }[name]} value of variable ${index + 1}`,
+    }),
+  );
+  const element = h(
+    "div",
+    { className: "line" },
+    h("label", { htmlFor: id }, index ? "and" : "Choose"),
+    field,
+    h("label", { htmlFor: low.id }, "from"),
+    low,
+    h("label", { htmlFor: high.id }, "to"),
+    high,
+    h("label", { htmlFor: step.id }, "in steps of"),
+    step,
+  );
 
   function suggest() {
     const known = form.fields().find(({ pointer }) => pointer === field.value);
@@ -176,7 +422,10 @@ function variable(index, design, form) {
     [low.value, high.value, step.value] = [round(ends[0]), round(ends[1]), known?.kind.whole ? 1 : ""];
   }
 
-  const read = () => (field.value && low.value !== "" && high.value !== "" ? [{ path: field.value, low: given(low), high: given(high), step: given(step) ?? null }] : []);
+  const read = () =>
+    field.value && low.value !== "" && high.value !== ""
+      ? [{ path: field.value, low: given(low), high: given(high), step: given(step) ?? null }]
+      : [];
 
   /** Only fields that have a number in this design can be searched. */
   function refresh() {

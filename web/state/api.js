@@ -7,7 +7,9 @@ let key = sessionStorage.getItem(KEY) ?? "";
 /** So long it takes until a service that did not answer, or had no room, is asked again, in milliseconds. */
 const AGAIN = 1500;
 
-/** A problem document (RFC 9457) that the service answered with, and after how many milliseconds it may be asked again. */
+/**
+ * A problem document (RFC 9457) that the service answered with, and after how many milliseconds it may be asked again.
+ */
 export class ProblemError extends Error {
   constructor(problem, after = AGAIN) {
     super(problem.detail ?? problem.title ?? "The service gave no reason.");
@@ -16,7 +18,14 @@ export class ProblemError extends Error {
 }
 
 /** What a request or an answer that broke off is told as; one that was given up stays that. */
-const broken = (error) => (error.name === "AbortError" ? error : new ProblemError({ code: "unreachable", title: "No answer", detail: "The service does not answer. The page asks again until it does." }));
+const broken = (error) =>
+  error.name === "AbortError"
+    ? error
+    : new ProblemError({
+        code: "unreachable",
+        title: "No answer",
+        detail: "The service does not answer. The page asks again until it does.",
+      });
 
 /** Calls `listener` when a request was refused for want of a key. */
 export function onKeyNeeded(listener) {
@@ -40,15 +49,21 @@ export async function request(path, { method = "GET", body, headers = {}, signal
   if (body !== undefined) all["content-type"] ??= "application/json";
   const init = { method, headers: all, signal, cache: "no-cache", credentials: "same-origin" };
   if (body !== undefined) init.body = typeof body === "string" || body instanceof Blob ? body : JSON.stringify(body);
-  const response = await fetch(new URL(path, document.baseURI), init).catch((error) => { throw broken(error); });
+  const response = await fetch(new URL(path, document.baseURI), init).catch((error) => {
+    throw broken(error);
+  });
   if (response.ok) return response;
-  const problem = await response.json().catch(() => ({ status: response.status, title: response.statusText, code: "unknown" }));
+  const problem = await response
+    .json()
+    .catch(() => ({ status: response.status, title: response.statusText, code: "unknown" }));
   if (response.status === 401) for (const listener of listeners) listener(problem);
   throw new ProblemError(problem, Math.max(AGAIN, 1000 * Number(response.headers.get("retry-after"))));
 }
 
 /** Whether an error goes away by itself: the service does not answer, starts, or has too much to do. */
-export const isPassing = (error) => error instanceof ProblemError && (error.problem.code === "unreachable" || [429, 502, 503, 504].includes(error.problem.status));
+export const isPassing = (error) =>
+  error instanceof ProblemError &&
+  (error.problem.code === "unreachable" || [429, 502, 503, 504].includes(error.problem.status));
 
 const rest = (milliseconds) => new Promise((resolve) => setTimeout(resolve, milliseconds));
 
@@ -78,7 +93,9 @@ async function* pieces(response, end) {
   let text = "";
   try {
     for (;;) {
-      const { value, done } = await reader.read().catch((error) => { throw broken(error); });
+      const { value, done } = await reader.read().catch((error) => {
+        throw broken(error);
+      });
       if (done) return;
       const found = (text + value.replace(/\r/g, "")).split(end);
       text = found.pop();
@@ -89,12 +106,19 @@ async function* pieces(response, end) {
   }
 }
 
-/** The events of a stream that the service sends, each `{ event, data }`, until it ends; `EventSource` cannot send a key. */
+/**
+ * The events of a stream that the service sends, each `{ event, data }`, until it ends; `EventSource` cannot send a
+ * key.
+ */
 export async function* events(path, signal) {
   const response = await request(path, { headers: { accept: "text/event-stream" }, signal });
   for await (const piece of pieces(response, "\n\n")) {
     const lines = piece.split("\n");
-    const of = (name) => lines.filter((line) => line.startsWith(`${name}:`)).map((line) => line.slice(name.length + 1).trimStart()).join("\n");
+    const of = (name) =>
+      lines
+        .filter((line) => line.startsWith(`${name}:`))
+        .map((line) => line.slice(name.length + 1).trimStart())
+        .join("\n");
     if (of("data")) yield { event: of("event") || "message", data: JSON.parse(of("data")) };
   }
 }
@@ -105,15 +129,18 @@ const ENDED = ["successful", "failed", "dismissed"];
 export const hasEnded = (status) => ENDED.includes(status);
 
 /**
- * Follows a job or a study at `path` by its events until it has ended, and gives how it stands then. `told` is called with each event; a stream that
- * breaks off is taken up again; while the service does not answer the event is `away`.
+ * Follows a job or a study at `path` by its events until it has ended, and gives how it stands then. `told` is called
+ * with each event; a stream that breaks off is taken up again; while the service does not answer the event is `away`.
  */
 export async function follow(path, told = () => {}, signal = undefined) {
   for (;;) {
-    const state = await patiently(async () => {
-      for await (const { event, data } of events(`${path}/events`, signal)) told(event, data);
-      return json(path, { signal });
-    }, () => told("away", {}));
+    const state = await patiently(
+      async () => {
+        for await (const { event, data } of events(`${path}/events`, signal)) told(event, data);
+        return json(path, { signal });
+      },
+      () => told("away", {}),
+    );
     if (hasEnded(state.status)) return state;
     await rest(AGAIN);
   }
@@ -122,7 +149,8 @@ export async function follow(path, told = () => {}, signal = undefined) {
 const jobs = new Map();
 
 /**
- * A job of `submission` that has succeeded: one that is known, or a new one that is followed until it ends. `told` hears of its events, and of the job first.
+ * A job of `submission` that has succeeded: one that is known, or a new one that is followed until it ends. `told`
+ * hears of its events, and of the job first.
  */
 export async function solved(submission, { told = () => {}, signal } = {}) {
   const name = JSON.stringify(submission);
@@ -132,7 +160,8 @@ export async function solved(submission, { told = () => {}, signal } = {}) {
   told("status", made);
   signal?.throwIfAborted();
   const job = hasEnded(made.status) ? made : await follow(`v1/jobs/${made.id}`, told, signal);
-  if (job.status !== "successful") throw new ProblemError(job.problem ?? { code: job.status, title: "Cancelled", detail: "The job was cancelled." });
+  if (job.status !== "successful")
+    throw new ProblemError(job.problem ?? { code: job.status, title: "Cancelled", detail: "The job was cancelled." });
   jobs.set(name, job);
   return job;
 }

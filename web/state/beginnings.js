@@ -51,10 +51,16 @@ export class Beginnings {
 
   /** A further entry of a list. */
   further(pointer, kind, values) {
-    if (pointer.endsWith("/profile_modifications")) return this.#modification(pointer, kindOf(this.api, kind.items.kind === "variants" ? kind.items.variants[0] : kind.items.schema));
+    if (pointer.endsWith("/profile_modifications"))
+      return this.#modification(
+        pointer,
+        kindOf(this.api, kind.items.kind === "variants" ? kind.items.variants[0] : kind.items.schema),
+      );
     if (pointer.endsWith("/lead_modifications")) return { kind: "crowning", amount_um: 5 };
     if (!pointer.endsWith("/holes")) return this.#begin(kind.items);
-    return values.length ? between(values.at(-1), 1.2 * this.limits.least_ligament_modules * this.#gear(pointer).module_mm) : this.object(pointer, kind);
+    return values.length
+      ? between(values.at(-1), 1.2 * this.limits.least_ligament_modules * this.#gear(pointer).module_mm)
+      : this.object(pointer, kind);
   }
 
   #gear(pointer) {
@@ -72,28 +78,48 @@ export class Beginnings {
       // Within the web, where there is one: no hole crosses its edges.
       const [inner, outer] = web ? [web.inner_radius_mm, web.outer_radius_mm] : [bore, root];
       const circle = rounded((outer + inner) / 2);
-      return { count: 6, circle_radius_mm: circle, radius_mm: rounded(Math.min((web ? 0.4 : 0.27) * (outer - inner), 0.27 * (root - bore), 0.3 * circle), 2), phase_deg: 0 };
+      return {
+        count: 6,
+        circle_radius_mm: circle,
+        radius_mm: rounded(Math.min((web ? 0.4 : 0.27) * (outer - inner), 0.27 * (root - bore), 0.3 * circle), 2),
+        phase_deg: 0,
+      };
     }
     if (name === "spokes") {
       const [inner, outer] = web ? [web.inner_radius_mm, web.outer_radius_mm] : [bore, root];
       const at = (part) => rounded(inner + part * (outer - inner));
-      return { count: 5, width_mm: rounded(Math.max(0.15 * at(0.2), 1.2 * this.limits.least_ligament_modules * module)), fillet_radius_mm: rounded(0.06 * (outer - inner), 2), inner_radius_mm: at(0.2), outer_radius_mm: at(0.75), phase_deg: 0 };
+      return {
+        count: 5,
+        width_mm: rounded(Math.max(0.15 * at(0.2), 1.2 * this.limits.least_ligament_modules * module)),
+        fillet_radius_mm: rounded(0.06 * (outer - inner), 2),
+        inner_radius_mm: at(0.2),
+        outer_radius_mm: at(0.75),
+        phase_deg: 0,
+      };
     }
     const [low, high] = reachOf(holes);
-    if (name === "tip_relief") return { amount_um: 10, shape: "linear", start: { radial_length_mm: rounded(0.5 * module, 2) } };
+    if (name === "tip_relief")
+      return { amount_um: 10, shape: "linear", start: { radial_length_mm: rounded(0.5 * module, 2) } };
     const hub = Math.min(bore + 0.2 * (root - bore), (bore + low) / 2);
-    if (name === "hub") return { outer_radius_mm: rounded(Math.min(hub, web?.inner_radius_mm ?? hub)), width_mm: gear.face_width_mm };
+    if (name === "hub")
+      return { outer_radius_mm: rounded(Math.min(hub, web?.inner_radius_mm ?? hub)), width_mm: gear.face_width_mm };
     if (name !== "web") return undefined;
     // Half the face, around the holes, under a rim that a plane model stands for where there is room for it.
     const outer = Math.max(root - 3.6 * module, bore + 0.6 * (root - bore), high ? (high + root) / 2 : 0);
-    return { inner_radius_mm: rounded(hub), outer_radius_mm: rounded(outer), thickness_mm: rounded(gear.face_width_mm / 2) };
+    return {
+      inner_radius_mm: rounded(hub),
+      outer_radius_mm: rounded(outer),
+      thickness_mm: rounded(gear.face_width_mm / 2),
+    };
   }
 
   /** The usual table, or one of fewer loads where the true period is so long that more would be too many positions. */
   #table() {
-    const { minimum, default: usual } = resolve(this.api, this.api.components.schemas.ForceTableRequest).properties.loads;
+    const { minimum, default: usual } = resolve(this.api, this.api.components.schemas.ForceTableRequest).properties
+      .loads;
     const period = this.results()?.pair.period_mesh_periods ?? 1;
-    const { positions_per_mesh_period: positions = USUAL_POSITIONS, span_mesh_periods: span } = this.design.get("/resolution") ?? {};
+    const { positions_per_mesh_period: positions = USUAL_POSITIONS, span_mesh_periods: span } =
+      this.design.get("/resolution") ?? {};
     const ofCurves = (span ?? period) * this.design.get("/output_torques_n_m").length;
     const loads = Math.floor((this.limits.positions / positions - ofCurves) / period);
     return loads < usual ? { loads: Math.max(loads, minimum) } : {};
@@ -104,14 +130,21 @@ export class Beginnings {
     const { pair, curves } = this.results() ?? {};
     const stiffness = curves?.[0].statistics.mesh_stiffness_tangent_n_per_m.mean;
     if (!stiffness) return { driving_speed_rpm: { from: 0, to: 6000, count: SPEEDS } };
-    const [driving, driven] = [pair.driving, pair.driven].map((gear) => (gear.base_radius_mm / 1000) ** 2 / gear.polar_inertia_kg_m2);
+    const [driving, driven] = [pair.driving, pair.driven].map(
+      (gear) => (gear.base_radius_mm / 1000) ** 2 / gear.polar_inertia_kg_m2,
+    );
     const frequency = Math.sqrt(stiffness * (driving + driven)) / (2 * Math.PI);
     const resonance = (60 * frequency) / this.design.get("/pair/driving/tooth_count");
     const step = 10 ** Math.floor(Math.log10(resonance));
-    return { driving_speed_rpm: { from: 0, to: Math.ceil((BEYOND_RESONANCE * resonance) / step) * step, count: SPEEDS } };
+    return {
+      driving_speed_rpm: { from: 0, to: Math.ceil((BEYOND_RESONANCE * resonance) / step) * step, count: SPEEDS },
+    };
   }
 
-  /** The start of a relief as the field `name` says it: at the same place of the flank as before, else half a module below the tip, or above the root. */
+  /**
+   * The start of a relief as the field `name` says it: at the same place of the flank as before, else half a module
+   * below the tip, or above the root.
+   */
   #start(pointer, name, there) {
     const gear = this.#gear(pointer);
     const holder = this.design.get(pointer.slice(0, -"/start".length));
@@ -119,7 +152,11 @@ export class Beginnings {
     const flank = flankOf(gear);
     const known = there && flank.radiusOf(there, atRoot);
     const inside = known > flank.formRadius && known < flank.tipRadius;
-    const radius = inside ? known : atRoot ? flank.radiusAt(flank.form + 0.25 * (flank.tip - flank.form)) : flank.tipRadius - 0.5 * gear.module_mm;
+    const radius = inside
+      ? known
+      : atRoot
+        ? flank.radiusAt(flank.form + 0.25 * (flank.tip - flank.form))
+        : flank.tipRadius - 0.5 * gear.module_mm;
     return { [name]: rounded(flank.said(radius, name, atRoot), 5) };
   }
 
@@ -128,9 +165,20 @@ export class Beginnings {
     const name = word?.enum?.[0] ?? "tip_relief";
     const gear = this.#gear(pointer);
     const flank = flankOf(gear);
-    if (name === "table") return { kind: name, roll_length_mm: [rounded(flank.form, 5), rounded((flank.form + flank.tip) / 2, 5), rounded(flank.tip, 5)], removed_um: [0, 0, 5] };
-    if (name === "tip_relief") return { kind: name, amount_um: 5, start: { radial_length_mm: rounded(0.5 * gear.module_mm, 2) } };
-    if (name === "root_relief") return { kind: name, amount_um: 5, start: { diameter_mm: rounded(2 * flank.radiusAt(flank.form + 0.25 * (flank.tip - flank.form)), 6) } };
+    if (name === "table")
+      return {
+        kind: name,
+        roll_length_mm: [rounded(flank.form, 5), rounded((flank.form + flank.tip) / 2, 5), rounded(flank.tip, 5)],
+        removed_um: [0, 0, 5],
+      };
+    if (name === "tip_relief")
+      return { kind: name, amount_um: 5, start: { radial_length_mm: rounded(0.5 * gear.module_mm, 2) } };
+    if (name === "root_relief")
+      return {
+        kind: name,
+        amount_um: 5,
+        start: { diameter_mm: rounded(2 * flank.radiusAt(flank.form + 0.25 * (flank.tip - flank.form)), 6) },
+      };
     return { kind: name, amount_um: 5 };
   }
 
@@ -182,8 +230,13 @@ function circlesOf(gear) {
 
 /** Between which radii the holes of a blank lie, in mm. */
 function reachOf(holes) {
-  const patterns = [holes ?? []].flat().map(({ circle_radius_mm: circle, radius_mm: radius, slot }) => [circle, radius ?? slot?.width_mm / 2]);
-  return [Math.min(...patterns.map(([circle, half]) => circle - half)), Math.max(0, ...patterns.map(([circle, half]) => circle + half))];
+  const patterns = [holes ?? []]
+    .flat()
+    .map(({ circle_radius_mm: circle, radius_mm: radius, slot }) => [circle, radius ?? slot?.width_mm / 2]);
+  return [
+    Math.min(...patterns.map(([circle, half]) => circle - half)),
+    Math.max(0, ...patterns.map(([circle, half]) => circle + half)),
+  ];
 }
 
 /** The involute of a gear: roll lengths of its form circle and its tip, and one measure of a place on it as another. */
@@ -206,10 +259,14 @@ function flankOf(gear) {
     if (start.roll_length_from_form_mm) return radiusAt(form + start.roll_length_from_form_mm);
     return atRoot ? formRadius + start.radial_length_mm : tipRadius - start.radial_length_mm;
   };
-  const said = (radius, name, atRoot) => ({
-    diameter_mm: 2 * radius, roll_angle_deg: roll(radius) / base / TURN, roll_length_from_tip_mm: tip - roll(radius), roll_length_from_form_mm: roll(radius) - form,
-    radial_length_mm: atRoot ? radius - formRadius : tipRadius - radius,
-  })[name];
+  const said = (radius, name, atRoot) =>
+    ({
+      diameter_mm: 2 * radius,
+      roll_angle_deg: roll(radius) / base / TURN,
+      roll_length_from_tip_mm: tip - roll(radius),
+      roll_length_from_form_mm: roll(radius) - form,
+      radial_length_mm: atRoot ? radius - formRadius : tipRadius - radius,
+    })[name];
   return { form, tip, formRadius, tipRadius, radiusAt, radiusOf, said };
 }
 
@@ -218,14 +275,27 @@ const twoDigits = (value) => Number(value.toPrecision(2));
 
 /** Slots in place of the round holes of a pattern, with material left between them. */
 function slotOf(pattern) {
-  return { width_mm: twoDigits(pattern.radius_mm ?? pattern.circle_radius_mm / 10), angle_deg: twoDigits(180 / Math.max(numberOf(pattern), 3)) };
+  return {
+    width_mm: twoDigits(pattern.radius_mm ?? pattern.circle_radius_mm / 10),
+    angle_deg: twoDigits(180 / Math.max(numberOf(pattern), 3)),
+  };
 }
 
-/** A further pattern: small round holes midway between those of `pattern`, so small that `left` mm of material stay between them. */
+/**
+ * A further pattern: small round holes midway between those of `pattern`, so small that `left` mm of material stay
+ * between them.
+ */
 function between(pattern, left) {
   const half = 180 / numberOf(pattern);
-  const places = pattern.at_deg ? { at_deg: pattern.at_deg.map((angle) => angle + half) } : { count: pattern.count, phase_deg: (pattern.phase_deg ?? 0) + half };
+  const places = pattern.at_deg
+    ? { at_deg: pattern.at_deg.map((angle) => angle + half) }
+    : { count: pattern.count, phase_deg: (pattern.phase_deg ?? 0) + half };
   const radius = pattern.radius_mm ?? pattern.slot?.width_mm / 2;
-  const room = 2 * pattern.circle_radius_mm * Math.sin((0.5 * half - 0.25 * (pattern.slot?.angle_deg ?? 0)) * TURN) - radius;
-  return { ...places, circle_radius_mm: pattern.circle_radius_mm, radius_mm: twoDigits(Math.max(0.1, Math.min(0.4 * radius, room - left))) };
+  const room =
+    2 * pattern.circle_radius_mm * Math.sin((0.5 * half - 0.25 * (pattern.slot?.angle_deg ?? 0)) * TURN) - radius;
+  return {
+    ...places,
+    circle_radius_mm: pattern.circle_radius_mm,
+    radius_mm: twoDigits(Math.max(0.1, Math.min(0.4 * radius, room - left))),
+  };
 }

@@ -1,4 +1,5 @@
-// What is worked on: a submission, the designs that were kept beside it, the way back from every change, and the address that carries it.
+// What is worked on: a submission, the designs that were kept beside it, the way back from every change, and the
+// address that carries it.
 
 /** So many changes can be taken back. */
 const MOST_CHANGES = 200;
@@ -10,12 +11,18 @@ export const HELIX = "/pair/helix_angle_deg";
 
 /** The parts of a JSON pointer. */
 export function parts(pointer) {
-  return pointer.split("/").slice(1).map((part) => part.replace(/~1/g, "/").replace(/~0/g, "~"));
+  return pointer
+    .split("/")
+    .slice(1)
+    .map((part) => part.replace(/~1/g, "/").replace(/~0/g, "~"));
 }
 
 /** What stands at `pointer`; undefined where nothing does. */
 export function at(document, pointer) {
-  return parts(pointer).reduce((place, part) => (place === null || place === undefined ? undefined : place[part]), document);
+  return parts(pointer).reduce(
+    (place, part) => (place === null || place === undefined ? undefined : place[part]),
+    document,
+  );
 }
 
 /** `document` with `value` at `pointer`, objects made on the way; an undefined value takes the field away. */
@@ -39,8 +46,9 @@ export function same(one, other) {
 }
 
 /**
- * The submission that is worked on and the designs kept beside it. Its listeners are told what changed it: `start`, `open`, `form`, `mend`, `drag` under
- * a hand, `snap` when a hand lets go of what cannot be, `undo`, or `kept` or `confirm` where only the kept designs changed, or what was typed for which angle.
+ * The submission that is worked on and the designs kept beside it. Its listeners are told what changed it: `start`,
+ * `open`, `form`, `mend`, `drag` under a hand, `snap` when a hand lets go of what cannot be, `undo`, or `kept` or
+ * `confirm` where only the kept designs changed, or what was typed for which angle.
  */
 export class Design {
   #listeners = [];
@@ -129,7 +137,10 @@ export class Design {
     return { ...this.#state(), past: this.#past, future: this.#future };
   }
 
-  /** Begins with what was remembered: `kept` designs, and the way back where it leads from `submission`, which is told as what the page starts with. */
+  /**
+   * Begins with what was remembered: `kept` designs, and the way back where it leads from `submission`, which is told
+   * as what the page starts with.
+   */
   restore(submission, { kept, typed, past, future, ...known }) {
     this.kept = kept;
     if (!same(known.submission, submission)) return this.replace(submission, "start");
@@ -169,7 +180,8 @@ export class Design {
 
   #change(next, by, key) {
     const now = performance.now();
-    const goesOn = key !== null && key === this.#last.key && (this.#hand !== null || now - this.#last.time < ONE_CHANGE);
+    const goesOn =
+      key !== null && key === this.#last.key && (this.#hand !== null || now - this.#last.time < ONE_CHANGE);
     if (!goesOn && this.submission) this.#past.push(this.#state());
     if (this.#past.length > MOST_CHANGES) this.#past.shift();
     this.#future = [];
@@ -192,7 +204,10 @@ async function through(bytes, stream) {
 
 /** The fragment of an address that carries `submission`. */
 export async function toFragment(submission) {
-  const packed = await through(new TextEncoder().encode(JSON.stringify(submission)), new CompressionStream("deflate-raw"));
+  const packed = await through(
+    new TextEncoder().encode(JSON.stringify(submission)),
+    new CompressionStream("deflate-raw"),
+  );
   // In pieces: a measured gear of a thousand teeth has more bytes than a function takes arguments.
   let letters = "";
   for (let i = 0; i < packed.length; i += 4096) letters += String.fromCharCode(...packed.subarray(i, i + 4096));
@@ -205,7 +220,9 @@ export async function fromFragment(fragment) {
   if (!text) return null;
   try {
     const packed = Uint8Array.from(atob(text.replace(/-/g, "+").replace(/_/g, "/")), (letter) => letter.charCodeAt(0));
-    const submission = JSON.parse(new TextDecoder().decode(await through(packed, new DecompressionStream("deflate-raw"))));
+    const submission = JSON.parse(
+      new TextDecoder().decode(await through(packed, new DecompressionStream("deflate-raw"))),
+    );
     return submission?.pair ? submission : null;
   } catch {
     return null;
@@ -217,7 +234,12 @@ export function nameOf(submission) {
   const hole = (member) => {
     const given = submission.pair?.[member]?.blank?.holes;
     const patterns = given ? [given].flat() : [];
-    return patterns.map((each) => `${each.count ?? each.at_deg?.length ?? ""}×${each.radius_mm ? `r${each.radius_mm}` : "slot"}@${each.circle_radius_mm}`).join("+");
+    return patterns
+      .map(
+        (each) =>
+          `${each.count ?? each.at_deg?.length ?? ""}×${each.radius_mm ? `r${each.radius_mm}` : "slot"}@${each.circle_radius_mm}`,
+      )
+      .join("+");
   };
   const [driving, driven] = [hole("driving"), hole("driven")];
   const holes = [driving, driven].filter(Boolean).join(" | ") || "no holes";
@@ -226,7 +248,12 @@ export function nameOf(submission) {
 
 /** A submission without what goes on from its curves and takes longer than they do, and that. */
 export function apart({ force_table, dynamics, stress, face_load, ...curves }) {
-  return { curves, further: Object.fromEntries(Object.entries({ force_table, dynamics, stress, face_load }).filter(([, value]) => value !== undefined)) };
+  return {
+    curves,
+    further: Object.fromEntries(
+      Object.entries({ force_table, dynamics, stress, face_load }).filter(([, value]) => value !== undefined),
+    ),
+  };
 }
 
 /** The fields in which submissions differ: each pointer with the value of every submission. */
@@ -248,7 +275,8 @@ export function told(value) {
 export function flattened(document, pointer = "", found = new Map()) {
   for (const [name, value] of Object.entries(document ?? {})) {
     const place = `${pointer}/${name}`;
-    const nested = value !== null && typeof value === "object" && !(Array.isArray(value) && typeof value[0] !== "object");
+    const nested =
+      value !== null && typeof value === "object" && !(Array.isArray(value) && typeof value[0] !== "object");
     if (nested) flattened(value, place, found);
     else if (value !== null && value !== undefined) found.set(place, value);
   }

@@ -10,17 +10,32 @@ const hasForces = ({ dynamics, force_table: table }) => dynamics || table;
 
 /** The name of each file, what it is called on the page, and what its submission asks for, if not every job has it. */
 const FILES = [
-  ["submission.rexs", "Pair for a gearbox program, REXS"], ["look-up-table.csv", "Look-up table, CSV"], ["look-up-table.txt", "Look-up table, Modelica text"], ["fields.vtu", "Stress and displacement, VTU"],
-  ["contact-pattern.json", "Contact pattern, JSON", isInThree], ["contact-pattern.svg", "Contact pattern, SVG", isInThree],
-  ["face-load.csv", "Load along the face, CSV", isInThree], ["face-load.svg", "Load along the face, SVG", isInThree],
-  ["run-up.csv", "Run-up, CSV", runsUp], ["run-up.svg", "Run-up, SVG", runsUp],
-  ...[["csv", "CSV"], ["txt", "CombiTable2D"], ["mo", "Modelica"], ["fmu", "FMU"]].map(([kind, name]) => [`force-table.${kind}`, `Force table, ${name}`, hasForces]),
+  ["submission.rexs", "Pair for a gearbox program, REXS"],
+  ["look-up-table.csv", "Look-up table, CSV"],
+  ["look-up-table.txt", "Look-up table, Modelica text"],
+  ["fields.vtu", "Stress and displacement, VTU"],
+  ["contact-pattern.json", "Contact pattern, JSON", isInThree],
+  ["contact-pattern.svg", "Contact pattern, SVG", isInThree],
+  ["face-load.csv", "Load along the face, CSV", isInThree],
+  ["face-load.svg", "Load along the face, SVG", isInThree],
+  ["run-up.csv", "Run-up, CSV", runsUp],
+  ["run-up.svg", "Run-up, SVG", runsUp],
+  ...[
+    ["csv", "CSV"],
+    ["txt", "CombiTable2D"],
+    ["mo", "Modelica"],
+    ["fmu", "FMU"],
+  ].map(([kind, name]) => [`force-table.${kind}`, `Force table, ${name}`, hasForces]),
 ];
 
 /** Names and titles of the files of a job of `submission`. */
-export const filesOf = (submission) => FILES.filter(([, , asks]) => !asks || asks(submission)).map(([name, title]) => ({ name, title }));
+export const filesOf = (submission) =>
+  FILES.filter(([, , asks]) => !asks || asks(submission)).map(([name, title]) => ({ name, title }));
 
-/** Saves the file `name` of the job `id`, with `prefix` before its name, which ends with a hyphen, as it is asked for by `query`. */
+/**
+ * Saves the file `name` of the job `id`, with `prefix` before its name, which ends with a hyphen, as it is asked for by
+ * `query`.
+ */
 export async function saveFile(id, name, prefix, query = "") {
   const place = name === "submission.rexs" ? name : `results${name === "results.json" ? "" : `/${name}`}`;
   save(`${prefix}${name}`, "", await (await request(`v1/jobs/${id}/${place}${query}`)).blob());

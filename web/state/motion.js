@@ -1,5 +1,5 @@
-// The motion of the gears at a speed, step by step from the force table of the results: what turns the drawing. The numbers of a run-up are those
-// of the service, which finds both branches; this goes on from where it was.
+// The motion of the gears at a speed, step by step from the force table of the results: what turns the drawing. The
+// numbers of a run-up are those of the service, which finds both branches; this goes on from where it was.
 
 /** Steps in a period of the natural frequency, and in one of the mesh. */
 const STEPS = 40;
@@ -14,7 +14,10 @@ const at = (row, place) => {
   return row[first] + part * (row[(first + 1) % row.length] - row[first]);
 };
 
-/** The force between the gears at a place of the table and an approach, in N and um: of the loaded flanks, zero in the backlash, of the other flanks beyond it. */
+/**
+ * The force between the gears at a place of the table and an approach, in N and um: of the loaded flanks, zero in the
+ * backlash, of the other flanks beyond it.
+ */
 export function forceAt(table, place, approach) {
   const of = (rows, sign) => {
     if (sign * (approach - at(rows[0], place)) <= 0) return 0;
@@ -27,8 +30,9 @@ export function forceAt(table, place, approach) {
 }
 
 /**
- * The motion that `results` have at a speed of the driving gear under the load of `curve`: `{ state, span, approach, factor }` over one true period from position 0,
- * the approach in um and the force over the static load. `from` is the state that an earlier motion ended with.
+ * The motion that `results` have at a speed of the driving gear under the load of `curve`: `{ state, span, approach,
+ * factor }` over one true period from position 0, the approach in um and the force over the static load. `from` is the
+ * state that an earlier motion ended with.
  */
 export function motionAt(results, curve, { rpm, teeth, damping = 0.05, from = null }) {
   const table = results.force_table;

@@ -8,7 +8,10 @@ const multiple = (name, n) => (n === 1 ? name : `${name}, ${TIMES[n] ?? `${n}th`
 export function wordsOf({ kind, gears = [], mesh_harmonic: k, multiple: n, label }) {
   const of = gears.length === 1 && /N[12]/.test(label) ? ` of the ${gears[0]} gear` : "";
   if (kind === "mesh") return multiple("mesh", k);
-  const cause = (kind === "holes" || kind === "hole_sideband") ? `holes${of}` : `revolution${gears.length === 1 ? ` of the ${gears[0]} gear` : ""}`;
+  const cause =
+    kind === "holes" || kind === "hole_sideband"
+      ? `holes${of}`
+      : `revolution${gears.length === 1 ? ` of the ${gears[0]} gear` : ""}`;
   if (kind === "holes" || kind === "revolution") return multiple(cause, n);
   const times = Math.abs(n) === 1 ? "" : `${Math.abs(n)} times `;
   return `${multiple("mesh", k)}${k > 1 ? "," : ""} ${n < 0 ? "less" : "plus"} ${times}${cause}`;

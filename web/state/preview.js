@@ -11,11 +11,16 @@ const LEAST_POSITIONS = 10;
 /** A hand that rests for so long, in milliseconds, gets all positions; one that types, or a job, waits for longer. */
 const REST = 150;
 const LONG_REST = 700;
-/** What takes longer by the estimate of the service, in seconds, is not computed at every key, and along faces by the projected method first. */
+/**
+ * What takes longer by the estimate of the service, in seconds, is not computed at every key, and along faces by the
+ * projected method first.
+ */
 const SHORT = 1;
 /** What takes longer, in seconds, is computed by a job at once, which says how far it is. */
 const LONG = 4;
-/** Pairs along their faces, and their method that solves one mesh period and projects what holes change in the others. */
+/**
+ * Pairs along their faces, and their method that solves one mesh period and projects what holes change in the others.
+ */
 const WHOLE = "three_dimensional";
 const PROJECTED = "three_dimensional_projected";
 /** The projected method stands for the whole one where it takes at most this part of its time. */
@@ -54,8 +59,9 @@ export async function resultsOf(submission, options = {}) {
 const isTooLarge = (error) => error instanceof ProblemError && ["too_large", "time_limit"].includes(error.problem.code);
 
 /**
- * Follows a design. Under a hand one draft is computed at a time and newer designs wait, only the newest of them to be asked for, so that drafts come in order and a drag shows
- * every one that can be had; as soon as the hand rests it gets the curve itself. What else is computed is stopped as soon as there is a newer design. What takes long is computed
+ * Follows a design. Under a hand one draft is computed at a time and newer designs wait, only the newest of them to be
+ * asked for, so that drafts come in order and a drag shows every one that can be had; as soon as the hand rests it gets
+ * the curve itself. What else is computed is stopped as soon as there is a newer design. What takes long is computed
  * when the hand rests, or at [`hurry`].
  */
 export class Follower {
@@ -69,7 +75,10 @@ export class Follower {
   /** Ends a rest. */
   #hurry = null;
   #settled = Promise.resolve();
-  /** Results by what decides them: `{ results, asked }`, where `asked` is the submission that they are of, which may have the projected method. */
+  /**
+   * Results by what decides them: `{ results, asked }`, where `asked` is the submission that they are of, which may
+   * have the projected method.
+   */
   #known = new Map();
   /** Designs that are wanted by the whole method. */
   #whole = new Set();
@@ -78,12 +87,18 @@ export class Follower {
   /** Asks again for what could not be answered. */
   #again = null;
 
-  /** `onValid` is told that nothing is wrong with a design, and `onExpect` how long the design takes, `{ seconds, since, rests }`, or null once that is over. */
+  /**
+   * `onValid` is told that nothing is wrong with a design, and `onExpect` how long the design takes, `{ seconds, since,
+   * rests }`, or null once that is over.
+   */
   constructor({ onResults, onOutline, onProblem, onValid, onExpect, onBusy, onProgress }) {
     Object.assign(this, { onResults, onOutline, onProblem, onValid, onExpect, onBusy, onProgress });
   }
 
-  /** Takes the newest design and what changed it; `period` is that of its last results, in mesh periods, while a hand changes it. */
+  /**
+   * Takes the newest design and what changed it; `period` is that of its last results, in mesh periods, while a hand
+   * changes it.
+   */
   follow(submission, by, period = null) {
     clearTimeout(this.#again);
     const now = { submission, by, period, since: performance.now() };
@@ -104,7 +119,9 @@ export class Follower {
     this.follow(submission, "mend");
   }
 
-  /** The results of a submission that has been computed elsewhere; of `asked`, where that is not the submission itself. */
+  /**
+   * The results of a submission that has been computed elsewhere; of `asked`, where that is not the submission itself.
+   */
   know(submission, results, asked = submission) {
     this.#known.set(untagged(submission), { results, asked });
     if (this.#known.size > KNOWN) this.#known.delete(this.#known.keys().next().value);
@@ -125,9 +142,13 @@ export class Follower {
         this.#interrupt = new AbortController();
         const draft = now.period === null ? null : draftOf(now.submission, now.period);
         now.drafting = draft !== null;
-        const [, told] = await Promise.all([this.#outline(now.submission), draft ? this.#ask(now, draft) : this.#compute(now)]);
+        const [, told] = await Promise.all([
+          this.#outline(now.submission),
+          draft ? this.#ask(now, draft) : this.#compute(now),
+        ]);
         now.drafting = false;
-        // With the next frame comes where the hand is now, and the curve that has just come is painted before the engine wants the cores.
+        // With the next frame comes where the hand is now, and the curve that has just come is painted before the
+        // engine wants the cores.
         await frame();
         if (this.#next || !draft || told === "refused") continue;
         this.#interrupt = new AbortController();
@@ -176,13 +197,17 @@ export class Follower {
     this.#pace = Math.min(MOST_PACE, Math.max(LEAST_PACE, took / 1000 / seconds));
   }
 
-  /** What is asked for to compute a design, and how long it takes by the estimate of the service. Throws what is wrong with it. */
+  /**
+   * What is asked for to compute a design, and how long it takes by the estimate of the service. Throws what is wrong
+   * with it.
+   */
   async #plan({ submission, by }, signal) {
     const secondsOf = async (asked) => (await post("v1/validate", asked, { signal })).estimate.seconds;
     const seconds = await secondsOf(submission);
     // A design that comes whole, by a link or a file, is computed as it says where nobody has to wait for it.
     const most = ["start", "open"].includes(by) ? LONG : SHORT;
-    if (submission.method !== WHOLE || seconds <= most || this.#whole.has(untagged(submission))) return { asked: submission, seconds };
+    if (submission.method !== WHOLE || seconds <= most || this.#whole.has(untagged(submission)))
+      return { asked: submission, seconds };
     const asked = { ...submission, method: PROJECTED };
     const projected = await secondsOf(asked).catch(() => Infinity);
     return projected <= SAVES * seconds ? { asked, seconds: projected } : { asked: submission, seconds };
@@ -199,7 +224,14 @@ export class Follower {
     const told = (event, data) => {
       if (event === "status") job = data;
       if (job?.status !== "accepted") computed ??= performance.now();
-      this.onProgress({ ...job, ...data, away: event === "away", begun: computed ?? performance.now(), expected: 1000 * this.#pace * seconds, cancel: () => interrupt.abort() });
+      this.onProgress({
+        ...job,
+        ...data,
+        away: event === "away",
+        begun: computed ?? performance.now(),
+        expected: 1000 * this.#pace * seconds,
+        cancel: () => interrupt.abort(),
+      });
     };
     try {
       await this.#rest(LONG_REST - (performance.now() - since));
@@ -212,7 +244,16 @@ export class Follower {
       if (error instanceof ProblemError) this.#refused(error, submission);
       else if (error.name !== "AbortError") throw error;
       if (job && !hasEnded(job.status)) request(`v1/jobs/${job.id}/cancel`, { method: "POST" }).catch(() => {});
-      if (signal.aborted && !this.#next) this.onProblem({ code: "cancelled", title: "The job was cancelled", detail: "Nothing was computed for this design.", errors: [] }, submission);
+      if (signal.aborted && !this.#next)
+        this.onProblem(
+          {
+            code: "cancelled",
+            title: "The job was cancelled",
+            detail: "Nothing was computed for this design.",
+            errors: [],
+          },
+          submission,
+        );
     } finally {
       this.onProgress(null);
     }
@@ -223,12 +264,18 @@ export class Follower {
     const { signal } = this.#interrupt;
     return new Promise((resolve) => {
       const timer = setTimeout(resolve, signal.aborted ? 0 : milliseconds);
-      this.#hurry = () => { clearTimeout(timer); resolve(); };
+      this.#hurry = () => {
+        clearTimeout(timer);
+        resolve();
+      };
       signal.addEventListener("abort", this.#hurry);
     });
   }
 
-  /** Holes are drawn from the design itself: an outline is asked for where something else has changed, and at each change of a blank whose other openings it tells behind the holes. */
+  /**
+   * Holes are drawn from the design itself: an outline is asked for where something else has changed, and at each
+   * change of a blank whose other openings it tells behind the holes.
+   */
   async #outline(submission) {
     const shape = JSON.stringify(submission.pair, function (name, value) {
       return name === "holes" && !this.spokes && !this.outline ? undefined : value;
@@ -243,7 +290,9 @@ export class Follower {
     }
   }
 
-  /** Asks for a preview: what became of it, `shown`, `refused`, `too large` for a preview, or `left` for a newer one. */
+  /**
+   * Asks for a preview: what became of it, `shown`, `refused`, `too large` for a preview, or `left` for a newer one.
+   */
   async #ask({ submission, since }, asked) {
     const begun = performance.now();
     try {
@@ -256,7 +305,8 @@ export class Follower {
       if (isTooLarge(error)) return "too large";
       if (error.problem.code === "preview_superseded") return "left";
       // What cannot be projected may be computed as it is asked for.
-      if (asked.method !== submission.method) return this.#ask({ submission, since }, { ...asked, method: submission.method });
+      if (asked.method !== submission.method)
+        return this.#ask({ submission, since }, { ...asked, method: submission.method });
       this.#refused(error, submission);
       return "refused";
     }
@@ -275,11 +325,16 @@ export class Follower {
 }
 
 /**
- * `submission` as it is asked for under a hand: without what goes on from its curves, on the coarse grid, whose transmission error is within 0.2 % of that of the standard
- * grid, and at every second or fourth position. What is drawn lies on the curve that follows. Null where that saves nothing.
+ * `submission` as it is asked for under a hand: without what goes on from its curves, on the coarse grid, whose
+ * transmission error is within 0.2 % of that of the standard grid, and at every second or fourth position. What is
+ * drawn lies on the curve that follows. Null where that saves nothing.
  */
 function draftOf(submission, period) {
-  const { positions_per_mesh_period: all = USUAL_POSITIONS, span_mesh_periods: span, grid } = submission.resolution ?? {};
+  const {
+    positions_per_mesh_period: all = USUAL_POSITIONS,
+    span_mesh_periods: span,
+    grid,
+  } = submission.resolution ?? {};
   const periods = (span ?? period) * submission.output_torques_n_m.length;
   const parts = [1, 2, 4].filter((part) => all % part === 0 && all / part >= LEAST_POSITIONS);
   const part = parts.find((each) => (all / each) * periods <= DRAFT_POSITIONS) ?? parts.at(-1) ?? 1;

@@ -1,4 +1,5 @@
-// The numbers of designs as the service names them: what they are called, their units, and where results and rows of tables have them.
+// The numbers of designs as the service names them: what they are called, their units, and where results and rows of
+// tables have them.
 
 import { json } from "./api.js";
 import { extent, fixed, h, number, unit } from "../draw/dom.js";
@@ -13,16 +14,26 @@ let known = new Map();
 /** Fetches them, once. */
 export async function fetchQuantities() {
   const { items } = await json("v1/quantities");
-  known = new Map(items.map((item) => {
-    const [printed, factor] = MULTIPLES[item.unit] ?? [unit(item.unit), 1];
-    return [item.name, { ...item, printed, factor }];
-  }));
+  known = new Map(
+    items.map((item) => {
+      const [printed, factor] = MULTIPLES[item.unit] ?? [unit(item.unit), 1];
+      return [item.name, { ...item, printed, factor }];
+    }),
+  );
 }
 
 export const quantities = () => [...known.values()];
 
 /** The quantity of this name; one that a later service has is called by it. */
-export const quantityOf = (name) => known.get(name) ?? { name: String(name), title: String(name), symbol: String(name), printed: "", factor: 1, needs: [] };
+export const quantityOf = (name) =>
+  known.get(name) ?? {
+    name: String(name),
+    title: String(name),
+    symbol: String(name),
+    printed: "",
+    factor: 1,
+    needs: [],
+  };
 
 /** A quantity with its unit, if it has one. */
 export const inUnit = ({ title, printed }) => (printed ? `${title} in ${printed}` : title);
@@ -40,10 +51,14 @@ export function shown({ printed, factor }, value) {
 }
 
 /** Options for all of them, that of the name `chosen` selected. */
-export const options = (chosen) => quantities().map((quantity) => h("option", { value: quantity.name, selected: quantity.name === chosen }, inUnit(quantity)));
+export const options = (chosen) =>
+  quantities().map((quantity) =>
+    h("option", { value: quantity.name, selected: quantity.name === chosen }, inUnit(quantity)),
+  );
 
 const at = (object, name) => name.split(".").reduce((part, step) => part?.[step], object);
-const order = (curve, pattern, value = "transmission_error_um") => curve.spectrum?.named.find(({ label }) => pattern.test(label))?.[value];
+const order = (curve, pattern, value = "transmission_error_um") =>
+  curve.spectrum?.named.find(({ label }) => pattern.test(label))?.[value];
 
 /** Where results have what does not stand there under its name: of a curve, and of all results. */
 const ELSEWHERE = {
@@ -53,7 +68,11 @@ const ELSEWHERE = {
   mesh_order_um: (curve) => order(curve, /^H_Z2?$/),
   face_load_factor: (curve) => curve.face?.face_load_factor,
   peak_contact_pressure_mpa: (curve) => extent(curve.peak_contact_pressure_mpa)?.[1],
-  "dynamic_transmission_error_um.peak_to_peak": ({ dynamics }) => dynamics && extent([dynamics.up, dynamics.down].flatMap((branch) => branch?.dynamic_transmission_error_um.peak_to_peak ?? []))?.[1],
+  "dynamic_transmission_error_um.peak_to_peak": ({ dynamics }) =>
+    dynamics &&
+    extent(
+      [dynamics.up, dynamics.down].flatMap((branch) => branch?.dynamic_transmission_error_um.peak_to_peak ?? []),
+    )?.[1],
 };
 
 /** The value of a quantity in `results`, of one of their curves. */
@@ -63,7 +82,10 @@ export function inResults({ name, of }, curve, results) {
   return of === "curve" ? at(curve.statistics, name) : gear ? results.pair[gear][own] : results.pair[name];
 }
 
-/** The same in a row of the table of a study, whose numbers of one gear are those of `gear`; undefined where it has none of it. */
+/**
+ * The same in a row of the table of a study, whose numbers of one gear are those of `gear`; undefined where it has none
+ * of it.
+ */
 export function inRow({ name, of, gear }, row, curve, studied) {
   if (of === "pair") return gear && gear !== studied ? undefined : row[name.split(".")[0]];
   const own = at(curve, name);

@@ -17,7 +17,11 @@ export function openapi() {
 /** Follows references. */
 export function resolve(api, schema) {
   let seen = schema;
-  while (seen?.$ref) seen = seen.$ref.slice(2).split("/").reduce((place, name) => place[name], api);
+  while (seen?.$ref)
+    seen = seen.$ref
+      .slice(2)
+      .split("/")
+      .reduce((place, name) => place[name], api);
   // A reference may bear words of its own.
   return schema?.$ref && (schema.title || schema.description) ? { ...seen, ...withoutRef(schema) } : seen;
 }
@@ -37,7 +41,10 @@ export function kindOf(api, given) {
     const nullable = meant.length < choices.length;
     if (meant.length === 1) {
       const inner = kindOf(api, meant[0]);
-      const titles = { title: schema.title && !/^[A-Z]\w*[a-z][A-Z]/.test(schema.title) ? schema.title : inner.schema.title, description: schema.description ?? inner.schema.description };
+      const titles = {
+        title: schema.title && !/^[A-Z]\w*[a-z][A-Z]/.test(schema.title) ? schema.title : inner.schema.title,
+        description: schema.description ?? inner.schema.description,
+      };
       return { ...inner, schema: { ...inner.schema, ...titles, default: schema.default }, optional: nullable };
     }
     return { kind: "variants", schema, variants: meant, optional: nullable };
@@ -49,7 +56,8 @@ export function kindOf(api, given) {
     // Lists of lists are typed as they are.
     return { kind: { number: "numbers", text: "texts", list: "json" }[items.kind] ?? "list", schema, items, optional };
   }
-  if (types[0] === "number" || types[0] === "integer") return { kind: "number", whole: types[0] === "integer", schema, optional };
+  if (types[0] === "number" || types[0] === "integer")
+    return { kind: "number", whole: types[0] === "integer", schema, optional };
   if (types[0] === "boolean") return { kind: "flag", schema, optional };
   if (types[0] === "string") return { kind: "text", schema, optional };
   return { kind: "json", schema, optional };
@@ -59,26 +67,38 @@ export function kindOf(api, given) {
 export function schemaAt(api, pointer) {
   const step = (given, part) => {
     const { kind, schema, variants = [], items } = kindOf(api, given);
-    if (/^\d+$/.test(part)) return kind === "variants" ? variants.map((each) => step(each, part)).find(Boolean) : items?.schema;
+    if (/^\d+$/.test(part))
+      return kind === "variants" ? variants.map((each) => step(each, part)).find(Boolean) : items?.schema;
     return schema.properties?.[part] ?? variants.map((each) => step(each, part)).find(Boolean);
   };
-  const found = pointer.split("/").slice(1).reduce((schema, part) => schema && step(schema, part), { $ref: "#/components/schemas/Submission" });
+  const found = pointer
+    .split("/")
+    .slice(1)
+    .reduce((schema, part) => schema && step(schema, part), { $ref: "#/components/schemas/Submission" });
   return found ? kindOf(api, found).schema : null;
 }
 
 /** The words of a description without the unit and the default, which stand elsewhere. */
 export function help(schema) {
-  return (schema.description ?? "").replace(/ ?Unit: [^.]*\.(?= |$)/, "").replace(/`/g, "").trim();
+  return (schema.description ?? "")
+    .replace(/ ?Unit: [^.]*\.(?= |$)/, "")
+    .replace(/`/g, "")
+    .trim();
 }
 
-/** What stands for a field that is left out, in words, where it is no value: so many modules, or what its absence means. */
+/**
+ * What stands for a field that is left out, in words, where it is no value: so many modules, or what its absence means.
+ */
 export function saidDefault(schema) {
   const modules = schema["x-default-modules"];
   if (modules !== undefined) return modules === 1 ? "1 module" : `${modules} modules`;
   return schema["x-absent"] ?? "";
 }
 
-/** `submission` without what the service fills in where it is left out, so that it says what somebody has chosen and no more. What cannot be left out without changing it stays. */
+/**
+ * `submission` without what the service fills in where it is left out, so that it says what somebody has chosen and no
+ * more. What cannot be left out without changing it stays.
+ */
 export async function bare(api, submission) {
   const fill = (asked) => post("v1/validate", asked);
   const filled = await fill(submission);
@@ -87,7 +107,10 @@ export async function bare(api, submission) {
   return JSON.stringify((await fill(asked)).submission) === JSON.stringify(filled.submission) ? asked : submission;
 }
 
-/** The value that a field of `submission` has where nobody gives it; undefined where there is none, or nothing that could have it. */
+/**
+ * The value that a field of `submission` has where nobody gives it; undefined where there is none, or nothing that
+ * could have it.
+ */
 export function usualAt(api, submission, pointer) {
   const holder = pointer.slice(0, pointer.lastIndexOf("/"));
   if (holder && !isNested(at(submission, holder)) && !isFilledIn(holder)) return undefined;
@@ -99,7 +122,10 @@ export function usualAt(api, submission, pointer) {
 function withoutDefaults(api, submission, period) {
   const left = (value, pointer) => {
     if (value === null) return undefined;
-    if (Array.isArray(value)) return value.length ? value.map((each, i) => (isNested(each) ? pruned(each, `${pointer}/${i}`) : each)) : undefined;
+    if (Array.isArray(value))
+      return value.length
+        ? value.map((each, i) => (isNested(each) ? pruned(each, `${pointer}/${i}`) : each))
+        : undefined;
     if (isNested(value)) {
       const rest = pruned(value, pointer);
       // An object that may be absent is not the same as an empty one.
@@ -108,11 +134,17 @@ function withoutDefaults(api, submission, period) {
     const usual = pointer === "/resolution/span_mesh_periods" ? period : usualAt(api, submission, pointer);
     return value === usual || Math.abs(value - usual) < 1e-9 ? undefined : value;
   };
-  const pruned = (object, pointer) => Object.fromEntries(Object.entries(object).map(([name, value]) => [name, left(value, `${pointer}/${name}`)]).filter(([, value]) => value !== undefined));
+  const pruned = (object, pointer) =>
+    Object.fromEntries(
+      Object.entries(object)
+        .map(([name, value]) => [name, left(value, `${pointer}/${name}`)])
+        .filter(([, value]) => value !== undefined),
+    );
   return pruned(submission, "");
 }
 
 const isNested = (value) => value !== null && typeof value === "object" && !Array.isArray(value);
 
 /** Whether the object at a pointer is there even if nobody gives it. */
-const isFilledIn = (pointer) => pointer === "/resolution" || pointer === "/resolution/load_distribution" || /\/material$/.test(pointer);
+const isFilledIn = (pointer) =>
+  pointer === "/resolution" || pointer === "/resolution/load_distribution" || /\/material$/.test(pointer);

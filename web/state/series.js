@@ -11,9 +11,28 @@ const micro = (values) => values.map((value) => value * 1e-6);
 
 export const PANELS = [
   { id: "ste", title: "Transmission error", unit: "µm", of: (curve) => curve.transmission_error_um },
-  { id: "stiffness", title: "Mesh stiffness, tangent", unit: "N/µm", of: (curve) => micro(curve.mesh_stiffness_tangent_n_per_m) },
-  { id: "share", title: "Load share", unit: "%", ofLive: shares, note: "a line for each pair of teeth", whole: largestShare },
-  { id: "pressure", title: "Peak contact pressure", unit: "MPa", of: (curve) => curve.peak_contact_pressure_mpa, gaps: "No line where a sharp tip corner carries: the pressure has no limit there. More tip relief avoids it.", none: "No line: a sharp tip corner carries at every position, and the pressure has no limit there. A rounding of the tip edges or more tip relief gives it one." },
+  {
+    id: "stiffness",
+    title: "Mesh stiffness, tangent",
+    unit: "N/µm",
+    of: (curve) => micro(curve.mesh_stiffness_tangent_n_per_m),
+  },
+  {
+    id: "share",
+    title: "Load share",
+    unit: "%",
+    ofLive: shares,
+    note: "a line for each pair of teeth",
+    whole: largestShare,
+  },
+  {
+    id: "pressure",
+    title: "Peak contact pressure",
+    unit: "MPa",
+    of: (curve) => curve.peak_contact_pressure_mpa,
+    gaps: "No line where a sharp tip corner carries: the pressure has no limit there. More tip relief avoids it.",
+    none: "No line: a sharp tip corner carries at every position, and the pressure has no limit there. A rounding of the tip edges or more tip relief gives it one.",
+  },
   { id: "face", title: "Load along the face", unit: "N/mm", along: "z", rare: true },
   { id: "stress", title: "Largest stress", unit: "MPa", ofLive: stresses, rare: true },
 ];
@@ -26,24 +45,44 @@ function shares(curve) {
   const offsets = curve.load_shares.map(({ pair_offset: offset }) => offset);
   return Array.from({ length: LOOKS_OF_PAIRS }, (_, look) => {
     const carried = curve.mesh_position.map((position, i) => {
-      const index = offsets.findIndex((offset) => (((Math.floor(position + 1e-9) + offset - look) % LOOKS_OF_PAIRS) + LOOKS_OF_PAIRS) % LOOKS_OF_PAIRS === 0);
+      const index = offsets.findIndex(
+        (offset) =>
+          (((Math.floor(position + 1e-9) + offset - look) % LOOKS_OF_PAIRS) + LOOKS_OF_PAIRS) % LOOKS_OF_PAIRS === 0,
+      );
       return index < 0 ? 0 : 100 * curve.load_shares[index].share[i];
     });
     // Where nothing is carried there is no line, but a curve begins and ends at zero.
-    return { name: `pair ${look + 1}`, open: true, values: carried.map((value, i) => (value > 0 || carried[i - 1] > 0 || carried[i + 1] > 0 ? Math.max(value, 0) : null)) };
+    return {
+      name: `pair ${look + 1}`,
+      open: true,
+      values: carried.map((value, i) =>
+        value > 0 || carried[i - 1] > 0 || carried[i + 1] > 0 ? Math.max(value, 0) : null,
+      ),
+    };
   });
 }
 
 /** The share of the pair that carries most, at each position: what can be seen of a long period. */
 function largestShare(curve) {
-  return [{ name: "the pair that carries most", values: curve.mesh_position.map((_, i) => 100 * Math.max(...curve.load_shares.map(({ share }) => share[i]))) }];
+  return [
+    {
+      name: "the pair that carries most",
+      values: curve.mesh_position.map((_, i) => 100 * Math.max(...curve.load_shares.map(({ share }) => share[i]))),
+    },
+  ];
 }
 
 /** The stresses of the live curve, where they were asked for: at the roots of both gears, and at their holes. */
 export function stresses({ stress }) {
   if (!stress) return [];
-  return [["root_mpa", "root"], ["hole_mpa", "hole"]].flatMap(([field, place]) =>
-    ["driving", "driven"].flatMap((gear) => (stress[gear][field] ? [{ name: `${place}, ${gear} gear`, values: stress[gear][field] }] : [])));
+  return [
+    ["root_mpa", "root"],
+    ["hole_mpa", "hole"],
+  ].flatMap(([field, place]) =>
+    ["driving", "driven"].flatMap((gear) =>
+      stress[gear][field] ? [{ name: `${place}, ${gear} gear`, values: stress[gear][field] }] : [],
+    ),
+  );
 }
 
 /** How many mesh periods a curve spans. */
@@ -63,27 +102,57 @@ function repeated(line, longest, partial) {
   return { ...line, x: x.slice(0, count), values: values.slice(0, count), span: longest, open: line.open || !whole };
 }
 
-/** The lines of a panel: `{ name, look, dash, x, values, span, open }`. Designs have looks, torques have dashes; where there is one torque designs have both. Lines of parts of the live design have a `part` in place of a look. Where they are `crowded` pairs of teeth are no lines. */
+/**
+ * The lines of a panel: `{ name, look, dash, x, values, span, open }`. Designs have looks, torques have dashes; where
+ * there is one torque designs have both. Lines of parts of the live design have a `part` in place of a look. Where they
+ * are `crowded` pairs of teeth are no lines.
+ */
 export function linesOf(panel, designs, crowded = false) {
   if (panel.ofLive) {
     const curve = designs[0].results.curves[0];
-    return (crowded && panel.whole ? panel.whole : panel.ofLive)(curve).map((each, i) => ({ ...each, part: i, dash: DASHES[i % DASHES.length], x: curve.mesh_position, span: spanOf(curve) }));
+    return (crowded && panel.whole ? panel.whole : panel.ofLive)(curve).map((each, i) => ({
+      ...each,
+      part: i,
+      dash: DASHES[i % DASHES.length],
+      x: curve.mesh_position,
+      span: spanOf(curve),
+    }));
   }
   const several = designs.some(({ results }) => results.curves.length > 1);
   const longest = Math.max(...designs.flatMap(({ results }) => results.curves.map(spanOf)));
-  return designs.flatMap(({ name, results, look }, i) => results.curves.map((curve, j) => repeated({
-    name: several ? `${name}, ${number(curve.output_torque_n_m)} N m` : name, values: panel.of(curve), x: curve.mesh_position, span: spanOf(curve),
-    look: look ?? i, dash: DASHES[(several ? j : (look ?? i)) % DASHES.length],
-  }, longest, curve.statistics.partial)));
+  return designs.flatMap(({ name, results, look }, i) =>
+    results.curves.map((curve, j) =>
+      repeated(
+        {
+          name: several ? `${name}, ${number(curve.output_torque_n_m)} N m` : name,
+          values: panel.of(curve),
+          x: curve.mesh_position,
+          span: spanOf(curve),
+          look: look ?? i,
+          dash: DASHES[(several ? j : (look ?? i)) % DASHES.length],
+        },
+        longest,
+        curve.statistics.partial,
+      ),
+    ),
+  );
 }
 
-/** The names of orders up to `last` that spectra have, each at the most that any of them has there: a name stands above every line of its order. */
+/**
+ * The names of orders up to `last` that spectra have, each at the most that any of them has there: a name stands above
+ * every line of its order.
+ */
 export function namesOf(spectra, last) {
   const names = new Map();
   for (const { named, orders } of spectra) {
     for (const { order, label, transmission_error_um: value } of named) {
       if (order > last || !(value > LEAST_AMPLITUDE) || names.has(`${label} ${order}`)) continue;
-      const most = Math.max(value, ...spectra.flatMap((other) => other.orders.filter(([each]) => each === order).map(([, amplitude]) => amplitude)));
+      const most = Math.max(
+        value,
+        ...spectra.flatMap((other) =>
+          other.orders.filter(([each]) => each === order).map(([, amplitude]) => amplitude),
+        ),
+      );
       names.set(`${label} ${order}`, { order, label, value: most });
     }
   }
@@ -91,28 +160,32 @@ export function namesOf(spectra, last) {
 }
 
 /**
- * The names of orders where there is room for them, the tallest first and those of holes and mesh before all: none over another, nor over one of the `stems` `{ order, value }`, of
- * which a mark stands on top; a name rises above the stems and names beside it. `{ label, x, y }`, centered over their lines.
+ * The names of orders where there is room for them, the tallest first and those of holes and mesh before all: none over
+ * another, nor over one of the `stems` `{ order, value }`, of which a mark stands on top; a name rises above the stems
+ * and names beside it. `{ label, x, y }`, centered over their lines.
  */
 export function placedNames(names, { stems = [], mark = 0, px, py, left, right, top = 0, letter, widthOf }) {
   const taken = [];
   const rank = ({ label }) => (/^H_(N\d?|Z\d?)$/.test(label) ? 0 : 1);
   const marks = stems.map(({ order, value }) => [px(order), py(value)]);
-  return [...names].sort((a, b) => rank(a) - rank(b) || b.value - a.value).flatMap(({ label, order, value }) => {
-    const width = widthOf(label);
-    const x = Math.min(Math.max(px(order), left + width / 2), right - width / 2);
-    // Stems reach from their mark to the foot: above the highest of those below the name there is room.
-    const beside = marks.filter(([at]) => Math.abs(at - x) < width / 2 + 2 + mark).map(([, level]) => level);
-    let y = Math.min(py(value), ...beside) - 0.5 * letter - mark;
-    const boxAt = (level) => [x - width / 2 - 2, level - letter, x + width / 2 + 2, level + 2];
-    const under = (box) => taken.find((other) => box[0] < other[2] && other[0] < box[2] && box[1] < other[3] && other[1] < box[3]);
-    // Above another name, but no farther from its line than two of them.
-    for (let i = 0; i < 2; i += 1) y = (under(boxAt(y))?.[1] ?? y + 2) - 2;
-    const box = boxAt(y);
-    if (box[1] < top || under(box)) return [];
-    taken.push(box);
-    return [{ label, x, y }];
-  });
+  return [...names]
+    .sort((a, b) => rank(a) - rank(b) || b.value - a.value)
+    .flatMap(({ label, order, value }) => {
+      const width = widthOf(label);
+      const x = Math.min(Math.max(px(order), left + width / 2), right - width / 2);
+      // Stems reach from their mark to the foot: above the highest of those below the name there is room.
+      const beside = marks.filter(([at]) => Math.abs(at - x) < width / 2 + 2 + mark).map(([, level]) => level);
+      let y = Math.min(py(value), ...beside) - 0.5 * letter - mark;
+      const boxAt = (level) => [x - width / 2 - 2, level - letter, x + width / 2 + 2, level + 2];
+      const under = (box) =>
+        taken.find((other) => box[0] < other[2] && other[0] < box[2] && box[1] < other[3] && other[1] < box[3]);
+      // Above another name, but no farther from its line than two of them.
+      for (let i = 0; i < 2; i += 1) y = (under(boxAt(y))?.[1] ?? y + 2) - 2;
+      const box = boxAt(y);
+      if (box[1] < top || under(box)) return [];
+      taken.push(box);
+      return [{ label, x, y }];
+    });
 }
 
 /** The orders of the transmission error of `curve` that stand out of the noise, up to `last`. */
@@ -122,8 +195,9 @@ export function ordersOf({ spectrum }, last = Infinity) {
 }
 
 /**
- * The spectrum of a curve over the periods that were computed, where they are no whole true period: amplitudes of a Hann window, whose lines are wider than
- * those of the true spectrum, at orders per revolution of a driven gear of so many teeth.
+ * The spectrum of a curve over the periods that were computed, where they are no whole true period: amplitudes of a
+ * Hann window, whose lines are wider than those of the true spectrum, at orders per revolution of a driven gear of so
+ * many teeth.
  */
 export function partialSpectrum(curve, teeth, last) {
   const values = curve.transmission_error_um;
@@ -148,7 +222,11 @@ export function partialSpectrum(curve, teeth, last) {
     order.push((k * teeth) / span);
     amplitude.push((2 * Math.hypot(re, im)) / weight);
   }
-  return { order, transmission_error_um: amplitude, named: [{ order: teeth, label: "H_Z2", transmission_error_um: amplitude[Math.round(span) - 1] ?? 0 }] };
+  return {
+    order,
+    transmission_error_um: amplitude,
+    named: [{ order: teeth, label: "H_Z2", transmission_error_um: amplitude[Math.round(span) - 1] ?? 0 }],
+  };
 }
 
 const extremes = (values) => {
@@ -166,7 +244,10 @@ export function wordsOf(panel, designs) {
     const range = `from ${number(least)} at position ${fixed(line.x[i], 2)} to ${number(most)} at ${fixed(line.x[j], 2)}, peak-to-peak ${number(most - least, 3)} ${panel.unit}`;
     return [`${line.name}: ${range}.`];
   });
-  const gaps = panel.gaps && linesOf(panel, designs).some(({ values }) => values.includes(null)) ? ` ${told.length ? panel.gaps : panel.none}` : "";
+  const gaps =
+    panel.gaps && linesOf(panel, designs).some(({ values }) => values.includes(null))
+      ? ` ${told.length ? panel.gaps : panel.none}`
+      : "";
   return `${panel.title} over ${number(Math.max(...designs.map(({ results }) => spanOf(results.curves[0]))))} mesh periods, in ${panel.unit}. ${told.join(" ")}${gaps}`;
 }
 
@@ -175,7 +256,9 @@ export function wordsOfSpectrum(designs) {
   const of = ({ name, results }) => {
     const [curve] = results.curves;
     if (!curve.spectrum) return `${name}: a part of the true period has no spectrum.`;
-    const strongest = ordersOf(curve).sort((a, b) => b[1] - a[1]).slice(0, 3);
+    const strongest = ordersOf(curve)
+      .sort((a, b) => b[1] - a[1])
+      .slice(0, 3);
     return `${name}: ${strongest.map(([order, value]) => `${number(value, 3)} µm at order ${number(order)}`).join(", ")}.`;
   };
   return `Strongest orders of the transmission error, per revolution of the driven gear. ${designs.map(of).join(" ")}`;

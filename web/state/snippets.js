@@ -5,13 +5,19 @@ function python(value, indent = "") {
   if (value === null || value === undefined) return "None";
   if (typeof value === "boolean") return value ? "True" : "False";
   if (typeof value !== "object") return JSON.stringify(value);
-  if (Array.isArray(value) && value.every((each) => typeof each !== "object")) return `[${value.map((each) => python(each)).join(", ")}]`;
+  if (Array.isArray(value) && value.every((each) => typeof each !== "object"))
+    return `[${value.map((each) => python(each)).join(", ")}]`;
   const inner = `${indent}    `;
   if (Array.isArray(value)) return `[\n${value.map((each) => inner + python(each, inner)).join(",\n")},\n${indent}]`;
-  return `{\n${Object.entries(value).map(([name, each]) => `${inner}${JSON.stringify(name)}: ${python(each, inner)}`).join(",\n")},\n${indent}}`;
+  return `{\n${Object.entries(value)
+    .map(([name, each]) => `${inner}${JSON.stringify(name)}: ${python(each, inner)}`)
+    .join(",\n")},\n${indent}}`;
 }
 
-/** `submission` to the service at `address`: with curl, from Python, from TypeScript. A key stays out of it, in the environment. */
+/**
+ * `submission` to the service at `address`: with curl, from Python, from TypeScript. A key stays out of it, in the
+ * environment.
+ */
 export function snippets(submission, address) {
   const url = address.replace(/\/$/, "");
   const json = JSON.stringify(submission, null, 2);

@@ -1,4 +1,5 @@
-// The deviations of a gear's teeth: drawn by an accuracy class, pasted from a spreadsheet, or dropped as a file of a measurement.
+// The deviations of a gear's teeth: drawn by an accuracy class, pasted from a spreadsheet, or dropped as a file of a
+// measurement.
 
 import { post, ProblemError } from "../state/api.js";
 import { fixed, h, number } from "../draw/dom.js";
@@ -14,13 +15,29 @@ const COLUMNS = [
 
 /** Numbers as spreadsheets write them: with points or commas, in columns between tabs, semicolons or commas. */
 export function tableOf(text) {
-  const lines = text.trim().split(/\r?\n/).filter((line) => line.trim());
+  const lines = text
+    .trim()
+    .split(/\r?\n/)
+    .filter((line) => line.trim());
   const separator = [/\t/, /;/].find((each) => lines.some((line) => each.test(line)));
   const cells = lines.map((line) => {
     // A comma within a number is its decimal comma where something else stands between columns.
-    if (separator) return line.split(separator).map((cell) => cell.trim().replace(/^"|"$/g, "").replace(/^(-?\d+),(\d+)$/, "$1.$2"));
-    if (/^\s*-?\d+,\d+\s*$/.test(line) && lines.every((each) => /^\s*-?\d+(,\d+)?\s*$/.test(each) || /[a-z]/i.test(each))) return [line.trim().replace(",", ".")];
-    return line.split(/,|\s+/).map((cell) => cell.trim().replace(/^"|"$/g, "")).filter((cell) => cell !== "");
+    if (separator)
+      return line.split(separator).map((cell) =>
+        cell
+          .trim()
+          .replace(/^"|"$/g, "")
+          .replace(/^(-?\d+),(\d+)$/, "$1.$2"),
+      );
+    if (
+      /^\s*-?\d+,\d+\s*$/.test(line) &&
+      lines.every((each) => /^\s*-?\d+(,\d+)?\s*$/.test(each) || /[a-z]/i.test(each))
+    )
+      return [line.trim().replace(",", ".")];
+    return line
+      .split(/,|\s+/)
+      .map((cell) => cell.trim().replace(/^"|"$/g, ""))
+      .filter((cell) => cell !== "");
   });
   const isNumber = (cell) => cell !== "" && Number.isFinite(Number(cell));
   const head = cells.length && !cells[0].every(isNumber) ? cells.shift() : [];
@@ -29,14 +46,15 @@ export function tableOf(text) {
 }
 
 /**
- * The lists of deviations in a text, for a gear of so many teeth: by the names of its columns, or of a single column the kind that `kind` says. Throws with a reason
- * where it cannot be read.
+ * The lists of deviations in a text, for a gear of so many teeth: by the names of its columns, or of a single column
+ * the kind that `kind` says. Throws with a reason where it cannot be read.
  */
 export function measured(text, teeth, kind) {
   const { head, rows } = tableOf(text);
   const bad = rows.findIndex((row) => row.some((value) => !Number.isFinite(value)));
   if (bad >= 0) throw new Error(`Line ${bad + 1 + (head.length ? 1 : 0)} has something that is no number.`);
-  if (rows.length !== teeth) throw new Error(`There are ${rows.length} numbers; ${teeth} are needed, one for each tooth.`);
+  if (rows.length !== teeth)
+    throw new Error(`There are ${rows.length} numbers; ${teeth} are needed, one for each tooth.`);
   const lists = {};
   head.forEach((name, i) => {
     const field = COLUMNS.find(([each, pattern]) => each === name || pattern.test(name))?.[0];
@@ -44,7 +62,10 @@ export function measured(text, teeth, kind) {
   });
   if (!Object.keys(lists).length) {
     const width = rows[0].length;
-    if (width > 2) throw new Error(`There are ${width} columns without names; name them pitch_single_um, pitch_cumulative_um or profile_slope_um.`);
+    if (width > 2)
+      throw new Error(
+        `There are ${width} columns without names; name them pitch_single_um, pitch_cumulative_um or profile_slope_um.`,
+      );
     lists[kind] = rows.map((row) => row[width - 1]);
   }
   if (lists.pitch_single_um) {
@@ -65,15 +86,35 @@ export function deviations(member, design) {
   const pointer = `/pair/${member}/tooth_deviations`;
   const id = `deviations-${member}`;
   const number_ = (name, value, more) => h("input", { type: "number", id: `${id}-${name}`, value, ...more });
-  const [quality, seed, capability] = [number_("class", 6, { min: 1, max: 11, step: 1 }), number_("seed", 1, { min: 0, step: 1 }), numeric({ id: `${id}-capability`, value: 1 })];
+  const [quality, seed, capability] = [
+    number_("class", 6, { min: 1, max: 11, step: 1 }),
+    number_("seed", 1, { min: 0, step: 1 }),
+    numeric({ id: `${id}-capability`, value: 1 }),
+  ];
   const out = h("p", { className: "note", role: "status" });
-  const kind = h("select", { id: `${id}-kind` }, h("option", { value: "pitch_single_um" }, "single pitch"), h("option", { value: "pitch_cumulative_um" }, "cumulative pitch"), h("option", { value: "profile_slope_um" }, "profile slope"));
-  const text = h("textarea", { id: `${id}-text`, rows: 3, spellcheck: false, placeholder: "one number a tooth, in µm; or columns with names" });
+  const kind = h(
+    "select",
+    { id: `${id}-kind` },
+    h("option", { value: "pitch_single_um" }, "single pitch"),
+    h("option", { value: "pitch_cumulative_um" }, "cumulative pitch"),
+    h("option", { value: "profile_slope_um" }, "profile slope"),
+  );
+  const text = h("textarea", {
+    id: `${id}-text`,
+    rows: 3,
+    spellcheck: false,
+    placeholder: "one number a tooth, in µm; or columns with names",
+  });
   const labelled = (name, input) => h("span", {}, h("label", { htmlFor: input.id }, name), " ", input);
 
   async function draw() {
     try {
-      const drawn = await post("v1/draw-deviations", { gear: gear(), iso_1328_class: Number(quality.value), capability: given(capability), seed: Number(seed.value) });
+      const drawn = await post("v1/draw-deviations", {
+        gear: gear(),
+        iso_1328_class: Number(quality.value),
+        capability: given(capability),
+        seed: Number(seed.value),
+      });
       design.set(pointer, drawn.tooth_deviations, "mend");
       const um = drawn.tolerances_um;
       out.textContent = `Class ${quality.value}: f_pT ${fixed(um.single_pitch, 1)}, F_pT ${fixed(um.total_pitch, 1)}, f_HαT ${fixed(um.profile_slope, 1)}, F_rT ${fixed(um.runout, 1)} µm. These teeth: F_p ${fixed(drawn.total_pitch_deviation_um, 1)} µm${drawn.total_pitch_deviation_um > um.total_pitch ? ", more than the class allows" : ""}.`;
@@ -91,21 +132,60 @@ export function deviations(member, design) {
   function take(given) {
     try {
       const lists = measured(given, design.get(`/pair/${member}/tooth_count`), kind.value);
-      const { pitch_single_um: _, pitch_cumulative_um: __, other_flank_pitch_cumulative_um: ___, ...kept } = design.get(pointer) ?? {};
-      design.set(pointer, { ...(lists.pitch_single_um || lists.pitch_cumulative_um ? kept : design.get(pointer)), ...lists }, "mend");
-      out.textContent = `Taken: ${Object.entries(lists).map(([name, values]) => `${name} from ${number(Math.min(...values), 3)} to ${number(Math.max(...values), 3)} µm`).join(", ")}.`;
+      const {
+        pitch_single_um: _,
+        pitch_cumulative_um: __,
+        other_flank_pitch_cumulative_um: ___,
+        ...kept
+      } = design.get(pointer) ?? {};
+      design.set(
+        pointer,
+        { ...(lists.pitch_single_um || lists.pitch_cumulative_um ? kept : design.get(pointer)), ...lists },
+        "mend",
+      );
+      out.textContent = `Taken: ${Object.entries(lists)
+        .map(
+          ([name, values]) => `${name} from ${number(Math.min(...values), 3)} to ${number(Math.max(...values), 3)} µm`,
+        )
+        .join(", ")}.`;
       text.value = "";
     } catch (error) {
       out.textContent = error.message;
     }
   }
 
-  const element = h("details", { className: "tool", data: { pointer: `${pointer}/tool` } }, h("summary", {}, "Draw or paste teeth"),
-    h("div", { className: "line" }, labelled("ISO 1328 class", quality), labelled("seed", seed), labelled("capability", capability), h("button", { type: "button", on: { click: draw } }, "Draw teeth")),
-    h("p", { className: "note" }, "Teeth as a production of the class makes them: a tolerance is three standard deviations over the capability wide. Another seed is another gear."),
-    h("div", { className: "line" }, labelled("Measured", kind), h("label", { htmlFor: text.id, className: "visually-hidden" }, "Measured deviations"), text, h("button", { type: "button", on: { click: () => take(text.value) } }, "Take them")),
-    h("p", { className: "note" }, "Paste a column of a spreadsheet, or drop a CSV file here."), out);
-  element.addEventListener("dragover", (event) => { event.preventDefault(); element.classList.add("over"); });
+  const element = h(
+    "details",
+    { className: "tool", data: { pointer: `${pointer}/tool` } },
+    h("summary", {}, "Draw or paste teeth"),
+    h(
+      "div",
+      { className: "line" },
+      labelled("ISO 1328 class", quality),
+      labelled("seed", seed),
+      labelled("capability", capability),
+      h("button", { type: "button", on: { click: draw } }, "Draw teeth"),
+    ),
+    h(
+      "p",
+      { className: "note" },
+      "Teeth as a production of the class makes them: a tolerance is three standard deviations over the capability wide. Another seed is another gear.",
+    ),
+    h(
+      "div",
+      { className: "line" },
+      labelled("Measured", kind),
+      h("label", { htmlFor: text.id, className: "visually-hidden" }, "Measured deviations"),
+      text,
+      h("button", { type: "button", on: { click: () => take(text.value) } }, "Take them"),
+    ),
+    h("p", { className: "note" }, "Paste a column of a spreadsheet, or drop a CSV file here."),
+    out,
+  );
+  element.addEventListener("dragover", (event) => {
+    event.preventDefault();
+    element.classList.add("over");
+  });
   element.addEventListener("dragleave", () => element.classList.remove("over"));
   element.addEventListener("drop", async (event) => {
     event.preventDefault();

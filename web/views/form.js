@@ -20,13 +20,26 @@ const MULTIPLES = { addendum_mm: 1, dedendum_mm: 1.25, rack_tip_radius_mm: 0.38 
 const MEMBERS = ["driving", "driven"];
 
 /** The thickness of teeth, as drawings say it. */
-const THICKNESSES = ["tooth_thickness_deviation_um", "tooth_thickness_deviation_normal_um", "span_measurement", "ball_measurement"];
+const THICKNESSES = [
+  "tooth_thickness_deviation_um",
+  "tooth_thickness_deviation_normal_um",
+  "span_measurement",
+  "ball_measurement",
+];
 /** Fields that stand in place of each other: one that gets a value takes those of the others away. */
 const INSTEAD = {
   ...Object.fromEntries(THICKNESSES.map((name) => [name, THICKNESSES.filter((other) => other !== name)])),
-  radius_mm: ["slot"], slot: ["radius_mm"], at_deg: ["count", "phase_deg"], count: ["at_deg"], phase_deg: ["at_deg"],
-  tip_diameter_mm: ["addendum_mm"], addendum_mm: ["tip_diameter_mm"], tip_rounding_mm: ["tip_chamfer_mm"], tip_chamfer_mm: ["tip_rounding_mm"],
-  bore_radius_mm: ["shaft"], shaft: ["bore_radius_mm"],
+  radius_mm: ["slot"],
+  slot: ["radius_mm"],
+  at_deg: ["count", "phase_deg"],
+  count: ["at_deg"],
+  phase_deg: ["at_deg"],
+  tip_diameter_mm: ["addendum_mm"],
+  addendum_mm: ["tip_diameter_mm"],
+  tip_rounding_mm: ["tip_chamfer_mm"],
+  tip_chamfer_mm: ["tip_rounding_mm"],
+  bore_radius_mm: ["shaft"],
+  shaft: ["bore_radius_mm"],
 };
 
 export class Form {
@@ -35,7 +48,10 @@ export class Form {
   #last = {};
   #unlocked = new Set();
 
-  /** `notify` says what else a change has changed; `limits` are those of the service, and `results` the last that there are. */
+  /**
+   * `notify` says what else a change has changed; `limits` are those of the service, and `results` the last that there
+   * are.
+   */
   constructor(place, api, design, { notify, limits, results }) {
     Object.assign(this, { place, api, design, notify, beginnings: new Beginnings(api, design, { limits, results }) });
     place.addEventListener("submit", (event) => event.preventDefault());
@@ -50,25 +66,39 @@ export class Form {
     const known = this.place.childElementCount > 0;
     const focused = document.activeElement?.id;
     this.#fields.clear();
-    for (const name of ALIKE) if (new Set(MEMBERS.map((member) => this.design.get(`/pair/${member}/${name}`))).size > 1) this.#unlocked.add(name);
+    for (const name of ALIKE)
+      if (new Set(MEMBERS.map((member) => this.design.get(`/pair/${member}/${name}`))).size > 1)
+        this.#unlocked.add(name);
     const submission = kindOf(this.api, { $ref: "#/components/schemas/Submission" });
     const { pair, method, output_torques_n_m: torques, ...rest } = submission.schema.properties;
     const members = resolve(this.api, pair).properties;
     const gear = resolve(this.api, members.driving);
     this.place.replaceChildren(
-      this.#section("Pair", "/pair", [
-        this.#field("/pair/center_distance_mm", members.center_distance_mm, true),
-        ...ALIKE.map((name) => this.#alike(name, gear)),
-        this.#teeth(),
-        ...Object.entries(members).filter(([name]) => !["center_distance_mm", ...MEMBERS].includes(name)).map(([name, schema]) => this.#field(`/pair/${name}`, schema, false)),
-      ], true),
+      this.#section(
+        "Pair",
+        "/pair",
+        [
+          this.#field("/pair/center_distance_mm", members.center_distance_mm, true),
+          ...ALIKE.map((name) => this.#alike(name, gear)),
+          this.#teeth(),
+          ...Object.entries(members)
+            .filter(([name]) => !["center_distance_mm", ...MEMBERS].includes(name))
+            .map(([name, schema]) => this.#field(`/pair/${name}`, schema, false)),
+        ],
+        true,
+      ),
       this.#gear("driving", members.driving),
       this.#gear("driven", members.driven),
-      this.#section("Load and method", "/", [
-        this.#field("/output_torques_n_m", torques, true),
-        this.#field("/method", method, true),
-        ...Object.entries(rest).map(([name, schema]) => this.#field(`/${name}`, schema, false)),
-      ], false),
+      this.#section(
+        "Load and method",
+        "/",
+        [
+          this.#field("/output_torques_n_m", torques, true),
+          this.#field("/method", method, true),
+          ...Object.entries(rest).map(([name, schema]) => this.#field(`/${name}`, schema, false)),
+        ],
+        false,
+      ),
     );
     for (const each of this.place.querySelectorAll("details")) if (known) each.open = open.has(each.dataset.pointer);
     for (const member of MEMBERS) this.#remember(member);
@@ -84,12 +114,18 @@ export class Form {
     this.#showDimensions();
   }
 
-  /** Computes the pair in three dimensions, or in the plane without what has an extent along the axis; says what went with it. */
+  /**
+   * Computes the pair in three dimensions, or in the plane without what has an extent along the axis; says what went
+   * with it.
+   */
   compute(inSolid) {
     this.#follow(inSolid ? intoSolid(this.design) : intoPlane(this.design), "mend");
   }
 
-  /** Shows what is wrong at the fields. A section that is closed says so at its head: to open it would close the one that is worked in. */
+  /**
+   * Shows what is wrong at the fields. A section that is closed says so at its head: to open it would close the one
+   * that is worked in.
+   */
   showErrors(errors = []) {
     for (const field of this.#fields.values()) this.#clear(field);
     for (const each of this.place.querySelectorAll(".section.wrong")) each.classList.remove("wrong");
@@ -111,19 +147,30 @@ export class Form {
   /** What the field at a pointer is called. */
   titleOf(pointer) {
     const place = pointer.replace(/\/\d+$/, "");
-    return (this.#fields.get(place)?.schema ?? schemaAt(this.api, place))?.title ?? place.split("/").pop().replace(/_/g, " ");
+    return (
+      (this.#fields.get(place)?.schema ?? schemaAt(this.api, place))?.title ?? place.split("/").pop().replace(/_/g, " ")
+    );
   }
 
   /** What the field at a pointer is called, and of which gear it is. */
   named(pointer) {
     const member = /^\/pair\/(driving|driven)\//.exec(pointer)?.[1];
-    const words = this.titleOf(pointer) + (/\/(\d+)\//.test(pointer) ? ` (${Number(/\/(\d+)\//.exec(pointer)[1]) + 1})` : "");
+    const words =
+      this.titleOf(pointer) + (/\/(\d+)\//.test(pointer) ? ` (${Number(/\/(\d+)\//.exec(pointer)[1]) + 1})` : "");
     return member && !this.#isAlike(pointer) ? `${words}, ${member} gear` : words;
   }
 
   /** What the service says of fields by their pointers, in the words of the form. */
   inWords(detail) {
-    return detail.replace(/\/(?:pair|population|resolution|output_torques_n_m|force_table|dynamics|face_load)[\w/]*/g, (pointer) => `“${this.named(pointer)}”`).replace(/\b(three_dimensional_projected|three_dimensional|projected_decomposition|load_distribution)\b/g, (method) => method.replace(/_/g, " "));
+    return detail
+      .replace(
+        /\/(?:pair|population|resolution|output_torques_n_m|force_table|dynamics|face_load)[\w/]*/g,
+        (pointer) => `“${this.named(pointer)}”`,
+      )
+      .replace(
+        /\b(three_dimensional_projected|three_dimensional|projected_decomposition|load_distribution)\b/g,
+        (method) => method.replace(/_/g, " "),
+      );
   }
 
   /** The numbers, words and flags of the form: `{ pointer, title, kind }`. */
@@ -131,9 +178,16 @@ export class Form {
     // What both gears have alike cannot be changed by one field, and what stands in place of another not beside it.
     const stands = ({ pointer }) => {
       const [, holder, name] = /^(.*\/)([^/]+)$/.exec(pointer);
-      return !(INSTEAD[name] ?? []).some((other) => this.design.get(holder + other) !== undefined && this.design.get(pointer) === undefined);
+      return !(INSTEAD[name] ?? []).some(
+        (other) => this.design.get(holder + other) !== undefined && this.design.get(pointer) === undefined,
+      );
     };
-    return [...this.#fields.values()].filter(({ kind, pointer }) => kind && ["number", "choice", "flag"].includes(kind.kind) && !this.#isAlike(pointer)).filter(stands).map(({ pointer, kind }) => ({ pointer, kind, title: this.titled(pointer) }));
+    return [...this.#fields.values()]
+      .filter(
+        ({ kind, pointer }) => kind && ["number", "choice", "flag"].includes(kind.kind) && !this.#isAlike(pointer),
+      )
+      .filter(stands)
+      .map(({ pointer, kind }) => ({ pointer, kind, title: this.titled(pointer) }));
   }
 
   /** What the field at a pointer is called, with its gear and its unit. */
@@ -157,7 +211,8 @@ export class Form {
   focus(pointer) {
     const field = this.#nearest(pointer);
     if (!field) return;
-    for (let parent = field.element.closest("details"); parent; parent = parent.parentElement?.closest("details")) parent.open = true;
+    for (let parent = field.element.closest("details"); parent; parent = parent.parentElement?.closest("details"))
+      parent.open = true;
     const input = field.element.querySelector("input, select, textarea");
     input?.scrollIntoView({ block: "center" });
     input?.focus({ preventScroll: true });
@@ -181,15 +236,36 @@ export class Form {
   }
 
   #mark({ element, pointer, schema, described }, error) {
-    const mend = error.nearest === null || error.nearest === undefined ? null
-      : h("button", { type: "button", className: "mend", on: { click: () => this.design.set(error.pointer, error.nearest, "mend") } }, `Use ${number(error.nearest, 8)} ${unit(schema["x-unit"] ?? schema.items?.["x-unit"])}`.trim());
+    const mend =
+      error.nearest === null || error.nearest === undefined
+        ? null
+        : h(
+            "button",
+            {
+              type: "button",
+              className: "mend",
+              on: { click: () => this.design.set(error.pointer, error.nearest, "mend") },
+            },
+            `Use ${number(error.nearest, 8)} ${unit(schema["x-unit"] ?? schema.items?.["x-unit"])}`.trim(),
+          );
     element.classList.add("wrong");
     const id = `error-${pointer}-${element.querySelectorAll(":scope > .field-error").length}`;
     const typed = this.design.get(error.pointer);
-    element.append(h("p", { className: "field-error", id }, error.code === "wrong_type" && typeof typed === "string" ? unreadable(typed) : this.inWords(error.detail), " ", mend));
+    element.append(
+      h(
+        "p",
+        { className: "field-error", id },
+        error.code === "wrong_type" && typeof typed === "string" ? unreadable(typed) : this.inWords(error.detail),
+        " ",
+        mend,
+      ),
+    );
     const input = element.querySelector(":scope > .row > input, :scope > .row > select, :scope > .row > textarea");
     input?.setAttribute("aria-invalid", "true");
-    input?.setAttribute("aria-describedby", [input.getAttribute("aria-describedby") ?? described, id].filter(Boolean).join(" "));
+    input?.setAttribute(
+      "aria-describedby",
+      [input.getAttribute("aria-describedby") ?? described, id].filter(Boolean).join(" "),
+    );
     for (let parent = element.closest("details"); parent; parent = parent.parentElement?.closest("details")) {
       if (parent.classList.contains("section")) parent.classList.add("wrong");
       else parent.open = true;
@@ -201,21 +277,48 @@ export class Form {
     const title = member === "driving" ? "Driving gear" : "Driven gear";
     const { properties, required = [] } = resolve(this.api, schema);
     const { blank, ...all } = properties;
-    const own = Object.fromEntries(Object.entries(all).filter(([name]) => !ALIKE.includes(name) || this.#unlocked.has(name)));
+    const own = Object.fromEntries(
+      Object.entries(all).filter(([name]) => !ALIKE.includes(name) || this.#unlocked.has(name)),
+    );
     const inner = resolve(this.api, blank).properties;
-    const names = [...FIRST.filter((name) => name in own && name !== "tip_relief"), ...required.filter((name) => name in own && !FIRST.includes(name))];
+    const names = [
+      ...FIRST.filter((name) => name in own && name !== "tip_relief"),
+      ...required.filter((name) => name in own && !FIRST.includes(name)),
+    ];
     const shown = names.map((name) => this.#field(`${pointer}/${name}`, own[name], required.includes(name)));
-    const body = Object.entries(inner).sort(([a], [b]) => rank(a) - rank(b)).map(([name, each]) => this.#field(`${pointer}/blank/${name}`, each, name === "bore_radius_mm"));
+    const body = Object.entries(inner)
+      .sort(([a], [b]) => rank(a) - rank(b))
+      .map(([name, each]) => this.#field(`${pointer}/blank/${name}`, each, name === "bore_radius_mm"));
     const relief = own.tip_relief ? [this.#field(`${pointer}/tip_relief`, own.tip_relief, false)] : [];
     const others = Object.keys(own).filter((name) => !names.includes(name) && name !== "tip_relief");
     // What the design gives, it shows: nothing that counts is folded away.
-    const isGiven = (name) => ![undefined, null].includes(this.design.get(`${pointer}/${name}`)) && JSON.stringify(this.design.get(`${pointer}/${name}`)) !== "[]";
+    const isGiven = (name) =>
+      ![undefined, null].includes(this.design.get(`${pointer}/${name}`)) &&
+      JSON.stringify(this.design.get(`${pointer}/${name}`)) !== "[]";
     const of = (name) => this.#field(`${pointer}/${name}`, own[name], false);
     const given = others.filter((name) => isGiven(name) && name !== "tooth_deviations");
     const isPart = (name) => typeof this.design.get(`${pointer}/${name}`) === "object";
-    const more = this.#group(`More of the ${title.toLowerCase()}`, `${pointer}/more`, others.filter((name) => !given.includes(name) && name !== "tooth_deviations").map(of), false);
+    const more = this.#group(
+      `More of the ${title.toLowerCase()}`,
+      `${pointer}/more`,
+      others.filter((name) => !given.includes(name) && name !== "tooth_deviations").map(of),
+      false,
+    );
     const teeth = own.tooth_deviations ? [of("tooth_deviations"), this.tools[member]] : [];
-    return this.#section(title, pointer, [...shown, ...given.filter((name) => !isPart(name)).map(of), ...body, ...relief, ...given.filter(isPart).map(of), ...teeth, more], false);
+    return this.#section(
+      title,
+      pointer,
+      [
+        ...shown,
+        ...given.filter((name) => !isPart(name)).map(of),
+        ...body,
+        ...relief,
+        ...given.filter(isPart).map(of),
+        ...teeth,
+        more,
+      ],
+      false,
+    );
   }
 
   /** A field that both gears have alike, or the button that makes it one again. */
@@ -224,8 +327,32 @@ export class Form {
     const needed = (gear.required ?? []).includes(name);
     const locked = !this.#unlocked.has(name);
     const both = MEMBERS.map((member) => `/pair/${member}/${name}`);
-    const lock = h("button", { type: "button", className: "lock", ariaLabel: `${schema.title}: the same for both gears`, aria: { pressed: String(locked) }, title: locked ? "The same for both gears; press to give each its own" : "Each gear has its own; press to give both that of the driving gear", on: { click: () => this.#lock(name, !locked) } }, locked ? "=" : "≠");
-    if (!locked) return h("div", { className: "field alike" }, h("div", { className: "row" }, h("span", {}, schema.title), h("span", { className: "note" }, "with each gear"), lock));
+    const lock = h(
+      "button",
+      {
+        type: "button",
+        className: "lock",
+        ariaLabel: `${schema.title}: the same for both gears`,
+        aria: { pressed: String(locked) },
+        title: locked
+          ? "The same for both gears; press to give each its own"
+          : "Each gear has its own; press to give both that of the driving gear",
+        on: { click: () => this.#lock(name, !locked) },
+      },
+      locked ? "=" : "≠",
+    );
+    if (!locked)
+      return h(
+        "div",
+        { className: "field alike" },
+        h(
+          "div",
+          { className: "row" },
+          h("span", {}, schema.title),
+          h("span", { className: "note" }, "with each gear"),
+          lock,
+        ),
+      );
     const element = this.#field(both[0], schema, needed);
     element.classList.add("alike");
     element.querySelector(".row").append(lock);
@@ -245,8 +372,29 @@ export class Form {
   #teeth() {
     const id = "field-teeth";
     const words = { straight: "straight", helical: "helical" };
-    this.kindOfTeeth = h("select", { id, on: { change: (event) => this.#follow(teeth(this.design, event.target.value), "mend") } }, ...Object.entries(words).map(([value, name]) => h("option", { value }, name)));
-    return h("div", { className: "field choice" }, h("div", { className: "row" }, h("label", { htmlFor: id, title: "Helical teeth are computed in three dimensions; the module and the pressure angle are those of the normal section then" }, "Teeth"), this.kindOfTeeth));
+    this.kindOfTeeth = h(
+      "select",
+      { id, on: { change: (event) => this.#follow(teeth(this.design, event.target.value), "mend") } },
+      ...Object.entries(words).map(([value, name]) => h("option", { value }, name)),
+    );
+    return h(
+      "div",
+      { className: "field choice" },
+      h(
+        "div",
+        { className: "row" },
+        h(
+          "label",
+          {
+            htmlFor: id,
+            title:
+              "Helical teeth are computed in three dimensions; the module and the pressure angle are those of the normal section then",
+          },
+          "Teeth",
+        ),
+        this.kindOfTeeth,
+      ),
+    );
   }
 
   /** Fields that the method does not know are marked, and what was typed for another helix angle is offered anew. */
@@ -257,7 +405,16 @@ export class Form {
     for (const { pointer, value, angle } of offers(this.design)) {
       const words = `Typed for a helix angle of ${number(angle)}°; ${number(value, 7)} mm has the same teeth at ${number(this.design.get(HELIX) ?? 0)}°. `;
       const button = (name, work) => h("button", { type: "button", className: "mend", on: { click: work } }, name);
-      this.#nearest(pointer)?.element.append(h("p", { className: "field-offer", role: "status" }, words, button(`Use ${number(value, 7)} mm`, () => this.design.set(pointer, value, "mend")), " ", button("Keep what was typed", () => this.design.confirm(pointer))));
+      this.#nearest(pointer)?.element.append(
+        h(
+          "p",
+          { className: "field-offer", role: "status" },
+          words,
+          button(`Use ${number(value, 7)} mm`, () => this.design.set(pointer, value, "mend")),
+          " ",
+          button("Keep what was typed", () => this.design.confirm(pointer)),
+        ),
+      );
     }
   }
 
@@ -269,17 +426,39 @@ export class Form {
   }
 
   #section(title, pointer, children, open) {
-    return h("details", { className: "group section", name: this.unfolded ? "" : "section", open: open || this.unfolded, data: { pointer } }, h("summary", {}, title), h("div", { className: "fields" }, ...children));
+    return h(
+      "details",
+      {
+        className: "group section",
+        name: this.unfolded ? "" : "section",
+        open: open || this.unfolded,
+        data: { pointer },
+      },
+      h("summary", {}, title),
+      h("div", { className: "fields" }, ...children),
+    );
   }
 
   #group(title, pointer, children, open) {
-    return h("details", { className: "group", open, data: { pointer } }, h("summary", {}, title), h("div", { className: "fields" }, ...children));
+    return h(
+      "details",
+      { className: "group", open, data: { pointer } },
+      h("summary", {}, title),
+      h("div", { className: "fields" }, ...children),
+    );
   }
 
   #field(pointer, given, needed) {
     const kind = kindOf(this.api, given);
     const make = { object: "#object", variants: "#variants", list: "#list" }[kind.kind];
-    const element = make === "#object" ? this.#object(pointer, kind, needed) : make === "#variants" ? this.#variants(pointer, kind, needed) : make === "#list" ? this.#list(pointer, kind) : this.#input(pointer, kind, needed);
+    const element =
+      make === "#object"
+        ? this.#object(pointer, kind, needed)
+        : make === "#variants"
+          ? this.#variants(pointer, kind, needed)
+          : make === "#list"
+            ? this.#list(pointer, kind)
+            : this.#input(pointer, kind, needed);
     if (needsThird(pointer)) element.classList.add("needs-third");
     this.shape = this.#shape();
     return element;
@@ -292,7 +471,10 @@ export class Form {
       if (Array.isArray(value)) return isNested(value[0]) ? value.map(shape) : 0;
       if (!isNested(value)) return 0;
       const nested = Object.entries(value).filter(([, each]) => isNested(each));
-      return Object.fromEntries([...nested.map(([name, each]) => [name, Object.keys(each).length && shape(each)]), ...variantOf(value)]);
+      return Object.fromEntries([
+        ...nested.map(([name, each]) => [name, Object.keys(each).length && shape(each)]),
+        ...variantOf(value),
+      ]);
     };
     return JSON.stringify(shape(this.design.submission));
   }
@@ -313,47 +495,112 @@ export class Form {
     const printed = unit(schema["x-unit"] ?? kind.items?.schema?.["x-unit"]);
     const words = said ? h("p", { className: "help", id: `help-${pointer}`, hidden: true }, said, bounds(kind)) : null;
     if (words) input.setAttribute("aria-describedby", words.id);
-    const more = words ? h("button", { type: "button", className: "about", tabIndex: -1, title: "What this is; in the field, the key ?", ariaLabel: `About ${label.textContent}`, aria: { expanded: "false", controls: words.id }, on: { click: (event) => toggle(event.currentTarget, words) } }, "?") : null;
+    const more = words
+      ? h(
+          "button",
+          {
+            type: "button",
+            className: "about",
+            tabIndex: -1,
+            title: "What this is; in the field, the key ?",
+            ariaLabel: `About ${label.textContent}`,
+            aria: { expanded: "false", controls: words.id },
+            on: { click: (event) => toggle(event.currentTarget, words) },
+          },
+          "?",
+        )
+      : null;
     // A value that has a default is marked as given, and goes back to it: by a button, or by the choice that it is.
-    const clear = needed || ["flag", "choice"].includes(kind.kind) ? null : h("button", { type: "button", className: "clear", hidden: true, ariaLabel: `${label.textContent}: back to the default`, title: "Given; press for the default", on: { click: () => (pointer === HELIX ? this.#putHelix(undefined, "mend") : this.design.set(pointer, undefined, "mend")) } }, "×");
-    const element = h("div", { className: `field ${kind.kind}` }, h("div", { className: "row" }, label, input, h("span", { className: "unit" }, printed), more, clear), words);
+    const clear =
+      needed || ["flag", "choice"].includes(kind.kind)
+        ? null
+        : h(
+            "button",
+            {
+              type: "button",
+              className: "clear",
+              hidden: true,
+              ariaLabel: `${label.textContent}: back to the default`,
+              title: "Given; press for the default",
+              on: {
+                click: () =>
+                  pointer === HELIX ? this.#putHelix(undefined, "mend") : this.design.set(pointer, undefined, "mend"),
+              },
+            },
+            "×",
+          );
+    const element = h(
+      "div",
+      { className: `field ${kind.kind}` },
+      h("div", { className: "row" }, label, input, h("span", { className: "unit" }, printed), more, clear),
+      words,
+    );
     // Tab goes from number to number; their words are a key away, where no text is typed.
-    if (more && !["text", "texts", "json"].includes(kind.kind)) input.addEventListener("keydown", (event) => { if (event.key === "?") { event.preventDefault(); more.click(); } });
-    return this.#register(pointer, element, schema, () => {
-      if (!needed && "placeholder" in input) {
-        const modules = schema["x-default-modules"] * this.design.get(`${pointer.slice(0, pointer.lastIndexOf("/"))}/module_mm`);
-        input.placeholder = schema.default !== undefined && schema.default !== null ? String(schema.default) : modules > 0 ? number(modules, 5) : saidDefault(schema);
-        input.title = input.placeholder === "0" ? "" : saidDefault(schema);
-      }
-      const value = this.design.get(pointer);
-      if (document.activeElement !== input || this.design.by !== "form") write(input, kind, value);
-      const given = !needed && value !== undefined && value !== null && value !== schema.default;
-      element.classList.toggle("given", given);
-      if (clear) clear.hidden = !given;
-    }, kind, words?.id ?? null);
+    if (more && !["text", "texts", "json"].includes(kind.kind))
+      input.addEventListener("keydown", (event) => {
+        if (event.key === "?") {
+          event.preventDefault();
+          more.click();
+        }
+      });
+    return this.#register(
+      pointer,
+      element,
+      schema,
+      () => {
+        if (!needed && "placeholder" in input) {
+          const modules =
+            schema["x-default-modules"] * this.design.get(`${pointer.slice(0, pointer.lastIndexOf("/"))}/module_mm`);
+          input.placeholder =
+            schema.default !== undefined && schema.default !== null
+              ? String(schema.default)
+              : modules > 0
+                ? number(modules, 5)
+                : saidDefault(schema);
+          input.title = input.placeholder === "0" ? "" : saidDefault(schema);
+        }
+        const value = this.design.get(pointer);
+        if (document.activeElement !== input || this.design.by !== "form") write(input, kind, value);
+        const given = !needed && value !== undefined && value !== null && value !== schema.default;
+        element.classList.toggle("given", given);
+        if (clear) clear.hidden = !given;
+      },
+      kind,
+      words?.id ?? null,
+    );
   }
 
   /** Sets a field and `further` ones, and takes away what it stands in place of. */
   #put(pointer, value, further = {}) {
-    const [, member, name] = /^\/pair\/(driving|driven)\/(module_mm|pressure_angle_deg|tooth_count)$/.exec(pointer) ?? [];
-    if (member) return this.#putBasic(ALIKE.includes(name) && !this.#unlocked.has(name) ? MEMBERS : [member], name, value);
+    const [, member, name] =
+      /^\/pair\/(driving|driven)\/(module_mm|pressure_angle_deg|tooth_count)$/.exec(pointer) ?? [];
+    if (member)
+      return this.#putBasic(ALIKE.includes(name) && !this.#unlocked.has(name) ? MEMBERS : [member], name, value);
     if (pointer === HELIX) return this.#putHelix(value, "form");
     if (pointer === "/method" && isSolid(value) && !isSolid(this.design.get("/method"))) {
       const { changes, told } = intoSolid(this.design);
       return this.#follow({ changes: { ...changes, [pointer]: value }, told: told.slice(1) }, "mend");
     }
-    this.design.setAll({ [pointer]: value, ...further, ...(value === undefined ? {} : this.#displaced(pointer)) }, "form");
+    this.design.setAll(
+      { [pointer]: value, ...further, ...(value === undefined ? {} : this.#displaced(pointer)) },
+      "form",
+    );
   }
 
   /** Takes values by their pointers, as a warning offers them. */
   take(changes) {
-    this.design.setAll({ ...changes, ...Object.assign({}, ...Object.keys(changes).map((pointer) => this.#displaced(pointer))) }, "mend");
+    this.design.setAll(
+      { ...changes, ...Object.assign({}, ...Object.keys(changes).map((pointer) => this.#displaced(pointer))) },
+      "mend",
+    );
   }
 
   /** What goes where a field gets a value: those that it stands in place of. */
   #displaced(pointer) {
     const holder = pointer.slice(0, pointer.lastIndexOf("/") + 1);
-    const others = (INSTEAD[pointer.slice(holder.length)] ?? []).filter((name) => this.design.get(holder + name) !== undefined);
+    const others = (INSTEAD[pointer.slice(holder.length)] ?? []).filter(
+      (name) => this.design.get(holder + name) !== undefined,
+    );
     return Object.fromEntries(others.map((name) => [holder + name, undefined]));
   }
 
@@ -373,7 +620,9 @@ export class Form {
     this.#follow(helix(this.design, value ?? 0, this.#last.helix), by);
   }
 
-  /** Sets what other lengths are given in multiples of, or number teeth by: those lengths go with it, and this is said. */
+  /**
+   * Sets what other lengths are given in multiples of, or number teeth by: those lengths go with it, and this is said.
+   */
   #putBasic(members, name, value, by = "form") {
     const changes = {};
     const told = new Set();
@@ -382,18 +631,29 @@ export class Form {
       const before = this.#last[member]?.[name];
       changes[`${pointer}/${name}`] = value;
       if (!(value > 0) || !(before > 0) || value === before) continue;
-      const followed = name === "module_mm" ? this.#scaled(pointer, value, before) : name === "tooth_count" ? this.#renumbered(pointer, value, before) : {};
+      const followed =
+        name === "module_mm"
+          ? this.#scaled(pointer, value, before)
+          : name === "tooth_count"
+            ? this.#renumbered(pointer, value, before)
+            : {};
       for (const [field, [words, now]] of Object.entries(followed)) {
         changes[`${pointer}/${field}`] = now;
         told.add(words);
       }
     }
-    this.design.setAll(changes, by, members.map((member) => `/pair/${member}/${name}`));
+    this.design.setAll(
+      changes,
+      by,
+      members.map((member) => `/pair/${member}/${name}`),
+    );
     for (const member of members) this.#remember(member);
     if (told.size) this.notify(`${[...told].join(", ")}.`);
   }
 
-  /** The given lengths of a rack that go with the module: as many modules as before, or none where that is the default. */
+  /**
+   * The given lengths of a rack that go with the module: as many modules as before, or none where that is the default.
+   */
   #scaled(pointer, value, before) {
     const followed = {};
     for (const [field, usual] of Object.entries({ ...MULTIPLES, tip_diameter_mm: 0 })) {
@@ -402,7 +662,9 @@ export class Form {
       const modules = given / before;
       const isUsual = Math.abs(modules - usual) < 1e-6;
       const title = this.titleOf(`${pointer}/${field}`);
-      followed[field] = isUsual ? [`${title} back to its default of ${usual} modules`, undefined] : [`${title} stays ${number(modules, 4)} modules`, Number((modules * value).toPrecision(9))];
+      followed[field] = isUsual
+        ? [`${title} back to its default of ${usual} modules`, undefined]
+        : [`${title} stays ${number(modules, 4)} modules`, Number((modules * value).toPrecision(9))];
     }
     return followed;
   }
@@ -411,9 +673,17 @@ export class Form {
   #renumbered(pointer, value, before) {
     const followed = {};
     const tip = this.design.get(`${pointer}/tip_diameter_mm`);
-    if (typeof tip === "number") followed.tip_diameter_mm = ["The tip diameter grows with the teeth", Number((tip + this.design.get(`${pointer}/module_mm`) * (value - before)).toPrecision(9))];
+    if (typeof tip === "number")
+      followed.tip_diameter_mm = [
+        "The tip diameter grows with the teeth",
+        Number((tip + this.design.get(`${pointer}/module_mm`) * (value - before)).toPrecision(9)),
+      ];
     const { eccentricity, ...lists } = this.design.get(`${pointer}/tooth_deviations`) ?? {};
-    if (Object.values(lists).some((list) => Array.isArray(list) && list.length > 0 && list.length !== value)) followed.tooth_deviations = [`The deviations of ${before} teeth were taken away`, eccentricity ? { eccentricity } : undefined];
+    if (Object.values(lists).some((list) => Array.isArray(list) && list.length > 0 && list.length !== value))
+      followed.tooth_deviations = [
+        `The deviations of ${before} teeth were taken away`,
+        eccentricity ? { eccentricity } : undefined,
+      ];
     return followed;
   }
 
@@ -424,8 +694,15 @@ export class Form {
       const options = schema.enum.map((word) => h("option", { value: word }, word.replace(/_/g, " ")));
       return h("select", { id, on: { change: (event) => put(event.target.value) } }, ...options);
     }
-    if (kind.kind === "flag") return h("input", { id, type: "checkbox", on: { change: (event) => put(event.target.checked) } });
-    if (kind.kind === "json") return h("textarea", { id, rows: 2, spellcheck: false, on: { change: (event) => put(parsed(event.target.value)) } });
+    if (kind.kind === "flag")
+      return h("input", { id, type: "checkbox", on: { change: (event) => put(event.target.checked) } });
+    if (kind.kind === "json")
+      return h("textarea", {
+        id,
+        rows: 2,
+        spellcheck: false,
+        on: { change: (event) => put(parsed(event.target.value)) },
+      });
     const properties = { id, spellcheck: false, on: { input: (event) => put(read(event.target, kind)) } };
     if (kind.kind !== "number") return h("input", { type: "text", ...properties });
     const input = numeric(properties);
@@ -444,8 +721,10 @@ export class Form {
 
   /** Sets a number as a hand does. */
   #turn(pointer, value) {
-    const [, member, name] = /^\/pair\/(driving|driven)\/(module_mm|pressure_angle_deg|tooth_count)$/.exec(pointer) ?? [];
-    if (member) this.#putBasic(ALIKE.includes(name) && !this.#unlocked.has(name) ? MEMBERS : [member], name, value, "drag");
+    const [, member, name] =
+      /^\/pair\/(driving|driven)\/(module_mm|pressure_angle_deg|tooth_count)$/.exec(pointer) ?? [];
+    if (member)
+      this.#putBasic(ALIKE.includes(name) && !this.#unlocked.has(name) ? MEMBERS : [member], name, value, "drag");
     else if (pointer === HELIX) this.#putHelix(value, "drag");
     else this.design.set(pointer, value, "drag");
   }
@@ -479,14 +758,24 @@ export class Form {
     const title = kind.schema.title.replace(/ request$/, "");
     const there = at(this.design.submission, pointer) ?? null;
     const open = needed || !kind.optional || there !== null;
-    const fields = open ? Object.entries(properties).map(([name, schema]) => this.#field(`${pointer}/${name}`, schema, required.includes(name))) : [];
+    const fields = open
+      ? Object.entries(properties).map(([name, schema]) =>
+          this.#field(`${pointer}/${name}`, schema, required.includes(name)),
+        )
+      : [];
     return this.#fieldset(pointer, kind, title, fields, kind.optional && !needed);
   }
 
   #fieldset(pointer, kind, title, fields, optional) {
     const said = help(kind.schema);
-    const box = h("input", { type: "checkbox", id: `field-${pointer}`, on: { change: (event) => (event.target.checked ? this.begin(pointer, kind) : this.#takeAway(pointer)) } });
-    const legend = optional ? h("legend", {}, h("label", { title: said }, box, ` ${title}`)) : h("legend", { title: said }, title);
+    const box = h("input", {
+      type: "checkbox",
+      id: `field-${pointer}`,
+      on: { change: (event) => (event.target.checked ? this.begin(pointer, kind) : this.#takeAway(pointer)) },
+    });
+    const legend = optional
+      ? h("legend", {}, h("label", { title: said }, box, ` ${title}`))
+      : h("legend", { title: said }, title);
     const element = h("fieldset", { className: "field" }, legend, ...fields);
     return this.#register(pointer, element, kind.schema, () => {
       box.checked = (at(this.design.submission, pointer) ?? null) !== null;
@@ -508,16 +797,54 @@ export class Form {
 
   #variants(pointer, kind) {
     const value = this.design.get(pointer);
-    const index = value === undefined || value === null ? -1 : kind.variants.findIndex((variant) => fits(variant, value));
-    const none = kind.optional || kind.schema.default !== undefined ? [h("option", { value: "" }, pointer.endsWith("/holes") ? "none" : "default")] : [];
-    const options = kind.variants.map((variant, i) => h("option", { value: i }, (variant.title ?? `variant ${i + 1}`).replace(/^Holes$/, "one pattern").replace(/ of holes$| modification$/, "")));
+    const index =
+      value === undefined || value === null ? -1 : kind.variants.findIndex((variant) => fits(variant, value));
+    const none =
+      kind.optional || kind.schema.default !== undefined
+        ? [h("option", { value: "" }, pointer.endsWith("/holes") ? "none" : "default")]
+        : [];
+    const options = kind.variants.map((variant, i) =>
+      h(
+        "option",
+        { value: i },
+        (variant.title ?? `variant ${i + 1}`)
+          .replace(/^Holes$/, "one pattern")
+          .replace(/ of holes$| modification$/, ""),
+      ),
+    );
     const id = `field-${pointer}`;
-    const choose = (place) => (place === "" ? undefined : this.beginnings.variant(pointer, kindOf(this.api, kind.variants[place])));
-    const select = h("select", { id, on: { change: (event) => this.design.set(pointer, choose(event.target.value), "mend") } }, ...none, ...options);
+    const choose = (place) =>
+      place === "" ? undefined : this.beginnings.variant(pointer, kindOf(this.api, kind.variants[place]));
+    const select = h(
+      "select",
+      { id, on: { change: (event) => this.design.set(pointer, choose(event.target.value), "mend") } },
+      ...none,
+      ...options,
+    );
     const chosen = kind.variants[index];
     const inner = chosen ? kindOf(this.api, chosen) : null;
-    const fields = inner?.kind === "object" ? Object.entries(inner.schema.properties).filter(([, { enum: words }]) => words?.length !== 1).map(([name, schema]) => this.#field(`${pointer}/${name}`, schema, (inner.schema.required ?? []).includes(name))) : inner?.kind === "list" ? [this.#list(pointer, inner)] : [];
-    const element = h("div", { className: "field variants" }, h("div", { className: "row" }, h("label", { htmlFor: id, title: help(kind.schema) }, kind.schema.title), select, h("span", { className: "unit" })), ...fields);
+    const fields =
+      inner?.kind === "object"
+        ? Object.entries(inner.schema.properties)
+            .filter(([, { enum: words }]) => words?.length !== 1)
+            .map(([name, schema]) =>
+              this.#field(`${pointer}/${name}`, schema, (inner.schema.required ?? []).includes(name)),
+            )
+        : inner?.kind === "list"
+          ? [this.#list(pointer, inner)]
+          : [];
+    const element = h(
+      "div",
+      { className: "field variants" },
+      h(
+        "div",
+        { className: "row" },
+        h("label", { htmlFor: id, title: help(kind.schema) }, kind.schema.title),
+        select,
+        h("span", { className: "unit" }),
+      ),
+      ...fields,
+    );
     return this.#register(pointer, element, kind.schema, () => {
       select.value = index < 0 ? "" : String(index);
     });
@@ -525,16 +852,35 @@ export class Form {
 
   #list(pointer, kind) {
     const values = this.design.get(pointer) ?? [];
-    const entries = values.map((_, i) => h("div", { className: "entry-of-list" },
-      this.#field(`${pointer}/${i}`, kind.items.schema, true),
-      h("button", { type: "button", on: { click: () => this.design.set(`${pointer}/${i}`, undefined, "mend") } }, "Remove")));
+    const entries = values.map((_, i) =>
+      h(
+        "div",
+        { className: "entry-of-list" },
+        this.#field(`${pointer}/${i}`, kind.items.schema, true),
+        h(
+          "button",
+          { type: "button", on: { click: () => this.design.set(`${pointer}/${i}`, undefined, "mend") } },
+          "Remove",
+        ),
+      ),
+    );
     // The list as it is then: its entries may have changed since they were drawn.
     const further = () => {
       const now = this.design.get(pointer) ?? [];
       this.design.set(pointer, [...now, this.beginnings.further(pointer, kind, now)], "mend");
     };
-    const add = h("button", { type: "button", on: { click: further } }, `Add to ${(kind.schema.title ?? "the list").toLowerCase()}`);
-    const element = h("fieldset", { className: "field list" }, h("legend", { title: help(kind.schema) }, kind.schema.title ?? ""), ...entries, add);
+    const add = h(
+      "button",
+      { type: "button", on: { click: further } },
+      `Add to ${(kind.schema.title ?? "the list").toLowerCase()}`,
+    );
+    const element = h(
+      "fieldset",
+      { className: "field list" },
+      h("legend", { title: help(kind.schema) }, kind.schema.title ?? ""),
+      ...entries,
+      add,
+    );
     return this.#fields.has(pointer) ? element : this.#register(pointer, element, kind.schema, () => {});
   }
 }
@@ -552,7 +898,12 @@ function fits(variant, value) {
   if (variant.type === "array") return Array.isArray(value);
   if (variant.type === "number") return typeof value === "number";
   const word = ([name, schema]) => schema.enum?.length !== 1 || value[name] === schema.enum[0];
-  return typeof value === "object" && !Array.isArray(value) && (variant.required ?? []).every((name) => name in value) && Object.entries(variant.properties ?? {}).every(word);
+  return (
+    typeof value === "object" &&
+    !Array.isArray(value) &&
+    (variant.required ?? []).every((name) => name in value) &&
+    Object.entries(variant.properties ?? {}).every(word)
+  );
 }
 
 function bounds({ kind, schema }) {

@@ -4,7 +4,10 @@ import { h, fixed, number } from "../draw/dom.js";
 
 const twice = (radius) => 2 * radius;
 
-/** Rows of the table of gears: what it is called, its symbol and unit, and how it is read from a gear's geometry and document. */
+/**
+ * Rows of the table of gears: what it is called, its symbol and unit, and how it is read from a gear's geometry and
+ * document.
+ */
 export const OF_GEARS = [
   ["Teeth", "z", "", (_, gear) => String(gear.tooth_count)],
   ["Module, normal", "m_n", "mm", (_, gear) => number(gear.module_mm, 5)],
@@ -14,7 +17,12 @@ export const OF_GEARS = [
   ["Base diameter", "d_b", "mm", (it) => fixed(twice(it.base_radius_mm), 3)],
   ["Tip diameter", "d_a", "mm", (it) => fixed(twice(it.tip_radius_mm), 3)],
   ["Tip form diameter", "d_Fa", "mm", (it) => fixed(twice(it.tip_form_radius_mm), 3)],
-  ["Working pitch diameter", "d_w", "mm", (it) => fixed(it.working_pitch_diameter_mm ?? twice(it.working_pitch_radius_mm), 3)],
+  [
+    "Working pitch diameter",
+    "d_w",
+    "mm",
+    (it) => fixed(it.working_pitch_diameter_mm ?? twice(it.working_pitch_radius_mm), 3),
+  ],
   ["Active root diameter", "d_Nf", "mm", (it) => fixed(it.active_root_diameter_mm, 3)],
   ["Root form diameter", "d_Ff", "mm", (it) => fixed(it.form_diameter_mm ?? twice(it.form_radius_mm), 3)],
   ["Root diameter", "d_f", "mm", (it) => fixed(twice(it.root_radius_mm), 3)],
@@ -23,8 +31,18 @@ export const OF_GEARS = [
   ["Tip clearance", "c", "mm", (it) => fixed(it.tip_clearance_mm, 3)],
   ["Specific sliding at A", "ζ_A", "", (it) => fixed(it.specific_sliding_a, 3)],
   ["Specific sliding at E", "ζ_E", "", (it) => fixed(it.specific_sliding_e, 3)],
-  ["Relief starts at diameter", "", "mm", (it) => (it.relief_start_radius_mm === undefined ? "–" : fixed(twice(it.relief_start_radius_mm), 3))],
-  ["Least material around holes", "", "mm", (it) => (it.least_ligament_mm === undefined ? "–" : fixed(it.least_ligament_mm, 2))],
+  [
+    "Relief starts at diameter",
+    "",
+    "mm",
+    (it) => (it.relief_start_radius_mm === undefined ? "–" : fixed(twice(it.relief_start_radius_mm), 3)),
+  ],
+  [
+    "Least material around holes",
+    "",
+    "mm",
+    (it) => (it.least_ligament_mm === undefined ? "–" : fixed(it.least_ligament_mm, 2)),
+  ],
   ["Mass", "m", "kg", (it) => fixed(it.mass_kg, 4)],
   ["Removed by holes", "", "%", (it) => fixed(it.mass_removed_percent, 1)],
   ["Polar inertia", "J", "kg m²", (it) => number(it.polar_inertia_kg_m2, 5)],
@@ -55,9 +73,16 @@ export const OF_PAIRS = [
 /** Every row of the report: `[name, symbol, unit, driving, driven]`, the pair's with one value. */
 export function rowsOf({ results, submission }) {
   const { pair } = results;
-  const gears = OF_GEARS.map(([name, symbol, unit, read]) => [name, symbol, unit, ...["driving", "driven"].map((member) => read(pair[member], submission.pair[member]))]).filter(([, , , ...values]) => values.some((value) => value !== "–"));
+  const gears = OF_GEARS.map(([name, symbol, unit, read]) => [
+    name,
+    symbol,
+    unit,
+    ...["driving", "driven"].map((member) => read(pair[member], submission.pair[member])),
+  ]).filter(([, , , ...values]) => values.some((value) => value !== "–"));
   // What only some gears or pairs have is left out of the others.
-  const both = OF_PAIRS.map(([name, symbol, unit, read]) => [name, symbol, unit, read(pair, submission.pair)]).filter(([, , , value]) => value !== "–");
+  const both = OF_PAIRS.map(([name, symbol, unit, read]) => [name, symbol, unit, read(pair, submission.pair)]).filter(
+    ([, , , value]) => value !== "–",
+  );
   return { gears, both };
 }
 
@@ -66,18 +91,44 @@ export class Geometry {
   constructor(place, { onPrint, onPicture }) {
     this.out = h("div", { className: "columns" });
     const button = (name, work) => h("button", { type: "button", on: { click: work } }, name);
-    place.append(h("p", { className: "note" }, "Computed from the true profile, without load. Specific sliding is the sliding velocity over the velocity at which the contact runs along a flank."),
+    place.append(
+      h(
+        "p",
+        { className: "note" },
+        "Computed from the true profile, without load. Specific sliding is the sliding velocity over the velocity at which the contact runs along a flank.",
+      ),
       this.out,
-      h("div", { className: "buttons wrap" }, button("Print one page, or save it as PDF", onPrint), button("Page as SVG", () => onPicture("svg")), button("Page as PNG", () => onPicture("png"))));
+      h(
+        "div",
+        { className: "buttons wrap" },
+        button("Print one page, or save it as PDF", onPrint),
+        button("Page as SVG", () => onPicture("svg")),
+        button("Page as PNG", () => onPicture("png")),
+      ),
+    );
   }
 
   show(live) {
     const { gears, both } = rowsOf(live);
     const symbol = (text) => h("small", {}, ` ${text}`);
     const head = (names) => h("thead", {}, h("tr", {}, ...names.map((name) => h("th", { scope: "col" }, name))));
-    const rows = (list) => h("tbody", {}, ...list.map(([name, mark, unit, ...values]) => h("tr", {}, h("th", { scope: "row" }, name, mark ? symbol(mark) : null), ...values.map((value) => h("td", {}, value)), h("td", { className: "unit" }, unit))));
+    const rows = (list) =>
+      h(
+        "tbody",
+        {},
+        ...list.map(([name, mark, unit, ...values]) =>
+          h(
+            "tr",
+            {},
+            h("th", { scope: "row" }, name, mark ? symbol(mark) : null),
+            ...values.map((value) => h("td", {}, value)),
+            h("td", { className: "unit" }, unit),
+          ),
+        ),
+      );
     this.out.replaceChildren(
       h("table", {}, h("caption", {}, "Gears"), head(["", "Driving", "Driven", ""]), rows(gears)),
-      h("table", {}, h("caption", {}, "Pair"), head(["", "", ""]), rows(both)));
+      h("table", {}, h("caption", {}, "Pair"), head(["", "", ""]), rows(both)),
+    );
   }
 }

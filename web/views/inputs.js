@@ -6,7 +6,9 @@ import { h } from "../draw/dom.js";
 /** A number with a decimal point, or with a decimal comma. */
 const POINT = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
 const COMMA = /^[+-]?(\d*,\d+|\d+,)(e[+-]?\d+)?$/i;
-/** A comma before three digits may stand between thousands, or between two numbers of a list: this is read as neither. */
+/**
+ * A comma before three digits may stand between thousands, or between two numbers of a list: this is read as neither.
+ */
 const THREE = /^[+-]?[1-9]\d{0,2},\d{3}$/;
 
 /** The number that a text says, with a decimal point or a decimal comma; the text itself where it says none. */
@@ -22,7 +24,8 @@ export const wordsOf = (text) => text.split(/[\s;]+|,(?=\s|$)/).filter(Boolean);
 /** What is wrong with a text that says no number. */
 export function unreadable(text) {
   const [whole, after] = text.split(",");
-  if (THREE.test(text.trim())) return `“${text}” can be read in two ways: write ${whole}.${after}, ${whole}${after}, or with a space or a semicolon between two numbers.`;
+  if (THREE.test(text.trim()))
+    return `“${text}” can be read in two ways: write ${whole}.${after}, ${whole}${after}, or with a space or a semicolon between two numbers.`;
   return `“${text}” is no number${text.includes(",") ? ": between two numbers stands a space or a semicolon" : ""}.`;
 }
 
@@ -35,21 +38,28 @@ export function given(input) {
 
 /** The numbers in a control of a panel; throws what is wrong with one of them. */
 export function allGiven(input) {
-  return wordsOf(input.value).map(numberOf).map((value) => {
-    if (typeof value === "string") throw new ProblemError({ detail: unreadable(value) });
-    return value;
-  });
+  return wordsOf(input.value)
+    .map(numberOf)
+    .map((value) => {
+      if (typeof value === "string") throw new ProblemError({ detail: unreadable(value) });
+      return value;
+    });
 }
 
 /** A control for a number, with the mark that its user writes: a browser drops the comma of `type="number"`. */
-export const numeric = (properties) => h("input", { type: "text", inputMode: "decimal", className: "number", autocomplete: "off", ...properties });
+export const numeric = (properties) =>
+  h("input", { type: "text", inputMode: "decimal", className: "number", autocomplete: "off", ...properties });
 
 /** The value in a control; undefined where there is none, and what is no number as it stands, which is refused. */
 export function read(input, kind) {
   const text = input.value.trim();
   if (text === "") return undefined;
   if (kind.kind === "numbers") return wordsOf(text).map(numberOf);
-  if (kind.kind === "texts") return text.split(",").map((word) => word.trim()).filter(Boolean);
+  if (kind.kind === "texts")
+    return text
+      .split(",")
+      .map((word) => word.trim())
+      .filter(Boolean);
   return kind.kind === "number" ? numberOf(text) : text;
 }
 

@@ -1,5 +1,5 @@
-// The motion of the gears over speed: both branches beside those of kept designs, a waterfall of orders with their resonances named, and one speed that is
-// looked at, turned and heard.
+// The motion of the gears over speed: both branches beside those of kept designs, a waterfall of orders with their
+// resonances named, and one speed that is looked at, turned and heard.
 
 import { looks } from "../draw/charts.js";
 import { debounced, fixed, h, number, s } from "../draw/dom.js";
@@ -34,15 +34,35 @@ export class RunUp {
   #motion = null;
   #cursors = [];
 
-  /** The run-up in `place`. `ask` puts one into the design, `asked` says whether it has one, `focus` shows its fields, `designs` gives what is shown, the live one first, and `stage` turns the drawing. */
+  /**
+   * The run-up in `place`. `ask` puts one into the design, `asked` says whether it has one, `focus` shows its fields,
+   * `designs` gives what is shown, the live one first, and `stage` turns the drawing.
+   */
   constructor(place, { ask, asked, focus, designs, stage }) {
     Object.assign(this, { place, asked, designs, stage, tones: new Tones() });
     const button = (name, id, work) => h("button", { type: "button", id, on: { click: work } }, name);
-    const select = (id, options) => h("select", { id, on: { change: () => this.refresh() } }, ...Object.entries(options).map(([value, words]) => h("option", { value }, words)));
-    this.quantity = select("run-up-quantity", Object.fromEntries(Object.entries(QUANTITIES).map(([name, [words, unit]]) => [name, unit === "1" ? words : `${words} in ${unit}`])));
+    const select = (id, options) =>
+      h(
+        "select",
+        { id, on: { change: () => this.refresh() } },
+        ...Object.entries(options).map(([value, words]) => h("option", { value }, words)),
+      );
+    this.quantity = select(
+      "run-up-quantity",
+      Object.fromEntries(
+        Object.entries(QUANTITIES).map(([name, [words, unit]]) => [name, unit === "1" ? words : `${words} in ${unit}`]),
+      ),
+    );
     this.torque = select("run-up-torque", {});
     this.way = select("run-up-branch", BRANCHES);
-    this.slider = h("input", { type: "range", id: "speed", min: 0, step: 1, value: 0, on: { input: (event) => this.#look(this.#dynamics.driving_speed_rpm[Number(event.target.value)]) } });
+    this.slider = h("input", {
+      type: "range",
+      id: "speed",
+      min: 0,
+      step: 1,
+      value: 0,
+      on: { input: (event) => this.#look(this.#dynamics.driving_speed_rpm[Number(event.target.value)]) },
+    });
     this.said = h("output", { htmlFor: "speed" });
     this.readout = h("p", { className: "note", id: "speed-readout" });
     this.turning = button("Turn at this speed", "run-up-turn", () => this.#play(!this.#playing));
@@ -52,16 +72,63 @@ export class RunUp {
     this.waterfall = h("div", { className: "speeds" });
     this.ridges = h("p", { className: "note" });
     this.resonances = h("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Resonances" });
-    this.body = h("div", { hidden: true },
-      h("div", { className: "line" }, h("label", { htmlFor: this.quantity.id }, "Look at"), this.quantity, h("label", { htmlFor: this.torque.id }, "at"), this.torque, h("span", { className: "unit" }, "N m,"), h("label", { htmlFor: this.way.id, className: "visually-hidden" }, "Branch"), this.way, button("Speeds and inertias", "run-up-fields", focus)),
+    this.body = h(
+      "div",
+      { hidden: true },
+      h(
+        "div",
+        { className: "line" },
+        h("label", { htmlFor: this.quantity.id }, "Look at"),
+        this.quantity,
+        h("label", { htmlFor: this.torque.id }, "at"),
+        this.torque,
+        h("span", { className: "unit" }, "N m,"),
+        h("label", { htmlFor: this.way.id, className: "visually-hidden" }, "Branch"),
+        this.way,
+        button("Speeds and inertias", "run-up-fields", focus),
+      ),
       this.picture,
       h("div", { className: "position" }, h("label", { htmlFor: "speed" }, "Speed"), this.slider, this.said),
-      this.readout, h("div", { className: "buttons wrap" }, this.turning, this.hear),
-      h("p", { className: "note" }, "What is heard is the excitation: the orders of the dynamic transmission error as pure tones. It is not the noise of a gearbox, which its housing makes."),
-      this.ridges, this.waterfall, this.resonances);
-    this.none = h("div", { hidden: true }, h("p", {}, "This design has no run-up yet: the motion of the gears over speed, on one torsional degree of freedom with backlash."), button("Run it up", "run-up-ask", () => { ask(); this.refresh(); }));
-    this.coming = h("p", { hidden: true, role: "status" }, "The run-up is being computed: the forces at every position first, then the motion at every speed. Above stands how far it is.");
-    place.replaceChildren(h("p", { className: "note" }, "Solid running up, dashed running down; thick where the flanks part. ", h("a", { href: "guides/will-it-rattle-or-whine" }, "Will it rattle or whine?")), this.none, this.coming, this.body);
+      this.readout,
+      h("div", { className: "buttons wrap" }, this.turning, this.hear),
+      h(
+        "p",
+        { className: "note" },
+        "What is heard is the excitation: the orders of the dynamic transmission error as pure tones. It is not the noise of a gearbox, which its housing makes.",
+      ),
+      this.ridges,
+      this.waterfall,
+      this.resonances,
+    );
+    this.none = h(
+      "div",
+      { hidden: true },
+      h(
+        "p",
+        {},
+        "This design has no run-up yet: the motion of the gears over speed, on one torsional degree of freedom with backlash.",
+      ),
+      button("Run it up", "run-up-ask", () => {
+        ask();
+        this.refresh();
+      }),
+    );
+    this.coming = h(
+      "p",
+      { hidden: true, role: "status" },
+      "The run-up is being computed: the forces at every position first, then the motion at every speed. Above stands how far it is.",
+    );
+    place.replaceChildren(
+      h(
+        "p",
+        { className: "note" },
+        "Solid running up, dashed running down; thick where the flanks part. ",
+        h("a", { href: "guides/will-it-rattle-or-whine" }, "Will it rattle or whine?"),
+      ),
+      this.none,
+      this.coming,
+      this.body,
+    );
     this.later = debounced(REST, () => this.#move());
     let width = 0;
     new ResizeObserver(() => {
@@ -82,9 +149,15 @@ export class RunUp {
     if (!there) return this.leave();
     if (this.place.hidden) return undefined;
     this.live = live;
-    this.#offer(this.torque, live.results.curves.map((curve) => [curve.output_torque_n_m, number(curve.output_torque_n_m, 6)]));
+    this.#offer(
+      this.torque,
+      live.results.curves.map((curve) => [curve.output_torque_n_m, number(curve.output_torque_n_m, 6)]),
+    );
     const dynamics = this.#dynamics;
-    this.#offer(this.way, Object.entries(BRANCHES).filter(([name]) => dynamics[name]));
+    this.#offer(
+      this.way,
+      Object.entries(BRANCHES).filter(([name]) => dynamics[name]),
+    );
     this.#branch = this.way.value;
     const speeds = dynamics.driving_speed_rpm;
     this.slider.max = speeds.length - 1;
@@ -101,7 +174,10 @@ export class RunUp {
   }
 
   get #curve() {
-    return this.live.results.curves.find((curve) => String(curve.output_torque_n_m) === this.torque.value) ?? this.live.results.curves[0];
+    return (
+      this.live.results.curves.find((curve) => String(curve.output_torque_n_m) === this.torque.value) ??
+      this.live.results.curves[0]
+    );
   }
 
   get #dynamics() {
@@ -142,18 +218,46 @@ export class RunUp {
       // Kept designs may have been computed at other torques; the nearest stands beside this one.
       const curves = each.results.curves.filter(({ dynamics }) => dynamics);
       if (!curves.length) return [];
-      const curve = curves.reduce((best, other) => (Math.abs(other.output_torque_n_m - torque) < Math.abs(best.output_torque_n_m - torque) ? other : best));
+      const curve = curves.reduce((best, other) =>
+        Math.abs(other.output_torque_n_m - torque) < Math.abs(best.output_torque_n_m - torque) ? other : best,
+      );
       const color = series(each.look ?? 0);
-      const name = curve.output_torque_n_m === torque ? each.name : `${each.name}, ${number(curve.output_torque_n_m)} N m`;
-      return Object.keys(BRANCHES).filter((way) => curve.dynamics[way]).flatMap((way) => {
-        const branch = curve.dynamics[way];
-        const y = read(branch);
-        const parted = { color, x: curve.dynamics.driving_speed_rpm, y: y.map((value, i) => (branch.contact_lost[i] ? value : null)), width: 5, parted: true };
-        return [{ name: `${name}, ${way}`, color, dash: way === "down" ? [5, 4] : [], x: curve.dynamics.driving_speed_rpm, y }, ...(branch.contact_lost.includes(true) ? [parted] : [])];
-      });
+      const name =
+        curve.output_torque_n_m === torque ? each.name : `${each.name}, ${number(curve.output_torque_n_m)} N m`;
+      return Object.keys(BRANCHES)
+        .filter((way) => curve.dynamics[way])
+        .flatMap((way) => {
+          const branch = curve.dynamics[way];
+          const y = read(branch);
+          const parted = {
+            color,
+            x: curve.dynamics.driving_speed_rpm,
+            y: y.map((value, i) => (branch.contact_lost[i] ? value : null)),
+            width: 5,
+            parted: true,
+          };
+          return [
+            {
+              name: `${name}, ${way}`,
+              color,
+              dash: way === "down" ? [5, 4] : [],
+              x: curve.dynamics.driving_speed_rpm,
+              y,
+            },
+            ...(branch.contact_lost.includes(true) ? [parted] : []),
+          ];
+        });
     });
     const label = `${words} over the speed of the driving gear. ${this.#told()}`;
-    const chart = figure({ lines, x: "speed of the driving gear in rpm", y: unit === "1" ? words : `${words} in ${unit}`, title: words, label, width, height: HEIGHT });
+    const chart = figure({
+      lines,
+      x: "speed of the driving gear in rpm",
+      y: unit === "1" ? words : `${words} in ${unit}`,
+      title: words,
+      label,
+      width,
+      height: HEIGHT,
+    });
     const fall = this.#waterfallOf(width);
     this.picture.replaceChildren(chart);
     this.waterfall.replaceChildren(fall);
@@ -164,13 +268,16 @@ export class RunUp {
   /** What a listener should know of the run-up. */
   #told() {
     const dynamics = this.#dynamics;
-    return Object.keys(BRANCHES).filter((way) => dynamics[way]).map((way) => {
-      const branch = dynamics[way];
-      const values = branch.dynamic_transmission_error_um.peak_to_peak;
-      const most = Math.max(...values);
-      const parted = dynamics.driving_speed_rpm.filter((_, i) => branch.contact_lost[i]);
-      return `${BRANCHES[way]}, at most ${fixed(most, 2)} µm peak-to-peak at ${rpm(dynamics.driving_speed_rpm[values.indexOf(most)])}; ${parted.length ? `flanks part from ${rpm(parted[0])} to ${rpm(parted.at(-1))}` : "flanks never part"}.`;
-    }).join(" ");
+    return Object.keys(BRANCHES)
+      .filter((way) => dynamics[way])
+      .map((way) => {
+        const branch = dynamics[way];
+        const values = branch.dynamic_transmission_error_um.peak_to_peak;
+        const most = Math.max(...values);
+        const parted = dynamics.driving_speed_rpm.filter((_, i) => branch.contact_lost[i]);
+        return `${BRANCHES[way]}, at most ${fixed(most, 2)} µm peak-to-peak at ${rpm(dynamics.driving_speed_rpm[values.indexOf(most)])}; ${parted.length ? `flanks part from ${rpm(parted[0])} to ${rpm(parted.at(-1))}` : "flanks never part"}.`;
+      })
+      .join(" ");
   }
 
   /** A line in a figure at the speed that is looked at; a pointer in it looks at another. */
@@ -193,10 +300,14 @@ export class RunUp {
   #orders() {
     const named = this.#curve.spectrum?.named ?? [];
     const most = ({ amplitude }) => Math.max(...amplitude);
-    return this.#run.orders.flatMap((each) => {
-      const known = named.find(({ label }) => label === each.label);
-      return known ? [{ ...known, amplitude: each.amplitude_um }] : [];
-    }).sort((a, b) => most(b) - most(a)).slice(0, MOST_RIDGES).sort((a, b) => a.order - b.order);
+    return this.#run.orders
+      .flatMap((each) => {
+        const known = named.find(({ label }) => label === each.label);
+        return known ? [{ ...known, amplitude: each.amplitude_um }] : [];
+      })
+      .sort((a, b) => most(b) - most(a))
+      .slice(0, MOST_RIDGES)
+      .sort((a, b) => a.order - b.order);
   }
 
   /** A ridge for each order over speed, the lowest in front, and a mark where an order resonates. */
@@ -210,24 +321,52 @@ export class RunUp {
     const most = Math.max(1e-9, ...orders.flatMap(({ amplitude }) => amplitude));
     const foot = (i) => height - FRAME.bottom - ROW * i - 4;
     const rise = (value) => (RISE * ROW * value) / most;
-    const svg = s("svg", { viewBox: `0 0 ${width} ${height}`, class: "scatter waterfall", role: "img", "aria-label": `Waterfall: the amplitudes of ${orders.length} orders over speed, the highest ${number(most, 3)} µm. Resonances stand in the table below.` });
+    const svg = s("svg", {
+      viewBox: `0 0 ${width} ${height}`,
+      class: "scatter waterfall",
+      role: "img",
+      "aria-label": `Waterfall: the amplitudes of ${orders.length} orders over speed, the highest ${number(most, 3)} µm. Resonances stand in the table below.`,
+    });
     const text = (words, attributes) => Object.assign(s("text", attributes), { textContent: words });
     this.ridges.textContent = `Orders over speed, ${BRANCHES[this.#branch]}; the highest ridge is ${number(most, 3)} µm. ◆ marks where an order meets the natural frequency, ◇ where it meets twice that.`;
-    for (const value of ticks(first, last)) svg.append(s("line", { x1: px(value), x2: px(value), y1: FRAME.top - ROW, y2: height - FRAME.bottom, class: "grid" }), text(number(value, 6), { x: px(value), y: height - FRAME.bottom + 16, "text-anchor": "middle" }));
-    svg.append(text("speed of the driving gear in rpm", { x: (FRAME.left + width - FRAME.right) / 2, y: height - 8, "text-anchor": "middle" }));
-    for (const [i, { label, amplitude }] of [...orders.entries()].reverse()) {
-      const line = amplitude.map((value, k) => `${px(speeds[k]).toFixed(1)} ${(foot(i) - rise(value)).toFixed(1)}`).join("L");
+    for (const value of ticks(first, last))
       svg.append(
-        s("path", { class: "ridge-ground", d: `M${px(first)} ${foot(i)}L${line}L${px(last)} ${foot(i)}Z` }), s("path", { class: "ridge", d: `M${line}` }),
-        text(label, { x: FRAME.left - 6, y: foot(i) + 3, "text-anchor": "end" }));
+        s("line", { x1: px(value), x2: px(value), y1: FRAME.top - ROW, y2: height - FRAME.bottom, class: "grid" }),
+        text(number(value, 6), { x: px(value), y: height - FRAME.bottom + 16, "text-anchor": "middle" }),
+      );
+    svg.append(
+      text("speed of the driving gear in rpm", {
+        x: (FRAME.left + width - FRAME.right) / 2,
+        y: height - 8,
+        "text-anchor": "middle",
+      }),
+    );
+    for (const [i, { label, amplitude }] of [...orders.entries()].reverse()) {
+      const line = amplitude
+        .map((value, k) => `${px(speeds[k]).toFixed(1)} ${(foot(i) - rise(value)).toFixed(1)}`)
+        .join("L");
+      svg.append(
+        s("path", { class: "ridge-ground", d: `M${px(first)} ${foot(i)}L${line}L${px(last)} ${foot(i)}Z` }),
+        s("path", { class: "ridge", d: `M${line}` }),
+        text(label, { x: FRAME.left - 6, y: foot(i) + 3, "text-anchor": "end" }),
+      );
     }
     for (const resonance of this.#named()) {
       const i = orders.findIndex(({ label }) => label === resonance.label);
-      const mark = s("path", { class: `resonance ${resonance.kind}`, d: `M${px(resonance.driving_speed_rpm)} ${foot(i) - 5}l5 5l-5 5l-5 -5Z` });
+      const mark = s("path", {
+        class: `resonance ${resonance.kind}`,
+        d: `M${px(resonance.driving_speed_rpm)} ${foot(i) - 5}l5 5l-5 5l-5 -5Z`,
+      });
       mark.append(Object.assign(s("title"), { textContent: resonance.words }));
       svg.append(mark);
     }
-    svg.frame = { x: [first, last], px, valueAt: (x) => first + ((x - FRAME.left) / (width - FRAME.left - FRAME.right)) * (last - first), top: FRAME.top - ROW, bottom: height - FRAME.bottom };
+    svg.frame = {
+      x: [first, last],
+      px,
+      valueAt: (x) => first + ((x - FRAME.left) / (width - FRAME.left - FRAME.right)) * (last - first),
+      top: FRAME.top - ROW,
+      bottom: height - FRAME.bottom,
+    };
     return svg;
   }
 
@@ -235,20 +374,63 @@ export class RunUp {
   #named() {
     const speeds = this.#dynamics.driving_speed_rpm;
     const orders = this.#orders();
-    return this.#dynamics.resonances.filter(({ driving_speed_rpm: speed, label }) => speed >= speeds[0] && speed <= speeds.at(-1) && orders.some((order) => order.label === label)).map((each) => {
-      const what = wordsOf(orders.find(({ label }) => label === each.label));
-      return { ...each, what, words: `${what}, at ${rpm(each.driving_speed_rpm)}${each.kind === "parametric" ? ", at twice the natural frequency" : ""}` };
-    });
+    return this.#dynamics.resonances
+      .filter(
+        ({ driving_speed_rpm: speed, label }) =>
+          speed >= speeds[0] && speed <= speeds.at(-1) && orders.some((order) => order.label === label),
+      )
+      .map((each) => {
+        const what = wordsOf(orders.find(({ label }) => label === each.label));
+        return {
+          ...each,
+          what,
+          words: `${what}, at ${rpm(each.driving_speed_rpm)}${each.kind === "parametric" ? ", at twice the natural frequency" : ""}`,
+        };
+      });
   }
 
   #tableOf() {
     const values = this.#run.dynamic_transmission_error_um.peak_to_peak;
-    const head = h("tr", {}, ...["Speed rpm", "Order", "What meets", "the natural frequency", "STE p-p there µm"].map((name) => h("th", { scope: "col" }, name)), h("th", { scope: "col" }, h("span", { className: "visually-hidden" }, "Actions")));
-    const rows = this.#named().map((each) => h("tr", {},
-      h("th", { scope: "row" }, Math.round(each.driving_speed_rpm).toLocaleString("en")), h("td", {}, each.label), h("td", {}, each.what), h("td", {}, each.kind === "forced" ? "once: forced" : "twice: parametric"),
-      h("td", {}, fixed(values[this.#index(each.driving_speed_rpm)], 2)), h("td", {}, h("button", { type: "button", ariaLabel: `Look at ${each.words}`, on: { click: () => this.#look(each.driving_speed_rpm) } }, "Look"))));
+    const head = h(
+      "tr",
+      {},
+      ...["Speed rpm", "Order", "What meets", "the natural frequency", "STE p-p there µm"].map((name) =>
+        h("th", { scope: "col" }, name),
+      ),
+      h("th", { scope: "col" }, h("span", { className: "visually-hidden" }, "Actions")),
+    );
+    const rows = this.#named().map((each) =>
+      h(
+        "tr",
+        {},
+        h("th", { scope: "row" }, Math.round(each.driving_speed_rpm).toLocaleString("en")),
+        h("td", {}, each.label),
+        h("td", {}, each.what),
+        h("td", {}, each.kind === "forced" ? "once: forced" : "twice: parametric"),
+        h("td", {}, fixed(values[this.#index(each.driving_speed_rpm)], 2)),
+        h(
+          "td",
+          {},
+          h(
+            "button",
+            {
+              type: "button",
+              ariaLabel: `Look at ${each.words}`,
+              on: { click: () => this.#look(each.driving_speed_rpm) },
+            },
+            "Look",
+          ),
+        ),
+      ),
+    );
     const caption = `Resonances: the natural frequency is ${number(this.#dynamics.natural_frequency_hz)} Hz, of ${number(this.#dynamics.equivalent_mass_kg, 3)} kg on the line of action`;
-    return h("table", {}, h("caption", {}, caption), h("thead", {}, head), h("tbody", {}, ...(rows.length ? rows : [h("tr", {}, h("td", { colSpan: 6 }, "None at these speeds."))])));
+    return h(
+      "table",
+      {},
+      h("caption", {}, caption),
+      h("thead", {}, head),
+      h("tbody", {}, ...(rows.length ? rows : [h("tr", {}, h("td", { colSpan: 6 }, "None at these speeds."))])),
+    );
   }
 
   /** Looks at a speed: the nearest that was computed. */
@@ -262,15 +444,29 @@ export class RunUp {
     const run = this.#run;
     const lost = run.contact_lost[i];
     const [multiple] = [run.period_multiple?.[i] ?? 1];
-    const strongest = this.#orders().reduce((best, each) => (each.amplitude[i] > (best?.amplitude[i] ?? 0) ? each : best), null);
-    const near = this.#named().filter((each) => Math.abs(each.driving_speed_rpm - this.#speed) < 0.03 * this.#speed).map(({ words }) => words);
-    this.slider.setAttribute("aria-valuetext", `${rpm(this.#speed)}, ${fixed(run.dynamic_transmission_error_um.peak_to_peak[i], 2)} micrometers peak-to-peak${lost ? ", the flanks part" : ""}`);
+    const strongest = this.#orders().reduce(
+      (best, each) => (each.amplitude[i] > (best?.amplitude[i] ?? 0) ? each : best),
+      null,
+    );
+    const near = this.#named()
+      .filter((each) => Math.abs(each.driving_speed_rpm - this.#speed) < 0.03 * this.#speed)
+      .map(({ words }) => words);
+    this.slider.setAttribute(
+      "aria-valuetext",
+      `${rpm(this.#speed)}, ${fixed(run.dynamic_transmission_error_um.peak_to_peak[i], 2)} micrometers peak-to-peak${lost ? ", the flanks part" : ""}`,
+    );
     this.readout.replaceChildren(
       `${BRANCHES[this.#branch].replace(/^./, (letter) => letter.toUpperCase())} at ${rpm(this.#speed)}: ${fixed(run.dynamic_transmission_error_um.peak_to_peak[i], 2)} µm peak-to-peak, up to ${fixed(run.dynamic_load_factor[i], 2)} times the load`,
-      strongest ? `, most at ${strongest.label} (${wordsOf(strongest)}), ${number(strongest.amplitude[i], 3)} µm` : "", ". ",
+      strongest ? `, most at ${strongest.label} (${wordsOf(strongest)}), ${number(strongest.amplitude[i], 3)} µm` : "",
+      ". ",
       lost ? h("strong", { className: "parted" }, "The flanks part. ") : "",
-      multiple === 0 ? "The motion was not found to repeat. " : multiple > 1 ? `It repeats after ${multiple} true periods. ` : "",
-      near.length ? `Near: ${near.join("; ")}.` : "");
+      multiple === 0
+        ? "The motion was not found to repeat. "
+        : multiple > 1
+          ? `It repeats after ${multiple} true periods. `
+          : "",
+      near.length ? `Near: ${near.join("; ")}.` : "",
+    );
     this.#sound(i);
     this.later();
   }
@@ -280,7 +476,9 @@ export class RunUp {
     const { driving, driven } = this.live.submission.pair;
     const turns = (this.#speed * driving.tooth_count) / driven.tooth_count / 60;
     const orders = this.#orders();
-    const most = Math.max(...orders[0].amplitude.map((_, k) => orders.reduce((sum, { amplitude }) => sum + amplitude[k], 0)));
+    const most = Math.max(
+      ...orders[0].amplitude.map((_, k) => orders.reduce((sum, { amplitude }) => sum + amplitude[k], 0)),
+    );
     this.tones.play(orders.map(({ order, amplitude }) => ({ hz: order * turns, part: amplitude[i] / most })));
   }
 
@@ -292,7 +490,10 @@ export class RunUp {
     if (on) this.#sound(this.#index(this.#speed));
   }
 
-  /** Turns the gears as they move at the speed, slowly; arrows are as long as the force is then, and none is there while the flanks are apart. */
+  /**
+   * Turns the gears as they move at the speed, slowly; arrows are as long as the force is then, and none is there while
+   * the flanks are apart.
+   */
   #play(on) {
     if (on === this.#playing) return;
     this.#playing = on;
@@ -318,9 +519,22 @@ export class RunUp {
   #move() {
     if (!this.#playing) return;
     const { submission, results } = this.live;
-    this.#motion = this.#speed > 0 ? motionAt(results, this.#curve, { rpm: this.#speed, teeth: submission.pair.driving.tooth_count, damping: submission.dynamics?.damping_ratio ?? undefined, from: this.#motion?.state }) : null;
+    this.#motion =
+      this.#speed > 0
+        ? motionAt(results, this.#curve, {
+            rpm: this.#speed,
+            teeth: submission.pair.driving.tooth_count,
+            damping: submission.dynamics?.damping_ratio ?? undefined,
+            from: this.#motion?.state,
+          })
+        : null;
     const motion = this.#motion;
-    this.stage.move(motion ? (position) => motion.factor[Math.floor((position / motion.span) * motion.factor.length) % motion.factor.length] : () => 1);
+    this.stage.move(
+      motion
+        ? (position) =>
+            motion.factor[Math.floor((position / motion.span) * motion.factor.length) % motion.factor.length]
+        : () => 1,
+    );
     if (!motion) return;
     const range = Math.max(...motion.approach) - Math.min(...motion.approach);
     this.turning.title = `In slow motion, from the force table: ${fixed(range, 2)} µm peak-to-peak`;
