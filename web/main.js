@@ -1,34 +1,36 @@
+// @ts-check
 // The page: one design, drawn and computed while it changes, and the views that show it.
 
-import { hasKey, json, onKeyNeeded, patiently, post, ProblemError, setKey } from "./state/api.js";
 import { Brush } from "./draw/brush.js";
-import { byId, debounced, fixed, h, number, remaining, timeOf } from "./draw/dom.js";
 import { Charts } from "./draw/charts.js";
-import { Compare } from "./views/compare.js";
-import { isSolid, needsSolid } from "./state/dimensions.js";
-import { Design, fromFragment, nameOf, same, toFragment } from "./state/design.js";
 import { Deformation } from "./draw/deformed.js";
-import { fileOfDesign, save } from "./draw/download.js";
+import { byId, debounced, h } from "./draw/dom.js";
+import { copied, save } from "./draw/download.js";
 import { Drawing, indexAt } from "./draw/drawing.js";
-import { exporting } from "./views/export.js";
 import { cured, wordsOfCure } from "./draw/face.js";
 import { fileOf, pictureOf } from "./draw/figure.js";
+import { jobs } from "./panels/jobs.js";
+import { population } from "./panels/population.js";
+import { study } from "./panels/study.js";
+import { isSweep, sweep } from "./panels/sweep.js";
+import { hasKey, json, onKeyNeeded, patiently, post, ProblemError, setKey } from "./state/api.js";
+import { Design, fromFragment, nameOf, same, toFragment } from "./state/design.js";
+import { isSolid, needsSolid } from "./state/dimensions.js";
+import { remember, remembered } from "./state/kept.js";
+import { fixed, number, remaining, timeOf } from "./state/numbers.js";
+import { alike, Follower, resultsOf } from "./state/preview.js";
+import { fetchQuantities } from "./state/quantities.js";
+import { bare, openapi, usualAt } from "./state/schema.js";
+import { stresses } from "./state/series.js";
+import { fileOfDesign } from "./state/tables.js";
+import { Compare } from "./views/compare.js";
+import { exporting } from "./views/export.js";
 import { Form } from "./views/form.js";
 import { Geometry } from "./views/geometry.js";
 import { Headline } from "./views/headline.js";
-import { jobs } from "./panels/jobs.js";
-import { remember, remembered } from "./state/kept.js";
 import { Pattern } from "./views/pattern.js";
-import { population } from "./panels/population.js";
-import { alike, Follower, resultsOf } from "./state/preview.js";
-import { fetchQuantities } from "./state/quantities.js";
 import { RunUp } from "./views/runup.js";
-import { bare, openapi, usualAt } from "./state/schema.js";
-import { stresses } from "./state/series.js";
 import { sheetOf } from "./views/sheet.js";
-import { copied } from "./state/snippets.js";
-import { study } from "./panels/study.js";
-import { isSweep, sweep } from "./panels/sweep.js";
 
 const FIRST_EXAMPLE = "test-case-2";
 const NEW_PAIR = "new pair";

@@ -71,7 +71,7 @@ await step("no text of a table becomes a formula, also behind what cannot be see
   await open(page, service);
   const texts = ["=1", "\u00a0=1", "\u3164@x", "\u061c＝1", "\tx", "a=1", "10°-20°"];
   const cells = await page.evaluate(async (texts) => {
-    const { csvOf } = await import(new URL("web/draw/download.js", document.baseURI));
+    const { csvOf } = await import(new URL("web/state/tables.js", document.baseURI));
     return texts.map((text) => csvOf([[text]]).replace(/\r\n$/, ""));
   }, texts);
   assert.deepEqual(cells, [...texts.slice(0, 5).map((text) => `'${text}`), ...texts.slice(5)]);

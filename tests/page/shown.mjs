@@ -480,7 +480,7 @@ export async function shownSteps(service) {
   await step("the time that is left is that of the pace at which it goes now", service, async (page) => {
     await page.goto(service.url);
     const said = await page.evaluate(async () => {
-      const { remaining } = await import(new URL("web/draw/dom.js", document.baseURI));
+      const { remaining } = await import(new URL("web/state/numbers.js", document.baseURI));
       // 60 s for the gears, of which 3 % tell, then a percent each 0.65 s: 65 s before the end.
       let now = 0;
       const left = remaining(null, () => now);

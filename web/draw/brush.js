@@ -1,7 +1,9 @@
+// @ts-check
 // Which mesh periods are shown: a strip of the whole true period with a window on it, drawn over, moved, or set by
 // buttons.
 
-import { h, number, s } from "./dom.js";
+import { h, s } from "./dom.js";
+import { number } from "../state/numbers.js";
 import { linesOf, PANELS } from "../state/series.js";
 
 const [WIDTH, HEIGHT] = [1000, 40];

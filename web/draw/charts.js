@@ -1,9 +1,11 @@
+// @ts-check
 // Curves over the true period and the spectrum, one design beside the other, zoomed together.
 
 import uPlot from "../vendor/uplot.js";
-import { extent, fixed, h, number, s } from "./dom.js";
+import { h, s } from "./dom.js";
 import { cellsOf, cssOf, faceOf, SCALE, scaleOf, wordsOfFace } from "./face.js";
 import { figure } from "./figure.js";
+import { extent, fixed, number } from "../state/numbers.js";
 import {
   linesOf,
   namesOf,

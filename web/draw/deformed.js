@@ -1,8 +1,10 @@
+// @ts-check
 // The pair under load: how it deforms at the position shown, many times enlarged, its edges colored by stress.
 
+import { debounced, h, s } from "./dom.js";
 import { json, ProblemError, solved } from "../state/api.js";
 import { isSolid } from "../state/dimensions.js";
-import { debounced, h, number, s } from "./dom.js";
+import { number } from "../state/numbers.js";
 
 /** Stresses are told apart in so many steps. */
 const STEPS = 6;

@@ -1,8 +1,10 @@
+// @ts-check
 // The pair as it is cut: turned by hand, its holes dragged, contact forces at the position shown.
 
 import { deformedShape } from "./deformed.js";
-import { s, number } from "./dom.js";
+import { s } from "./dom.js";
 import { HoleHandles, openingsOf } from "./holes.js";
+import { number } from "../state/numbers.js";
 
 const TURN = Math.PI / 180;
 const MEMBERS = ["driving", "driven"];

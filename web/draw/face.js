@@ -1,7 +1,9 @@
+// @ts-check
 // The load along the face: as a map over mesh position and z, as a curve where only its mean is known, in words, and as
 // a scale of colors.
 
-import { extent, fixed, h, number } from "./dom.js";
+import { h } from "./dom.js";
+import { extent, fixed, number } from "../state/numbers.js";
 import { spanOf } from "../state/series.js";
 
 /** Colors from little to much: their lightness alone tells them apart, so that every eye and gray paper do. */

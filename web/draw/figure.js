@@ -1,7 +1,9 @@
+// @ts-check
 // A figure as a drawing of its own, with title, axes, units and legend: for small charts on the page, for files and for
 // print.
 
-import { extent, number, s } from "./dom.js";
+import { s } from "./dom.js";
+import { extent, number } from "../state/numbers.js";
 import { placedNames } from "../state/series.js";
 
 const FRAME = { left: 62, right: 14, top: 14, bottom: 44 };

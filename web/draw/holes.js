@@ -1,7 +1,9 @@
+// @ts-check
 // The holes of a gear: seen, dragged and moved by keys.
 
+import { s } from "./dom.js";
 import { at } from "../state/design.js";
-import { s, number } from "./dom.js";
+import { number } from "../state/numbers.js";
 
 const TURN = Math.PI / 180;
 /** Corners of the outline of a round hole. */

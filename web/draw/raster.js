@@ -1,3 +1,4 @@
+// @ts-check
 // Triangles and lines with a depth to each pixel, in an image of a canvas: the same picture with a graphics card and
 // without one.
 

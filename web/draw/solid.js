@@ -1,3 +1,4 @@
+// @ts-check
 // The surface of a gear in space: teeth along their helix, end faces, web, hub, holes. Points are in the frame of the
 // gear, in mm; z is that of its face.
 

@@ -1,3 +1,4 @@
+// @ts-check
 // Orders as tones, by the browser's own audio: nothing sounds until it is asked for.
 
 /** All tones together at their loudest. */

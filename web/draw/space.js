@@ -1,12 +1,14 @@
+// @ts-check
 // The pair in space: turned by hand, touch and keys, with its lines of contact at the position shown. Made when it is
 // first asked for, painted when something changes.
 
-import { json, ProblemError, solved } from "../state/api.js";
-import { debounced, extent, fixed, h, number } from "./dom.js";
+import { debounced, h } from "./dom.js";
 import { indexAt } from "./drawing.js";
 import { faceOf, rampAt, scaleOf } from "./face.js";
 import { pixelOf, Raster } from "./raster.js";
 import { alongAxis, contactAt, contactLines, surfaceOf } from "./solid.js";
+import { json, ProblemError, solved } from "../state/api.js";
+import { extent, fixed, number } from "../state/numbers.js";
 
 const TURN = Math.PI / 180;
 const MEMBERS = ["driving", "driven"];

@@ -1,11 +1,13 @@
+// @ts-check
 // The jobs of this client: submitted, followed by their events, cancelled, opened, run again.
 
+import { debounced, h } from "../draw/dom.js";
+import { filesOf, saveFile } from "../draw/files.js";
+import { read } from "../draw/inputs.js";
 import { follow, hasEnded, json, post, ProblemError, request } from "../state/api.js";
 import { differences, nameOf, told } from "../state/design.js";
-import { debounced, h, number } from "../draw/dom.js";
-import { fileOfDesign } from "../draw/download.js";
-import { filesOf, saveFile } from "../state/files.js";
-import { read } from "../views/inputs.js";
+import { number } from "../state/numbers.js";
+import { fileOfDesign } from "../state/tables.js";
 
 const SHOWN = 20;
 /** So many are followed at a time; a client may have few streams. */

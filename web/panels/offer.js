@@ -1,6 +1,8 @@
+// @ts-check
 // A choice of one field of the design among many.
 
 import { h } from "../draw/dom.js";
+import { inUnit, quantities } from "../state/quantities.js";
 
 /** The part of the form that the field at a pointer stands in. */
 function partOf(pointer) {
@@ -28,3 +30,9 @@ export function offer(select, none, fields) {
   select.value = stays ? chosen : "";
   return stays || chosen === "";
 }
+
+/** Options for all of them, that of the name `chosen` selected. */
+export const options = (chosen) =>
+  quantities().map((quantity) =>
+    h("option", { value: quantity.name, selected: quantity.name === chosen }, inUnit(quantity)),
+  );

@@ -1,7 +1,8 @@
+// @ts-check
 // Which design an answer is of, where that design may change while the answer stands.
 
-import { apart, same, withValue } from "../state/design.js";
 import { h } from "../draw/dom.js";
+import { apart, same, withValue } from "../state/design.js";
 
 /**
  * A line over an answer of `design` that appears once the design is another one than the one asked about. `ignored` are

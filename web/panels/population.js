@@ -1,14 +1,16 @@
+// @ts-check
 // How good the pairs will be that are made by a design: members drawn from laws and classes of accuracy, and what they
 // come to.
 
+import { debounced, h, s } from "../draw/dom.js";
+import { figure } from "../draw/figure.js";
+import { allGiven, given, numeric } from "../draw/inputs.js";
+import { offer, options } from "./offer.js";
+import { mostOften, Question } from "./question.js";
 import { json, post, ProblemError } from "../state/api.js";
 import { apart, at, nameOf } from "../state/design.js";
-import { debounced, h, s, fixed, number, timeOf } from "../draw/dom.js";
-import { figure } from "../draw/figure.js";
-import { allGiven, given, numeric } from "../views/inputs.js";
-import { offer } from "./offer.js";
-import { inUnit, inWords, options, quantityOf, shown } from "../state/quantities.js";
-import { mostOften, Question } from "./question.js";
+import { fixed, number, timeOf } from "../state/numbers.js";
+import { inUnit, inWords, quantityOf, shown } from "../state/quantities.js";
 
 /** What has come so far is fetched so often at most while members are computed, in milliseconds. */
 const PAUSE = 1000;

@@ -1,9 +1,11 @@
+// @ts-check
 // What the panels share that ask for many designs: one question at a time, how far it is, why it was refused, and of
 // which design its answer is.
 
-import { follow, hasEnded, json, post, ProblemError, request } from "../state/api.js";
-import { h, remaining } from "../draw/dom.js";
+import { h } from "../draw/dom.js";
 import { outdated } from "./outdated.js";
+import { follow, hasEnded, json, post, ProblemError, request } from "../state/api.js";
+import { remaining } from "../state/numbers.js";
 
 export class Question {
   #cancel = () => {};

@@ -1,15 +1,17 @@
+// @ts-check
 // A search: fields that may differ, what is to be small and what has to hold; the service chooses which designs to
 // compute.
 
+import { h } from "../draw/dom.js";
+import { figure } from "../draw/figure.js";
+import { given, numeric } from "../draw/inputs.js";
+import { offer, options } from "./offer.js";
+import { mostOften, Question } from "./question.js";
 import { json, ProblemError, request } from "../state/api.js";
 import { apart, at, nameOf, withValue } from "../state/design.js";
-import { h, fixed, number } from "../draw/dom.js";
-import { figure } from "../draw/figure.js";
-import { given, numeric } from "../views/inputs.js";
-import { offer } from "./offer.js";
+import { fixed, number } from "../state/numbers.js";
 import { preview } from "../state/preview.js";
-import { inUnit, inWords, options, quantityOf } from "../state/quantities.js";
-import { mostOften, Question } from "./question.js";
+import { inUnit, inWords, quantityOf } from "../state/quantities.js";
 import { DASHES } from "../state/series.js";
 
 /** How a search stands is fetched so often at most, in milliseconds. */

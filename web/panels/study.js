@@ -1,17 +1,20 @@
+// @ts-check
 // Many designs at once: axes of values over any fields, a table, a picture of two of its columns, and which designs no
 // other beats; or a search that chooses the values itself.
 
-import { json, request } from "../state/api.js";
-import { h, number } from "../draw/dom.js";
-import { at, nameOf, withValue } from "../state/design.js";
-import { fileOfDesign, save } from "../draw/download.js";
+import { h } from "../draw/dom.js";
+import { save } from "../draw/download.js";
 import { figure } from "../draw/figure.js";
-import { allGiven, given, numeric } from "../views/inputs.js";
-import { offer } from "./offer.js";
-import { calledOf, inRow, inUnit, inWords, options, quantityOf, shown, worstInRow } from "../state/quantities.js";
+import { allGiven, given, numeric } from "../draw/inputs.js";
+import { offer, options } from "./offer.js";
 import { Question } from "./question.js";
-import { usualAt } from "../state/schema.js";
 import { search } from "./search.js";
+import { json, request } from "../state/api.js";
+import { at, nameOf, withValue } from "../state/design.js";
+import { number } from "../state/numbers.js";
+import { calledOf, inRow, inUnit, inWords, quantityOf, shown, worstInRow } from "../state/quantities.js";
+import { usualAt } from "../state/schema.js";
+import { fileOfDesign } from "../state/tables.js";
 
 /** A table is fetched so often at most while a study runs, in milliseconds. */
 const PAUSE = 400;

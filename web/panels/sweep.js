@@ -1,12 +1,14 @@
+// @ts-check
 // The peak-to-peak transmission error over the torque, and where it is least: a study over the torque, which is found
 // again as others are.
 
+import { h } from "../draw/dom.js";
+import { figure } from "../draw/figure.js";
+import { given, numeric } from "../draw/inputs.js";
+import { Question } from "./question.js";
 import { ProblemError } from "../state/api.js";
 import { apart, nameOf } from "../state/design.js";
-import { h, fixed, number } from "../draw/dom.js";
-import { figure } from "../draw/figure.js";
-import { given, numeric } from "../views/inputs.js";
-import { Question } from "./question.js";
+import { fixed, number } from "../state/numbers.js";
 
 const MOST_TORQUES = 24;
 /** Points are fetched so often at most while a sweep runs, in milliseconds. */

@@ -1,3 +1,4 @@
+// @ts-check
 // The service: requests with the key, and problems as errors.
 
 const KEY = "meshwright-key";

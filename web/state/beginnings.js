@@ -1,3 +1,4 @@
+// @ts-check
 // What a part of the form begins with when it is asked for: values that fit the gear it is for, else defaults.
 
 import { USUAL_POSITIONS } from "./preview.js";

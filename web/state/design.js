@@ -1,3 +1,4 @@
+// @ts-check
 // What is worked on: a submission, the designs that were kept beside it, the way back from every change, and the
 // address that carries it.
 

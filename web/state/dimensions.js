@@ -1,7 +1,8 @@
+// @ts-check
 // What has an extent along the axis: which fields need three dimensions, and the steps into the third one and back.
 
 import { HELIX } from "./design.js";
-import { number } from "../draw/dom.js";
+import { number } from "./numbers.js";
 
 /** The method that a pair gets with its first extent along the axis, and the one that it goes back to. */
 const SOLID = "three_dimensional";

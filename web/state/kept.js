@@ -1,3 +1,4 @@
+// @ts-check
 // What this tab works on, over a reload: the kept designs with their results, and the way back from every change.
 
 const NAME = "meshwright";

@@ -1,3 +1,4 @@
+// @ts-check
 // The motion of the gears at a speed, step by step from the force table of the results: what turns the drawing. The
 // numbers of a run-up are those of the service, which finds both branches; this goes on from where it was.
 

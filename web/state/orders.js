@@ -1,3 +1,4 @@
+// @ts-check
 // Orders as words: what a label of the spectrum means to someone who does not know its letters.
 
 const TIMES = ["", "", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth"];

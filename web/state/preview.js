@@ -1,3 +1,4 @@
+// @ts-check
 // Results while the design changes: one request at a time, always the newest design next.
 
 import { hasEnded, isPassing, json, post, ProblemError, request, solved } from "./api.js";

@@ -1,8 +1,9 @@
+// @ts-check
 // The numbers of designs as the service names them: what they are called, their units, and where results and rows of
 // tables have them.
 
 import { json } from "./api.js";
-import { extent, fixed, h, number, unit } from "../draw/dom.js";
+import { extent, fixed, number, unit } from "./numbers.js";
 
 /** Units that are printed as multiples of the service's, and what numbers are multiplied by. */
 const MULTIPLES = { "N/m": ["N/µm", 1e-6], "kg m^2": ["kg cm²", 1e4] };
@@ -49,12 +50,6 @@ export function shown({ printed, factor }, value) {
   if (!Number.isFinite(value)) return "–";
   return Math.abs(factor * value) < SMALL ? number(factor * value, 3) : fixed(factor * value, DECIMALS[printed] ?? 3);
 }
-
-/** Options for all of them, that of the name `chosen` selected. */
-export const options = (chosen) =>
-  quantities().map((quantity) =>
-    h("option", { value: quantity.name, selected: quantity.name === chosen }, inUnit(quantity)),
-  );
 
 const at = (object, name) => name.split(".").reduce((part, step) => part?.[step], object);
 const order = (curve, pattern, value = "transmission_error_um") =>

@@ -1,3 +1,4 @@
+// @ts-check
 // The schema of a submission, as the service describes it.
 
 import { json, post } from "./api.js";

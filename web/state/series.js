@@ -1,6 +1,7 @@
+// @ts-check
 // What the curves of designs are made of: their points, names, units and what a listener should know of them.
 
-import { fixed, number } from "../draw/dom.js";
+import { fixed, number } from "./numbers.js";
 
 /** What lies below is noise of the solution, in um. */
 export const LEAST_AMPLITUDE = 1e-4;

@@ -1,3 +1,4 @@
+// @ts-check
 // What is on the screen as a program: the request that gives the same results elsewhere.
 
 /** A submission as a literal of Python. */
@@ -26,31 +27,4 @@ export function snippets(submission, address) {
     python: `from meshwright import Client\n\nsubmission = ${python(submission)}\n\nwith Client(${JSON.stringify(url)}) as service:\n    results = service.solve(submission)\nprint(results.frame())\n`,
     typescript: `import { Client, type Submission } from "meshwright-client";\n\nconst submission: Submission = ${json};\n\nconst service = new Client({ url: ${JSON.stringify(url)}, key: process.env["MESHWRIGHT_KEY"] ?? "" });\nconst results = await service.solve(submission);\nconsole.log(results.curves[0]?.statistics.transmission_error_um);\n`,
   };
-}
-
-/** Copies `text`, where pages may not use the clipboard too; says whether it did. */
-export async function copied(text) {
-  if (navigator.clipboard) {
-    try {
-      await navigator.clipboard.writeText(text);
-      return true;
-    } catch {
-      // Not allowed: the old way may be.
-    }
-  }
-  const area = Object.assign(document.createElement("textarea"), { value: text, readOnly: true });
-  area.style.cssText = "position: fixed; opacity: 0";
-  // Inside an open dialog nothing else can have the focus.
-  (document.querySelector("dialog[open]") ?? document.body).append(area);
-  const focused = document.activeElement;
-  area.select();
-  let done = false;
-  try {
-    done = document.execCommand("copy");
-  } catch {
-    done = false;
-  }
-  area.remove();
-  focused?.focus();
-  return done;
 }

@@ -1,10 +1,13 @@
+// @ts-check
 // Designs beside each other: their numbers under names that the user gives, and the fields in which they differ.
 
-import { extent, h, number } from "../draw/dom.js";
-import { differences, told } from "../state/design.js";
-import { csvOf, fileOfDesign, save } from "../draw/download.js";
 import { looks } from "../draw/charts.js";
+import { h } from "../draw/dom.js";
+import { save } from "../draw/download.js";
+import { differences, told } from "../state/design.js";
+import { extent, number } from "../state/numbers.js";
 import { calledOf, inResults, quantities, shown } from "../state/quantities.js";
+import { csvOf, fileOfDesign } from "../state/tables.js";
 
 /** What differs by less than this part is the same. */
 const SAME = 1e-3;

@@ -1,9 +1,11 @@
+// @ts-check
 // The deviations of a gear's teeth: drawn by an accuracy class, pasted from a spreadsheet, or dropped as a file of a
 // measurement.
 
+import { h } from "../draw/dom.js";
+import { given, numeric } from "../draw/inputs.js";
 import { post, ProblemError } from "../state/api.js";
-import { fixed, h, number } from "../draw/dom.js";
-import { given, numeric } from "./inputs.js";
+import { fixed, number } from "../state/numbers.js";
 
 /** What a column of measured teeth may be called, and the field that it is. */
 const COLUMNS = [

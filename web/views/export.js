@@ -1,15 +1,17 @@
+// @ts-check
 // What is on the screen for other programs: curves, orders, tables, pictures, files of a job, and the request as a
 // program.
 
-import { ProblemError, solved } from "../state/api.js";
 import { looks } from "../draw/charts.js";
-import { designsCsv } from "./compare.js";
-import { csv, drawingOf, fileOfDesign, ordersCsv, save } from "../draw/download.js";
 import { h } from "../draw/dom.js";
+import { copied, drawingOf, save } from "../draw/download.js";
 import { fileOf, pictureOf, stacked } from "../draw/figure.js";
-import { filesOf, saveFile } from "../state/files.js";
+import { filesOf, saveFile } from "../draw/files.js";
+import { ProblemError, solved } from "../state/api.js";
+import { snippets } from "../state/snippets.js";
+import { csv, fileOfDesign, ordersCsv } from "../state/tables.js";
+import { designsCsv } from "./compare.js";
 import { inLight } from "./sheet.js";
-import { copied, snippets } from "../state/snippets.js";
 
 const LANGUAGES = { curl: "curl", python: "Python", typescript: "TypeScript" };
 

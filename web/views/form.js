@@ -1,12 +1,15 @@
+// @ts-check
 // The form of a submission, made from the schema: every field with its unit, bounds, default and words.
 
+import { h } from "../draw/dom.js";
+import { numeric, read, write } from "../draw/inputs.js";
 import { Beginnings } from "../state/beginnings.js";
 import { at, HELIX } from "../state/design.js";
 import { helix, intoPlane, intoSolid, isSolid, kindOfTeeth, needsThird, offers, teeth } from "../state/dimensions.js";
-import { deviations } from "./deviations.js";
-import { h, number, unit } from "../draw/dom.js";
-import { numeric, parsed, read, stepped, unreadable, write } from "./inputs.js";
+import { number, unit } from "../state/numbers.js";
 import { help, kindOf, resolve, saidDefault, schemaAt } from "../state/schema.js";
+import { parsed, stepped, unreadable } from "../state/typed.js";
+import { deviations } from "./deviations.js";
 
 /** Fields that a designer looks for first; they stand above the others of their object. */
 const FIRST = ["holes", "tip_relief", "tooth_count", "profile_shift"];

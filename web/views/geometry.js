@@ -1,6 +1,8 @@
+// @ts-check
 // The geometry report: what a gear engineer checks first, of both gears.
 
-import { h, fixed, number } from "../draw/dom.js";
+import { h } from "../draw/dom.js";
+import { fixed, number } from "../state/numbers.js";
 
 const twice = (radius) => 2 * radius;
 

@@ -1,7 +1,9 @@
+// @ts-check
 // The answers in a line: what a designer looks at first, each with its change against the design that it is compared
 // with.
 
-import { extent, fixed, h, number } from "../draw/dom.js";
+import { h } from "../draw/dom.js";
+import { extent, fixed, number } from "../state/numbers.js";
 
 const named = (curve, pattern) =>
   curve.spectrum?.named.find(({ label }) => pattern.test(label))?.transmission_error_um ?? null;

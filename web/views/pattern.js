@@ -1,11 +1,13 @@
+// @ts-check
 // Where the flanks carry, and how much: the largest pressure of the period over face and diameter. A job tells it, so
 // it is asked for by a press.
 
-import { hasEnded, json, patiently, post, ProblemError, request, solved } from "../state/api.js";
-import { same } from "../state/design.js";
-import { fixed, h, number, s, timeOf } from "../draw/dom.js";
+import { h, s } from "../draw/dom.js";
 import { cssOf, scaleOf } from "../draw/face.js";
 import { figure } from "../draw/figure.js";
+import { hasEnded, json, patiently, post, ProblemError, request, solved } from "../state/api.js";
+import { same } from "../state/design.js";
+import { fixed, number, timeOf } from "../state/numbers.js";
 
 const HATCH = "sharp-edge";
 const SHOW = "Show the flanks";

@@ -1,12 +1,14 @@
+// @ts-check
 // The motion of the gears over speed: both branches beside those of kept designs, a waterfall of orders with their
 // resonances named, and one speed that is looked at, turned and heard.
 
 import { looks } from "../draw/charts.js";
-import { debounced, fixed, h, number, s } from "../draw/dom.js";
+import { debounced, h, s } from "../draw/dom.js";
 import { figure, ticks } from "../draw/figure.js";
-import { motionAt } from "../state/motion.js";
-import { wordsOf } from "../state/orders.js";
 import { Tones } from "../draw/sound.js";
+import { motionAt } from "../state/motion.js";
+import { fixed, number } from "../state/numbers.js";
+import { wordsOf } from "../state/orders.js";
 
 /** What is drawn over speed: name, unit, and how a branch tells it. */
 const QUANTITIES = {

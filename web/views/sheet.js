@@ -1,9 +1,11 @@
+// @ts-check
 // One page of paper: the drawing, the answers, the geometry, the curves, warnings and evidence. It is printed, and
 // saved as a picture.
 
-import { flattened, told } from "../state/design.js";
-import { number, s } from "../draw/dom.js";
+import { s } from "../draw/dom.js";
 import { drawingOf } from "../draw/download.js";
+import { flattened, told } from "../state/design.js";
+import { number } from "../state/numbers.js";
 import { rowsOf } from "./geometry.js";
 import { ANSWERS } from "./headline.js";
 

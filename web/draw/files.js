@@ -1,8 +1,9 @@
+// @ts-check
 // The files that the service makes of a job.
 
-import { request } from "./api.js";
-import { isSolid } from "./dimensions.js";
-import { save } from "../draw/download.js";
+import { save } from "./download.js";
+import { request } from "../state/api.js";
+import { isSolid } from "../state/dimensions.js";
 
 const isInThree = ({ method }) => isSolid(method);
 const runsUp = ({ dynamics }) => dynamics;

@@ -1,0 +1,63 @@
+// @ts-check
+// Numbers, units and times as readers want them.
+
+/** A number with so many significant digits, without trailing zeros. */
+export function number(value, digits = 4) {
+  if (typeof value !== "number" || !Number.isFinite(value)) return "–";
+  return String(Number(value.toPrecision(digits)));
+}
+
+/** A number with so many decimals. */
+export function fixed(value, decimals) {
+  return typeof value === "number" && Number.isFinite(value) ? value.toFixed(decimals) : "–";
+}
+
+/** The least and the most of any number of values; those that are no numbers are left out. Null where none is left. */
+export function extent(values) {
+  let found = null;
+  for (const value of values) {
+    if (!Number.isFinite(value)) continue;
+    if (!found) found = [value, value];
+    else if (value < found[0]) found[0] = value;
+    else if (value > found[1]) found[1] = value;
+  }
+  return found;
+}
+
+const UNITS = { 1: "", um: "µm", deg: "°", "N m": "N m", "1/min": "rpm", "kg/m3": "kg/m³", "%": "%" };
+
+/** A unit of the schema as it is printed. */
+export function unit(name) {
+  return name === undefined ? "" : (UNITS[name] ?? name);
+}
+
+/** A time in milliseconds as somebody who waits wants it. */
+export function timeOf(milliseconds) {
+  if (milliseconds < 90_000) return `${Math.max(1, Math.round(milliseconds / 1000))} s`;
+  return milliseconds < 5_400_000
+    ? `${Math.round(milliseconds / 60_000)} min`
+    : `${fixed(milliseconds / 3_600_000, 1)} h`;
+}
+
+/**
+ * Says how long the rest takes, in words that go on from others, of how much is done of a total; `expected`
+ * milliseconds were thought to be needed before anything was known. The pace is that of the last tenth that has been
+ * done: what is made once, as a gear is for all of its positions, says nothing of what follows.
+ */
+export function remaining(expected = null, now = () => performance.now()) {
+  const begun = now();
+  const seen = [{ at: begun, done: 0 }];
+  return (done, total) => {
+    const at = now();
+    const elapsed = at - begun;
+    const from = seen.findLast((each) => done - each.done >= Math.max(3, done / 10)) ?? seen[0];
+    seen.push({ at, done });
+    if (done >= total) return "";
+    const linear = done > from.done ? ((at - from.at) * (total - done)) / (done - from.done) : null;
+    if (expected === null) return done > 2 && linear !== null ? `, about ${timeOf(linear)} more` : "";
+    // What was thought counts until as much has been done, or as much time has passed.
+    const known = linear === null ? 0 : Math.min(1, Math.max(done / total, elapsed / expected));
+    const left = known * (linear ?? 0) + (1 - known) * (expected - elapsed);
+    return left > 0 ? `, about ${timeOf(left)} more` : ", longer than was thought";
+  };
+}
