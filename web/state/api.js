@@ -1,9 +1,18 @@
 // @ts-check
 // The service: requests with the key, and problems as errors.
 
+/** @import { T } from "../draw/dom.js" */
+/** @import { Job, Problem, Submission } from "./documents.js" */
+
+/**
+ * @typedef {{ method?: string, body?: unknown, headers?: Record<string, string>, signal?: AbortSignal }} Options
+ */
 const KEY = "meshwright-key";
+/** @type {Set<(problem: Problem) => void>} */
 const listeners = new Set();
-let key = sessionStorage.getItem(KEY) ?? "";
+/** @type {string | null} */
+let known = null;
+const key = () => (known ??= sessionStorage.getItem(KEY) ?? "");
 
 /** So long it takes until a service that did not answer, or had no room, is asked again, in milliseconds. */
 const AGAIN = 1500;
@@ -12,15 +21,21 @@ const AGAIN = 1500;
  * A problem document (RFC 9457) that the service answered with, and after how many milliseconds it may be asked again.
  */
 export class ProblemError extends Error {
+  /** @param {Problem} problem */
   constructor(problem, after = AGAIN) {
     super(problem.detail ?? problem.title ?? "The service gave no reason.");
-    Object.assign(this, { problem, after });
+    this.problem = problem;
+    this.after = after;
   }
 }
 
-/** What a request or an answer that broke off is told as; one that was given up stays that. */
+/**
+ * What a request or an answer that broke off is told as; one that was given up stays that.
+ *
+ * @type {(error: Error) => Error}
+ */
 const broken = (error) =>
-  error.name === "AbortError"
+  isAborted(error)
     ? error
     : new ProblemError({
         code: "unreachable",
@@ -28,26 +43,44 @@ const broken = (error) =>
         detail: "The service does not answer. The page asks again until it does.",
       });
 
-/** Calls `listener` when a request was refused for want of a key. */
+/**
+ * Whether an error only says that a request was given up.
+ *
+ * @type {(error: unknown) => boolean}
+ */
+export const isAborted = (error) => error instanceof Error && error.name === "AbortError";
+
+/**
+ * Calls `listener` when a request was refused for want of a key.
+ *
+ * @type {(listener: (problem: Problem) => void) => void}
+ */
 export function onKeyNeeded(listener) {
   listeners.add(listener);
 }
 
 export function hasKey() {
-  return key !== "";
+  return key() !== "";
 }
 
+/** @param {string} given */
 export function setKey(given) {
-  key = given.trim();
-  if (key) sessionStorage.setItem(KEY, key);
+  known = given.trim();
+  if (known) sessionStorage.setItem(KEY, known);
   else sessionStorage.removeItem(KEY);
 }
 
-/** The answer to a request at `path`, relative to the page; throws a [`ProblemError`] for a refusal. */
+/**
+ * The answer to a request at `path`, relative to the page; throws a [`ProblemError`] for a refusal.
+ *
+ * @type {(path: string, options?: Options) => Promise<Response>}
+ */
 export async function request(path, { method = "GET", body, headers = {}, signal } = {}) {
+  /** @type {Record<string, string>} */
   const all = { ...headers };
-  if (key) all.authorization = `Bearer ${key}`;
+  if (key()) all.authorization = `Bearer ${key()}`;
   if (body !== undefined) all["content-type"] ??= "application/json";
+  /** @type {RequestInit} */
   const init = { method, headers: all, signal, cache: "no-cache", credentials: "same-origin" };
   if (body !== undefined) init.body = typeof body === "string" || body instanceof Blob ? body : JSON.stringify(body);
   const response = await fetch(new URL(path, document.baseURI), init).catch((error) => {
@@ -61,14 +94,26 @@ export async function request(path, { method = "GET", body, headers = {}, signal
   throw new ProblemError(problem, Math.max(AGAIN, 1000 * Number(response.headers.get("retry-after"))));
 }
 
-/** Whether an error goes away by itself: the service does not answer, starts, or has too much to do. */
+/**
+ * Whether an error goes away by itself: the service does not answer, starts, or has too much to do.
+ *
+ * @type {(error: unknown) => error is ProblemError}
+ */
 export const isPassing = (error) =>
   error instanceof ProblemError &&
-  (error.problem.code === "unreachable" || [429, 502, 503, 504].includes(error.problem.status));
+  (error.problem.code === "unreachable" || [429, 502, 503, 504].includes(error.problem.status ?? 0));
 
+/** @type {(milliseconds: number) => Promise<void>} */
 const rest = (milliseconds) => new Promise((resolve) => setTimeout(resolve, milliseconds));
 
-/** What `work` gives once the service answers; until then `told` hears why it does not. */
+/**
+ * What `work` gives once the service answers; until then `told` hears why it does not.
+ *
+ * @template T
+ * @param {() => Promise<T>} work
+ * @param {(problem: Problem) => void} told
+ * @returns {Promise<T>}
+ */
 export async function patiently(work, told = () => {}) {
   for (;;) {
     try {
@@ -81,16 +126,30 @@ export async function patiently(work, told = () => {}) {
   }
 }
 
-/** The JSON of an answer. */
+/**
+ * The JSON of an answer.
+ *
+ * @param {string} path
+ * @param {Options} [options]
+ * @returns {Promise<any>} what the contract says of the answer at this path
+ */
 export async function json(path, options) {
   return (await request(path, options)).json();
 }
 
+/** @type {(path: string, body: unknown, options?: Options) => Promise<any>} */
 export const post = (path, body, options = {}) => json(path, { ...options, method: "POST", body });
 
-/** The pieces of an answer that end with `end`, as far as somebody reads them. */
+/**
+ * The pieces of an answer that end with `end`, as far as somebody reads them.
+ *
+ * @param {Response} response
+ * @param {string} end
+ */
 async function* pieces(response, end) {
-  const reader = response.body.pipeThrough(new TextDecoderStream()).getReader();
+  const { body } = response;
+  if (!body) return;
+  const reader = body.pipeThrough(new TextDecoderStream()).getReader();
   let text = "";
   try {
     for (;;) {
@@ -99,7 +158,7 @@ async function* pieces(response, end) {
       });
       if (done) return;
       const found = (text + value.replace(/\r/g, "")).split(end);
-      text = found.pop();
+      text = found.pop() ?? "";
       yield* found;
     }
   } finally {
@@ -110,11 +169,15 @@ async function* pieces(response, end) {
 /**
  * The events of a stream that the service sends, each `{ event, data }`, until it ends; `EventSource` cannot send a
  * key.
+ *
+ * @param {string} path
+ * @param {AbortSignal} [signal]
  */
 export async function* events(path, signal) {
   const response = await request(path, { headers: { accept: "text/event-stream" }, signal });
   for await (const piece of pieces(response, "\n\n")) {
     const lines = piece.split("\n");
+    /** @type {(name: string) => string} */
     const of = (name) =>
       lines
         .filter((line) => line.startsWith(`${name}:`))
@@ -124,14 +187,23 @@ export async function* events(path, signal) {
   }
 }
 
+/** @type {string[]} */
 const ENDED = ["successful", "failed", "dismissed"];
 
-/** Whether a job or a study with this status changes no more. */
+/**
+ * Whether a job or a study with this status changes no more.
+ *
+ * @type {(status: string) => boolean}
+ */
 export const hasEnded = (status) => ENDED.includes(status);
 
 /**
  * Follows a job or a study at `path` by its events until it has ended, and gives how it stands then. `told` is called
  * with each event; a stream that breaks off is taken up again; while the service does not answer the event is `away`.
+ *
+ * @param {string} path
+ * @param {(event: string, data: any) => void} told the data of an event is what the contract says of its name
+ * @param {AbortSignal} [signal]
  */
 export async function follow(path, told = () => {}, signal = undefined) {
   for (;;) {
@@ -147,15 +219,21 @@ export async function follow(path, told = () => {}, signal = undefined) {
   }
 }
 
+/** @type {Map<string, Job>} */
 const jobs = new Map();
 
 /**
  * A job of `submission` that has succeeded: one that is known, or a new one that is followed until it ends. `told`
  * hears of its events, and of the job first.
+ *
+ * @param {Submission} submission
+ * @param {{ told?: (event: string, data: any) => void, signal?: AbortSignal }} [how]
+ * @returns {Promise<Job>}
  */
 export async function solved(submission, { told = () => {}, signal } = {}) {
   const name = JSON.stringify(submission);
-  if (jobs.has(name)) return jobs.get(name);
+  const before = jobs.get(name);
+  if (before) return before;
   // A job that was asked for is known, so that it can be cancelled: the request itself is not given up.
   const made = await post("v1/jobs", submission);
   told("status", made);

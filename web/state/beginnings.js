@@ -4,7 +4,14 @@
 import { USUAL_POSITIONS } from "./preview.js";
 import { kindOf, resolve } from "./schema.js";
 
+/** @import { Design } from "./design.js" */
+/** @import { Blank, Gear, GearName, Holes, Limits, Results } from "./documents.js" */
+/** @import { Api, Kind } from "./schema.js" */
+
 const TURN = Math.PI / 180;
+/** @type {(pointer: string) => string} */
+const lastOf = (pointer) => pointer.slice(pointer.lastIndexOf("/") + 1);
+/** @type {(value: number, digits?: number) => number} */
 const rounded = (value, digits = 3) => Number(value.toPrecision(digits));
 
 /** A run-up begins with so many speeds, up to so many times that of the resonance at the mesh order. */
@@ -12,32 +19,60 @@ const SPEEDS = 100;
 const BEYOND_RESONANCE = 1.3;
 
 export class Beginnings {
-  /** `limits` are those of the service; `results` gives those of the design as it was computed last, null before. */
+  /**
+   * `limits` are those of the service; `results` gives those of the design as it was computed last, null before.
+   *
+   * @param {Api} api
+   * @param {Design} design
+   * @param {{ limits: Limits, results: () => Results | undefined }} known
+   */
   constructor(api, design, { limits, results }) {
-    Object.assign(this, { api, design, limits, results });
+    this.api = api;
+    this.design = design;
+    this.limits = limits;
+    this.results = results;
   }
 
-  /** All that is set where an object is asked for that is not there yet: itself, and what it needs beside it. */
+  /**
+   * All that is set where an object is asked for that is not there yet: itself, and what it needs beside it.
+   *
+   * @param {string} pointer
+   * @param {Kind | null} kind
+   * @returns {Record<string, unknown>}
+   */
   values(pointer, kind) {
+    /** @returns */
     const values = { [pointer]: this.object(pointer, kind) };
     const table = pointer === "/dynamics" && !this.design.get("/force_table") ? this.#table() : {};
     return Object.keys(table).length ? { ...values, "/force_table": table } : values;
   }
 
-  /** An object that is not there yet. */
+  /**
+   * An object that is not there yet.
+   *
+   * @param {string} pointer
+   * @param {Kind | null} kind
+   * @returns {any} a value for the field, which the schema describes
+   */
   object(pointer, kind) {
     if (pointer.endsWith("/slot")) return slotOf(this.design.get(pointer.slice(0, -"/slot".length)));
     if (pointer === "/force_table") return this.#table();
     if (pointer === "/dynamics") return this.#runUp();
-    const fitting = this.#fitting(pointer, pointer.split("/").pop());
+    const fitting = this.#fitting(pointer, lastOf(pointer));
     return fitting ?? this.#begin(kind);
   }
 
-  /** One of several forms to begin with: what is there in the other form, as far as it goes. */
+  /**
+   * One of several forms to begin with: what is there in the other form, as far as it goes.
+   *
+   * @param {string} pointer
+   * @param {Kind} kind
+   * @returns {any} a value for the field
+   */
   variant(pointer, kind) {
     const there = this.design.get(pointer);
-    const name = pointer.split("/").pop();
-    if (name === "start") return this.#start(pointer, Object.keys(kind.schema.properties)[0], there);
+    const name = lastOf(pointer);
+    if (name === "start") return this.#start(pointer, Object.keys(kind.schema.properties ?? {})[0], there);
     if (/\/profile_modifications\/\d+$/.test(pointer)) return this.#modification(pointer, kind);
     if (/\/lead_modifications\/\d+$/.test(pointer)) return this.#lead(pointer, kind);
     if (name === "interface_radius_mm") return this.#interface(kind);
@@ -50,26 +85,44 @@ export class Beginnings {
     return kind.kind === "list" ? patterns : patterns[0];
   }
 
-  /** A further entry of a list. */
+  /**
+   * A further entry of a list.
+   *
+   * @param {string} pointer
+   * @param {Kind} kind
+   * @param {any[]} values
+   * @returns {any} a value for the list
+   */
   further(pointer, kind, values) {
     if (pointer.endsWith("/profile_modifications"))
       return this.#modification(
         pointer,
-        kindOf(this.api, kind.items.kind === "variants" ? kind.items.variants[0] : kind.items.schema),
+        kindOf(this.api, kind.items?.variants?.[0] ?? kind.items?.schema ?? {}),
       );
     if (pointer.endsWith("/lead_modifications")) return { kind: "crowning", amount_um: 5 };
     if (!pointer.endsWith("/holes")) return this.#begin(kind.items);
-    return values.length
-      ? between(values.at(-1), 1.2 * this.limits.least_ligament_modules * this.#gear(pointer).module_mm)
+    const gear = this.#gear(pointer);
+    return values.length && gear
+      ? between(values.at(-1), 1.2 * this.limits.least_ligament_modules * gear.module_mm)
       : this.object(pointer, kind);
   }
 
+  /**
+   * @param {string} pointer
+   * @returns {Gear | null}
+   */
   #gear(pointer) {
     const member = /\/pair\/(driving|driven)/.exec(pointer)?.[0];
     return member ? this.design.get(member) : null;
   }
 
-  /** What suits the gear at `pointer` where `name` is asked for; undefined where nothing depends on the gear. */
+  /**
+   * What suits the gear at `pointer` where `name` is asked for; undefined where nothing depends on the gear.
+   *
+   * @param {string} pointer
+   * @param {string} name
+   * @returns {object | undefined}
+   */
   #fitting(pointer, name) {
     const gear = this.#gear(pointer);
     if (!gear) return undefined;
@@ -88,6 +141,7 @@ export class Beginnings {
     }
     if (name === "spokes") {
       const [inner, outer] = web ? [web.inner_radius_mm, web.outer_radius_mm] : [bore, root];
+            /** @type {(part: number) => number} */
       const at = (part) => rounded(inner + part * (outer - inner));
       return {
         count: 5,
@@ -114,10 +168,14 @@ export class Beginnings {
     };
   }
 
-  /** The usual table, or one of fewer loads where the true period is so long that more would be too many positions. */
+  /**
+   * The usual table, or one of fewer loads where the true period is so long that more would be too many positions.
+   *
+   * @returns {{ loads?: number }}
+   */
   #table() {
-    const { minimum, default: usual } = resolve(this.api, this.api.components.schemas.ForceTableRequest).properties
-      .loads;
+    const table = resolve(this.api, this.api.components.schemas.ForceTableRequest);
+    const { minimum = 0, default: usual } = table.properties?.loads ?? {};
     const period = this.results()?.pair.period_mesh_periods ?? 1;
     const { positions_per_mesh_period: positions = USUAL_POSITIONS, span_mesh_periods: span } =
       this.design.get("/resolution") ?? {};
@@ -128,10 +186,10 @@ export class Beginnings {
 
   /** From rest to beyond the speed at which the mesh order meets the gears on their teeth. */
   #runUp() {
-    const { pair, curves } = this.results() ?? {};
-    const stiffness = curves?.[0].statistics.mesh_stiffness_tangent_n_per_m.mean;
-    if (!stiffness) return { driving_speed_rpm: { from: 0, to: 6000, count: SPEEDS } };
-    const [driving, driven] = [pair.driving, pair.driven].map(
+    const results = this.results();
+    const stiffness = results?.curves[0].statistics.mesh_stiffness_tangent_n_per_m.mean;
+    if (!results || !stiffness) return { driving_speed_rpm: { from: 0, to: 6000, count: SPEEDS } };
+    const [driving, driven] = [results.pair.driving, results.pair.driven].map(
       (gear) => (gear.base_radius_mm / 1000) ** 2 / gear.polar_inertia_kg_m2,
     );
     const frequency = Math.sqrt(stiffness * (driving + driven)) / (2 * Math.PI);
@@ -145,11 +203,16 @@ export class Beginnings {
   /**
    * The start of a relief as the field `name` says it: at the same place of the flank as before, else half a module
    * below the tip, or above the root.
+   *
+   * @param {string} pointer
+   * @param {string} name
+   * @param {any} there
    */
   #start(pointer, name, there) {
     const gear = this.#gear(pointer);
     const holder = this.design.get(pointer.slice(0, -"/start".length));
     const atRoot = holder?.kind === "root_relief";
+    if (!gear) return {};
     const flank = flankOf(gear);
     const known = there && flank.radiusOf(there, atRoot);
     const inside = known > flank.formRadius && known < flank.tipRadius;
@@ -161,10 +224,15 @@ export class Beginnings {
     return { [name]: rounded(flank.said(radius, name, atRoot), 5) };
   }
 
+  /**
+   * @param {string} pointer
+   * @param {Kind} kind
+   */
   #modification(pointer, kind) {
     const { kind: word } = kind.schema.properties ?? {};
     const name = word?.enum?.[0] ?? "tip_relief";
     const gear = this.#gear(pointer);
+    if (!gear) return {};
     const flank = flankOf(gear);
     if (name === "table")
       return {
@@ -183,6 +251,10 @@ export class Beginnings {
     return { kind: name, amount_um: 5 };
   }
 
+  /**
+   * @param {string} pointer
+   * @param {Kind} kind
+   */
   #lead(pointer, kind) {
     const name = kind.schema.properties?.kind?.enum?.[0] ?? "crowning";
     const face = this.#gear(pointer)?.face_width_mm ?? 20;
@@ -191,8 +263,13 @@ export class Beginnings {
     return { kind: name, amount_um: 5 };
   }
 
-  /** Between the holes and the roots of the gears that have holes: one radius where one fits all, else one for each. */
+  /**
+   * Between the holes and the roots of the gears that have holes: one radius where one fits all, else one for each.
+   *
+   * @param {Kind} kind
+   */
   #interface(kind) {
+    /** @type {(member: GearName) => { holed: boolean, low: number, high: number, usual: number }} */
     const bounds = (member) => {
       const gear = this.design.get(`/pair/${member}`);
       const { root, module } = circlesOf(gear);
@@ -206,41 +283,59 @@ export class Beginnings {
     return { driving: rounded(each.driving.usual, 5), driven: rounded(each.driven.usual, 5) };
   }
 
-  /** The default that the schema says, or the least that it takes. */
+  /**
+   * The default that the schema says, or the least that it takes.
+   *
+   * @param {Kind | null | undefined} kind
+   * @returns {any} a value for the field
+   */
   #begin(kind) {
+    if (!kind) return "";
     const { schema } = kind;
     if (kind.kind === "object") {
-      const needed = Object.entries(schema.properties).filter(([name]) => schema.required?.includes(name));
+      const needed = Object.entries(schema.properties ?? {}).filter(([name]) => schema.required?.includes(name));
       return Object.fromEntries(needed.map(([name, each]) => [name, this.#begin(kindOf(this.api, each))]));
     }
-    if (kind.kind === "variants") return this.#begin(kindOf(this.api, kind.variants[0]));
+    if (kind.kind === "variants") return this.#begin(kindOf(this.api, kind.variants?.[0] ?? {}));
     if (kind.kind === "list") return [this.#begin(kind.items)];
     if (kind.kind === "numbers") return [];
     if (schema.default !== undefined && schema.default !== null) return schema.default;
-    if (kind.kind === "choice") return schema.enum[0];
+    if (kind.kind === "choice") return schema.enum?.[0];
     return kind.kind === "number" ? Math.max(schema.minimum ?? 0, Math.min(1, schema.maximum ?? 1)) : "";
   }
 }
 
-/** The circles of a gear between which its parts have to fit, in mm. */
+/**
+ * The circles of a gear between which its parts have to fit, in mm.
+ *
+ * @param {Gear} gear
+ */
 function circlesOf(gear) {
   const { module_mm: module, tooth_count: teeth, profile_shift: shift = 0 } = gear;
   const root = module * (teeth / 2 + (shift ?? 0)) - (gear.dedendum_mm ?? 1.25 * module);
   return { module, root, bore: gear.blank?.bore_radius_mm ?? root / 3 };
 }
 
-/** Between which radii the holes of a blank lie, in mm. */
+/**
+ * Between which radii the holes of a blank lie, in mm.
+ *
+ * @type {(holes: Blank["holes"]) => [number, number]}
+ */
 function reachOf(holes) {
   const patterns = [holes ?? []]
     .flat()
-    .map(({ circle_radius_mm: circle, radius_mm: radius, slot }) => [circle, radius ?? slot?.width_mm / 2]);
+    .map(({ circle_radius_mm: circle, radius_mm: radius, slot }) => [circle, radius ?? (slot?.width_mm ?? NaN) / 2]);
   return [
     Math.min(...patterns.map(([circle, half]) => circle - half)),
     Math.max(0, ...patterns.map(([circle, half]) => circle + half)),
   ];
 }
 
-/** The involute of a gear: roll lengths of its form circle and its tip, and one measure of a place on it as another. */
+/**
+ * The involute of a gear: roll lengths of its form circle and its tip, and one measure of a place on it as another.
+ *
+ * @param {Gear} gear
+ */
 function flankOf(gear) {
   const { module_mm: m, tooth_count: z } = gear;
   const [alpha, x] = [(gear.pressure_angle_deg ?? 20) * TURN, gear.profile_shift ?? 0];
@@ -249,10 +344,13 @@ function flankOf(gear) {
   const tipRadius = gear.tip_diameter_mm ? gear.tip_diameter_mm / 2 : r + (gear.addendum_mm ?? m) + x * m;
   const straight = (gear.dedendum_mm ?? 1.25 * m) - (gear.rack_tip_radius_mm ?? 0.38 * m) * (1 - Math.sin(alpha));
   const form = Math.max(0, r * Math.sin(alpha) - (straight - x * m) / Math.sin(alpha));
+  /** @type {(radius: number) => number} */
   const roll = (radius) => Math.sqrt(Math.max(0, radius ** 2 - base ** 2));
+  /** @type {(length: number) => number} */
   const radiusAt = (length) => Math.hypot(base, length);
   const tip = roll(tipRadius);
   const formRadius = radiusAt(form);
+  /** @type {(start: Record<string, number>, atRoot: boolean) => number} */
   const radiusOf = (start, atRoot) => {
     if (start.diameter_mm) return start.diameter_mm / 2;
     if (start.roll_angle_deg) return radiusAt(start.roll_angle_deg * TURN * base);
@@ -260,8 +358,9 @@ function flankOf(gear) {
     if (start.roll_length_from_form_mm) return radiusAt(form + start.roll_length_from_form_mm);
     return atRoot ? formRadius + start.radial_length_mm : tipRadius - start.radial_length_mm;
   };
+  /** @type {(radius: number, name: string, atRoot: boolean) => number} */
   const said = (radius, name, atRoot) =>
-    ({
+    /** @type {Record<string, number>} */ ({
       diameter_mm: 2 * radius,
       roll_angle_deg: roll(radius) / base / TURN,
       roll_length_from_tip_mm: tip - roll(radius),
@@ -271,10 +370,16 @@ function flankOf(gear) {
   return { form, tip, formRadius, tipRadius, radiusAt, radiusOf, said };
 }
 
+/** @type {(pattern: Holes) => number} */
 const numberOf = (pattern) => pattern.count ?? pattern.at_deg?.length ?? 1;
+/** @type {(value: number) => number} */
 const twoDigits = (value) => Number(value.toPrecision(2));
 
-/** Slots in place of the round holes of a pattern, with material left between them. */
+/**
+ * Slots in place of the round holes of a pattern, with material left between them.
+ *
+ * @param {Holes} pattern
+ */
 function slotOf(pattern) {
   return {
     width_mm: twoDigits(pattern.radius_mm ?? pattern.circle_radius_mm / 10),
@@ -285,13 +390,16 @@ function slotOf(pattern) {
 /**
  * A further pattern: small round holes midway between those of `pattern`, so small that `left` mm of material stay
  * between them.
+ *
+ * @param {Holes} pattern
+ * @param {number} left
  */
 function between(pattern, left) {
   const half = 180 / numberOf(pattern);
   const places = pattern.at_deg
     ? { at_deg: pattern.at_deg.map((angle) => angle + half) }
     : { count: pattern.count, phase_deg: (pattern.phase_deg ?? 0) + half };
-  const radius = pattern.radius_mm ?? pattern.slot?.width_mm / 2;
+  const radius = pattern.radius_mm ?? (pattern.slot?.width_mm ?? NaN) / 2;
   const room =
     2 * pattern.circle_radius_mm * Math.sin((0.5 * half - 0.25 * (pattern.slot?.angle_deg ?? 0)) * TURN) - radius;
   return {

@@ -2,6 +2,23 @@
 // What is worked on: a submission, the designs that were kept beside it, the way back from every change, and the
 // address that carries it.
 
+/** @import { T } from "../draw/dom.js" */
+/** @import { GearName, NamedDesign, Submission } from "./documents.js" */
+
+/**
+ * What changed a design.
+ *
+ * @typedef {"start" | "open" | "form" | "mend" | "drag" | "snap" | "undo" | "kept" | "confirm"} Cause
+ */
+
+/**
+ * What a change leads away from, and back to.
+ *
+ * @typedef {{ submission: Submission, kept: NamedDesign[], typed: Record<string, number> }} State
+ */
+
+/** @typedef {State & { past: State[], future: State[] }} Remembered */
+
 /** So many changes can be taken back. */
 const MOST_CHANGES = 200;
 /** What follows in one field within so many milliseconds is one change. */
@@ -10,7 +27,11 @@ const ONE_CHANGE = 1500;
 /** The angle that diameters and the center distance go with. */
 export const HELIX = "/pair/helix_angle_deg";
 
-/** The parts of a JSON pointer. */
+/**
+ * The parts of a JSON pointer.
+ *
+ * @type {(pointer: string) => string[]}
+ */
 export function parts(pointer) {
   return pointer
     .split("/")
@@ -18,20 +39,34 @@ export function parts(pointer) {
     .map((part) => part.replace(/~1/g, "/").replace(/~0/g, "~"));
 }
 
-/** What stands at `pointer`; undefined where nothing does. */
+/**
+ * What stands at `pointer`; undefined where nothing does.
+ *
+ * @param {unknown} document
+ * @param {string} pointer
+ * @returns {any} what the schema says of this place, which no type of a pointer can
+ */
 export function at(document, pointer) {
   return parts(pointer).reduce(
-    (place, part) => (place === null || place === undefined ? undefined : place[part]),
+    (/** @type {any} */ place, part) => (place === null || place === undefined ? undefined : place[part]),
     document,
   );
 }
 
-/** `document` with `value` at `pointer`, objects made on the way; an undefined value takes the field away. */
+/**
+ * `document` with `value` at `pointer`, objects made on the way; an undefined value takes the field away.
+ *
+ * @template T
+ * @param {T} document
+ * @param {string} pointer
+ * @param {unknown} value
+ * @returns {T}
+ */
 export function withValue(document, pointer, value) {
   const copy = structuredClone(document);
   const path = parts(pointer);
-  const last = path.pop();
-  const holder = path.reduce((place, part) => {
+  const last = path.pop() ?? "";
+  const holder = path.reduce((/** @type {any} */ place, part) => {
     if (place[part] === null || typeof place[part] !== "object") place[part] = {};
     return place[part];
   }, copy);
@@ -41,7 +76,11 @@ export function withValue(document, pointer, value) {
   return copy;
 }
 
-/** Whether two submissions are the same. */
+/**
+ * Whether two submissions are the same.
+ *
+ * @type {(one: unknown, other: unknown) => boolean}
+ */
 export function same(one, other) {
   return JSON.stringify(one) === JSON.stringify(other);
 }
@@ -52,29 +91,54 @@ export function same(one, other) {
  * `confirm` where only the kept designs changed, or what was typed for which angle.
  */
 export class Design {
+  /** @type {((by: Cause) => void)[]} */
   #listeners = [];
+  /** @type {(() => void)[]} */
   #resting = [];
+  /** @type {State[]} */
   #past = [];
+  /** @type {State[]} */
   #future = [];
+  /** @type {{ key: string | symbol | null, time: number }} */
   #last = { key: null, time: 0 };
+  /** @type {symbol | null} */
   #hand = null;
 
   constructor() {
-    this.submission = null;
+    /**
+     * There is none before the page has begun.
+     *
+     * @type {Submission}
+     */
+    this.submission = /** @type {any} */ (null);
+    /** @type {NamedDesign[]} */
     this.kept = [];
-    /** Pointers of the fields that somebody has typed, each with the helix angle that it was typed for. */
+    /**
+     * Pointers of the fields that somebody has typed, each with the helix angle that it was typed for.
+     *
+     * @type {Record<string, number>}
+     */
     this.typed = {};
+    /** @type {Cause} */
     this.by = "start";
     /** How often the submission has changed. */
     this.changes = 0;
   }
 
-  /** Calls `listener` with what changed the design. */
+  /**
+   * Calls `listener` with what changed the design.
+   *
+   * @param {(by: Cause) => void} listener
+   */
   onChange(listener) {
     this.#listeners.push(listener);
   }
 
-  /** Calls `listener` when a hand lets go. */
+  /**
+   * Calls `listener` when a hand lets go.
+   *
+   * @param {() => void} listener
+   */
   onRest(listener) {
     this.#resting.push(listener);
   }
@@ -89,20 +153,36 @@ export class Design {
     for (const listener of this.#resting) listener();
   }
 
-  /** Takes another submission as a whole. */
+  /**
+   * Takes another submission as a whole.
+   *
+   * @param {Submission} submission
+   * @param {Cause} by
+   */
   replace(submission, by) {
     this.#change({ submission: structuredClone(submission), typed: {} }, by, null);
   }
 
+  /** @param {string} pointer */
   get(pointer) {
     return at(this.submission, pointer);
   }
 
+  /**
+   * @param {string} pointer
+   * @param {unknown} value
+   * @param {Cause} by
+   */
   set(pointer, value, by) {
     this.setAll({ [pointer]: value }, by);
   }
 
-  /** Several fields at once; of those that go with what is typed `typed` names those that were. */
+  /**
+   * Several fields at once; of those that go with what is typed `typed` names those that were.
+   *
+   * @param {Record<string, unknown>} values
+   * @param {Cause} by
+   */
   setAll(values, by, typed = Object.keys(values)) {
     let next = this.submission;
     for (const [pointer, value] of Object.entries(values)) next = withValue(next, pointer, value);
@@ -114,21 +194,33 @@ export class Design {
     this.#change({ submission: next, typed: Object.fromEntries([...others, ...now]) }, by, this.#hand ?? key);
   }
 
-  /** What was typed at `pointer` is meant for the helix angle as it is. */
+  /**
+   * What was typed at `pointer` is meant for the helix angle as it is.
+   *
+   * @param {string} pointer
+   */
   confirm(pointer) {
     this.#change({ typed: { ...this.typed, [pointer]: this.get(HELIX) ?? 0 } }, "confirm", null);
   }
 
-  /** Goes back to what could be computed, as part of the change that led away from it. */
+  /**
+   * Goes back to what could be computed, as part of the change that led away from it.
+   *
+   * @param {Submission} submission
+   */
   snapBack(submission) {
     this.#future = [];
     this.submission = submission;
-    if (this.#past.length && same(this.#past.at(-1).submission, submission)) this.#past.pop();
+    if (this.#past.length && same(this.#past.at(-1)?.submission, submission)) this.#past.pop();
     this.#last.key = null;
     this.#tell("snap");
   }
 
-  /** Other kept designs. */
+  /**
+   * Other kept designs.
+   *
+   * @param {NamedDesign[]} kept
+   */
   keep(kept) {
     this.#change({ kept }, "kept", null);
   }
@@ -141,6 +233,9 @@ export class Design {
   /**
    * Begins with what was remembered: `kept` designs, and the way back where it leads from `submission`, which is told
    * as what the page starts with.
+   *
+   * @param {Submission} submission
+   * @param {Remembered} remembered
    */
   restore(submission, { kept, typed, past, future, ...known }) {
     this.kept = kept;
@@ -166,6 +261,10 @@ export class Design {
     this.#step(this.#future, this.#past);
   }
 
+  /**
+   * @param {State[]} from
+   * @param {State[]} to
+   */
   #step(from, to) {
     const state = from.pop();
     if (!state) return;
@@ -175,10 +274,16 @@ export class Design {
     this.#tell("undo");
   }
 
+  /** @returns {State} */
   #state() {
     return { submission: this.submission, kept: this.kept, typed: this.typed };
   }
 
+  /**
+   * @param {Partial<State>} next
+   * @param {Cause} by
+   * @param {string | symbol | null} key
+   */
   #change(next, by, key) {
     const now = performance.now();
     const goesOn =
@@ -191,6 +296,7 @@ export class Design {
     this.#tell(by);
   }
 
+  /** @param {Cause} by */
   #tell(by) {
     this.by = by;
     if (!["kept", "confirm"].includes(by)) this.changes += 1;
@@ -198,12 +304,17 @@ export class Design {
   }
 }
 
+/** @type {(bytes: Uint8Array<ArrayBuffer>, stream: GenericTransformStream) => Promise<Uint8Array<ArrayBuffer>>} */
 async function through(bytes, stream) {
   const packed = new Blob([bytes]).stream().pipeThrough(stream);
   return new Uint8Array(await new Response(packed).arrayBuffer());
 }
 
-/** The fragment of an address that carries `submission`. */
+/**
+ * The fragment of an address that carries `submission`.
+ *
+ * @type {(submission: Submission) => Promise<string>}
+ */
 export async function toFragment(submission) {
   const packed = await through(
     new TextEncoder().encode(JSON.stringify(submission)),
@@ -215,7 +326,11 @@ export async function toFragment(submission) {
   return `#design=${btoa(letters).replace(/\+/g, "-").replace(/\//g, "_").replace(/=+$/, "")}`;
 }
 
-/** The submission that an address carries; null if it carries none that can be read. */
+/**
+ * The submission that an address carries; null if it carries none that can be read.
+ *
+ * @type {(fragment: string) => Promise<Submission | null>}
+ */
 export async function fromFragment(fragment) {
   const text = /^#design=([\w-]+)$/.exec(fragment)?.[1];
   if (!text) return null;
@@ -230,8 +345,13 @@ export async function fromFragment(fragment) {
   }
 }
 
-/** What a design is called where nobody gave it a name. */
+/**
+ * What a design is called where nobody gave it a name.
+ *
+ * @type {(submission: Submission) => string}
+ */
 export function nameOf(submission) {
+  /** @type {(member: GearName) => string} */
   const hole = (member) => {
     const given = submission.pair?.[member]?.blank?.holes;
     const patterns = given ? [given].flat() : [];
@@ -247,7 +367,12 @@ export function nameOf(submission) {
   return `${submission.pair?.driving?.tooth_count}/${submission.pair?.driven?.tooth_count}, ${holes}`;
 }
 
-/** A submission without what goes on from its curves and takes longer than they do, and that. */
+/**
+ * A submission without what goes on from its curves and takes longer than they do, and that.
+ *
+ * @param {Submission} submission
+ * @returns {{ curves: Submission, further: Partial<Submission> }}
+ */
 export function apart({ force_table, dynamics, stress, face_load, ...curves }) {
   return {
     curves,
@@ -257,7 +382,11 @@ export function apart({ force_table, dynamics, stress, face_load, ...curves }) {
   };
 }
 
-/** The fields in which submissions differ: each pointer with the value of every submission. */
+/**
+ * The fields in which submissions differ: each pointer with the value of every submission.
+ *
+ * @type {(submissions: unknown[]) => { pointer: string, values: unknown[] }[]}
+ */
 export function differences(submissions) {
   const flat = submissions.map((submission) => flattened(submission));
   const pointers = [...new Set(flat.flatMap((each) => [...each.keys()]))];
@@ -265,20 +394,29 @@ export function differences(submissions) {
   return rows.filter(({ values }) => values.some((value) => JSON.stringify(value) !== JSON.stringify(values[0])));
 }
 
-/** The value of a field in words: of a long list how long it is. */
+/**
+ * The value of a field in words: of a long list how long it is.
+ *
+ * @type {(value: unknown) => string}
+ */
 export function told(value) {
   if (value === undefined) return "not given";
   if (Array.isArray(value)) return value.length > 4 ? `${value.length} numbers` : value.join(", ");
   return String(value).replace(/_/g, " ");
 }
 
-/** Every value of a document by its pointer; a list of numbers is one value. */
+/**
+ * Every value of a document by its pointer; a list of numbers is one value.
+ *
+ * @param {object | null | undefined} document
+ * @param {string} pointer
+ * @param {Map<string, unknown>} found
+ */
 export function flattened(document, pointer = "", found = new Map()) {
-  for (const [name, value] of Object.entries(document ?? {})) {
+  for (const [name, value] of Object.entries(/** @type {Record<string, unknown>} */ (document ?? {}))) {
     const place = `${pointer}/${name}`;
-    const nested =
-      value !== null && typeof value === "object" && !(Array.isArray(value) && typeof value[0] !== "object");
-    if (nested) flattened(value, place, found);
+    if (value !== null && typeof value === "object" && !(Array.isArray(value) && typeof value[0] !== "object"))
+      flattened(/** @type {object} */ (value), place, found);
     else if (value !== null && value !== undefined) found.set(place, value);
   }
   return found;

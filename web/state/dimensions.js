@@ -4,11 +4,22 @@
 import { HELIX } from "./design.js";
 import { number } from "./numbers.js";
 
+/** @import { Design } from "./design.js" */
+/** @import { GearName } from "./documents.js" */
+
 /** The method that a pair gets with its first extent along the axis, and the one that it goes back to. */
+
+/**
+ * Changes that belong together, and what is said of them.
+ *
+ * @typedef {{ changes: Record<string, unknown>, told: string[] }} Step
+ */
+
 const SOLID = "three_dimensional";
 const PLANE = "flexible";
 /** A helix begins with so many degrees. */
 const USUAL_HELIX = 15;
+/** @type {GearName[]} */
 const MEMBERS = ["driving", "driven"];
 
 /** Fields that plane methods refuse, by the ends of their pointers. */
@@ -17,17 +28,34 @@ const NEED_SOLID =
 /** What the methods in three dimensions have no choice of. */
 const CHOSEN_IN_PLANE = "contact_solver";
 
-/** Whether a method computes in three dimensions. */
+/**
+ * Whether a method computes in three dimensions.
+ *
+ * @type {(method: string | undefined) => boolean}
+ */
 export const isSolid = (method) => String(method ?? "").startsWith(SOLID);
 
-/** Whether plane methods refuse the field at `pointer`. */
+/**
+ * Whether plane methods refuse the field at `pointer`.
+ *
+ * @type {(pointer: string) => boolean}
+ */
 export const needsThird = (pointer) => NEED_SOLID.test(pointer);
 
-/** What a pair is called that has teeth like these. */
+/**
+ * What a pair is called that has teeth like these.
+ *
+ * @type {(angle: number | undefined) => "helical" | "straight"}
+ */
 export const kindOfTeeth = (angle) => (angle ? "helical" : "straight");
 
+/** @type {(angle: number | null | undefined) => number} */
 const secant = (angle) => 1 / Math.cos(((angle ?? 0) * Math.PI) / 180);
-/** A torque that enters at both ends is what the plane has. */
+/**
+ * A torque that enters at both ends is what the plane has.
+ *
+ * @type {(value: unknown) => boolean}
+ */
 const isGiven = (value) =>
   value !== undefined &&
   value !== null &&
@@ -35,30 +63,41 @@ const isGiven = (value) =>
   value !== "both" &&
   !(Array.isArray(value) && value.length === 0);
 
-/** Lengths that go with the helix angle: how much by for each unit that its secant grows, and what each is called. */
+/**
+ * Lengths that go with the helix angle: how much by for each unit that its secant grows, and what each is called.
+ *
+ * @param {Design} design
+ */
 function withHelix(design) {
   const sizes = MEMBERS.map(
     (member) => design.get(`/pair/${member}/module_mm`) * design.get(`/pair/${member}/tooth_count`),
   );
+  /** @type {[string, number, string][]} */
   const tips = MEMBERS.map((member, i) => [
     `/pair/${member}/tip_diameter_mm`,
     sizes[i],
     `Tip diameter of the ${member} gear`,
   ]);
+  /** @type {[string, number, string][]} */
   const lengths = [["/pair/center_distance_mm", 0.5 * (sizes[0] + sizes[1]), "Center distance"], ...tips];
   return lengths
     .filter(([pointer, by]) => typeof design.get(pointer) === "number" && Number.isFinite(by))
     .map(([pointer, by, words]) => ({ pointer, by, words, typed: pointer in design.typed }));
 }
 
+/** @type {(value: number, by: number) => number} */
 const moved = (value, by) => Number((value + by).toFixed(4));
 
 /**
  * The changes that another helix angle than `before` brings with it, and what is said of them: diameters of the same
  * normal module grow, and the gears move apart. What somebody has typed stays.
+ *
+ * @type {(design: Design, angle: number, before?: number) => Step}
  */
 export function helix(design, angle, before = design.get(HELIX)) {
+  /** @type {Record<string, unknown>} */
   const changes = { [HELIX]: angle || undefined };
+  /** @type {string[]} */
   const told = [];
   const wider = secant(angle) - secant(before);
   for (const { pointer, by, words, typed } of withHelix(design)) {
@@ -74,10 +113,13 @@ export function helix(design, angle, before = design.get(HELIX)) {
 /**
  * What typed lengths would be that were meant for another helix angle, where that suits the teeth better: `{ pointer,
  * value, angle }`.
+ *
+ * @type {(design: Design) => { pointer: string, value: number, angle: number }[]}
  */
 export function offers(design) {
   const angle = design.get(HELIX) ?? 0;
   if (!(Math.abs(angle) < 60)) return [];
+  /** @type {(pointer: string) => number} */
   const wider = (pointer) => secant(angle) - secant(design.typed[pointer]);
   return withHelix(design)
     .filter(({ pointer, typed, by }) => typed && Math.abs(by * wider(pointer)) > 1e-4)
@@ -90,9 +132,14 @@ export function offers(design) {
     });
 }
 
-/** The center distance without backlash, or the tip diameter of teeth of their usual height. */
+/**
+ * The center distance without backlash, or the tip diameter of teeth of their usual height.
+ *
+ * @type {(design: Design, pointer: string, angle: number) => number}
+ */
 function usualLength(design, pointer, angle) {
   const member = /^\/pair\/(driving|driven)\//.exec(pointer)?.[1];
+  /** @type {(gear: string, name: string, usual: number) => number} */
   const of = (gear, name, usual) => design.get(`/pair/${gear}/${name}`) ?? usual;
   const normal = (of("driving", "pressure_angle_deg", 20) * Math.PI) / 180;
   if (member)
@@ -113,6 +160,8 @@ function usualLength(design, pointer, angle) {
 /**
  * A pair of straight teeth gets a helix, or a helical one gets straight teeth, and its plane method back where nothing
  * else needs the third dimension.
+ *
+ * @type {(design: Design, kind: string) => Step}
  */
 export function teeth(design, kind) {
   if (kind === "helical") return helix(design, USUAL_HELIX);
@@ -122,9 +171,14 @@ export function teeth(design, kind) {
   return { changes: { ...back.changes, ...changes }, told: [...told, ...back.told] };
 }
 
-/** The changes that compute the pair in three dimensions. */
+/**
+ * The changes that compute the pair in three dimensions.
+ *
+ * @type {(design: Design) => Step}
+ */
 export function intoSolid(design) {
   const { [CHOSEN_IN_PLANE]: solver, ...resolution } = design.get("/resolution") ?? {};
+  /** @type {Record<string, unknown>} */
   const left = solver === undefined || solver === "active_set" ? {} : { "/resolution": resolution };
   const method = design.get("/method");
   const changes = { "/method": isSolid(method) ? method : SOLID, "/face_load": "positions", ...left };
@@ -134,7 +188,11 @@ export function intoSolid(design) {
   };
 }
 
-/** The changes that compute the pair in the plane: what has an extent along the axis goes. */
+/**
+ * The changes that compute the pair in the plane: what has an extent along the axis goes.
+ *
+ * @type {(design: Design) => Step}
+ */
 export function intoPlane(design) {
   const left = pointersNeeding(design);
   const straight = left.includes(HELIX) ? helix(design, 0) : { changes: {}, told: [] };
@@ -153,7 +211,7 @@ export function intoPlane(design) {
   const words = left.map((pointer) =>
     pointer
       .split("/")
-      .at(-1)
+      .slice(-1)[0]
       .replace(/_(mm|um|deg)$/, "")
       .replace(/_/g, " "),
   );
@@ -167,11 +225,20 @@ export function intoPlane(design) {
   };
 }
 
-/** Whether the design has something that plane methods refuse. */
+/**
+ * Whether the design has something that plane methods refuse.
+ *
+ * @type {(design: Design) => boolean}
+ */
 export const needsSolid = (design) => pointersNeeding(design).length > 0;
 
-/** The fields of the design that plane methods refuse. */
+/**
+ * The fields of the design that plane methods refuse.
+ *
+ * @param {Design} design
+ */
 function pointersNeeding(design) {
+  /** @type {(member: GearName) => string[]} */
   const ofGear = (member) =>
     [
       "lead_modifications",

@@ -1,6 +1,9 @@
 // @ts-check
 // What this tab works on, over a reload: the kept designs with their results, and the way back from every change.
 
+/** @import { T } from "../draw/dom.js" */
+/** @import { Remembered } from "./design.js" */
+
 const NAME = "meshwright";
 const TABS = "tabs";
 /** What a tab is called in the store; a tab keeps its name over a reload. */
@@ -14,14 +17,21 @@ const tab = (() => {
   return known;
 })();
 
+/**
+ * @template T
+ * @param {IDBRequest<T>} request
+ * @returns {Promise<T>}
+ */
 const done = (request) =>
   new Promise((resolve, reject) => {
     request.onsuccess = () => resolve(request.result);
     request.onerror = () => reject(request.error);
   });
 
+/** @type {Promise<IDBDatabase> | null} */
 let opened = null;
 
+/** @type {(mode: IDBTransactionMode) => Promise<IDBObjectStore>} */
 async function store(mode) {
   if (!opened) {
     const request = indexedDB.open(NAME, 1);
@@ -31,7 +41,11 @@ async function store(mode) {
   return (await opened).transaction(TABS, mode).objectStore(TABS);
 }
 
-/** Remembers what is worked on, `state`, which has results of designs by reference: they are stored once. */
+/**
+ * Remembers what is worked on, `state`, which has results of designs by reference: they are stored once.
+ *
+ * @type {(state: Remembered) => Promise<void>}
+ */
 export async function remember(state) {
   try {
     await done((await store("readwrite")).put({ ...state, at: Date.now() }, tab));
@@ -40,7 +54,11 @@ export async function remember(state) {
   }
 }
 
-/** What was remembered; null where nothing was. */
+/**
+ * What was remembered; null where nothing was.
+ *
+ * @type {() => Promise<Remembered | null>}
+ */
 export async function remembered() {
   try {
     const all = await store("readwrite");

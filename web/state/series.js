@@ -3,13 +3,49 @@
 
 import { fixed, number } from "./numbers.js";
 
+/** @import { Curve, NamedDesign, Spectrum } from "./documents.js" */
+
+/** @typedef {{ name: string, values: (number | null)[], open?: boolean }} Part */
+
+/**
+ * A line of a panel over mesh positions: of a design by its `look`, or of a `part` of the live one. One that is `open`
+ * does not go on behind its end as it begins.
+ *
+ * @typedef {Part & { x: number[], span: number, dash: number[], look?: number, part?: number }} Line
+ */
+
+/**
+ * What a chart shows: a curve of each design by `of`, or parts of the live one by `ofLive`, in place of which `whole`
+ * stands where there are too many.
+ *
+ * @typedef {object} Panel
+ * @property {string} id
+ * @property {string} title
+ * @property {string} unit
+ * @property {(curve: Curve) => (number | null)[]} [of]
+ * @property {(curve: Curve) => Part[]} [ofLive]
+ * @property {(curve: Curve) => Part[]} [whole]
+ * @property {string} [note]
+ * @property {string} [gaps] what its gaps mean
+ * @property {string} [none] what it means that there is no line
+ * @property {string} [along] what it is drawn over in place of the position
+ * @property {boolean} [rare] whether it is shown only where there is something to show
+ */
+
+/** @typedef {[number, number]} Point */
+/** @typedef {[number, number, number, number]} Box */
+/** @typedef {{ order: number, label: string, value: number }} OrderName */
+
 /** What lies below is noise of the solution, in um. */
 export const LEAST_AMPLITUDE = 1e-4;
 /** Told apart without color: full, dashed, dotted, and both. */
+/** @type {number[][]} */
 export const DASHES = [[], [7, 4], [2, 3], [10, 3, 2, 3], [12, 4], [4, 2, 1, 2], [1, 2]];
 
+/** @type {(values: number[]) => number[]} */
 const micro = (values) => values.map((value) => value * 1e-6);
 
+/** @type {Panel[]} */
 export const PANELS = [
   { id: "ste", title: "Transmission error", unit: "µm", of: (curve) => curve.transmission_error_um },
   {
@@ -41,7 +77,11 @@ export const PANELS = [
 /** Pairs so far apart are never in contact together, and share a look. */
 const LOOKS_OF_PAIRS = 4;
 
-/** The load shares of the live curve. A pair of teeth keeps its look from its first touch to its last. */
+/**
+ * The load shares of the live curve. A pair of teeth keeps its look from its first touch to its last.
+ *
+ * @type {(curve: Curve) => Part[]}
+ */
 function shares(curve) {
   const offsets = curve.load_shares.map(({ pair_offset: offset }) => offset);
   return Array.from({ length: LOOKS_OF_PAIRS }, (_, look) => {
@@ -63,7 +103,11 @@ function shares(curve) {
   });
 }
 
-/** The share of the pair that carries most, at each position: what can be seen of a long period. */
+/**
+ * The share of the pair that carries most, at each position: what can be seen of a long period.
+ *
+ * @type {(curve: Curve) => Part[]}
+ */
 function largestShare(curve) {
   return [
     {
@@ -73,25 +117,36 @@ function largestShare(curve) {
   ];
 }
 
-/** The stresses of the live curve, where they were asked for: at the roots of both gears, and at their holes. */
+/**
+ * The stresses of the live curve, where they were asked for: at the roots of both gears, and at their holes.
+ *
+ * @type {(curve: Curve) => { name: string, values: number[] }[]}
+ */
 export function stresses({ stress }) {
   if (!stress) return [];
-  return [
-    ["root_mpa", "root"],
-    ["hole_mpa", "hole"],
-  ].flatMap(([field, place]) =>
-    ["driving", "driven"].flatMap((gear) =>
-      stress[gear][field] ? [{ name: `${place}, ${gear} gear`, values: stress[gear][field] }] : [],
-    ),
+  const gears = /** @type {const} */ (["driving", "driven"]);
+  return /** @type {const} */ (["root", "hole"]).flatMap((place) =>
+    gears.flatMap((gear) => {
+      const values = stress[gear][`${place}_mpa`];
+      return values ? [{ name: `${place}, ${gear} gear`, values }] : [];
+    }),
   );
 }
 
-/** How many mesh periods a curve spans. */
+/**
+ * How many mesh periods a curve spans.
+ *
+ * @type {(curve: { mesh_position: number[] }) => number}
+ */
 export function spanOf({ mesh_position: positions }) {
   return positions.length > 1 ? positions.length * (positions[1] - positions[0]) : 1;
 }
 
-/** A line over `longest` mesh periods: what has a shorter true period goes on repeating it. */
+/**
+ * A line over `longest` mesh periods: what has a shorter true period goes on repeating it.
+ *
+ * @type {(line: Line, longest: number, partial: boolean) => Line}
+ */
 function repeated(line, longest, partial) {
   if (partial || !(longest > line.span * (1 + 1e-9))) return line;
   const turns = Math.ceil(longest / line.span - 1e-9);
@@ -107,6 +162,8 @@ function repeated(line, longest, partial) {
  * The lines of a panel: `{ name, look, dash, x, values, span, open }`. Designs have looks, torques have dashes; where
  * there is one torque designs have both. Lines of parts of the live design have a `part` in place of a look. Where they
  * are `crowded` pairs of teeth are no lines.
+ *
+ * @type {(panel: Panel, designs: NamedDesign[], crowded?: boolean) => Line[]}
  */
 export function linesOf(panel, designs, crowded = false) {
   if (panel.ofLive) {
@@ -126,7 +183,7 @@ export function linesOf(panel, designs, crowded = false) {
       repeated(
         {
           name: several ? `${name}, ${number(curve.output_torque_n_m)} N m` : name,
-          values: panel.of(curve),
+          values: panel.of?.(curve) ?? [],
           x: curve.mesh_position,
           span: spanOf(curve),
           look: look ?? i,
@@ -142,8 +199,11 @@ export function linesOf(panel, designs, crowded = false) {
 /**
  * The names of orders up to `last` that spectra have, each at the most that any of them has there: a name stands above
  * every line of its order.
+ *
+ * @type {(spectra: { named: { order: number, label: string, transmission_error_um: number }[], orders: Point[] }[], last: number) => OrderName[]}
  */
 export function namesOf(spectra, last) {
+  /** @type {Map<string, OrderName>} */
   const names = new Map();
   for (const { named, orders } of spectra) {
     for (const { order, label, transmission_error_um: value } of named) {
@@ -164,9 +224,13 @@ export function namesOf(spectra, last) {
  * The names of orders where there is room for them, the tallest first and those of holes and mesh before all: none over
  * another, nor over one of the `stems` `{ order, value }`, of which a mark stands on top; a name rises above the stems
  * and names beside it. `{ label, x, y }`, centered over their lines.
+ *
+ * @type {(names: OrderName[], how: { stems?: { order: number, value: number }[], mark?: number, px: (order: number) => number, py: (value: number) => number, left: number, right: number, top?: number, letter: number, widthOf: (label: string) => number }) => { label: string, x: number, y: number }[]}
  */
 export function placedNames(names, { stems = [], mark = 0, px, py, left, right, top = 0, letter, widthOf }) {
+  /** @type {Box[]} */
   const taken = [];
+  /** @type {(name: OrderName) => number} */
   const rank = ({ label }) => (/^H_(N\d?|Z\d?)$/.test(label) ? 0 : 1);
   const marks = stems.map(({ order, value }) => [px(order), py(value)]);
   return [...names]
@@ -177,7 +241,9 @@ export function placedNames(names, { stems = [], mark = 0, px, py, left, right, 
       // Stems reach from their mark to the foot: above the highest of those below the name there is room.
       const beside = marks.filter(([at]) => Math.abs(at - x) < width / 2 + 2 + mark).map(([, level]) => level);
       let y = Math.min(py(value), ...beside) - 0.5 * letter - mark;
+      /** @type {(level: number) => Box} */
       const boxAt = (level) => [x - width / 2 - 2, level - letter, x + width / 2 + 2, level + 2];
+      /** @type {(box: Box) => Box | undefined} */
       const under = (box) =>
         taken.find((other) => box[0] < other[2] && other[0] < box[2] && box[1] < other[3] && other[1] < box[3]);
       // Above another name, but no farther from its line than two of them.
@@ -189,16 +255,25 @@ export function placedNames(names, { stems = [], mark = 0, px, py, left, right, 
     });
 }
 
-/** The orders of the transmission error of `curve` that stand out of the noise, up to `last`. */
+/**
+ * The orders of the transmission error of `curve` that stand out of the noise, up to `last`.
+ *
+ * @type {(curve: { spectrum?: Pick<Spectrum, "order" | "transmission_error_um"> | null }, last?: number) => Point[]}
+ */
 export function ordersOf({ spectrum }, last = Infinity) {
-  const kept = spectrum.order.map((order, i) => [order, spectrum.transmission_error_um[i]]);
-  return kept.filter(([order, value]) => order > 0 && order <= last && value > LEAST_AMPLITUDE);
+  if (!spectrum) return [];
+  const all = spectrum.order.map((order, i) => /** @type {Point} */ ([order, spectrum.transmission_error_um[i]]));
+  return all.filter(([order, value]) => order > 0 && order <= last && value > LEAST_AMPLITUDE);
 }
 
 /**
  * The spectrum of a curve over the periods that were computed, where they are no whole true period: amplitudes of a
  * Hann window, whose lines are wider than those of the true spectrum, at orders per revolution of a driven gear of so
  * many teeth.
+ *
+ * @param {Curve} curve
+ * @param {number} teeth
+ * @param {number} last
  */
 export function partialSpectrum(curve, teeth, last) {
   const values = curve.transmission_error_um;
@@ -207,7 +282,9 @@ export function partialSpectrum(curve, teeth, last) {
   const window = values.map((_, i) => 0.5 - 0.5 * Math.cos((2 * Math.PI * i) / count));
   const weight = window.reduce((sum, w) => sum + w, 0);
   const mean = values.reduce((sum, value, i) => sum + window[i] * value, 0) / weight;
+  /** @type {number[]} */
   const order = [];
+  /** @type {number[]} */
   const amplitude = [];
   const most = Math.min(Math.floor(count / 2), Math.floor((last * span) / teeth), 4000);
   for (let k = 1; k <= most; k += 1) {
@@ -230,13 +307,20 @@ export function partialSpectrum(curve, teeth, last) {
   };
 }
 
+/** @type {(values: (number | null | undefined)[]) => [Point, Point] | null} */
 const extremes = (values) => {
-  const known = values.map((value, i) => [value, i]).filter(([value]) => value !== null && value !== undefined);
+  const known = values.flatMap((value, i) =>
+    value === null || value === undefined ? [] : [/** @type {Point} */ ([value, i])],
+  );
   if (!known.length) return null;
   return [known.reduce((a, b) => (b[0] < a[0] ? b : a)), known.reduce((a, b) => (b[0] > a[0] ? b : a))];
 };
 
-/** What a listener should know of a panel: how much, where, and how designs differ. */
+/**
+ * What a listener should know of a panel: how much, where, and how designs differ.
+ *
+ * @type {(panel: Panel, designs: NamedDesign[]) => string}
+ */
 export function wordsOf(panel, designs) {
   const told = linesOf(panel, designs).flatMap((line) => {
     const found = extremes(line.values);
@@ -252,8 +336,13 @@ export function wordsOf(panel, designs) {
   return `${panel.title} over ${number(Math.max(...designs.map(({ results }) => spanOf(results.curves[0]))))} mesh periods, in ${panel.unit}. ${told.join(" ")}${gaps}`;
 }
 
-/** The strongest orders of each design, in words. */
+/**
+ * The strongest orders of each design, in words.
+ *
+ * @type {(designs: NamedDesign[]) => string}
+ */
 export function wordsOfSpectrum(designs) {
+  /** @type {(design: NamedDesign) => string} */
   const of = ({ name, results }) => {
     const [curve] = results.curves;
     if (!curve.spectrum) return `${name}: a part of the true period has no spectrum.`;

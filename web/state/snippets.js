@@ -1,7 +1,13 @@
 // @ts-check
 // What is on the screen as a program: the request that gives the same results elsewhere.
 
-/** A submission as a literal of Python. */
+/** @import { Submission } from "./documents.js" */
+
+/**
+ * A submission as a literal of Python.
+ *
+ * @type {(value: unknown, indent?: string) => string}
+ */
 function python(value, indent = "") {
   if (value === null || value === undefined) return "None";
   if (typeof value === "boolean") return value ? "True" : "False";
@@ -18,6 +24,8 @@ function python(value, indent = "") {
 /**
  * `submission` to the service at `address`: with curl, from Python, from TypeScript. A key stays out of it, in the
  * environment.
+ *
+ * @type {(submission: Submission, address: string) => { curl: string, python: string, typescript: string }}
  */
 export function snippets(submission, address) {
   const url = address.replace(/\/$/, "");

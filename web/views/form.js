@@ -7,7 +7,7 @@ import { Beginnings } from "../state/beginnings.js";
 import { at, HELIX } from "../state/design.js";
 import { helix, intoPlane, intoSolid, isSolid, kindOfTeeth, needsThird, offers, teeth } from "../state/dimensions.js";
 import { number, unit } from "../state/numbers.js";
-import { help, kindOf, resolve, saidDefault, schemaAt } from "../state/schema.js";
+import { help, kindOf, SUBMISSION, resolve, saidDefault, schemaAt } from "../state/schema.js";
 import { parsed, stepped, unreadable } from "../state/typed.js";
 import { deviations } from "./deviations.js";
 
@@ -72,7 +72,7 @@ export class Form {
     for (const name of ALIKE)
       if (new Set(MEMBERS.map((member) => this.design.get(`/pair/${member}/${name}`))).size > 1)
         this.#unlocked.add(name);
-    const submission = kindOf(this.api, { $ref: "#/components/schemas/Submission" });
+    const submission = kindOf(this.api, SUBMISSION);
     const { pair, method, output_torques_n_m: torques, ...rest } = submission.schema.properties;
     const members = resolve(this.api, pair).properties;
     const gear = resolve(this.api, members.driving);
