@@ -636,7 +636,7 @@ async function compareMethods() {
       keep({ name: nameOf(asked), results: await resultsOf(asked), submission: asked, teeth: base.teeth });
     } catch (error) {
       if (!(error instanceof ProblemError)) throw error;
-      notify(error.problem.errors?.[0]?.detail ?? error.message, false);
+      notify(error.reason, false);
     }
   }
 }
@@ -903,7 +903,7 @@ async function openFile(file) {
     const why =
       error instanceof SyntaxError
         ? `${file.name} is neither a model of a gearbox nor a submission: ${error.message}`
-        : (error.problem.errors?.[0]?.detail ?? error.message);
+        : (error.reason);
     note.replaceChildren(h("span", { className: "field-error" }, why));
   }
 }

@@ -17,10 +17,61 @@ import {
   wordsOfSpectrum,
 } from "../state/series.js";
 
+/** @import { FaceLoad } from "./face.js" */
+/** @import { Parts } from "./figure.js" */
+/** @import { NamedDesign, Spectrum } from "../state/documents.js" */
+/** @import { Line, OrderName, Panel, Point } from "../state/series.js" */
+
+/**
+ * The file of uPlot has no types; those of its package are of the same version.
+ *
+ * @type {typeof import("uplot")}
+ */
+const Plot = /** @type {any} */ (uPlot);
+
+/** @typedef {import("uplot")} UPlot */
+
+/** @typedef {import("uplot").AlignedData} Data */
+
+/** @typedef {ReturnType<typeof looks>} Looks */
+
+/**
+ * A panel with its elements and what is drawn in it: `shape` is what its plot was made for, `seen` says whether it is
+ * in sight, and `late` whether it has to be drawn once it is.
+ *
+ * @typedef {object} Own
+ * @property {HTMLElement} canvas
+ * @property {HTMLElement} legend
+ * @property {HTMLElement} words
+ * @property {HTMLElement} below
+ * @property {HTMLElement} figure
+ * @property {UPlot | null} plot
+ * @property {HTMLElement | null} now
+ * @property {string} shape
+ * @property {number | null} width
+ * @property {number} span
+ * @property {boolean} seen
+ * @property {boolean} late
+ * @property {boolean} empty
+ * @property {FaceLoad | null} face
+ * @property {OrderName[]} names
+ * @property {[number, number] | null} levels
+ */
+
+/** @typedef {Panel & Own} Drawn */
+
+/** @typedef {{ look?: number, part?: number }} Colored */
+
+/**
+ * @typedef {{ name: string, look: number, partial: boolean, orders: Point[],
+ *   named: { order: number, label: string, transmission_error_um: number }[] }} DesignSpectrum
+ */
+
 /** Where a mesh period has fewer pixels the curve is shown by its envelope. */
 const LEAST_PIXELS = 14;
 /** Levels of the spectrum are above so many um. */
 const REFERENCE = 0.001;
+/** @type {Panel} */
 const SPECTRUM = { id: "spectrum", title: "Spectrum of the transmission error", unit: "µm" };
 const X_TITLE = "mesh position in mesh periods";
 const ORDER_TITLE = "order per revolution of the driven gear";
@@ -30,16 +81,22 @@ const ORDER_TITLE = "order per revolution of the driven gear";
  * are the same.
  */
 const CHOSEN = 7;
+/** @type {(look: number, lightness: string) => string} */
 const further = (look, lightness) => `oklch(${lightness} ${0.1 + 0.03 * (look % 3)} ${(look * 137.508) % 360})`;
 
-/** The color of a line: of its design, or of the part that it is of, which never has that of a design. */
+/**
+ * The color of a line: of its design, or of the part that it is of, which never has that of a design.
+ *
+ * @type {(line: Colored, colors: Looks) => string}
+ */
 const colorOf = ({ look, part }, colors) =>
-  part === undefined ? colors.series(look) : colors.parts[part % colors.parts.length];
+  part === undefined ? colors.series(look ?? 0) : colors.parts[part % colors.parts.length];
 
 /** The colors and letters of the page as it looks now. */
 export function looks() {
   const style = getComputedStyle(document.documentElement);
   const rem = parseFloat(style.fontSize);
+  /** @type {(name: string) => string} */
   const of = (name) => style.getPropertyValue(name).trim();
   return {
     ink: of("--ink"),
@@ -47,7 +104,7 @@ export function looks() {
     faint: of("--faint"),
     accent: of("--accent"),
     panel: of("--panel"),
-    series: (look) => (look < CHOSEN ? of(`--series-${look + 1}`) : further(look, of("--lightness"))),
+    series: (/** @type {number} */ look) => (look < CHOSEN ? of(`--series-${look + 1}`) : further(look, of("--lightness"))),
     parts: ["--line-of-action", "--faint", "--steel-2-edge", "--steel-edge"].map(of),
     rem,
     height: parseFloat(of("--chart-height")),
@@ -56,22 +113,37 @@ export function looks() {
 }
 
 export class Charts {
+  /** @type {Map<string, Drawn>} */
   #panels = new Map();
   #position = 0;
+  /** @type {[number, number] | null} */
   #range = null;
+  /**
+   * The designs that are shown, the live one first; none before there are results.
+   *
+   * @type {NamedDesign[]}
+   */
+  shown = [];
   /** Whether the spectrum has levels in place of amplitudes. */
   decibels = false;
 
   /**
    * Charts in `place`. `onPosition` is told where a pointer is, `onRange` which mesh periods are shown: two numbers, or
    * null for all; `onEveryPosition` that the load along the face is wanted at every position.
+   *
+   * @param {HTMLElement} place
+   * @param {{ onPosition: (to: number) => void, onRange: (range: [number, number] | null) => void, onEveryPosition: () => void }} hearers
    */
   constructor(place, { onPosition, onRange, onEveryPosition }) {
-    Object.assign(this, { place, onPosition, onRange, onEveryPosition });
+    this.place = place;
+    this.onPosition = onPosition;
+    this.onRange = onRange;
+    this.onEveryPosition = onEveryPosition;
     // What stands in every chart is named once, above them.
     this.legend = h("p", { className: "legend shared", hidden: true });
     place.append(this.legend);
     // What some designs alone have stands last, so that it moves nothing when it comes.
+    /** @type {(panel: Panel) => boolean} */
     const isRare = ({ rare }) => Boolean(rare);
     for (const panel of [...PANELS.filter((each) => !isRare(each)), SPECTRUM, ...PANELS.filter(isRare)]) {
       const canvas = h("div", { className: "canvas", aria: { hidden: "true" } });
@@ -106,6 +178,12 @@ export class Charts {
         below,
         figure: element,
         plot: null,
+        now: null,
+        span: 1,
+        empty: false,
+        face: null,
+        names: [],
+        levels: null,
         shape: "",
         width: null,
         seen: true,
@@ -122,9 +200,10 @@ export class Charts {
 
   /** The choice of the scale of the spectrum. */
   #scale() {
-    const choose = (event) => {
-      this.decibels = event.target.value === "db";
-      if (this.shown) this.show(this.shown);
+    /** @param {{ target: HTMLSelectElement }} event */
+    const choose = ({ target }) => {
+      this.decibels = target.value === "db";
+      this.show(this.shown);
     };
     return h(
       "select",
@@ -137,15 +216,18 @@ export class Charts {
   /** Draws everything anew, because the page looks different. */
   restyle() {
     for (const panel of this.#panels.values()) panel.shape = "";
-    if (this.shown) this.show(this.shown);
+    this.show(this.shown);
   }
 
   /**
    * Shows designs: `{ name, results, look, teeth }`, the live one first. While a hand moves, curves out of sight wait
    * until they are looked at.
+   *
+   * @param {NamedDesign[]} designs
    */
   show(designs, moving = false) {
     this.shown = designs;
+    if (!designs.length) return;
     const colors = looks();
     const shared = linesOf(PANELS[0], designs);
     this.legend.hidden = shared.length < 2;
@@ -156,38 +238,51 @@ export class Charts {
     }
     this.setPosition(this.#position);
     if (moving) return;
-    for (const panel of this.#panels.values())
-      panel.words.textContent = panel.figure.hidden
-        ? ""
-        : panel.id === "spectrum"
-          ? wordsOfSpectrum(designs)
-          : panel.along
-            ? wordsOfFace(faceOf(designs[0].results.curves[0]))
-            : wordsOf(panel, designs);
+    for (const panel of this.#panels.values()) panel.words.textContent = this.#wordsOf(panel);
   }
 
-  /** Shows the mesh periods from one position to another alone, or all of them. */
+  /** @param {Drawn} panel */
+  #wordsOf(panel) {
+    if (panel.figure.hidden) return "";
+    if (panel.id === "spectrum") return wordsOfSpectrum(this.shown);
+    const face = panel.along ? faceOf(this.shown[0].results.curves[0]) : null;
+    return face ? wordsOfFace(face) : wordsOf(panel, this.shown);
+  }
+
+  /**
+   * Shows the mesh periods from one position to another alone, or all of them.
+   *
+   * @param {[number, number] | null} range
+   */
   zoom(range) {
-    const whole = this.shown ? this.#whole() : 0;
+    const whole = this.shown.length ? this.#whole() : 0;
     const [from, to] = range ?? [0, whole];
     this.#range = to - from >= whole * 0.999 || to - from < 1e-3 ? null : [Math.max(0, from), Math.min(whole, to)];
-    if (this.shown) this.show(this.shown);
-    this.onRange(this.#range, whole);
+    this.show(this.shown);
+    this.onRange(this.#range);
   }
 
-  /** Marks a mesh position in every curve. */
+  /**
+   * Marks a mesh position in every curve.
+   *
+   * @param {number} position
+   */
   setPosition(position) {
     this.#position = position;
     for (const { plot, now, id, span } of this.#panels.values()) {
       if (!plot || !now || id === "spectrum") continue;
       const x = ((position % span) + span) % span;
-      const { min, max } = plot.scales.x;
+      const { min = 0, max = 0 } = plot.scales.x;
       now.hidden = x < min || x > max;
       now.style.transform = `translateX(${plot.valToPos(x, "x")}px)`;
     }
   }
 
-  /** The curves that are shown as drawings with titles, units and legends. */
+  /**
+   * The curves that are shown as drawings with titles, units and legends.
+   *
+   * @param {{ width?: number, height?: number, ids?: string[] | null }} [how]
+   */
   figures({ width = 760, height = 300, ids = null } = {}) {
     const colors = looks();
     const shown = [...this.#panels.values()].filter(
@@ -212,8 +307,8 @@ export class Charts {
           names: this.#names(spectra),
         });
       }
-      if (panel.along)
-        return faceFigure(faceOf(this.shown[0].results.curves[0]), { ...common, xRange: this.#range, panel });
+      const face = panel.along ? faceOf(this.shown[0].results.curves[0]) : null;
+      if (face) return faceFigure(face, { ...common, xRange: this.#range, panel, color: colors.series(0) });
       const lines = linesOf(panel, this.shown, this.#crowded(panel, linesOf(panel, this.shown), width)).map((line) => ({
         ...line,
         color: colorOf(line, colors),
@@ -228,14 +323,23 @@ export class Charts {
     return Math.max(...linesOf(PANELS[0], this.shown).map(({ span }) => span));
   }
 
+  /**
+   * @param {Drawn} panel
+   * @param {Looks} colors
+   */
   #draw(panel, colors) {
     if (panel.id === "spectrum") this.#spectrum(panel, colors);
     else if (panel.along) this.#face(panel, colors);
     else this.#curves(panel, colors);
   }
 
+  /**
+   * @param {Element} element
+   * @param {boolean} seen
+   */
   #sees(element, seen) {
     const panel = [...this.#panels.values()].find((each) => each.figure === element);
+    if (!panel) return;
     panel.seen = seen;
     if (!seen || !panel.late) return;
     panel.late = false;
@@ -243,6 +347,10 @@ export class Charts {
     this.setPosition(this.#position);
   }
 
+  /**
+   * @param {Drawn} panel
+   * @param {Looks} colors
+   */
   #curves(panel, colors) {
     const all = linesOf(panel, this.shown);
     const crowded = all.length > 0 && this.#crowded(panel, all);
@@ -268,8 +376,8 @@ export class Charts {
           at: closed(line),
           values: [...line.values, line.open ? null : line.values[0]],
         }));
-    const tables = lines.map((line) => [line.at, line.values]);
-    const data = uPlot.join(
+    const tables = lines.map((line) => /** @type {Data} */ ([line.at, line.values]));
+    const data = Plot.join(
       tables,
       tables.map(() => [2]),
     );
@@ -280,7 +388,7 @@ export class Charts {
     } else {
       panel.plot.setData(data, false);
     }
-    panel.plot.setScale("x", { min: from, max: to });
+    panel.plot?.setScale("x", { min: from, max: to });
     const note = many ? (panel.whole ? "that of most load; zoom in for each" : "envelope; zoom in") : panel.note;
     panel.legend.replaceChildren(
       ...(note ? [h("span", {}, note)] : []),
@@ -288,14 +396,27 @@ export class Charts {
     );
   }
 
-  /** Whether so many mesh periods are shown that they cannot be told apart. */
+  /**
+   * Whether so many mesh periods are shown that they cannot be told apart.
+   *
+   * @param {Drawn} panel
+   * @param {Line[]} lines
+   */
   #crowded(panel, lines, width = this.#width(panel)) {
     const [from, to] = this.#range ?? [0, Math.max(...lines.map(({ span }) => span))];
     return to - from > Math.floor(width / LEAST_PIXELS);
   }
 
+  /**
+   * @param {Drawn} panel
+   * @param {Data} data
+   * @param {(Colored & { name: string, dash: number[] })[]} lines
+   * @param {Looks} colors
+   * @param {boolean} many
+   */
   #make(panel, data, lines, colors, many) {
     panel.plot?.destroy();
+    /** @type {import("uplot").Options} */
     const options = {
       ...this.#common(panel, colors, X_TITLE),
       scales: { x: { time: false, auto: false }, y: { range: yRange } },
@@ -319,13 +440,19 @@ export class Charts {
         : [],
       hooks: { setCursor: [(plot) => this.#follow(plot)], setSelect: [(plot) => this.#select(plot)] },
     };
-    panel.plot = new uPlot(options, data, panel.canvas);
+    panel.plot = new Plot(options, data, panel.canvas);
     panel.now = h("div", { className: "now" });
     panel.plot.over.append(panel.now);
     panel.plot.over.addEventListener("dblclick", () => this.zoom(null));
   }
 
-  /** What all plots have. */
+  /**
+   * What all plots have.
+   *
+   * @param {Drawn} panel
+   * @param {Looks} colors
+   * @param {string} title
+   */
   #common(panel, colors, title) {
     const axis = {
       stroke: colors.ink,
@@ -333,11 +460,12 @@ export class Charts {
       grid: { stroke: colors.grid, width: 1 },
       ticks: { stroke: colors.grid, size: 4 },
     };
-    return {
+    /** @satisfies {Partial<import("uplot").Options>} */
+    const common = {
       width: this.#width(panel),
       height: colors.height,
       legend: { show: false },
-      padding: [10, 14, 0, 0],
+      padding: /** @type {[number, number, number, number]} */ ([10, 14, 0, 0]),
       cursor: { y: false, points: { size: 7 }, drag: { x: true, y: false, setScale: false, dist: 6 } },
       axes: [
         {
@@ -352,29 +480,44 @@ export class Charts {
           ...axis,
           size: 3.6 * colors.rem,
           space: 2.1 * colors.rem,
-          values: (_, splits) => splits.map((value) => number(value, 6)),
+          values: (/** @type {unknown} */ _, /** @type {number[]} */ splits) =>
+            splits.map((value) => number(value, 6)),
         },
       ],
     };
+    return common;
   }
 
-  /** The pointer over a curve turns the gears. */
+  /**
+   * The pointer over a curve turns the gears.
+   *
+   * @param {UPlot} plot
+   */
   #follow(plot) {
     const { left, event } = plot.cursor;
     if (left === undefined || left < 0 || !event || event.buttons) return;
     this.onPosition(plot.posToVal(left, "x"));
   }
 
-  /** A stretch of a curve that is drawn over with the pointer fills the plot. */
+  /**
+   * A stretch of a curve that is drawn over with the pointer fills the plot.
+   *
+   * @param {UPlot} plot
+   */
   #select(plot) {
     const { left, width } = plot.select;
     if (width < 6) return;
-    const range = [plot.posToVal(left, "x"), plot.posToVal(left + width, "x")];
+    const [from, to] = [plot.posToVal(left, "x"), plot.posToVal(left + width, "x")];
     plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
-    this.zoom(range);
+    this.zoom([from, to]);
   }
 
-  /** The load of the live design along its face: a map over every position, or the mean. */
+  /**
+   * The load of the live design along its face: a map over every position, or the mean.
+   *
+   * @param {Drawn} panel
+   * @param {Looks} colors
+   */
   #face(panel, colors) {
     const face = faceOf(this.shown[0].results.curves[0]);
     panel.figure.hidden = !face;
@@ -398,6 +541,7 @@ export class Charts {
     panel.span = face.span;
     panel.face = face;
     const range = this.#range ?? [0, face.span];
+    /** @type {Data} */
     const data = [[...face.positions, face.positions[0] + face.span], Array(face.positions.length + 1).fill(null)];
     const shape = `every ${face.edges[0]} ${face.edges.at(-1)}`;
     if (panel.shape !== shape || !panel.plot) {
@@ -407,16 +551,22 @@ export class Charts {
     } else {
       panel.plot.setData(data, false);
     }
-    panel.plot.setScale("x", { min: range[0], max: Math.min(range[1], face.span) });
+    panel.plot?.setScale("x", { min: range[0], max: Math.min(range[1], face.span) });
   }
 
+  /**
+   * @param {Drawn} panel
+   * @param {Data} data
+   * @param {Looks} colors
+   */
   #makeFace(panel, data, colors) {
     panel.plot?.destroy();
     const common = this.#common(panel, colors, X_TITLE);
     const [across, along] = common.axes;
+    /** @type {import("uplot").Options} */
     const options = {
       ...common,
-      scales: { x: { time: false, auto: false }, y: { range: () => [panel.face.edges[0], panel.face.edges.at(-1)] } },
+      scales: { x: { time: false, auto: false }, y: { range: () => rangeOf(panel.face) } },
       axes: [
         across,
         {
@@ -430,12 +580,12 @@ export class Charts {
       ].map((axis) => ({ ...axis, grid: { show: false } })),
       series: [{}, { label: panel.title, paths: () => null, points: { show: false } }],
       hooks: {
-        drawClear: [(plot) => drawCells(plot, panel.face)],
+        drawClear: [(plot) => panel.face && drawCells(plot, panel.face)],
         setCursor: [(plot) => this.#follow(plot)],
         setSelect: [(plot) => this.#select(plot)],
       },
     };
-    panel.plot = new uPlot(options, data, panel.canvas);
+    panel.plot = new Plot(options, data, panel.canvas);
     panel.now = h("div", { className: "now on-map" });
     panel.plot.over.append(panel.now);
     panel.plot.over.addEventListener("dblclick", () => this.zoom(null));
@@ -449,6 +599,8 @@ export class Charts {
   /**
    * The spectra of the designs, each with its orders out of the noise; of the live one an estimate where its span is
    * part of the true period.
+   *
+   * @returns {DesignSpectrum[]}
    */
   #spectra() {
     const last = this.#lastOrder();
@@ -461,7 +613,11 @@ export class Charts {
     });
   }
 
-  /** An amplitude in um as it is drawn: as it is, or as a level. */
+  /**
+   * An amplitude in um as it is drawn: as it is, or as a level.
+   *
+   * @param {number} value
+   */
   #level(value) {
     return this.decibels ? 20 * Math.log10(value / REFERENCE) : value;
   }
@@ -470,7 +626,12 @@ export class Charts {
     return this.decibels ? `dB re ${REFERENCE} µm` : "µm";
   }
 
-  /** From what is noise, or what is a thousandth of the largest, to the largest, in steps of 10 dB. */
+  /**
+   * From what is noise, or what is a thousandth of the largest, to the largest, in steps of 10 dB.
+   *
+   * @param {DesignSpectrum[]} spectra
+   * @returns {[number, number]}
+   */
   #levels(spectra) {
     const [least, most] = extent(spectra.flatMap(({ orders }) => orders.map(([, value]) => this.#level(value)))) ?? [
       0, 20,
@@ -479,10 +640,15 @@ export class Charts {
     return [Math.max(10 * Math.floor(least / 10), top - 80), top];
   }
 
+  /** @param {DesignSpectrum[]} spectra */
   #names(spectra) {
     return namesOf(spectra, this.#lastOrder()).map((name) => ({ ...name, value: this.#level(name.value) }));
   }
 
+  /**
+   * @param {Drawn} panel
+   * @param {Looks} colors
+   */
   #spectrum(panel, colors) {
     const wanted = this.#spectra();
     panel.figure.hidden = wanted.length === 0;
@@ -490,11 +656,13 @@ export class Charts {
     const last = this.#lastOrder();
     panel.names = this.#names(wanted);
     panel.levels = this.decibels ? this.#levels(wanted) : null;
-    const data = uPlot.join(
+    const data = Plot.join(
       wanted.map(({ orders }) =>
-        orders.length
-          ? [orders.map(([order]) => order), orders.map(([, value]) => this.#level(value))]
-          : [[this.shown[0].teeth], [null]],
+        /** @type {Data} */ (
+          orders.length
+            ? [orders.map(([order]) => order), orders.map(([, value]) => this.#level(value))]
+            : [[this.shown[0].teeth], [null]]
+        ),
       ),
     );
     const shape = JSON.stringify([wanted.map(({ name, look }) => [name, look]), last, panel.levels]);
@@ -529,8 +697,16 @@ export class Charts {
         "Over the periods that were computed (Hann window): lines are wider than they are. For the whole spectrum clear Mesh periods under Load and method; a job computes it.";
   }
 
+  /**
+   * @param {Drawn} panel
+   * @param {Data} data
+   * @param {DesignSpectrum[]} wanted
+   * @param {Looks} colors
+   * @param {number} last
+   */
   #makeSpectrum(panel, data, wanted, colors, last) {
     panel.plot?.destroy();
+    /** @type {import("uplot").Options} */
     const options = {
       ...this.#common(panel, colors, ORDER_TITLE),
       padding: [16, 14, 0, 0],
@@ -552,12 +728,17 @@ export class Charts {
           points: { show: false },
         })),
       ],
-      hooks: { draw: [(plot) => drawStems(plot, panel.names, colors)] },
+      hooks: { draw: [(plot) => drawStems(plot, panel.names, colors, (i) => colors.series(wanted[i].look))] },
     };
-    panel.plot = new uPlot(options, data, panel.canvas);
+    panel.plot = new Plot(options, data, panel.canvas);
   }
 
-  /** Measured once for each layout: to measure again while a hand drags would lay the page out anew for each curve. */
+  /**
+   * Measured once for each layout: to measure again while a hand drags would lay the page out anew for each curve.
+   *
+   * @param {Drawn} panel
+   * @returns {number}
+   */
   #width(panel) {
     panel.width ??= Math.max(200, Math.floor(panel.canvas.clientWidth || this.place.clientWidth / 2));
     return panel.width;
@@ -577,10 +758,22 @@ export class Charts {
   }
 }
 
-/** Paints the map of the load along a face between the axes of `plot`. */
+/**
+ * The heights of a face.
+ *
+ * @type {(face: FaceLoad | null) => [number, number]}
+ */
+const rangeOf = (face) => (face ? [face.edges[0], face.edges[face.edges.length - 1]] : [0, 1]);
+
+/**
+ * Paints the map of the load along a face between the axes of `plot`.
+ *
+ * @param {UPlot} plot
+ * @param {FaceLoad} face
+ */
 function drawCells(plot, face) {
   const { ctx, bbox } = plot;
-  const { min, max } = plot.scales.x;
+  const { min = 0, max = 0 } = plot.scales.x;
   ctx.save();
   ctx.beginPath();
   ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
@@ -599,17 +792,22 @@ function drawCells(plot, face) {
   ctx.restore();
 }
 
-/** The load along a face as a drawing: the map, or the mean. */
-function faceFigure(face, { panel, xRange = null, ...common }) {
+/**
+ * The load along a face as a drawing: the map, or the mean.
+ *
+ * @param {FaceLoad} face
+ * @param {Omit<Parts, "x"> & { panel: Panel, color?: string }} how
+ */
+function faceFigure(face, { panel, xRange = null, color, ...common }) {
   if (!face.every)
     return figure({
       ...common,
       x: "z in mm",
-      lines: [{ x: face.z, y: face.rows[0], color: common.colors?.series(0) }],
+      lines: [{ x: face.z, y: face.rows[0], color }],
     });
   const [from, to] = xRange ?? [0, face.span];
   // As many cells as can be seen: each position of a long period would make a file of megabytes.
-  const cells = cellsOf(face, [from, to], (to - from) / common.width).map(({ z, part, ...cell }) => ({
+  const cells = cellsOf(face, [from, to], (to - from) / (common.width ?? 1)).map(({ z, part, ...cell }) => ({
     ...cell,
     y: z,
     color: cssOf(part),
@@ -624,13 +822,22 @@ function faceFigure(face, { panel, xRange = null, ...common }) {
   });
 }
 
-/** The positions of a line with the end of its span, where the first comes again. */
+/**
+ * The positions of a line with the end of its span, where the first comes again.
+ *
+ * @type {(line: Line) => number[]}
+ */
 function closed({ x, span }) {
   return [...x, x[0] + span];
 }
 
-/** The most and the least of each mesh period of a line: two lines. */
+/**
+ * The most and the least of each mesh period of a line: two lines.
+ *
+ * @type {(line: Line, from: number, to: number) => (Line & { at: number[] })[]}
+ */
 function envelopeOf(line, from, to) {
+  /** @type {[number, number][]} */
   const periods = [];
   line.x.forEach((x, i) => {
     const value = line.values[i];
@@ -644,13 +851,18 @@ function envelopeOf(line, from, to) {
   return [1, 0].map((side) => ({ ...line, at, values: bounds.map((each) => each[side]) }));
 }
 
+/** @type {import("uplot").Range.Function} */
 function yRange(_, least, most) {
   if (least === null || most === null) return [0, 1];
   const room = Math.max((most - least) * 0.08, Math.abs(most) * 1e-4, 1e-9);
   return [least === 0 ? 0 : least - room, most + room];
 }
 
-/** A piece of a line beside its name. */
+/**
+ * A piece of a line beside its name.
+ *
+ * @type {(line: Colored & { name: string, dash?: number[] }, colors: Looks) => HTMLElement}
+ */
 function sample({ name, dash, ...line }, colors) {
   const color = colorOf(line, colors);
   const stroke = s("line", {
@@ -670,7 +882,13 @@ function sample({ name, dash, ...line }, colors) {
   );
 }
 
-function drawStems(plot, names, colors) {
+/**
+ * @param {UPlot} plot
+ * @param {OrderName[]} names
+ * @param {Looks} colors
+ * @param {(design: number) => string} colorAt
+ */
+function drawStems(plot, names, colors, colorAt) {
   const { ctx } = plot;
   const ratio = devicePixelRatio || 1;
   const foot = plot.bbox.top + plot.bbox.height;
@@ -679,7 +897,7 @@ function drawStems(plot, names, colors) {
   ctx.rect(plot.bbox.left, 0, plot.bbox.width, foot);
   ctx.clip();
   for (let i = 1; i < plot.series.length; i += 1) {
-    ctx.strokeStyle = plot.series[i].stroke();
+    ctx.strokeStyle = colorAt(i - 1);
     ctx.fillStyle = ctx.strokeStyle;
     ctx.lineWidth = 1.5 * ratio;
     plot.data[0].forEach((order, j) => {
@@ -697,7 +915,11 @@ function drawStems(plot, names, colors) {
   ctx.restore();
 }
 
-/** A mark that tells designs apart without color: disk, square, triangle, ring. */
+/**
+ * A mark that tells designs apart without color: disk, square, triangle, ring.
+ *
+ * @type {(ctx: CanvasRenderingContext2D, kind: number, x: number, y: number, r: number) => void}
+ */
 function mark(ctx, kind, x, y, r) {
   ctx.beginPath();
   if (kind % 4 === 1) ctx.rect(x - r, y - r, 2 * r, 2 * r);
@@ -711,17 +933,24 @@ function mark(ctx, kind, x, y, r) {
   else ctx.fill();
 }
 
+/**
+ * @param {UPlot} plot
+ * @param {OrderName[]} names
+ * @param {Looks} colors
+ * @param {number} ratio
+ */
 function drawNames(plot, names, colors, ratio) {
   const { ctx, bbox } = plot;
   const letter = 0.69 * colors.rem * ratio;
   ctx.font = `${letter}px system-ui, sans-serif`;
   ctx.fillStyle = colors.ink;
   ctx.textAlign = "center";
-  const shown = names.filter(({ order }) => order >= plot.scales.x.min && order <= plot.scales.x.max);
+  const { min = 0, max = 0 } = plot.scales.x;
+  const shown = names.filter(({ order }) => order >= min && order <= max);
   const stems = plot.data
     .slice(1)
     .flatMap((values, i) =>
-      plot.data[0].flatMap((order, j) =>
+      [...plot.data[0]].flatMap((order, j) =>
         values[j] === null || values[j] === undefined ? [] : [{ order, value: values[j], design: i }],
       ),
     );

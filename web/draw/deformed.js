@@ -6,6 +6,11 @@ import { json, ProblemError, solved } from "../state/api.js";
 import { isSolid } from "../state/dimensions.js";
 import { number } from "../state/numbers.js";
 
+/** @import { Drawing } from "./drawing.js" */
+/** @import { GearName, GearOutline, LoadedEdges, NamedDesign, PairOutline } from "../state/documents.js" */
+
+/** @typedef {{ at: number[][], stress: number[], by: number[][] }} StrainedEdge */
+
 /** Stresses are told apart in so many steps. */
 const STEPS = 6;
 /** The largest displacement is drawn at most this part of a tooth's height. */
@@ -26,9 +31,15 @@ export class Deformation {
 
   /**
    * `live` waits for the results that are shown and gives them with their submission, `position` is the mesh position.
+   *
+   * @param {{ drawing: Drawing, button: HTMLElement, note: HTMLElement, live: () => Promise<NamedDesign | null>, position: () => number }} parts
    */
   constructor({ drawing, button, note, live, position }) {
-    Object.assign(this, { drawing, button, note, live, position });
+    this.drawing = drawing;
+    this.button = button;
+    this.note = note;
+    this.live = live;
+    this.position = position;
     this.later = debounced(REST, () => this.#show());
     button.addEventListener("click", () => (this.#on ? this.off() : this.#turnOn()));
   }
@@ -67,25 +78,34 @@ export class Deformation {
     const asked = this.#asked;
     const wanted = () => this.#on && asked === this.#asked;
     try {
-      const { submission } = await this.live();
+      const live = await this.live();
+      if (!live) return;
+      const { submission } = live;
       const job = await solved(submission);
       if (!wanted()) return;
       const edges = await json(`v1/jobs/${job.id}/results/edges.json?mesh_position=${this.position().toFixed(4)}`);
       if (!wanted()) return;
-      const { scale, top } = this.drawing.setDeformed(edges);
+      const drawn = this.drawing.setDeformed(edges);
+      if (!drawn) return;
+      const { scale, top } = drawn;
       const section = isSolid(submission.method)
         ? "In the section through the middle of the common face; parts that end before it, where they end. "
         : "";
       this.note.replaceChildren(section, ...words(edges, scale, top));
     } catch (error) {
       if (!(error instanceof ProblemError)) throw error;
-      if (wanted()) this.note.replaceChildren(error.problem.errors?.[0]?.detail ?? error.message);
+      if (wanted()) this.note.replaceChildren(error.reason);
     }
   }
 }
 
-/** What is seen, in words and as a scale of colors. */
+/**
+ * What is seen, in words and as a scale of colors.
+ *
+ * @type {(edges: LoadedEdges, scale: number, top: number) => (string | HTMLElement)[]}
+ */
 function words({ output_torque_n_m: torque, mesh_position: position, driving, driven }, scale, top) {
+  /** @type {(gear: LoadedEdges["driving"]) => number} */
   const most = (gear) =>
     Math.max(...[...gear.teeth, ...gear.openings].flatMap((edge) => edge.displacement_um.map((u) => Math.hypot(...u))));
   const colors = Array.from({ length: STEPS }, (_, i) => h("span", { className: `stress-step level-${i}` }));
@@ -101,9 +121,11 @@ function words({ output_torque_n_m: torque, mesh_position: position, driving, dr
 
 /**
  * A drawing of `edges`: its element, how many times displacements are enlarged, and the stress at which the color ends.
+ *
+ * @type {(edges: LoadedEdges, outline: PairOutline) => { element: SVGGElement, scale: number, top: number }}
  */
 export function deformedShape(edges, outline) {
-  const gears = ["driving", "driven"].map((member) => moved(edges, outline, member));
+  const gears = /** @type {GearName[]} */ (["driving", "driven"]).map((member) => moved(edges, outline, member));
   const all = gears.flatMap(({ teeth, openings }) => [...teeth, ...openings]);
   const { tip_mm: tip, root_mm: root } = outline.driving.circles;
   const scale = rounded((REACH * (tip - root)) / Math.max(...all.flatMap(({ by }) => by.map((u) => Math.hypot(...u)))));
@@ -129,6 +151,8 @@ export function deformedShape(edges, outline) {
 /**
  * The edges of a gear with the displacement of each node in mm, that of the driven gear with its turn by the
  * transmission error.
+ *
+ * @type {(edges: LoadedEdges, outline: PairOutline, member: GearName) => { member: GearName, teeth: StrainedEdge[], openings: StrainedEdge[], bore: string }}
  */
 function moved(edges, outline, member) {
   const {
@@ -137,6 +161,7 @@ function moved(edges, outline, member) {
     bore_radius_mm: bore,
   } = outline[member];
   const turn = member === "driven" ? (1e-3 * edges.transmission_error_um) / circles.base_mm : 0;
+  /** @type {(edge: LoadedEdges["driving"]["teeth"][number]) => StrainedEdge} */
   const of = ({ at_mm: at, displacement_um: u, von_mises_mpa: stress }) => ({
     at,
     stress,
@@ -150,21 +175,32 @@ function moved(edges, outline, member) {
   };
 }
 
-/** The stresses of a tooth at its fillets. */
+/**
+ * The stresses of a tooth at its fillets.
+ *
+ * @type {(edge: StrainedEdge, gear: GearOutline) => number[]}
+ */
 function belowFlanks({ at, stress }, { center_mm: [x0, y0], circles: { root_mm: root, tip_mm: tip } }) {
   const reach = root + FILLETS * (tip - root);
   return stress.filter((_, i) => Math.hypot(at[i][0] - x0, at[i][1] - y0) < reach);
 }
 
+/** @type {(edge: StrainedEdge, scale: number) => number[][]} */
 const placed = ({ at, by }, scale) => at.map(([x, y], i) => [x + scale * by[i][0], y + scale * by[i][1]]);
+/** @type {(points: number[][]) => string} */
 const pathOf = (points) => `M${points.map(([x, y]) => `${x.toFixed(3)} ${y.toFixed(3)}`).join("L")}`;
 
-/** A path for each step of stress: all pieces of edge that have it. */
+/**
+ * A path for each step of stress: all pieces of edge that have it.
+ *
+ * @type {(all: StrainedEdge[], scale: number, top: number) => SVGPathElement[]}
+ */
 function colored(all, scale, top) {
-  const paths = Array.from({ length: STEPS }, () => []);
+  const paths = Array.from({ length: STEPS }, () => /** @type {string[]} */ ([]));
   for (const edge of all) {
     const points = placed(edge, scale);
     let begun = 0;
+    /** @type {(i: number) => number} */
     const step = (i) => Math.min(STEPS - 1, Math.floor((STEPS * (edge.stress[i] + edge.stress[i + 1])) / (2 * top)));
     for (let i = 1; i < points.length; i += 1) {
       if (i < points.length - 1 && step(i) === step(i - 1)) continue;
@@ -175,8 +211,12 @@ function colored(all, scale, top) {
   return paths.map((pieces, i) => s("path", { class: `stress level-${i}`, d: pieces.join("") }));
 }
 
-/** The largest of 1, 2, 5, 10, 20 and so on that is not above `value`. */
+/**
+ * The largest of 1, 2, 5, 10, 20 and so on that is not above `value`.
+ *
+ * @type {(value: number) => number}
+ */
 function rounded(value) {
   const decade = 10 ** Math.floor(Math.log10(value));
-  return decade * [5, 2, 1].find((digit) => digit * decade <= value);
+  return decade * ([5, 2, 1].find((digit) => digit * decade <= value) ?? 1);
 }

@@ -1,9 +1,13 @@
 // @ts-check
 // What is on the page as files, and as text to paste elsewhere.
 
-import { h } from "./dom.js";
+import { dress, h } from "./dom.js";
 
-/** Gives the visitor a file. */
+/**
+ * Gives the visitor a file.
+ *
+ * @type {(name: string, type: string, content: BlobPart) => void}
+ */
 export function save(name, type, content) {
   const address = URL.createObjectURL(content instanceof Blob ? content : new Blob([content], { type }));
   const link = h("a", { href: address, download: name, hidden: true });
@@ -13,9 +17,13 @@ export function save(name, type, content) {
   setTimeout(() => URL.revokeObjectURL(address), 10_000);
 }
 
-/** A drawing of the page as an element of its own: looks that come from the style sheet are written into it. */
+/**
+ * A drawing of the page as an element of its own: looks that come from the style sheet are written into it.
+ *
+ * @type {(svg: SVGSVGElement) => SVGSVGElement}
+ */
 export function drawingOf(svg) {
-  const copy = svg.cloneNode(true);
+  const copy = /** @type {SVGSVGElement} */ (svg.cloneNode(true));
   const [from, to] = [svg.querySelectorAll("*"), copy.querySelectorAll("*")];
   from.forEach((element, i) => {
     const style = getComputedStyle(element);
@@ -36,14 +44,17 @@ export function drawingOf(svg) {
     }
     for (const name of ["tabindex", "role", "aria-hidden", "data-member"]) to[i].removeAttribute(name);
   });
-  copy.setAttribute("xmlns", "http://www.w3.org/2000/svg");
   const box = svg.viewBox.baseVal;
-  copy.setAttribute("width", 1200);
-  copy.setAttribute("height", Math.round((1200 * box.height) / box.width));
+  const [width, height] = [1200, Math.round((1200 * box.height) / box.width)];
+  dress(copy, { xmlns: "http://www.w3.org/2000/svg", width, height });
   return copy;
 }
 
-/** Copies `text`, where pages may not use the clipboard too; says whether it did. */
+/**
+ * Copies `text`, where pages may not use the clipboard too; says whether it did.
+ *
+ * @type {(text: string) => Promise<boolean>}
+ */
 export async function copied(text) {
   if (navigator.clipboard) {
     try {
@@ -66,6 +77,6 @@ export async function copied(text) {
     done = false;
   }
   area.remove();
-  focused?.focus();
+  if (focused instanceof HTMLElement) focused.focus();
   return done;
 }

@@ -2,27 +2,80 @@
 // A figure as a drawing of its own, with title, axes, units and legend: for small charts on the page, for files and for
 // print.
 
-import { s } from "./dom.js";
+import { dress, s } from "./dom.js";
 import { extent, number } from "../state/numbers.js";
 import { placedNames } from "../state/series.js";
+
+/** @import { OrderName } from "../state/series.js" */
 
 const FRAME = { left: 62, right: 14, top: 14, bottom: 44 };
 const LETTER = 11;
 const FONT = "system-ui, sans-serif";
 
+/** @typedef {{ name: string, color: string, dash?: number[] }} Named */
+
+/** @typedef {{ x: number, y: number, width: number, height: number, color: string }} Cell */
+
+/**
+ * @typedef {{ name?: string, color?: string, dash?: number[], width?: number, parted?: boolean, x: number[],
+ *   y: (number | null | undefined)[] }} FigureLine
+ */
+
+/** @typedef {{ x: number, y: number, label: string, strong?: boolean, open?: () => unknown }} Dot */
+
+/** @typedef {{ name: string, color: string, x: number[], y: number[] }} Stems */
+
+/**
+ * @typedef {object} Parts
+ * @property {string} title
+ * @property {string} x
+ * @property {string} y
+ * @property {Cell[]} [cells]
+ * @property {FigureLine[]} [lines]
+ * @property {Dot[]} [points]
+ * @property {Stems[]} [stems]
+ * @property {OrderName[]} [names]
+ * @property {{ colors: string[], words: [string, string] } | null} [scale]
+ * @property {{ ink: string, grid: string } | null} [colors]
+ * @property {number} [width]
+ * @property {number} [height]
+ * @property {boolean} [heading]
+ * @property {number[] | null} [xRange]
+ * @property {number[] | null} [yRange]
+ * @property {string} [label]
+ */
+
+/**
+ * Where a value of x is in a figure, and which value is at a place.
+ *
+ * @typedef {{ x: [number, number], px: (value: number) => number, valueAt: (at: number) => number, top: number,
+ *   bottom: number }} Frame
+ */
+
+/** @typedef {SVGSVGElement & { frame: Frame }} Figure */
+
+/** @typedef {Record<string, string | number | null | undefined>} Attributes */
+
+/** @type {(text: string, attributes: Attributes) => SVGTextElement} */
 const words = (text, attributes) => Object.assign(s("text", attributes), { textContent: text });
 
-/** Five or so round numbers between two. */
+/**
+ * Five or so round numbers between two.
+ *
+ * @type {(low: number, high: number, count?: number) => number[]}
+ */
 export function ticks(low, high, count = 5) {
   const raw = (high - low) / count || 1;
   const power = 10 ** Math.floor(Math.log10(raw));
-  const step = [1, 2, 5, 10].find((each) => each * power >= raw * (1 - 1e-9)) * power;
+  const step = ([1, 2, 5, 10].find((each) => each * power >= raw * (1 - 1e-9)) ?? 10) * power;
+  /** @type {number[]} */
   const found = [];
   for (let value = Math.ceil(low / step - 1e-9) * step; value <= high + step * 1e-9; value += step)
     found.push(Math.abs(value) < step * 1e-9 ? 0 : value);
   return found;
 }
 
+/** @type {(values: (number | null | undefined)[], room: number) => [number, number]} */
 function range(values, room) {
   const [least, most] = extent(values) ?? [0, 1];
   const more = (most - least || Math.abs(most) || 1) * room;
@@ -35,6 +88,8 @@ function range(values, room) {
  * `stems` `{ name, color, x, y }`, over named axes, with `names` `{ order, label, value }` over stems, and a `scale` `{
  * colors, words }` of the colors of cells from their least to their most. Looks come from `colors`, or from the style
  * sheet where there are none. Its `frame` tells where a value of x is, and which value is at a place.
+ *
+ * @type {(parts: Parts) => Figure}
  */
 export function figure({
   title,
@@ -54,7 +109,9 @@ export function figure({
   yRange = null,
   label = title,
 }) {
-  const named = [...lines, ...stems].filter(({ name }) => name);
+  const named = [...lines, ...stems].flatMap(({ name, color = "", ...rest }) =>
+    name ? [{ name, color, dash: "dash" in rest ? rest.dash : undefined }] : [],
+  );
   const legend = named.length > 1 ? legendRows(named, width) : [];
   const frame = { ...FRAME, top: FRAME.top + (heading ? 18 : 0) + 15 * legend.length };
   let [left, right] =
@@ -76,9 +133,13 @@ export function figure({
   ];
   let [low, high] = yRange ?? range(ys, cells.length ? 0 : 0.08);
   if (stems.length) [left, low] = [0, yRange ? low : 0];
+  /** @type {(value: number) => number} */
   const px = (value) => frame.left + ((value - left) / (right - left || 1)) * (width - frame.left - frame.right);
+  /** @type {(value: number) => number} */
   const py = (value) => height - frame.bottom - ((value - low) / (high - low)) * (height - frame.top - frame.bottom);
+  /** @type {Attributes} */
   const ink = colors ? { fill: colors.ink, "font-family": FONT, "font-size": LETTER } : {};
+  /** @type {(attributes: Attributes, name: string) => SVGLineElement} */
   const line = (attributes, name) =>
     s("line", { ...attributes, class: name, ...(colors ? { stroke: colors.grid } : {}) });
   const svg = s("svg", {
@@ -193,19 +254,19 @@ export function figure({
     dot.append(Object.assign(s("title"), { textContent: told }));
     svg.append(dot);
     if (point.open) {
-      for (const [name, value] of Object.entries({
+      dress(dot, {
         role: "button",
         tabindex: 0,
         "aria-label": `Open ${told}`,
         class: `${dot.getAttribute("class")} opens`,
         r: point.strong ? 7 : 5.5,
-      }))
-        dot.setAttribute(name, value);
-      dot.addEventListener("click", point.open);
+      });
+      const { open } = point;
+      dot.addEventListener("click", open);
       dot.addEventListener("keydown", (event) => {
         if (!["Enter", " "].includes(event.key)) return;
         event.preventDefault();
-        point.open();
+        open();
       });
     }
     if (point.strong) {
@@ -220,17 +281,22 @@ export function figure({
       );
     }
   }
-  svg.frame = {
+  /** @type {Frame} */
+  const placed = {
     x: [left, right],
     px,
     valueAt: (at) => left + ((at - frame.left) / (width - frame.left - frame.right)) * (right - left),
     top: frame.top,
     bottom: height - frame.bottom,
   };
-  return svg;
+  return Object.assign(svg, { frame: placed });
 }
 
-/** A scale of colors that ends at a place, with what its ends mean. */
+/**
+ * A scale of colors that ends at a place, with what its ends mean.
+ *
+ * @type {(scale: { colors: string[], words: [string, string] }, right: number, y: number, ink: Attributes) => SVGGElement}
+ */
 function scaleAt({ colors, words: [least, most] }, right, y, ink) {
   const step = 72 / colors.length;
   const left = right - 6.6 * most.length - 72 - 5;
@@ -243,8 +309,13 @@ function scaleAt({ colors, words: [least, most] }, right, y, ink) {
   );
 }
 
-/** The names of lines in rows that fit. */
+/**
+ * The names of lines in rows that fit.
+ *
+ * @type {(named: Named[], width: number) => (Named & { at: number })[][]}
+ */
 function legendRows(named, width) {
+  /** @type {(Named & { at: number })[][]} */
   const rows = [[]];
   let at = 0;
   for (const each of named) {
@@ -253,32 +324,42 @@ function legendRows(named, width) {
       rows.push([]);
       at = 0;
     }
-    rows.at(-1).push({ ...each, at });
+    rows[rows.length - 1].push({ ...each, at });
     at += length;
   }
   return rows;
 }
 
+/** @type {(line: FigureLine, px: (value: number) => number, py: (value: number) => number, range: number[]) => string} */
 function pathOf({ x, y }, px, py, [left, right]) {
   let pen = "M";
   let path = "";
   x.forEach((place, i) => {
-    if (y[i] === null || y[i] === undefined || place < left || place > right) {
+    const value = y[i];
+    if (value === null || value === undefined || place < left || place > right) {
       pen = "M";
       return;
     }
-    path += `${pen}${px(place).toFixed(2)} ${py(y[i]).toFixed(2)}`;
+    path += `${pen}${px(place).toFixed(2)} ${py(value).toFixed(2)}`;
     pen = "L";
   });
   return path;
 }
 
-/** A drawing as the text of a file. */
+/**
+ * A drawing as the text of a file.
+ *
+ * @type {(svg: SVGSVGElement) => string}
+ */
 export function fileOf(svg) {
   return `<?xml version="1.0" encoding="UTF-8"?>\n${new XMLSerializer().serializeToString(svg)}`;
 }
 
-/** Drawings below each other, as one. */
+/**
+ * Drawings below each other, as one.
+ *
+ * @type {(figures: SVGSVGElement[], background: string) => SVGSVGElement}
+ */
 export function stacked(figures, background) {
   const sizes = figures.map((each) => each.viewBox.baseVal);
   const [width, height] = [Math.max(...sizes.map((box) => box.width)), sizes.reduce((sum, box) => sum + box.height, 0)];
@@ -289,16 +370,18 @@ export function stacked(figures, background) {
   );
   let y = 0;
   for (const [i, each] of figures.entries()) {
-    each.setAttribute("y", y);
-    each.setAttribute("width", sizes[i].width);
-    each.setAttribute("height", sizes[i].height);
+    dress(each, { y, width: sizes[i].width, height: sizes[i].height });
     y += sizes[i].height;
     sheet.append(each);
   }
   return sheet;
 }
 
-/** A drawing as a picture of so many pixels for each of its units. */
+/**
+ * A drawing as a picture of so many pixels for each of its units.
+ *
+ * @type {(svg: SVGSVGElement, scale?: number) => Promise<Blob>}
+ */
 export async function pictureOf(svg, scale = 2) {
   const { width, height } = svg.viewBox.baseVal;
   const image = new Image();
@@ -308,6 +391,8 @@ export async function pictureOf(svg, scale = 2) {
     width: Math.round(scale * width),
     height: Math.round(scale * height),
   });
-  canvas.getContext("2d").drawImage(image, 0, 0, canvas.width, canvas.height);
-  return new Promise((resolve) => canvas.toBlob(resolve, "image/png"));
+  canvas.getContext("2d")?.drawImage(image, 0, 0, canvas.width, canvas.height);
+  return new Promise((resolve, reject) =>
+    canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("the picture is too large"))), "image/png"),
+  );
 }

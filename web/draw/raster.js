@@ -6,12 +6,21 @@ export class Raster {
   #width = 0;
   #height = 0;
 
+  /** @param {HTMLCanvasElement} canvas */
   constructor(canvas) {
     this.canvas = canvas;
-    this.context = canvas.getContext("2d");
+    this.context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+    this.image = this.context.createImageData(1, 1);
+    this.pixels = new Uint32Array(this.image.data.buffer);
+    this.depth = new Float32Array(1);
   }
 
-  /** An empty image of so many pixels. */
+  /**
+   * An empty image of so many pixels.
+   *
+   * @param {number} width
+   * @param {number} height
+   */
   clear(width, height) {
     if (width !== this.#width || height !== this.#height) {
       [this.#width, this.#height] = [width, height];
@@ -29,7 +38,11 @@ export class Raster {
     this.context.putImageData(this.image, 0, 0);
   }
 
-  /** A triangle of one color; x and y in pixels, what has more z is nearer. */
+  /**
+   * A triangle of one color; x and y in pixels, what has more z is nearer.
+   *
+   * @type {(ax: number, ay: number, az: number, bx: number, by: number, bz: number, cx: number, cy: number, cz: number, color: number) => void}
+   */
   triangle(ax, ay, az, bx, by, bz, cx, cy, cz, color) {
     const area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
     if (area === 0) return;
@@ -71,7 +84,11 @@ export class Raster {
     }
   }
 
-  /** A line so many pixels wide, seen where nothing is nearer by more than `lift`. */
+  /**
+   * A line so many pixels wide, seen where nothing is nearer by more than `lift`.
+   *
+   * @type {(ax: number, ay: number, az: number, bx: number, by: number, bz: number, wide: number, lift: number, color: number) => void}
+   */
   line(ax, ay, az, bx, by, bz, wide, lift, color) {
     const steps = Math.max(1, Math.ceil(Math.max(Math.abs(bx - ax), Math.abs(by - ay))));
     if (steps > 20_000) return;
@@ -102,5 +119,9 @@ export class Raster {
   }
 }
 
-/** A color of three numbers up to 255 as a pixel has it. */
+/**
+ * A color of three numbers up to 255 as a pixel has it.
+ *
+ * @type {(color: number[]) => number}
+ */
 export const pixelOf = ([r, g, b]) => ((255 << 24) | (b << 16) | (g << 8) | r) >>> 0;

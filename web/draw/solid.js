@@ -5,7 +5,13 @@
 import { thinned } from "./drawing.js";
 import { anglesOf, circle, lineOf, openingsOf } from "./holes.js";
 
+/** @import { Blank, Gear, GearName, GearOutline, Pair, PairOutline } from "../state/documents.js" */
+
 const TURN = Math.PI / 180;
+/** @typedef {ReturnType<typeof alongAxis>} Along */
+
+/** @typedef {{ pair: number, points: { z: number, at: number[] }[] }} ContactLine */
+
 /** What a facet may lie beside the flank, in modules. */
 const FINENESS = 0.008;
 /** By so much a tooth turns in one piece of its length at most, in radians. */
@@ -16,21 +22,39 @@ const ROUND = 72;
 
 /** Points and triangles as they are gathered. */
 class Surface {
+  /** @type {number[]} */
   points = [];
+  /** @type {number[]} */
   triangles = [];
+  /** @type {number[]} */
   edges = [];
 
+  /**
+   * @param {number} x
+   * @param {number} y
+   * @param {number} z
+   */
   point(x, y, z) {
     this.points.push(x, y, z);
     return this.points.length / 3 - 1;
   }
 
-  /** A facet of four corners, counter-clockwise from outside. */
+  /**
+   * A facet of four corners, counter-clockwise from outside.
+   *
+   * @type {(a: number, b: number, c: number, d: number) => void}
+   */
   facet(a, b, c, d) {
     this.triangles.push(a, b, c, a, c, d);
   }
 
-  /** A wall over a closed line from one z to another; `inward` is one that is seen from inside. */
+  /**
+   * A wall over a closed line from one z to another; `inward` is one that is seen from inside.
+   *
+   * @param {number[][]} line
+   * @param {number[]} heights
+   * @param {boolean} inward
+   */
   wall(line, [from, to], inward) {
     const rows = line.map(([x, y]) => [this.point(x, y, from), this.point(x, y, to)]);
     rows.forEach(([a, d], i) => {
@@ -41,8 +65,16 @@ class Surface {
     });
   }
 
-  /** A flat face at `z` between two heights, left and right of each; `up` is seen from +z. */
+  /**
+   * A flat face at `z` between two heights, left and right of each; `up` is seen from +z.
+   *
+   * @param {number[]} heights
+   * @param {number[]} corners
+   * @param {number} z
+   * @param {boolean} up
+   */
   trapezoid([low, high], [lowLeft, lowRight, highLeft, highRight], z, up) {
+    /** @type {[number, number, number, number]} */
     const corners = [
       this.point(lowLeft, low, z),
       this.point(lowRight, low, z),
@@ -50,11 +82,15 @@ class Surface {
       this.point(highLeft, high, z),
     ];
     if (up) this.facet(...corners);
-    else this.facet(...corners.reverse());
+    else this.facet(corners[3], corners[2], corners[1], corners[0]);
   }
 }
 
-/** The outlines of the holes of a blank. */
+/**
+ * The outlines of the holes of a blank.
+ *
+ * @type {(blank: Blank) => number[][][]}
+ */
 export function holesOf(blank) {
   const patterns = blank.holes ? [blank.holes].flat() : [];
   return patterns.flatMap((pattern) => anglesOf(pattern).map((angle) => lineOf(pattern, angle)));
@@ -63,14 +99,19 @@ export function holesOf(blank) {
 /**
  * The rings of a blank from its bore, or the axis of its shaft, to `rim`: `{ radii, heights }`, where the first of hub
  * and web that covers a radius decides, and else the face.
+ *
+ * @type {(blank: Blank, face: number, rim: number) => { radii: [number, number], heights: [number, number] }[]}
  */
-export function ringsOf({ bore_radius_mm: bore = 0, web, hub }, face, rim) {
+export function ringsOf({ bore_radius_mm, web, hub }, face, rim) {
+  const bore = bore_radius_mm ?? 0;
+  /** @type {(offset: number | null | undefined, width: number) => [number, number]} */
   const around = (offset, width) => [(offset ?? 0) - width / 2, (offset ?? 0) + width / 2];
+  /** @type {[number, number]} */
   const whole = [-face / 2, face / 2];
-  const parts = [
-    ...(hub ? [[bore, hub.outer_radius_mm, around(hub.offset_mm, hub.width_mm)]] : []),
-    ...(web ? [[web.inner_radius_mm, web.outer_radius_mm, around(web.offset_mm, web.thickness_mm)]] : []),
-  ];
+  /** @type {[number, number, [number, number]][]} */
+  const parts = [];
+  if (hub) parts.push([bore, hub.outer_radius_mm, around(hub.offset_mm, hub.width_mm)]);
+  if (web) parts.push([web.inner_radius_mm, web.outer_radius_mm, around(web.offset_mm, web.thickness_mm)]);
   const ends = [...new Set([bore, ...parts.flatMap(([from, to]) => [from, to]), rim])]
     .filter((radius) => radius >= bore && radius <= rim)
     .sort((a, b) => a - b);
@@ -80,7 +121,11 @@ export function ringsOf({ bore_radius_mm: bore = 0, web, hub }, face, rim) {
   });
 }
 
-/** A flat ring without its holes, as pieces between heights of y: each where the ring is, less where holes are. */
+/**
+ * A flat ring without its holes, as pieces between heights of y: each where the ring is, less where holes are.
+ *
+ * @type {(ring: number[][][], holes: number[][][]) => [number[], number[]][]}
+ */
 function pieces([inner, outer], holes) {
   const lines = [outer, inner, ...holes];
   const heights = [...new Set(lines.flatMap((line) => line.map(([, y]) => Number(y.toFixed(3)))))].sort(
@@ -92,15 +137,17 @@ function pieces([inner, outer], holes) {
       return y < y1 ? [x, y, x1, y1] : [x1, y1, x, y];
     }),
   );
+  /** @type {[number[], number[]][]} */
   const found = [];
   for (let i = 0; i + 1 < heights.length; i += 1) {
     const [low, high] = [heights[i], heights[i + 1]];
     const middle = (low + high) / 2;
+    /** @type {(edge: number[], y: number) => number} */
     const at = ([x0, y0, x1, y1], y) => x0 + ((Math.min(Math.max(y, y0), y1) - y0) / (y1 - y0)) * (x1 - x0);
     const spans = edges.map((all) =>
       all.filter(([, y0, , y1]) => y0 < middle && y1 > middle).sort((a, b) => at(a, middle) - at(b, middle)),
     );
-    const [[from, to] = [], ...openings] = spans;
+    const [[from, to], ...openings] = spans;
     if (!from) continue;
     const gaps = openings
       .flatMap((crossings) =>
@@ -123,6 +170,11 @@ function pieces([inner, outer], holes) {
 /**
  * The surface of a gear whose `outline` is that of the service, of `gear` in the submission. `twist` is by how much its
  * sections turn with z, in radians a mm, from the section at `mid`. Gives points, triangles and edges as flat lists.
+ *
+ * @param {GearOutline} outline
+ * @param {Gear} gear
+ * @param {number} twist
+ * @param {number} mid
  */
 export function surfaceOf(outline, gear, twist, mid) {
   const surface = new Surface();
@@ -152,10 +204,8 @@ export function surfaceOf(outline, gear, twist, mid) {
       surface.facet(rows[k][i], rows[k][(i + 1) % line.length], rows[k + 1][(i + 1) % line.length], rows[k + 1][i]),
     );
   // The end faces from the teeth to the rim.
-  for (const [k, up] of [
-    [0, false],
-    [sections, true],
-  ]) {
+  for (const k of [0, sections]) {
+    const up = k > 0;
     const inner = rows[k].map((point) => {
       const [x, y, z] = surface.points.slice(3 * point, 3 * point + 3);
       const part = rim / Math.hypot(x, y);
@@ -177,18 +227,17 @@ export function surfaceOf(outline, gear, twist, mid) {
     // Corners of the last ring lie beyond the rim: it has other corners, and no gap stays between them.
     const beyond = i + 1 < rings.length ? 1 : 1 / Math.cos(Math.PI / ROUND);
     for (const [span, corners] of pieces([circle(radii[0], ROUND), circle(beyond * radii[1], ROUND)], inside))
-      for (const [z, up] of [
-        [heights[0], false],
-        [heights[1], true],
-      ])
-        surface.trapezoid(span, corners, z, up);
+      heights.forEach((z, end) => surface.trapezoid(span, corners, z, end === 1));
     for (const hole of inside) surface.wall(hole, heights, true);
     // Where a ring is wider than its neighbor its wall is seen.
     const before = rings[i - 1]?.heights;
     if (!before) {
       if (radii[0] > 0) surface.wall(circle(radii[0], ROUND), heights, true);
     } else {
-      const wall = (from, to, inward) => to - from > 1e-6 && surface.wall(circle(radii[0], ROUND), [from, to], inward);
+      /** @type {(from: number, to: number, inward: boolean) => void} */
+      const wall = (from, to, inward) => {
+        if (to - from > 1e-6) surface.wall(circle(radii[0], ROUND), [from, to], inward);
+      };
       wall(heights[0], Math.min(before[0], heights[1]), true);
       wall(Math.max(before[1], heights[0]), heights[1], true);
       wall(before[0], Math.min(heights[0], before[1]), false);
@@ -205,12 +254,16 @@ export function surfaceOf(outline, gear, twist, mid) {
 /**
  * By how much the sections of both gears turn with z, in radians a mm, and where the common face lies: `{ twists, mid,
  * half, offset, advance }`; `advance` is in mesh periods a mm.
+ *
+ * @param {Pair} pair
+ * @param {PairOutline} outline
  */
 export function alongAxis(pair, outline) {
   const angle = (pair.helix_angle_deg ?? 0) * TURN;
   const offset = pair.axial_offset_mm ?? 0;
   const [one, other] = [pair.driving.face_width_mm / 2, pair.driven.face_width_mm / 2];
   const [from, to] = [Math.max(-one, offset - other), Math.min(one, offset + other)];
+  /** @type {(member: GearName) => number} */
   const twistOf = (member) => Math.tan(angle) / outline[member].circles.reference_mm;
   const twists = { driving: twistOf("driving"), driven: -twistOf("driven") };
   return {
@@ -225,6 +278,8 @@ export function alongAxis(pair, outline) {
 /**
  * Where pair `pair` touches at a mesh position and a z from the middle of the common face, on the line of action of
  * that section or beyond its ends.
+ *
+ * @type {(outline: PairOutline, along: Along, position: number, pair: number, z: number) => number[]}
  */
 export function contactAt(
   {
@@ -245,6 +300,8 @@ export function contactAt(
 /**
  * The lines of contact at a mesh position, those on the path of contact: `{ pair, points }`, each point `{ z, at }`
  * with z from the middle of the common face and its place in the transverse section, in mm.
+ *
+ * @type {(outline: PairOutline, along: Along, position: number, steps?: number) => ContactLine[]}
  */
 export function contactLines(outline, along, position, steps = 24) {
   const { half, advance } = along;
@@ -253,6 +310,7 @@ export function contactLines(outline, along, position, steps = 24) {
   } = outline.line_of_action;
   const period = position - Math.floor(position);
   const beside = half * Math.abs(advance);
+  /** @type {ContactLine[]} */
   const lines = [];
   for (
     let pair = Math.ceil(period - e.mesh_position - beside - 1e-9);

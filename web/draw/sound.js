@@ -8,8 +8,11 @@ const GLIDE = 0.03;
 const [LOWEST, HIGHEST] = [20, 18_000];
 
 export class Tones {
+  /** @type {AudioContext | null} */
   #context = null;
+  /** @type {GainNode | null} */
   #master = null;
+  /** @type {{ oscillator: OscillatorNode, gain: GainNode }[]} */
   #voices = [];
 
   get on() {
@@ -17,9 +20,10 @@ export class Tones {
   }
 
   start() {
-    this.#context = new AudioContext();
-    this.#master = new GainNode(this.#context, { gain: LOUDEST });
-    this.#master.connect(this.#context.destination);
+    const context = new AudioContext();
+    this.#context = context;
+    this.#master = new GainNode(context, { gain: LOUDEST });
+    this.#master.connect(context.destination);
   }
 
   stop() {
@@ -28,11 +32,15 @@ export class Tones {
     this.#voices = [];
   }
 
-  /** Sounds `tones`, each `{ hz, part }` of all that is loudest. What no ear hears is silent. */
+  /**
+   * Sounds `tones`, each `{ hz, part }` of all that is loudest. What no ear hears is silent.
+   *
+   * @param {{ hz: number, part: number }[]} tones
+   */
   play(tones) {
-    if (!this.#context) return;
+    if (!this.#context || !this.#master) return;
     const now = this.#context.currentTime;
-    while (this.#voices.length < tones.length) this.#voices.push(this.#voice());
+    while (this.#voices.length < tones.length) this.#voices.push(this.#voice(this.#context, this.#master));
     this.#voices.forEach(({ oscillator, gain }, i) => {
       const { hz = 0, part = 0 } = tones[i] ?? {};
       const heard = hz >= LOWEST && hz <= HIGHEST;
@@ -41,10 +49,14 @@ export class Tones {
     });
   }
 
-  #voice() {
-    const oscillator = new OscillatorNode(this.#context, { frequency: LOWEST });
-    const gain = new GainNode(this.#context, { gain: 0 });
-    oscillator.connect(gain).connect(this.#master);
+  /**
+   * @param {AudioContext} context
+   * @param {AudioNode} master
+   */
+  #voice(context, master) {
+    const oscillator = new OscillatorNode(context, { frequency: LOWEST });
+    const gain = new GainNode(context, { gain: 0 });
+    oscillator.connect(gain).connect(master);
     oscillator.start();
     return { oscillator, gain };
   }

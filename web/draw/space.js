@@ -10,7 +10,11 @@ import { alongAxis, contactAt, contactLines, surfaceOf } from "./solid.js";
 import { json, ProblemError, solved } from "../state/api.js";
 import { extent, fixed, number } from "../state/numbers.js";
 
+/** @import { Along } from "./solid.js" */
+/** @import { Curve, GearName, NamedDesign, Pair, PairOutline, PatternCurve } from "../state/documents.js" */
+
 const TURN = Math.PI / 180;
+/** @type {GearName[]} */
 const MEMBERS = ["driving", "driven"];
 /** The view that it begins with: from the side of +z, a little from above and from the right. */
 const VIEW = { yaw: -32, pitch: 24, zoom: 1 };
@@ -24,20 +28,38 @@ const REST = 180;
 const LIGHT = [-0.35, 0.55, 0.76];
 const AMBIENT = 0.42;
 
+/**
+ * How points of the drawing come to pixels and a depth: `size` is that of a millimeter.
+ *
+ * @typedef {{ size: number, point: (x: number, y: number, z: number) => [number, number, number] }} Projection
+ */
+
+/** @typedef {{ pair: number, points: { z: number, at: number[], load: number, part: number }[] }} LoadedLine */
+
 export class Space {
   #view = { ...VIEW };
   #members = new Set(MEMBERS);
+  /** @type {PairOutline | null} */
   #outline = null;
+  /** @type {Pair | null} */
   #pair = null;
+  /** @type {Curve | null} */
   #curve = null;
+  /** @type {(PatternCurve & { most?: number }) | null} */
   #pattern = null;
   #position = 0;
+  /** @type {Partial<Record<GearName, ReturnType<typeof surfaceOf>>>} */
   #surfaces = {};
   #wanted = false;
   #shown = false;
   #asked = 0;
 
-  /** In `place`; `live` waits for the results of the design and gives them, or null. */
+  /**
+   * In `place`; `live` waits for the results of the design and gives them, or null.
+   *
+   * @param {HTMLElement} place
+   * @param {{ live: () => Promise<NamedDesign | null> }} parts
+   */
   constructor(place, { live }) {
     this.live = live;
     this.canvas = h("canvas", {
@@ -51,11 +73,12 @@ export class Space {
     });
     this.words = h("p", { className: "visually-hidden", id: "space-words" });
     this.legend = h("p", { className: "legend" });
+    /** @type {(name: string, label: string, work: () => void) => HTMLButtonElement} */
     const button = (name, label, work) =>
       h("button", { type: "button", ariaLabel: label, title: label, on: { click: work } }, name);
     const gears = h(
       "select",
-      { id: "space-gears", on: { change: () => this.#choose(gears.value) } },
+      { id: "space-gears", on: { change: ({ target }) => this.#choose(target.value) } },
       ...[
         ["both", "both gears"],
         ["driving", "driving gear"],
@@ -107,19 +130,29 @@ export class Space {
     this.element.hidden = true;
   }
 
-  /** Another pair, or the same one with other holes: `pair` is that of the submission. */
+  /**
+   * Another pair, or the same one with other holes: `pair` is that of the submission.
+   *
+   * @param {PairOutline} outline
+   * @param {Pair} pair
+   */
   setPair(outline, pair) {
     [this.#outline, this.#pair, this.#surfaces] = [outline, pair, {}];
     this.#ask();
   }
 
-  /** The curve whose loads are shown; null: none are known yet. */
+  /**
+   * The curve whose loads are shown; null: none are known yet.
+   *
+   * @param {Curve | null} curve
+   */
   setCurve(curve) {
     [this.#curve, this.#pattern] = [curve, null];
     this.#fetch();
     this.#ask();
   }
 
+  /** @param {number} position */
   setPosition(position) {
     this.#position = position;
     this.#ask();
@@ -154,17 +187,23 @@ export class Space {
     }
   }
 
+  /** @param {string} which */
   #choose(which) {
-    this.#members = new Set(which === "both" ? MEMBERS : [which]);
+    this.#members = new Set(MEMBERS.filter((each) => which === "both" || which === each));
     this.#ask();
   }
 
+  /**
+   * @param {number} yaw
+   * @param {number} pitch
+   */
   #turn(yaw, pitch) {
     this.#view.yaw += yaw;
     this.#view.pitch = Math.min(90, Math.max(-90, this.#view.pitch + pitch));
     this.#ask();
   }
 
+  /** @param {number} by */
   #zoom(by) {
     this.#view.zoom = Math.min(MOST_ZOOM, Math.max(0.5, this.#view.zoom * by));
     this.#ask();
@@ -175,6 +214,7 @@ export class Space {
     this.#ask();
   }
 
+  /** @param {KeyboardEvent} event */
   #press(event) {
     const by = event.shiftKey ? 15 : 5;
     const work = {
@@ -193,6 +233,7 @@ export class Space {
 
   /** One pointer turns, two zoom; a wheel zooms with the control key, as a pinch on a pad does. */
   #hands() {
+    /** @type {Map<number, number[]>} */
     const held = new Map();
     const apart = () => {
       const [one, other] = [...held.values()];
@@ -211,7 +252,7 @@ export class Space {
       if (before) this.#zoom(apart() / before);
       else this.#turn((event.clientX - last[0]) * 0.5, (event.clientY - last[1]) * 0.5);
     });
-    for (const name of ["pointerup", "pointercancel"])
+    for (const name of /** @type {const} */ (["pointerup", "pointercancel"]))
       this.canvas.addEventListener(name, (event) => held.delete(event.pointerId));
     this.canvas.addEventListener(
       "wheel",
@@ -236,29 +277,36 @@ export class Space {
     });
   }
 
+  /** @param {boolean} fine */
   #paint(fine) {
     const { clientWidth: width, clientHeight: height } = this.canvas;
-    if (!this.#shown || !this.#outline || !width || !height) return;
+    if (!this.#shown || !this.#outline || !this.#pair || !width || !height) return;
     const most = Math.min(2, devicePixelRatio * (fine ? 2 : 1));
     const scale = Math.min(fine ? Math.max(most, 1.5) : most, Math.sqrt((fine ? RESTING : MOVING) / (width * height)));
     const [w, hgt] = [Math.round(width * scale), Math.round(height * scale)];
     const begun = performance.now();
     this.raster.clear(w, hgt);
     const along = alongAxis(this.#pair, this.#outline);
-    const project = this.#projection(w, hgt);
+    const project = this.#projection(this.#outline, w, hgt);
     const style = getComputedStyle(document.documentElement);
     for (const member of MEMBERS.filter((each) => this.#members.has(each)))
-      this.#paintGear(member, along, project, style, scale);
-    this.#paintLines(along, project, scale);
+      this.#paintGear(this.#outline, member, along, project, style, scale);
+    this.#paintLines(this.#loaded(this.#outline, along), along, project, scale);
     this.raster.done();
     // For those who test: what was painted last.
     this.canvas.dataset.milliseconds = fixed(performance.now() - begun, 1);
     this.canvas.dataset.painted = `${fine ? "fine" : "coarse"} ${fixed(this.#position, 3)} ${fixed(this.#view.yaw, 1)} ${fixed(this.#view.pitch, 1)} ${fixed(this.#view.zoom, 2)}`;
   }
 
-  /** How points of the drawing, with z from the middle of the driving face, come to pixels and a depth. */
-  #projection(width, height) {
-    const { driving, driven, line_of_action: line } = this.#outline;
+  /**
+   * How points of the drawing, with z from the middle of the driving face, come to pixels and a depth.
+   *
+   * @param {PairOutline} outline
+   * @param {number} width
+   * @param {number} height
+   * @returns {Projection}
+   */
+  #projection({ driving, driven, line_of_action: line }, width, height) {
     const [r1, r2, a] = [driving.circles.tip_mm, driven.circles.tip_mm, driven.center_mm[0]];
     const [yaw, pitch] = [this.#view.yaw * TURN, this.#view.pitch * TURN];
     const [cy, sy, cp, sp] = [Math.cos(yaw), Math.sin(yaw), Math.cos(pitch), Math.sin(pitch)];
@@ -269,7 +317,6 @@ export class Space {
     const size = this.#view.zoom * Math.min(width / (1.04 * (r1 + a + r2)), height / (2.2 * Math.max(r1, r2)));
     return {
       size,
-      direction: (x, y, z) => [cy * x + sy * z, cp * y - sp * (-sy * x + cy * z), sp * y + cp * (-sy * x + cy * z)],
       point: (x, y, z) => {
         const [u, v] = [x - middle[0], y - middle[1]];
         const [right, toward] = [cy * u + sy * z, -sy * u + cy * z];
@@ -278,11 +325,21 @@ export class Space {
     };
   }
 
-  #paintGear(member, { twists, mid, offset }, project, style, scale) {
-    const outline = this.#outline[member];
+  /**
+   * @param {PairOutline} pair
+   * @param {GearName} member
+   * @param {Along} along
+   * @param {Projection} project
+   * @param {CSSStyleDeclaration} style
+   * @param {number} scale
+   */
+  #paintGear(pair, member, { twists, mid, offset }, project, style, scale) {
+    const outline = pair[member];
+    const gear = this.#pair?.[member];
+    if (!gear) return;
     const shift = member === "driven" ? offset : 0;
-    this.#surfaces[member] ??= surfaceOf(outline, this.#pair[member], twists[member], mid - shift);
-    const { points, triangles, edges } = this.#surfaces[member];
+    const surface = (this.#surfaces[member] ??= surfaceOf(outline, gear, twists[member], mid - shift));
+    const { points, triangles, edges } = surface;
     const angle = (outline.angle_deg + this.#position * outline.angle_per_mesh_period_deg) * TURN;
     const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
     const count = points.length / 3;
@@ -298,6 +355,7 @@ export class Space {
       seen[3 * i + 1] = py;
       seen[3 * i + 2] = pz;
     }
+    /** @type {(name: string) => number[]} */
     const colorOf = (name) => {
       const text = style.getPropertyValue(name).trim();
       return [1, 3, 5].map((i) => parseInt(text.length > 4 ? text.slice(i, i + 2) : text[(i + 1) / 2].repeat(2), 16));
@@ -329,7 +387,7 @@ export class Space {
       );
     }
     const edge = pixelOf(colorOf(member === "driving" ? "--steel-edge" : "--steel-2-edge"));
-    const lift = 0.002 * project.size * this.#outline.driven.circles.tip_mm;
+    const lift = 0.002 * project.size * pair.driven.circles.tip_mm;
     for (let i = 0; i < edges.length; i += 2) {
       const [a, b] = [3 * edges[i], 3 * edges[i + 1]];
       this.raster.line(
@@ -346,16 +404,23 @@ export class Space {
     }
   }
 
-  /** The lines of contact over both gears, which hide them: by color what they carry. */
-  #paintLines(along, project, scale) {
-    const lines = this.#loaded(along);
+  /**
+   * The lines of contact over both gears, which hide them: by color what they carry.
+   *
+   * @param {LoadedLine[]} lines
+   * @param {Along} along
+   * @param {Projection} project
+   * @param {number} scale
+   */
+  #paintLines(lines, along, project, scale) {
     // Each after the one below it, however their depths are rounded.
+    /** @type {(line: LoadedLine, wide: number, lift: number, colorOf: (part: number) => number) => void} */
     const paint = ({ points }, wide, lift, colorOf) =>
       points.slice(1).forEach((to, i) => {
         const from = points[i];
         this.raster.line(
-          ...project.point(...from.at, from.z + along.mid),
-          ...project.point(...to.at, to.z + along.mid),
+          ...project.point(from.at[0], from.at[1], from.z + along.mid),
+          ...project.point(to.at[0], to.at[1], to.z + along.mid),
           wide,
           lift,
           colorOf((from.part + to.part) / 2),
@@ -366,57 +431,66 @@ export class Space {
     for (const line of lines) paint(line, 4 * scale, 2e6, (part) => pixelOf(rampAt(part)));
   }
 
-  /** The lines at the position shown, each point with its part of the largest load. */
-  #loaded(along) {
+  /**
+   * The lines at the position shown, each point with its part of the largest load.
+   *
+   * @param {PairOutline} outline
+   * @param {Along} along
+   * @returns {LoadedLine[]}
+   */
+  #loaded(outline, along) {
     if (this.#pattern) {
       // As they were computed: under load they reach a little beyond the line of action.
-      const [{ lines }, most] = [this.#nearestPosition(), this.#mostOfPattern()];
+      const [{ lines }, most] = [this.#nearestPosition(this.#pattern), this.#mostOfPattern(this.#pattern)];
       return lines.map(({ pair_offset: pair, z_mm: z, load_n_per_mm: loads }) => ({
         pair,
         points: z.map((each, i) => ({
           z: each,
-          at: contactAt(this.#outline, along, this.#position, pair, each),
+          at: contactAt(outline, along, this.#position, pair, each),
           load: loads[i],
           part: loads[i] / most,
         })),
       }));
     }
     const face = this.#curve && faceOf(this.#curve);
-    const row = face && (face.every ? face.rows[indexAt(this.#curve, this.#position)] : face.rows[0]);
-    const loadAt = (z) => (row ? at(face.z, row, z) : 0);
-    return contactLines(this.#outline, along, this.#position).map((line) => ({
+    const row = this.#curve && face?.rows[face.every ? indexAt(this.#curve, this.#position) : 0];
+    /** @type {(z: number) => number} */
+    const loadAt = (z) => (face && row ? at(face.z, row, z) : 0);
+    return contactLines(outline, along, this.#position).map((line) => ({
       ...line,
       points: line.points.map((point) => ({
         ...point,
         load: loadAt(point.z),
-        part: row ? loadAt(point.z) / face.most : 0,
+        part: face ? loadAt(point.z) / face.most : 0,
       })),
     }));
   }
 
-  #nearestPosition() {
-    const { positions } = this.#pattern;
+  /** @param {PatternCurve} pattern */
+  #nearestPosition({ positions }) {
     const span =
       positions.length > 1 ? positions.length * (positions[1].mesh_position - positions[0].mesh_position) : 1;
+      /** @type {(position: { mesh_position: number }) => number} */
     const apart = ({ mesh_position: each }) =>
       Math.abs(((((each - this.#position) % span) + 1.5 * span) % span) - span / 2);
     return positions.reduce((best, each) => (apart(each) < apart(best) ? each : best));
   }
 
-  #mostOfPattern() {
-    this.#pattern.most ??= Math.max(
-      extent(this.#pattern.positions.flatMap(({ lines }) => lines.flatMap(({ load_n_per_mm: loads }) => loads)))?.[1] ??
+  /** @param {PatternCurve & { most?: number }} pattern */
+  #mostOfPattern(pattern) {
+    pattern.most ??= Math.max(
+      extent(pattern.positions.flatMap(({ lines }) => lines.flatMap(({ load_n_per_mm: loads }) => loads)))?.[1] ??
         0,
       1e-9,
     );
-    return this.#pattern.most;
+    return pattern.most;
   }
 
   /** What is seen, for those who do not see it, and the scale of the colors. */
   #tell() {
-    if (!this.#shown || !this.#outline) return;
+    if (!this.#shown || !this.#outline || !this.#pair) return;
     const along = alongAxis(this.#pair, this.#outline);
-    const lines = this.#loaded(along);
+    const lines = this.#loaded(this.#outline, along);
     const angle = this.#pair.helix_angle_deg ?? 0;
     const teeth = angle
       ? `helical teeth of ${number(Math.abs(angle))}°, the driving gear ${angle > 0 ? "right" : "left"}-handed`
@@ -424,7 +498,7 @@ export class Space {
     const face = this.#curve && faceOf(this.#curve);
     const each = lines.map(({ points }, i) => {
       const most = points.reduce((best, point) => (point.load > best.load ? point : best));
-      const ends = `from z = ${fixed(points[0].z, 1)} to ${fixed(points.at(-1).z, 1)} mm`;
+      const ends = `from z = ${fixed(points[0].z, 1)} to ${fixed(points[points.length - 1].z, 1)} mm`;
       return `line ${i + 1} ${ends}${face ? `, most at z = ${fixed(most.z, 1)} mm with ${number(most.load, 3)} N/mm` : ""}`;
     });
     const loads = !this.#curve
@@ -437,14 +511,18 @@ export class Space {
     this.words.textContent = `${this.#outline.driving.tooth_count} and ${this.#outline.driven.tooth_count} teeth, ${teeth}. At position ${fixed(this.#position, 2)} ${lines.length === 1 ? "one line of contact" : `${lines.length} lines of contact`}: ${each.join("; ")}. ${loads}`;
     this.legend.replaceChildren(
       ...(face
-        ? ["Load", scaleOf(this.#pattern ? this.#mostOfPattern() : face.most)]
+        ? ["Load", scaleOf(this.#pattern ? this.#mostOfPattern(this.#pattern) : face.most)]
         : [`${lines.length} ${lines.length === 1 ? "line" : "lines"} of contact`]),
     );
     this.legend.title = loads;
   }
 }
 
-/** The value of a line through points at a place, its ends beyond them. */
+/**
+ * The value of a line through points at a place, its ends beyond them.
+ *
+ * @type {(places: number[], values: number[], place: number) => number}
+ */
 function at(places, values, place) {
   const next = places.findIndex((each) => each >= place);
   if (next <= 0) return values[next < 0 ? values.length - 1 : 0];

@@ -149,7 +149,7 @@ export function jobs(place, design, form, onOpen, onStudy) {
       await work();
     } catch (error) {
       if (!(error instanceof ProblemError)) throw error;
-      state.textContent = error.problem.errors?.[0]?.detail ?? error.message;
+      state.textContent = error.reason;
     }
   }
 

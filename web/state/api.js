@@ -27,6 +27,11 @@ export class ProblemError extends Error {
     this.problem = problem;
     this.after = after;
   }
+
+  /** What is wrong: with the first of the fields, where it is told of fields. */
+  get reason() {
+    return this.problem.errors?.[0]?.detail ?? this.message;
+  }
 }
 
 /**

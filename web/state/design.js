@@ -240,7 +240,8 @@ export class Design {
   restore(submission, { kept, typed, past, future, ...known }) {
     this.kept = kept;
     if (!same(known.submission, submission)) return this.replace(submission, "start");
-    Object.assign(this, { submission, typed });
+    this.submission = submission;
+    this.typed = typed;
     [this.#past, this.#future] = [past, future];
     return this.#tell("start");
   }

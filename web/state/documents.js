@@ -14,9 +14,13 @@
 /** @typedef {Schemas["Spectrum"]} Spectrum */
 /** @typedef {Schemas["NamedOrder"]} NamedOrder */
 /** @typedef {Schemas["Face"]} Face */
+/** @typedef {Schemas["LeadModification"]} LeadModification */
 /** @typedef {Schemas["ForceTable"]} ForceTable */
+/** @typedef {NonNullable<Holes["slot"]>} Slot */
+/** @typedef {Schemas["LoadedEdges"]} LoadedEdges */
 /** @typedef {Schemas["PairOutline"]} PairOutline */
 /** @typedef {Schemas["GearOutline"]} GearOutline */
+/** @typedef {Schemas["PatternCurve"]} PatternCurve */
 /** @typedef {Schemas["Job"]} Job */
 /** @typedef {Schemas["Study"]} Study */
 /** @typedef {Schemas["StudyList"]["items"][number]} StudyState */

@@ -52,7 +52,10 @@ export function designsCsv(designs) {
  */
 export class Compare {
   constructor(place, { onKept, onOpen, onMethods, named, usual }) {
-    Object.assign(this, { onKept, onOpen, named, usual });
+    this.onKept = onKept;
+    this.onOpen = onOpen;
+    this.named = named;
+    this.usual = usual;
     this.table = h("div", {
       className: "scroll",
       id: "table",

@@ -122,7 +122,7 @@ export function deviations(member, design) {
       out.textContent = `Class ${quality.value}: f_pT ${fixed(um.single_pitch, 1)}, F_pT ${fixed(um.total_pitch, 1)}, f_HαT ${fixed(um.profile_slope, 1)}, F_rT ${fixed(um.runout, 1)} µm. These teeth: F_p ${fixed(drawn.total_pitch_deviation_um, 1)} µm${drawn.total_pitch_deviation_um > um.total_pitch ? ", more than the class allows" : ""}.`;
     } catch (error) {
       if (!(error instanceof ProblemError)) throw error;
-      out.textContent = error.problem.errors?.[0]?.detail ?? error.message;
+      out.textContent = error.reason;
     }
   }
 

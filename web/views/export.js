@@ -95,7 +95,7 @@ export function exporting(place, { current, designs, drawing, charts, position, 
       await work(live);
     } catch (error) {
       if (!(error instanceof ProblemError)) throw error;
-      state.textContent = error.problem.errors?.[0]?.detail ?? error.message;
+      state.textContent = error.reason;
     }
   }
 

@@ -56,7 +56,11 @@ export class Form {
    * are.
    */
   constructor(place, api, design, { notify, limits, results }) {
-    Object.assign(this, { place, api, design, notify, beginnings: new Beginnings(api, design, { limits, results }) });
+    this.place = place;
+    this.api = api;
+    this.design = design;
+    this.notify = notify;
+    this.beginnings = new Beginnings(api, design, { limits, results });
     place.addEventListener("submit", (event) => event.preventDefault());
     // Made once: what they say stays while fields are made anew around them.
     this.tools = Object.fromEntries(MEMBERS.map((member) => [member, deviations(member, design)]));

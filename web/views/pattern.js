@@ -95,7 +95,7 @@ export class Pattern {
         if (job && !hasEnded(job.status)) request(`v1/jobs/${job.id}/cancel`, { method: "POST" }).catch(() => {});
       } else if (!(error instanceof ProblemError)) throw error;
       if (!live || mine())
-        this.state.textContent = signal.aborted ? "Stopped." : (error.problem.errors?.[0]?.detail ?? error.message);
+        this.state.textContent = signal.aborted ? "Stopped." : (error.reason);
     } finally {
       clearInterval(tick);
       if (this.#asking === asking) {

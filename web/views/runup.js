@@ -41,7 +41,11 @@ export class RunUp {
    * `designs` gives what is shown, the live one first, and `stage` turns the drawing.
    */
   constructor(place, { ask, asked, focus, designs, stage }) {
-    Object.assign(this, { place, asked, designs, stage, tones: new Tones() });
+    this.place = place;
+    this.asked = asked;
+    this.designs = designs;
+    this.stage = stage;
+    this.tones = new Tones();
     const button = (name, id, work) => h("button", { type: "button", id, on: { click: work } }, name);
     const select = (id, options) =>
       h(
