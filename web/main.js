@@ -633,7 +633,7 @@ async function compareMethods() {
       );
     try {
       const asked = { ...base.submission, method };
-      keep({ name: nameOf(asked), results: await resultsOf(asked), submission: asked, teeth: base.teeth });
+      keep({ name: nameOf(asked), results: await resultsOf(asked), submission: asked, asked, teeth: base.teeth });
     } catch (error) {
       if (!(error instanceof ProblemError)) throw error;
       notify(error.reason, false);

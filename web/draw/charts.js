@@ -19,7 +19,7 @@ import {
 
 /** @import { FaceLoad } from "./face.js" */
 /** @import { Parts } from "./figure.js" */
-/** @import { NamedDesign, Spectrum } from "../state/documents.js" */
+/** @import { NamedDesign } from "../state/documents.js" */
 /** @import { Line, OrderName, Panel, Point } from "../state/series.js" */
 
 /**

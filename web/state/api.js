@@ -1,7 +1,6 @@
 // @ts-check
 // The service: requests with the key, and problems as errors.
 
-/** @import { T } from "../draw/dom.js" */
 /** @import { Job, Problem, Submission } from "./documents.js" */
 
 /**

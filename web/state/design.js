@@ -2,7 +2,6 @@
 // What is worked on: a submission, the designs that were kept beside it, the way back from every change, and the
 // address that carries it.
 
-/** @import { T } from "../draw/dom.js" */
 /** @import { GearName, NamedDesign, Submission } from "./documents.js" */
 
 /**
@@ -389,7 +388,7 @@ export function apart({ force_table, dynamics, stress, face_load, ...curves }) {
  * @type {(submissions: unknown[]) => { pointer: string, values: unknown[] }[]}
  */
 export function differences(submissions) {
-  const flat = submissions.map((submission) => flattened(submission));
+  const flat = submissions.map((submission) => flattened(/** @type {object} */ (submission)));
   const pointers = [...new Set(flat.flatMap((each) => [...each.keys()]))];
   const rows = pointers.map((pointer) => ({ pointer, values: flat.map((each) => each.get(pointer)) }));
   return rows.filter(({ values }) => values.some((value) => JSON.stringify(value) !== JSON.stringify(values[0])));

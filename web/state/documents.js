@@ -20,6 +20,7 @@
 /** @typedef {Schemas["LoadedEdges"]} LoadedEdges */
 /** @typedef {Schemas["PairOutline"]} PairOutline */
 /** @typedef {Schemas["GearOutline"]} GearOutline */
+/** @typedef {Schemas["ContactPattern"]} ContactPattern */
 /** @typedef {Schemas["PatternCurve"]} PatternCurve */
 /** @typedef {Schemas["Job"]} Job */
 /** @typedef {Schemas["Study"]} Study */
@@ -42,7 +43,7 @@
  * A design with its results under a name: `asked` is the submission that the results are of, `look` its number among
  * the designs on the screen, `teeth` the number of teeth of its driven gear.
  *
- * @typedef {{ name: string, results: Results, submission: Submission, asked?: Submission, teeth: number, look: number,
+ * @typedef {{ name: string, results: Results, submission: Submission, asked: Submission, teeth: number, look: number,
  *   hidden?: boolean }} NamedDesign
  */
 

@@ -1,7 +1,6 @@
 // @ts-check
 // What this tab works on, over a reload: the kept designs with their results, and the way back from every change.
 
-/** @import { T } from "../draw/dom.js" */
 /** @import { Remembered } from "./design.js" */
 
 const NAME = "meshwright";

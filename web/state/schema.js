@@ -17,6 +17,8 @@ import { at } from "./design.js";
  * @property {any} [default] a value of the field
  * @property {(string | number)[]} [enum]
  * @property {Schema[]} [oneOf]
+ * @property {Schema[]} [allOf]
+ * @property {Schema} [not]
  * @property {Record<string, Schema>} [properties]
  * @property {string[]} [required]
  * @property {Schema} [items]
@@ -143,6 +145,22 @@ export function schemaAt(api, pointer) {
     .slice(1)
     .reduce((/** @type {Schema | undefined} */ schema, part) => schema && step(schema, part), SUBMISSION);
   return found ? kindOf(api, found).schema : null;
+}
+
+/**
+ * The fields that the one at a pointer stands in place of: where it has a value they have none.
+ *
+ * @type {(api: Api, pointer: string) => string[]}
+ */
+export function insteadOf(api, pointer) {
+  const [holder, name] = [pointer.slice(0, pointer.lastIndexOf("/")), pointer.slice(pointer.lastIndexOf("/") + 1)];
+  const schema = schemaAt(api, holder);
+  const objects = schema ? [schema, ...(kindOf(api, schema).variants ?? [])] : [];
+  // Each of `allOf` says of some fields that one alone is not null.
+  const groups = objects
+    .flatMap(({ allOf = [] }) => allOf)
+    .map(({ oneOf = [] }) => oneOf.flatMap(({ not }) => Object.keys(not?.properties ?? {})));
+  return [...new Set(groups.filter((group) => group.includes(name)).flat())].filter((other) => other !== name);
 }
 
 /**

@@ -9,21 +9,47 @@ import { extent, number } from "../state/numbers.js";
 import { calledOf, inResults, quantities, shown } from "../state/quantities.js";
 import { csvOf, fileOfDesign } from "../state/tables.js";
 
+/** @import { Curve, NamedDesign, Results, Submission } from "../state/documents.js" */
+/** @import { Quantity } from "../state/quantities.js" */
+
+/** @typedef {{ name: string, curve: Curve, results: Results, live: boolean }} Column */
+
+/**
+ * `onKept` changes the kept design of an index, or takes it away; `onOpen` opens a design, `onMethods` compares methods.
+ *
+ * @typedef {object} Hearers
+ * @property {(index: number, change: Partial<NamedDesign> | null) => void} onKept
+ * @property {(design: NamedDesign) => void} onOpen
+ * @property {() => void} onMethods
+ * @property {(pointer: string) => string} named
+ * @property {(submission: Submission, pointer: string) => unknown} usual
+ */
+
 /** What differs by less than this part is the same. */
 const SAME = 1e-3;
 
-/** The quantities that any of `columns` tells, each with its values in them. */
+/**
+ * The quantities that any of `columns` tells, each with its values in them.
+ *
+ * @param {Column[]} columns
+ */
 function toldBy(columns) {
+  /** @type {(quantity: Quantity) => (number | undefined)[]} */
   const read = (quantity) => columns.map(({ curve, results }) => inResults(quantity, curve, results) ?? undefined);
   return quantities()
     .map((quantity) => ({ quantity, values: read(quantity) }))
     .filter(({ values }) => values.some(Number.isFinite));
 }
 
+/** @type {(designs: NamedDesign[]) => Column[]} */
 const columnsOf = (designs) =>
   designs.flatMap(({ name, results }, i) => results.curves.map((curve) => ({ name, curve, results, live: i === 0 })));
 
-/** The numbers of `designs` as CSV: a line for each design and torque. */
+/**
+ * The numbers of `designs` as CSV: a line for each design and torque.
+ *
+ * @type {(designs: NamedDesign[]) => string}
+ */
 export function designsCsv(designs) {
   const columns = columnsOf(designs);
   const told = toldBy(columns);
@@ -41,7 +67,7 @@ export function designsCsv(designs) {
       name,
       results.method,
       curve.output_torque_n_m,
-      ...told.map(({ quantity: { factor }, values }) => values[i] && factor * values[i]),
+      ...told.map(({ quantity: { factor }, values: { [i]: value } }) => value && factor * value),
     ]),
   ]);
 }
@@ -51,7 +77,13 @@ export function designsCsv(designs) {
  * and of which gear it is, `usual` what it is in a submission that does not give it.
  */
 export class Compare {
+  /**
+   * @param {HTMLElement} place
+   * @param {Hearers} hearers
+   */
   constructor(place, { onKept, onOpen, onMethods, named, usual }) {
+    /** @type {NamedDesign[]} */
+    this.designs = [];
     this.onKept = onKept;
     this.onOpen = onOpen;
     this.named = named;
@@ -64,6 +96,7 @@ export class Compare {
       ariaLabel: "Designs beside each other",
     });
     this.note = h("p", { className: "note" });
+    /** @type {(name: string, id: string, work: () => void) => HTMLButtonElement} */
     const button = (name, id, work) => h("button", { type: "button", id, on: { click: work } }, name);
     place.append(
       this.table,
@@ -79,7 +112,11 @@ export class Compare {
     );
   }
 
-  /** Shows `designs`, the live one first. */
+  /**
+   * Shows `designs`, the live one first.
+   *
+   * @param {NamedDesign[]} designs
+   */
   show(designs) {
     this.designs = designs;
     const focused = document.activeElement?.id;
@@ -144,7 +181,13 @@ export class Compare {
     if (focused && document.activeElement?.id !== focused) document.getElementById(focused)?.focus();
   }
 
-  /** The name of a design over its columns, and what can be done with a kept one. */
+  /**
+   * The name of a design over its columns, and what can be done with a kept one.
+   *
+   * @param {NamedDesign} design
+   * @param {number} i
+   * @param {ReturnType<typeof looks>} colors
+   */
   #head(design, i, colors) {
     const swatch = h("span", { className: "swatch" });
     swatch.style.borderColor = colors.series(design.look);
@@ -204,9 +247,14 @@ export class Compare {
     );
   }
 
-  /** A line for each quantity that any of the designs tells, the best of designs at one torque marked. */
+  /**
+   * A line for each quantity that any of the designs tells, the best of designs at one torque marked.
+   *
+   * @param {NamedDesign[]} designs
+   */
   #quantities(designs) {
     const columns = columnsOf(designs);
+    /** @type {(name: string, printed: string, cells: HTMLElement[]) => HTMLElement} */
     const line = (name, printed, cells) =>
       h("tr", {}, h("th", { scope: "row" }, name, printed ? h("small", {}, ` ${printed}`) : null), ...cells);
     const torques = line(
@@ -224,11 +272,12 @@ export class Compare {
             const rivals = values.filter(
               (value, k) => value !== undefined && columns[k].curve.output_torque_n_m === torque,
             );
-            const best = values[i] !== undefined && isBest(values[i], rivals, quantity.better);
+            const value = values[i];
+            const best = value !== undefined && isBest(value, rivals, quantity.better);
             return h(
               "td",
               { className: [best ? "best" : "", live ? "live" : ""].join(" ").trim() },
-              shown(quantity, values[i]),
+              shown(quantity, value),
               best ? h("span", { className: "visually-hidden" }, " best") : null,
             );
           }),
@@ -237,7 +286,12 @@ export class Compare {
     ];
   }
 
-  /** A field in which the designs differ. */
+  /**
+   * A field in which the designs differ.
+   *
+   * @param {{ pointer: string, values: unknown[] }} row
+   * @param {NamedDesign[]} designs
+   */
   #difference({ pointer, values }, designs) {
     return h(
       "tr",
@@ -248,10 +302,14 @@ export class Compare {
   }
 }
 
-/** Whether a value is better than all of its rivals that are not as good. */
+/**
+ * Whether a value is better than all of its rivals that are not as good.
+ *
+ * @type {(value: number, rivals: (number | undefined)[], better: Quantity["better"]) => boolean}
+ */
 function isBest(value, rivals, better) {
   if (!better || rivals.length < 2) return false;
-  const [least, most] = extent(rivals);
+  const [least, most] = extent(rivals) ?? [0, 0];
   if (most - least <= SAME * Math.abs(most)) return false;
   return Math.abs(value - (better === "smaller" ? least : most)) <= SAME * Math.abs(value);
 }

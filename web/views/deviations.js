@@ -7,7 +7,17 @@ import { given, numeric } from "../draw/inputs.js";
 import { post, ProblemError } from "../state/api.js";
 import { fixed, number } from "../state/numbers.js";
 
-/** What a column of measured teeth may be called, and the field that it is. */
+/** @import { Properties } from "../draw/dom.js" */
+/** @import { Design } from "../state/design.js" */
+/** @import { Gear, GearName } from "../state/documents.js" */
+
+/** @typedef {keyof NonNullable<Gear["tooth_deviations"]>} Lists */
+
+/**
+ * What a column of measured teeth may be called, and the field that it is.
+ *
+ * @type {[field: Lists, pattern: RegExp][]}
+ */
 const COLUMNS = [
   ["other_flank_pitch_cumulative_um", /other/i],
   ["pitch_single_um", /single|^f_?pt?\b|^fp$/i],
@@ -15,7 +25,11 @@ const COLUMNS = [
   ["profile_slope_um", /slope|f_?h_?(a|α|alpha)/i],
 ];
 
-/** Numbers as spreadsheets write them: with points or commas, in columns between tabs, semicolons or commas. */
+/**
+ * Numbers as spreadsheets write them: with points or commas, in columns between tabs, semicolons or commas.
+ *
+ * @type {(text: string) => { head: string[], rows: number[][] }}
+ */
 export function tableOf(text) {
   const lines = text
     .trim()
@@ -41,8 +55,9 @@ export function tableOf(text) {
       .map((cell) => cell.trim().replace(/^"|"$/g, ""))
       .filter((cell) => cell !== "");
   });
+  /** @type {(cell: string) => boolean} */
   const isNumber = (cell) => cell !== "" && Number.isFinite(Number(cell));
-  const head = cells.length && !cells[0].every(isNumber) ? cells.shift() : [];
+  const head = (cells.length && !cells[0].every(isNumber) && cells.shift()) || [];
   const rows = cells.map((row) => row.map(Number));
   return { head, rows: rows.length === 1 && head.length === 0 ? rows[0].map((value) => [value]) : rows };
 }
@@ -50,6 +65,8 @@ export function tableOf(text) {
 /**
  * The lists of deviations in a text, for a gear of so many teeth: by the names of its columns, or of a single column
  * the kind that `kind` says. Throws with a reason where it cannot be read.
+ *
+ * @type {(text: string, teeth: number, kind: string) => Partial<Record<string, number[]>>}
  */
 export function measured(text, teeth, kind) {
   const { head, rows } = tableOf(text);
@@ -57,6 +74,7 @@ export function measured(text, teeth, kind) {
   if (bad >= 0) throw new Error(`Line ${bad + 1 + (head.length ? 1 : 0)} has something that is no number.`);
   if (rows.length !== teeth)
     throw new Error(`There are ${rows.length} numbers; ${teeth} are needed, one for each tooth.`);
+  /** @type {Partial<Record<string, number[]>>} */
   const lists = {};
   head.forEach((name, i) => {
     const field = COLUMNS.find(([each, pattern]) => each === name || pattern.test(name))?.[0];
@@ -77,16 +95,25 @@ export function measured(text, teeth, kind) {
   return lists;
 }
 
-/** Single pitch deviations that sum to zero: what a measurement leaves is shared by all teeth. */
+/**
+ * Single pitch deviations that sum to zero: what a measurement leaves is shared by all teeth.
+ *
+ * @type {(values: number[]) => number[]}
+ */
 function closing(values) {
   const mean = values.reduce((sum, value) => sum + value, 0) / values.length;
   return values.map((value) => Number((value - mean).toFixed(6)));
 }
 
-/** The tool for the gear `member` of `design`. */
+/**
+ * The tool for the gear `member` of `design`.
+ *
+ * @type {(member: GearName, design: Design) => HTMLElement}
+ */
 export function deviations(member, design) {
   const pointer = `/pair/${member}/tooth_deviations`;
   const id = `deviations-${member}`;
+  /** @type {(name: string, value: number, more: Properties<HTMLInputElement>) => HTMLInputElement} */
   const number_ = (name, value, more) => h("input", { type: "number", id: `${id}-${name}`, value, ...more });
   const [quality, seed, capability] = [
     number_("class", 6, { min: 1, max: 11, step: 1 }),
@@ -107,6 +134,7 @@ export function deviations(member, design) {
     spellcheck: false,
     placeholder: "one number a tooth, in µm; or columns with names",
   });
+  /** @type {(name: string, input: HTMLInputElement | HTMLSelectElement) => HTMLElement} */
   const labelled = (name, input) => h("span", {}, h("label", { htmlFor: input.id }, name), " ", input);
 
   async function draw() {
@@ -126,11 +154,13 @@ export function deviations(member, design) {
     }
   }
 
+  /** @type {() => Partial<Gear>} */
   const gear = () => {
     const { tooth_deviations: _, ...rest } = design.get(`/pair/${member}`);
     return rest;
   };
 
+  /** @type {(given: string) => void} */
   function take(given) {
     try {
       const lists = measured(given, design.get(`/pair/${member}/tooth_count`), kind.value);
@@ -147,12 +177,12 @@ export function deviations(member, design) {
       );
       out.textContent = `Taken: ${Object.entries(lists)
         .map(
-          ([name, values]) => `${name} from ${number(Math.min(...values), 3)} to ${number(Math.max(...values), 3)} µm`,
+          ([name, values = []]) => `${name} from ${number(Math.min(...values), 3)} to ${number(Math.max(...values), 3)} µm`,
         )
         .join(", ")}.`;
       text.value = "";
     } catch (error) {
-      out.textContent = error.message;
+      out.textContent = error instanceof Error ? error.message : String(error);
     }
   }
 
@@ -192,7 +222,7 @@ export function deviations(member, design) {
   element.addEventListener("drop", async (event) => {
     event.preventDefault();
     element.classList.remove("over");
-    const [file] = event.dataTransfer.files;
+    const file = event.dataTransfer?.files[0];
     if (file) take((await file.text()).slice(0, 1_000_000));
   });
   return element;

@@ -13,14 +13,33 @@ import { csv, fileOfDesign, ordersCsv } from "../state/tables.js";
 import { designsCsv } from "./compare.js";
 import { inLight } from "./sheet.js";
 
+/** @import { Charts } from "../draw/charts.js" */
+/** @import { Drawing } from "../draw/drawing.js" */
+/** @import { NamedDesign } from "../state/documents.js" */
+
+/**
+ * @typedef {object} Sources
+ * @property {() => Promise<NamedDesign | null>} current
+ * @property {() => NamedDesign[]} designs
+ * @property {Drawing} drawing
+ * @property {Charts} charts
+ * @property {() => number} position
+ * @property {(live: NamedDesign) => SVGSVGElement} sheet
+ */
+
+/** @type {Record<keyof ReturnType<typeof snippets>, string>} */
 const LANGUAGES = { curl: "curl", python: "Python", typescript: "TypeScript" };
 
 /**
  * The exports in `place`. `current` waits for the live design and gives it, or null where it cannot be computed;
  * `designs` gives all that are shown, and `sheet` the page of one.
+ *
+ * @param {HTMLElement} place
+ * @param {Sources} sources
  */
 export function exporting(place, { current, designs, drawing, charts, position, sheet }) {
   const state = h("p", { className: "note", role: "status" });
+  /** @type {Record<string, [name: string, work: (live: NamedDesign) => unknown]>} */
   const kinds = {
     json: [
       "Submission and results, JSON",
@@ -49,7 +68,7 @@ export function exporting(place, { current, designs, drawing, charts, position, 
   const code = h("pre", { id: "code", tabIndex: 0, ariaLabel: "Program" });
   const language = h(
     "select",
-    { id: "language", on: { change: () => show() } },
+    { id: "language", on: { change: () => void show() } },
     ...Object.entries(LANGUAGES).map(([value, name]) => h("option", { value }, name)),
   );
   const copy = h(
@@ -58,7 +77,7 @@ export function exporting(place, { current, designs, drawing, charts, position, 
       type: "button",
       on: {
         click: async () => {
-          state.textContent = (await copied(code.textContent))
+          state.textContent = (await copied(code.textContent ?? ""))
             ? "The program is copied."
             : "Copying is not allowed here: select the text.";
         },
@@ -81,9 +100,11 @@ export function exporting(place, { current, designs, drawing, charts, position, 
     code,
   );
 
+  /** @type {(design: NamedDesign, rest: string) => string} */
   const called = ({ name }, rest) => fileOfDesign(name, rest);
   const curves = () => inLight(() => stacked(charts.figures(), looks().panel));
 
+  /** @type {(work: (live: NamedDesign) => unknown) => Promise<void>} */
   async function run(work) {
     state.textContent = "";
     try {
@@ -99,6 +120,7 @@ export function exporting(place, { current, designs, drawing, charts, position, 
     }
   }
 
+  /** @type {(live: NamedDesign, file: string) => Promise<void>} */
   async function fileOfJob(live, file) {
     state.textContent = "A job computes it.";
     const job = await solved(live.asked);
@@ -115,7 +137,7 @@ export function exporting(place, { current, designs, drawing, charts, position, 
     const live = await current();
     const files = live ? filesOf(live.asked) : [];
     // The same buttons stay, with whoever stands on one.
-    if (files.map(({ name }) => name).join() !== [...ofJob.children].map((each) => each.dataset.download).join()) {
+    if (files.map(({ name }) => name).join() !== [...ofJob.querySelectorAll("button")].map((each) => each.dataset.download).join()) {
       ofJob.replaceChildren(
         ...files.map(({ name, title }) =>
           h(
@@ -126,7 +148,9 @@ export function exporting(place, { current, designs, drawing, charts, position, 
         ),
       );
     }
-    if (live) code.textContent = snippets(live.asked, new URL(".", document.baseURI).href)[language.value];
+    if (live) code.textContent = Object.entries(snippets(live.asked, new URL(".", document.baseURI).href)).find(
+        ([name]) => name === language.value,
+      )?.[1] ?? "";
   }
 
   return { refresh: show };

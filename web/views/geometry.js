@@ -1,14 +1,25 @@
 // @ts-check
 // The geometry report: what a gear engineer checks first, of both gears.
 
+/**
+ * A row: its name, symbol and unit, and one value or that of each gear.
+ *
+ * @typedef {[name: string, symbol: string, unit: string, ...values: string[]]} Row
+ */
+
 import { h } from "../draw/dom.js";
 import { fixed, number } from "../state/numbers.js";
 
+/** @import { Gear, GearName, NamedDesign, Pair, Results } from "../state/documents.js" */
+
+/** @type {(radius: number) => number} */
 const twice = (radius) => 2 * radius;
 
 /**
  * Rows of the table of gears: what it is called, its symbol and unit, and how it is read from a gear's geometry and
  * document.
+ *
+ * @type {[name: string, symbol: string, unit: string, read: (geometry: Results["pair"]["driving"], gear: Gear) => string][]}
  */
 export const OF_GEARS = [
   ["Teeth", "z", "", (_, gear) => String(gear.tooth_count)],
@@ -23,10 +34,10 @@ export const OF_GEARS = [
     "Working pitch diameter",
     "d_w",
     "mm",
-    (it) => fixed(it.working_pitch_diameter_mm ?? twice(it.working_pitch_radius_mm), 3),
+    (it) => fixed(it.working_pitch_diameter_mm, 3),
   ],
   ["Active root diameter", "d_Nf", "mm", (it) => fixed(it.active_root_diameter_mm, 3)],
-  ["Root form diameter", "d_Ff", "mm", (it) => fixed(it.form_diameter_mm ?? twice(it.form_radius_mm), 3)],
+  ["Root form diameter", "d_Ff", "mm", (it) => fixed(it.form_diameter_mm, 3)],
   ["Root diameter", "d_f", "mm", (it) => fixed(twice(it.root_radius_mm), 3)],
   ["Tip thickness", "s_an", "mm", (it) => fixed(it.tip_thickness_mm, 3)],
   ["Tip thickness, transverse", "s_at", "mm", (it) => fixed(it.tip_thickness_transverse_mm, 3)],
@@ -37,13 +48,13 @@ export const OF_GEARS = [
     "Relief starts at diameter",
     "",
     "mm",
-    (it) => (it.relief_start_radius_mm === undefined ? "–" : fixed(twice(it.relief_start_radius_mm), 3)),
+    (it) => fixed(twice(it.relief_start_radius_mm ?? NaN), 3),
   ],
   [
     "Least material around holes",
     "",
     "mm",
-    (it) => (it.least_ligament_mm === undefined ? "–" : fixed(it.least_ligament_mm, 2)),
+    (it) => fixed(it.least_ligament_mm, 2),
   ],
   ["Mass", "m", "kg", (it) => fixed(it.mass_kg, 4)],
   ["Removed by holes", "", "%", (it) => fixed(it.mass_removed_percent, 1)],
@@ -52,7 +63,11 @@ export const OF_GEARS = [
   ["Alike again after", "", "mesh periods", (it) => String(it.period_mesh_periods)],
 ];
 
-/** Rows of the table of the pair. */
+/**
+ * Rows of the table of the pair.
+ *
+ * @type {[name: string, symbol: string, unit: string, read: (geometry: Results["pair"], pair: Pair) => string][]}
+ */
 export const OF_PAIRS = [
   ["Center distance", "a", "mm", (it) => number(it.center_distance_mm, 8)],
   ["Helix angle", "β", "°", (_, { helix_angle_deg: angle }) => (angle ? number(angle, 6) : "–")],
@@ -72,26 +87,35 @@ export const OF_PAIRS = [
   ["True period", "", "mesh periods", (it) => String(it.period_mesh_periods)],
 ];
 
-/** Every row of the report: `[name, symbol, unit, driving, driven]`, the pair's with one value. */
+/**
+ * Every row of the report: `[name, symbol, unit, driving, driven]`, the pair's with one value.
+ *
+ * @type {(design: NamedDesign) => { gears: Row[], both: Row[] }}
+ */
 export function rowsOf({ results, submission }) {
   const { pair } = results;
-  const gears = OF_GEARS.map(([name, symbol, unit, read]) => [
-    name,
-    symbol,
-    unit,
-    ...["driving", "driven"].map((member) => read(pair[member], submission.pair[member])),
-  ]).filter(([, , , ...values]) => values.some((value) => value !== "–"));
+  const members = /** @type {GearName[]} */ (["driving", "driven"]);
+  const ofGears = OF_GEARS.map(([name, symbol, unit, read]) => {
+    const values = members.map((member) => read(pair[member], submission.pair[member]));
+    return /** @type {Row} */ ([name, symbol, unit, ...values]);
+  });
+  const gears = ofGears.filter(([, , , ...values]) => values.some((value) => value !== "–"));
   // What only some gears or pairs have is left out of the others.
-  const both = OF_PAIRS.map(([name, symbol, unit, read]) => [name, symbol, unit, read(pair, submission.pair)]).filter(
-    ([, , , value]) => value !== "–",
-  );
+  const both = OF_PAIRS.map(
+    ([name, symbol, unit, read]) => /** @type {Row} */ ([name, symbol, unit, read(pair, submission.pair)]),
+  ).filter(([, , , value]) => value !== "–");
   return { gears, both };
 }
 
 /** The report of the live design in `place`; `onPrint` and `onPicture` are what its buttons do. */
 export class Geometry {
+  /**
+   * @param {HTMLElement} place
+   * @param {{ onPrint: () => void, onPicture: (kind: "svg" | "png") => void }} hearers
+   */
   constructor(place, { onPrint, onPicture }) {
     this.out = h("div", { className: "columns" });
+    /** @type {(name: string, work: () => void) => HTMLButtonElement} */
     const button = (name, work) => h("button", { type: "button", on: { click: work } }, name);
     place.append(
       h(
@@ -110,10 +134,14 @@ export class Geometry {
     );
   }
 
+  /** @param {NamedDesign} live */
   show(live) {
     const { gears, both } = rowsOf(live);
+    /** @type {(text: string) => HTMLElement} */
     const symbol = (text) => h("small", {}, ` ${text}`);
+    /** @type {(names: string[]) => HTMLElement} */
     const head = (names) => h("thead", {}, h("tr", {}, ...names.map((name) => h("th", { scope: "col" }, name))));
+    /** @type {(list: Row[]) => HTMLElement} */
     const rows = (list) =>
       h(
         "tbody",

@@ -5,40 +5,80 @@
 import { h } from "../draw/dom.js";
 import { extent, fixed, number } from "../state/numbers.js";
 
+/** @import { Curve, GearName } from "../state/documents.js" */
+
+/** @typedef {import("../state/documents.js").Schemas["LargestWhere"]} Where */
+
+/**
+ * @typedef {object} HeadlineAnswer
+ * @property {string} id
+ * @property {string} name
+ * @property {string} unit
+ * @property {boolean} [less]
+ * @property {boolean} [some]
+ * @property {(curve: Curve) => number | null} of
+ * @property {(curve: Curve) => Where | null | undefined} [where]
+ * @property {(value: number) => string} print
+ * @property {string} about
+ */
+
+/** @type {(curve: Curve, pattern: RegExp) => number | null} */
 const named = (curve, pattern) =>
   curve.spectrum?.named.find(({ label }) => pattern.test(label))?.transmission_error_um ?? null;
+/** @type {(value: number | null | undefined) => number | null} */
 const mega = (value) => (value === null || value === undefined ? null : value * 1e-6);
+/** @type {(values: (number | null)[]) => number | null} */
 const largest = (values) => extent(values)?.[1] ?? null;
 
-/** The part of its span in which one pair of teeth carries alone, in percent. */
+/**
+ * The part of its span in which one pair of teeth carries alone, in percent.
+ *
+ * @type {(curve: Curve) => number | null}
+ */
 function alone(curve) {
   // Lines that cross a flank come and go by their ends: what tells then is the load along the face.
   if (curve.face) return null;
   return (100 * curve.pairs_in_contact.filter((pairs) => pairs === 1).length) / curve.pairs_in_contact.length;
 }
 
-/** The largest stress at a root or at a hole of either gear. */
+/**
+ * The largest stress at a root or at a hole of either gear.
+ *
+ * @type {(curve: Curve) => number | null}
+ */
 function largestStress({ stress }) {
   if (!stress) return null;
   return largest(
-    ["driving", "driven"].flatMap((gear) => [...(stress[gear].root_mpa ?? []), ...(stress[gear].hole_mpa ?? [])]),
+    [stress.driving, stress.driven].flatMap((gear) => [...gear.root_mpa, ...(gear.hole_mpa ?? [])]),
   );
 }
 
-/** Where the largest stress at a root or at a hole of either gear stands. */
+/**
+ * Where the largest stress at a root or at a hole of either gear stands.
+ *
+ * @type {(curve: Curve) => Where | null | undefined}
+ */
 function largestStressWhere({ statistics: { stress } }) {
-  const names = ["root_mpa", "hole_mpa"];
   const each = Object.values(stress ?? {}).flatMap((gear) =>
-    names.map((name) => [gear[name] ?? 0, gear.largest_where?.[name]]),
+    /** @type {const} */ (["root_mpa", "hole_mpa"]).map((name) => ({
+      value: gear[name] ?? 0,
+      where: gear.largest_where?.[name],
+    })),
   );
-  return each.reduce((most, next) => (next[0] > most[0] ? next : most), [0, undefined])[1];
+  const none = { value: 0, where: /** @type {Where | null | undefined} */ (undefined) };
+  return each.reduce((most, next) => (next.value > most.value ? next : most), none).where;
 }
 
-/** A place of a largest value in words. */
+/**
+ * A place of a largest value in words.
+ *
+ * @type {(where: Where) => string}
+ */
 function placed({ mesh_position, pair_offset, driving_diameter_mm, driven_diameter_mm, z_mm }) {
-  const of = (gear, diameter) => (diameter === undefined ? [] : [`⌀ ${fixed(diameter, 2)} mm of the ${gear} gear`]);
-  const pair = pair_offset === undefined ? [] : [`pair ${pair_offset}`];
-  const z = z_mm === undefined ? [] : [`z ${fixed(z_mm, 1)} mm`];
+  /** @type {(gear: GearName, diameter: number | null | undefined) => string[]} */
+  const of = (gear, diameter) => (diameter === undefined || diameter === null ? [] : [`⌀ ${fixed(diameter, 2)} mm of the ${gear} gear`]);
+  const pair = pair_offset === undefined || pair_offset === null ? [] : [`pair ${pair_offset}`];
+  const z = z_mm === undefined || z_mm === null ? [] : [`z ${fixed(z_mm, 1)} mm`];
   return [
     `at mesh position ${number(mesh_position, 3)}`,
     ...pair,
@@ -51,6 +91,8 @@ function placed({ mesh_position, pair_offset, driving_diameter_mm, driven_diamet
 /**
  * What each answer is: its name, unit, how it is read from a curve, how it is printed, and what a visitor asks of it.
  * `less` says whether less is better, `some` that not every method tells it, `where` the place at which it stands.
+ *
+ * @type {HeadlineAnswer[]}
  */
 export const ANSWERS = [
   {
@@ -145,9 +187,15 @@ export const ANSWERS = [
   },
 ];
 
+/**
+ * @typedef {{ tile: HTMLElement, value: HTMLElement, change: HTMLElement, name: HTMLElement, about: HTMLElement }} Tile
+ */
+
 /** The answers in `place`. */
 export class Headline {
+  /** @param {HTMLElement} place */
   constructor(place) {
+    /** @type {Map<string, Tile>} */
     this.tiles = new Map();
     for (const answer of ANSWERS) {
       const value = h("span", { className: "value" }, "–");
@@ -177,10 +225,17 @@ export class Headline {
     place.append(...[...this.tiles.values()].map(({ about }) => about));
   }
 
-  /** Shows the answers of `curve`, beside those of another design, if there is one: `{ name, curve }`. */
+  /**
+   * Shows the answers of `curve`, beside those of another design, if there is one: `{ name, curve }`.
+   *
+   * @param {Curve} curve
+   * @param {{ name: string, curve: Curve } | null} other
+   */
   show(curve, other = null, draft = false) {
     for (const answer of ANSWERS) {
-      const { tile, value, change, about } = this.tiles.get(answer.id);
+      const parts = this.tiles.get(answer.id);
+      if (!parts) continue;
+      const { tile, value, change, about } = parts;
       const [now, before] = [answer.of(curve), other && answer.of(other.curve)];
       if (answer.some) tile.hidden = now === null;
       value.textContent = now === null ? "–" : answer.print(now);
@@ -188,7 +243,7 @@ export class Headline {
       value.title = where ? placed(where) : "";
       about.textContent = where ? `${answer.about} It stands ${placed(where)}.` : answer.about;
       value.classList.toggle("draft", draft);
-      const known = typeof now === "number" && typeof before === "number";
+      const known = other && now !== null && before !== null;
       change.textContent = known ? changeOf(now, before) : "";
       change.title = known ? `${other.name}: ${answer.print(before)} ${answer.unit}` : "";
       // At another torque less is not better: it is another question.
@@ -204,6 +259,7 @@ export class Headline {
     }
   }
 
+  /** @param {string} id */
   #tell(id) {
     for (const [each, { about, name }] of this.tiles) {
       about.hidden = each !== id || !about.hidden;
@@ -212,7 +268,11 @@ export class Headline {
   }
 }
 
-/** A change in percent, or in its own unit where it began at nothing. */
+/**
+ * A change in percent, or in its own unit where it began at nothing.
+ *
+ * @type {(now: number, before: number) => string}
+ */
 function changeOf(now, before) {
   if (Math.abs(before) < 1e-9) return now === before ? "±0 %" : "";
   const percent = (100 * (now - before)) / Math.abs(before);

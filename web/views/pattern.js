@@ -5,9 +5,11 @@
 import { h, s } from "../draw/dom.js";
 import { cssOf, scaleOf } from "../draw/face.js";
 import { figure } from "../draw/figure.js";
-import { hasEnded, json, patiently, post, ProblemError, request, solved } from "../state/api.js";
+import { hasEnded, isAborted, json, patiently, post, ProblemError, request, solved } from "../state/api.js";
 import { same } from "../state/design.js";
 import { fixed, number, timeOf } from "../state/numbers.js";
+
+/** @import { ContactPattern, GearName, NamedDesign, Submission } from "../state/documents.js" */
 
 const HATCH = "sharp-edge";
 const SHOW = "Show the flanks";
@@ -16,10 +18,19 @@ const AWAITED = "meshwright-flanks";
 
 /** The flanks of the live design in `place`; `live` waits for it and gives it, or null where it cannot be computed. */
 export class Pattern {
+  /** @type {Submission | null} */
   #shown = null;
-  /** Stops what is asked for; null while nothing is. */
+  /**
+   * Stops what is asked for; null while nothing is.
+   *
+   * @type {AbortController | null}
+   */
   #asking = null;
 
+  /**
+   * @param {HTMLElement} place
+   * @param {{ live: () => Promise<NamedDesign | null> }} parts
+   */
   constructor(place, { live }) {
     this.live = live;
     this.legend = h("p", { className: "legend" });
@@ -41,7 +52,11 @@ export class Pattern {
     place.append(this.element);
   }
 
-  /** The design is another one: what is seen of the one before goes away. */
+  /**
+   * The design is another one: what is seen of the one before goes away.
+   *
+   * @param {NamedDesign} design
+   */
   show({ results, submission }) {
     this.element.hidden = !results.curves[0].face;
     if (this.#shown && same(this.#shown, submission)) return;
@@ -62,7 +77,10 @@ export class Pattern {
     const asking = (this.#asking = new AbortController());
     const { signal } = asking;
     this.button.textContent = "Stop";
-    let [tick, job] = [null, null];
+    /** @type {number | undefined} */
+    let tick;
+    /** @type {{ id: string, status: string } | undefined} */
+    let job;
     const live = await this.live();
     const mine = () => this.#shown === live?.submission;
     try {
@@ -79,6 +97,7 @@ export class Pattern {
       };
       clock();
       tick = setInterval(clock, 1000);
+      /** @type {(event: string, data: any) => void} */
       const told = (event, data) => {
         if (event === "status") job = data;
       };
@@ -91,11 +110,10 @@ export class Pattern {
       this.#draw(pattern);
       this.button.hidden = true;
     } catch (error) {
-      if (error.name === "AbortError") {
+      if (isAborted(error)) {
         if (job && !hasEnded(job.status)) request(`v1/jobs/${job.id}/cancel`, { method: "POST" }).catch(() => {});
       } else if (!(error instanceof ProblemError)) throw error;
-      if (!live || mine())
-        this.state.textContent = signal.aborted ? "Stopped." : (error.reason);
+      if (!live || mine()) this.state.textContent = error instanceof ProblemError ? error.reason : "Stopped.";
     } finally {
       clearInterval(tick);
       if (this.#asking === asking) {
@@ -106,22 +124,32 @@ export class Pattern {
     }
   }
 
+  /** @param {ContactPattern} pattern */
   #draw(pattern) {
     const [{ largest_pressure_mpa: most, output_torque_n_m: torque, ...curve }] = pattern.curves;
     this.legend.replaceChildren(scaleOf(most, "MPa"));
-    const sharp = ["driving", "driven"].some((gear) => curve[gear].pressure_mpa.flat().includes(null));
+    const gears = /** @type {GearName[]} */ (["driving", "driven"]);
+    const sharp = gears.some((gear) => curve[gear].pressure_mpa.flat().includes(null));
     this.state.textContent = `At ${number(torque)} N m, from the form diameter to the tip. Empty: nothing touches.${sharp ? " Hatched: a sharp tip edge carries, where the pressure has no limit." : ""}`;
     this.flanks.replaceChildren(
-      ...["driving", "driven"].map((gear) => flankOf(gear, pattern, curve[gear].pressure_mpa, most)),
+      ...gears.map((gear) => flankOf(gear, pattern, curve[gear].pressure_mpa, most)),
     );
   }
 }
 
-/** The edges of cells whose middles are these. */
+/**
+ * The edges of cells whose middles are these.
+ *
+ * @type {(middles: number[]) => number[]}
+ */
 const edgesOf = (middles) =>
   middles.map((middle, i) => middle - (i ? middle - middles[i - 1] : middles[1] - middle) / 2);
 
-/** The flank of a gear over face and diameter. */
+/**
+ * The flank of a gear over face and diameter.
+ *
+ * @type {(gear: GearName, pattern: ContactPattern, pressures: (number | null)[][], most: number) => HTMLElement}
+ */
 function flankOf(
   gear,
   { z_mm: z, [gear]: { diameter_mm: diameters, form_diameter_mm: form, tip_diameter_mm: tip } },
@@ -140,7 +168,7 @@ function flankOf(
     height,
     color: pressure === null ? `url(#${HATCH}-${gear})` : cssOf(pressure / most),
   }));
-  const known = touched.filter(({ pressure }) => pressure !== null);
+  const known = touched.flatMap(({ pressure, i, j }) => (pressure === null ? [] : [{ pressure, i, j }]));
   const edges = touched.length - known.length;
   const top = known.length ? known.reduce((best, each) => (each.pressure > best.pressure ? each : best)) : null;
   const told = top
@@ -153,7 +181,7 @@ function flankOf(
     y: "diameter in mm",
     cells,
     label: words,
-    xRange: [x[0], x.at(-1) + width],
+    xRange: [x[0], x[x.length - 1] + width],
     yRange: [form, tip],
     height: 260,
   });

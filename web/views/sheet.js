@@ -2,12 +2,16 @@
 // One page of paper: the drawing, the answers, the geometry, the curves, warnings and evidence. It is printed, and
 // saved as a picture.
 
-import { s } from "../draw/dom.js";
+import { dress, s } from "../draw/dom.js";
 import { drawingOf } from "../draw/download.js";
 import { flattened, told } from "../state/design.js";
 import { number } from "../state/numbers.js";
 import { rowsOf } from "./geometry.js";
 import { ANSWERS } from "./headline.js";
+
+/** @import { Charts } from "../draw/charts.js" */
+/** @import { NamedDesign, Submission } from "../state/documents.js" */
+/** @import { Form } from "./form.js" */
 
 /** A4, four units a millimeter. */
 const [WIDTH, HEIGHT] = [840, 1188];
@@ -19,28 +23,42 @@ const IN_TABLES =
 /** So many letters have room in a line of the right column, and of the left one. */
 const [SIDE, LEFT] = [60, 92];
 
+/** @type {(text: string, x: number, y: number, more?: Record<string, string | number>) => SVGTextElement} */
 const words = (text, x, y, more = {}) =>
   Object.assign(s("text", { x, y, "font-family": FONT, "font-size": 11, fill: "#1d2229", ...more }), {
     textContent: text,
   });
 
-/** Text in lines of so many letters. */
+/**
+ * Text in lines of so many letters.
+ *
+ * @type {(text: string, most: number) => string[]}
+ */
 function wrapped(text, most) {
   const lines = [""];
   for (const word of text.split(" ")) {
-    if (lines.at(-1).length + word.length + 1 > most && lines.at(-1)) lines.push("");
-    lines[lines.length - 1] = `${lines.at(-1)} ${word}`.trim();
+    const last = lines[lines.length - 1];
+    if (last && last.length + word.length + 1 > most) lines.push(word);
+    else lines[lines.length - 1] = `${last} ${word}`.trim();
   }
   return lines;
 }
 
-/** As many of `lines` as there is room for; that some were left out is said in place of the last. */
+/**
+ * As many of `lines` as there is room for; that some were left out is said in place of the last.
+ *
+ * @type {(lines: string[], most: number) => string[]}
+ */
 const fitting = (lines, most) =>
   lines.length > most
     ? [...lines.slice(0, most - 1), `… and ${lines.length - most + 1} lines more, in the results`]
     : lines;
 
-/** What a submission gives that no table of the sheet has, a text for each gear and one for the rest. */
+/**
+ * What a submission gives that no table of the sheet has, a text for each gear and one for the rest.
+ *
+ * @type {(submission: Submission, form: Form) => string[]}
+ */
 function givenOf(submission, form) {
   const fields = [...flattened(submission)].filter(([pointer]) => !IN_TABLES.test(pointer));
   const parts = [
@@ -48,6 +66,7 @@ function givenOf(submission, form) {
     ["Driven gear", ", driven gear"],
     ["Pair and method", ""],
   ];
+  /** @type {(pointer: string) => number} */
   const partOf = (pointer) => parts.findIndex(([, end]) => form.named(pointer).endsWith(end));
   return parts.flatMap(([title, end], i) => {
     const own = fields
@@ -59,7 +78,12 @@ function givenOf(submission, form) {
   });
 }
 
-/** Does `work` while the page has its light colors, which paper has. */
+/**
+ * Does `work` while the page has its light colors, which paper has.
+ *
+ * @template T
+ * @param {() => T} work
+ */
 export function inLight(work) {
   const root = document.documentElement;
   const before = root.dataset.theme;
@@ -75,6 +99,8 @@ export function inLight(work) {
 /**
  * The page of the live design: `drawing` is its element, `charts` give the curves, `form` knows the fields by their
  * names.
+ *
+ * @type {(parts: { live: NamedDesign, drawing: SVGSVGElement, charts: Charts, form: Form }) => SVGSVGElement}
  */
 export function sheetOf({ live, drawing, charts, form }) {
   const { results, submission, name } = live;
@@ -102,8 +128,7 @@ export function sheetOf({ live, drawing, charts, form }) {
   const picture = inLight(() => drawingOf(drawing));
   const box = picture.viewBox.baseVal;
   const height = Math.min(230, (430 * box.height) / box.width);
-  for (const [attribute, value] of Object.entries({ x: MARGIN, y: 90, width: 430, height }))
-    picture.setAttribute(attribute, value);
+  dress(picture, { x: MARGIN, y: 90, width: 430, height });
   page.append(picture);
 
   let y = 104;
@@ -180,13 +205,7 @@ export function sheetOf({ live, drawing, charts, form }) {
   ];
   const figures = inLight(() => charts.figures({ width: 520, height: Math.round((520 * h) / w), ids }));
   figures.forEach((figure, i) => {
-    for (const [attribute, value] of Object.entries({
-      x: MARGIN + (i % 2) * w,
-      y: top + Math.floor(i / 2) * h,
-      width: w - 8,
-      height: h - 6,
-    }))
-      figure.setAttribute(attribute, value);
+    dress(figure, { x: MARGIN + (i % 2) * w, y: top + Math.floor(i / 2) * h, width: w - 8, height: h - 6 });
     page.append(figure);
   });
   page.append(
