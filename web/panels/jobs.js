@@ -4,10 +4,14 @@
 import { debounced, h } from "../draw/dom.js";
 import { filesOf, saveFile } from "../draw/files.js";
 import { read } from "../draw/inputs.js";
-import { follow, hasEnded, json, post, ProblemError, request } from "../state/api.js";
+import { follow, hasEnded, isAborted, json, post, ProblemError, request } from "../state/api.js";
 import { differences, nameOf, told } from "../state/design.js";
 import { number } from "../state/numbers.js";
 import { fileOfDesign } from "../state/tables.js";
+
+/** @import { Design } from "../state/design.js" */
+/** @import { AskedStudy, Job, Open, StudyState, Submission } from "../state/documents.js" */
+/** @import { Form } from "../views/form.js" */
 
 const SHOWN = 20;
 /** So many are followed at a time; a client may have few streams. */
@@ -30,6 +34,12 @@ const REST = 300;
 /**
  * The jobs and studies in `place`; `form` names fields, the results of a finished job are opened by `onOpen`, and a
  * study that is given by its id and document by `onStudy`.
+ *
+ * @param {HTMLElement} place
+ * @param {Design} design
+ * @param {Form} form
+ * @param {Open} onOpen
+ * @param {(id: string, study: AskedStudy) => void} onStudy
  */
 export function jobs(place, design, form, onOpen, onStudy) {
   const out = h("div", { className: "scroll", id: "jobs-list", tabIndex: 0, role: "region", ariaLabel: "Jobs" });
@@ -39,7 +49,7 @@ export function jobs(place, design, form, onOpen, onStudy) {
     id: "jobs-tags",
     maxLength: 200,
     spellcheck: false,
-    on: { change: () => design.set("/tags", read(tags, { kind: "texts" }), "mend") },
+    on: { change: ({ target }) => design.set("/tags", read(target, { kind: "texts" }), "mend") },
   });
   const submit = h(
     "button",
@@ -72,14 +82,25 @@ export function jobs(place, design, form, onOpen, onStudy) {
     studies,
     olderStudies,
   );
+  /** @type {Map<string, HTMLTableRowElement>} */
   const rows = new Map();
+  /** @type {Map<string, AbortController>} */
   const followed = new Map();
+  /** @type {Map<string, Submission>} */
   const documents = new Map();
+  /** @type {Job[]} */
   let listed = [];
+  /** @type {string | null} */
   let next = null;
+  /** @type {StudyState[]} */
   let listedStudies = [];
+  /** @type {string | null} */
   let nextStudies = null;
-  /** The design as it is, with every default filled in as the documents of jobs are; null where it is none. */
+  /**
+   * The design as it is, with every default filled in as the documents of jobs are; null where it is none.
+   *
+   * @type {Submission | null}
+   */
   let live = null;
   let telling = 0;
 
@@ -107,14 +128,18 @@ export function jobs(place, design, form, onOpen, onStudy) {
       if (!documents.has(id)) {
         const whole = await json(`v1/jobs/${id}`).catch(() => null);
         if (whole) documents.set(id, whole.submission);
-        if (documents.size > DOCUMENTS) documents.delete(documents.keys().next().value);
+        if (documents.size > DOCUMENTS) documents.delete([...documents.keys()][0]);
       }
       if (turn !== telling || place.hidden) return;
-      rows.get(id)?.querySelector(".of-design").replaceWith(designOf(job));
+      rows.get(id)?.querySelector(".of-design")?.replaceWith(designOf(job));
     }
   }
 
-  /** Which design a job is of: its tags, its name, and in which fields it differs from the design on the page. */
+  /**
+   * Which design a job is of: its tags, its name, and in which fields it differs from the design on the page.
+   *
+   * @param {Job} job
+   */
   function designOf({ id, tags: given, method }) {
     const submission = documents.get(id);
     const cell = h(
@@ -142,7 +167,11 @@ export function jobs(place, design, form, onOpen, onStudy) {
     return cell;
   }
 
-  /** Does something, and says why where it was refused. */
+  /**
+   * Does something, and says why where it was refused.
+   *
+   * @param {() => unknown} work
+   */
   async function attempt(work) {
     try {
       state.textContent = "";
@@ -153,7 +182,11 @@ export function jobs(place, design, form, onOpen, onStudy) {
     }
   }
 
-  /** Does something to a job, then shows how the jobs stand. */
+  /**
+   * Does something to a job, then shows how the jobs stand.
+   *
+   * @param {() => unknown} work
+   */
   async function act(work) {
     await attempt(work);
     await refresh();
@@ -189,8 +222,10 @@ export function jobs(place, design, form, onOpen, onStudy) {
     });
   }
 
+  /** @param {StudyState} study */
   function studyRow({ id, name, status, done, total, submitted_at: at }) {
     const what = name ?? `study ${id.slice(-6)}`;
+    /** @type {(words: string, work: () => unknown) => HTMLButtonElement} */
     const button = (words, work) =>
       h("button", { type: "button", ariaLabel: `${words} ${what}`, on: { click: () => attempt(work) } }, words);
     const buttons = [button("Go to it", async () => onStudy(id, await json(`v1/studies/${id}/document`)))];
@@ -220,6 +255,7 @@ export function jobs(place, design, form, onOpen, onStudy) {
       listed = [...listed, ...page.items];
       next = page.next;
       older.hidden = !next;
+      /** @type {{ items: Job[] }} */
       const { items } = page;
       out.replaceChildren(listed.length ? tableOf(listed) : h("p", { className: "note" }, "There are no jobs yet."));
       tell();
@@ -230,12 +266,17 @@ export function jobs(place, design, form, onOpen, onStudy) {
     }
   }
 
-  /** Shows what becomes of a job as the service tells it. */
+  /**
+   * Shows what becomes of a job as the service tells it.
+   *
+   * @param {Job} job
+   */
   async function watch(job) {
     if (followed.has(job.id) || place.hidden) return;
     const stop = new AbortController();
     followed.set(job.id, stop);
     let known = job;
+    /** @type {(event: string, data: Partial<Job>) => void} */
     const told = (event, data) => {
       known = { ...known, ...data };
       rows.get(job.id)?.replaceWith(rowOf(known));
@@ -243,13 +284,14 @@ export function jobs(place, design, form, onOpen, onStudy) {
     try {
       told("status", await follow(`v1/jobs/${job.id}`, told, stop.signal));
     } catch (error) {
-      if (!(error instanceof ProblemError) && error.name !== "AbortError") throw error;
+      if (!(error instanceof ProblemError) && !isAborted(error)) throw error;
     } finally {
       followed.delete(job.id);
       if (!stop.signal.aborted) refresh();
     }
   }
 
+  /** @param {Job[]} items */
   function tableOf(items) {
     const head = h(
       "tr",
@@ -261,11 +303,17 @@ export function jobs(place, design, form, onOpen, onStudy) {
     return h("table", {}, h("thead", {}, head), h("tbody", {}, ...items.map(rowOf)));
   }
 
+  /**
+   * @param {Job} job
+   * @returns {HTMLTableRowElement}
+   */
   function rowOf(job) {
     const address = `v1/jobs/${job.id}`;
+    /** @type {(name: string, work: () => unknown) => HTMLButtonElement} */
     const button = (name, work) =>
       h("button", { type: "button", on: { click: () => act(work) }, ariaLabel: `${name} ${job.id.slice(-6)}` }, name);
     // A file changes no job: the rows stay as they are under the pointer.
+    /** @type {(words: string, name: string) => HTMLButtonElement} */
     const file = (words, name) =>
       h(
         "button",
@@ -274,13 +322,10 @@ export function jobs(place, design, form, onOpen, onStudy) {
           ariaLabel: `${words} ${job.id.slice(-6)}`,
           on: {
             click: () =>
-              attempt(() =>
-                saveFile(
-                  job.id,
-                  name,
-                  fileOfDesign(documents.has(job.id) ? nameOf(documents.get(job.id)) : "", `${job.id.slice(-6)}-`),
-                ),
-              ),
+              attempt(() => {
+                const asked = documents.get(job.id);
+                return saveFile(job.id, name, fileOfDesign(asked ? nameOf(asked) : "", `${job.id.slice(-6)}-`));
+              }),
           },
         },
         words,
@@ -288,6 +333,7 @@ export function jobs(place, design, form, onOpen, onStudy) {
     const open = async () =>
       onOpen((await json(address)).submission, job.status === "successful" ? await json(`${address}/results`) : null);
     // What else there is depends on what was asked for.
+    /** @type {HTMLButtonElement} */
     const more = h(
       "button",
       {

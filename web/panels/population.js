@@ -12,6 +12,12 @@ import { apart, at, nameOf } from "../state/design.js";
 import { fixed, number, timeOf } from "../state/numbers.js";
 import { inUnit, inWords, quantityOf, shown } from "../state/quantities.js";
 
+/** @import { How } from "./question.js" */
+/** @import { Design } from "../state/design.js" */
+/** @import { AskedStudy, GearName, Limits, Open, Percentile, PopulationResults } from "../state/documents.js" */
+/** @import { QuantityResults } from "../state/documents.js" */
+/** @import { Form } from "../views/form.js" */
+
 /** What has come so far is fetched so often at most while members are computed, in milliseconds. */
 const PAUSE = 1000;
 
@@ -37,9 +43,16 @@ const NOT_ASKED = [
   "/pair/driven/tooth_deviations",
 ];
 
+/** @type {GearName[]} */
+const MEMBERS = ["driving", "driven"];
+
 const CLASSES = Array.from({ length: 11 }, (_, i) => i + 1);
 
-/** The fields that are offered first, with what they usually vary by. */
+/**
+ * The fields that are offered first, with what they usually vary by.
+ *
+ * @type {[pointer: string, deviation: number][]}
+ */
 const FIRST = [
   ["/pair/center_distance_mm", 0.02],
   ["/pair/driving/tip_relief/amount_um", 1.5],
@@ -48,6 +61,12 @@ const FIRST = [
 /**
  * The population of `design` in `place`; `form` knows the fields, `limits` are those of the service, `onOpen` opens a
  * member as a design.
+ *
+ * @param {HTMLElement} place
+ * @param {Design} design
+ * @param {Form} form
+ * @param {Limits} limits
+ * @param {Open} onOpen
  */
 export function population(place, design, form, limits, onOpen) {
   const size = h("input", { type: "number", id: "population-size", value: 200, min: 2, max: 100000, step: 1 });
@@ -61,7 +80,7 @@ export function population(place, design, form, limits, onOpen) {
       },
     },
   });
-  const classes = ["driving", "driven"].map((gear) =>
+  const classes = MEMBERS.map((gear) =>
     h(
       "select",
       { id: `population-${gear}` },
@@ -114,7 +133,7 @@ export function population(place, design, form, limits, onOpen) {
         h("label", { htmlFor: size.id }, "Members"),
         size,
         ...classes.flatMap((each, i) => [
-          h("label", { htmlFor: each.id }, `teeth of the ${["driving", "driven"][i]} gear`),
+          h("label", { htmlFor: each.id }, `teeth of the ${MEMBERS[i]} gear`),
           each,
         ]),
       ),
@@ -135,6 +154,7 @@ export function population(place, design, form, limits, onOpen) {
     picker,
     out,
   );
+  /** @type {{ results: PopulationResults, address: string } | null} */
   let last = null;
 
   const suggest = () => {
@@ -143,7 +163,11 @@ export function population(place, design, form, limits, onOpen) {
     foresee();
   };
 
-  /** So many torques about that of the design, or its own, until somebody types other ones. */
+  /**
+   * So many torques about that of the design, or its own, until somebody types other ones.
+   *
+   * @param {number} most
+   */
   function suggestTorques(most) {
     if (torques.dataset.typed && torques.value) return;
     const own = design.get("/output_torques_n_m") ?? [100];
@@ -162,7 +186,7 @@ export function population(place, design, form, limits, onOpen) {
         base,
         population: { size: count, accuracy },
       } = asked();
-      for (const member of Object.keys(accuracy ?? {}))
+      for (const member of MEMBERS.filter((each) => accuracy?.[each]))
         base.pair[member].tooth_deviations = {
           pitch_cumulative_um: Array.from({ length: base.pair[member].tooth_count }, (_, i) => Number(i === 1)),
         };
@@ -181,7 +205,7 @@ export function population(place, design, form, limits, onOpen) {
       // What is wrong with the design is told beside it.
       ahead.textContent =
         error.problem.code === "too_large"
-          ? `${form.inWords(error.problem.errors[0].detail)} Teeth of one gear as designed leave room too: the pair repeats after fewer mesh periods then.`
+          ? `${form.inWords(error.reason)} Teeth of one gear as designed leave room too: the pair repeats after fewer mesh periods then.`
           : "";
     }
   });
@@ -195,8 +219,9 @@ export function population(place, design, form, limits, onOpen) {
     };
     // The span of the drawing is not that of teeth that all differ.
     delete base.resolution.span_mesh_periods;
+    /** @type {Partial<Record<GearName, { iso_1328_class: number }>>} */
     const accuracy = {};
-    ["driving", "driven"].forEach((member, i) => {
+    MEMBERS.forEach((member, i) => {
       if (!classes[i].value) return;
       accuracy[member] = { iso_1328_class: Number(classes[i].value) };
       delete base.pair[member].tooth_deviations;
@@ -210,6 +235,7 @@ export function population(place, design, form, limits, onOpen) {
     };
   }
 
+  /** @type {How<PopulationResults>} */
   const how = {
     part: "/results/population",
     pause: PAUSE,
@@ -231,18 +257,31 @@ export function population(place, design, form, limits, onOpen) {
     return question.study(asked, how);
   }
 
-  /** Shows a population that was asked for before. */
+  /**
+   * Shows a population that was asked for before.
+   *
+   * @param {string} id
+   * @param {AskedStudy} study
+   */
   function resume(id, { base }) {
     clear();
     return question.resume(id, base, how);
   }
 
-  /** Says how many members have no results, and why most of these. */
+  /**
+   * Says how many members have no results, and why most of these.
+   *
+   * @param {PopulationResults} results
+   */
   function missed({ failed, size, refusals }) {
     missing.hidden = !failed;
     missing.textContent = `${failed === size ? "None of the members can be computed" : `${failed} of ${size} members cannot be computed`}${mostOften(refusals, (detail) => form.inWords(detail))}.${failed === size ? "" : " What stands below is of the others alone."}`;
   }
 
+  /**
+   * @param {PopulationResults} results
+   * @param {string} address
+   */
   function show(results, address) {
     last = { results, address };
     missed(results);
@@ -257,6 +296,7 @@ export function population(place, design, form, limits, onOpen) {
   }
 
   function draw() {
+    if (!last) return;
     const { results, address } = last;
     const looked = quantityOf(quantity.value);
     const { printed, factor } = looked;
@@ -265,16 +305,19 @@ export function population(place, design, form, limits, onOpen) {
     const one = all.find((each) => each.output_torque_n_m === Number(torque.value)) ?? all[0];
     picker.hidden = !one;
     if (!one) return out.replaceChildren();
+    /** @type {(each: QuantityResults, percent: number) => Percentile | undefined} */
     const percentile = (each, percent) => each.percentiles.find((found) => found.percent === percent);
-    const p95 = percentile(one, 95);
-    const told = (value) => (value === null ? "?" : shown(looked, value));
-    const at95 = `95 of 100 pairs stay below ${told(p95.value)} ${printed} ${p95.low === null || p95.high === null ? "(too few members to say how surely)" : `(with 95 % confidence between ${told(p95.low)} and ${told(p95.high)})`}; half are below ${told(percentile(one, 50).value)}.`;
+    const { value: at95th, low = null, high = null } = percentile(one, 95) ?? {};
+    /** @type {(value: number | null | undefined) => string} */
+    const told = (value) => shown(looked, value);
+    const at95 = `95 of 100 pairs stay below ${told(at95th)} ${printed} ${low === null || high === null ? "(too few members to say how surely)" : `(with 95 % confidence between ${told(low)} and ${told(high)})`}; half are below ${told(percentile(one, 50)?.value)}.`;
     const beyond = Object.entries(results.beyond_total_pitch_tolerance)
       .filter(([, share]) => share !== null)
-      .map(([gear, share]) => `${fixed(100 * share, 1)} % of the ${gear} gears are beyond F_pT of their class.`);
+      .map(([gear, share]) => `${fixed(100 * (share ?? NaN), 1)} % of the ${gear} gears are beyond F_pT of their class.`);
     const rejected = Object.entries(results.rejected_by_inspection ?? {})
       .filter(([, share]) => share !== null)
-      .map(([gear, share]) => `${fixed(100 * share, 1)} % of the ${gear} gears made were rejected by the inspection.`);
+      .map(([gear, share]) => `${fixed(100 * (share ?? NaN), 1)} % of the ${gear} gears made were rejected by the inspection.`);
+    /** @type {(name: string, number: number) => HTMLButtonElement} */
     const member = (name, number) =>
       h("button", { type: "button", on: { click: () => open(address, number) } }, `Open the ${name} member`);
     const pictures = [
@@ -288,15 +331,15 @@ export function population(place, design, form, limits, onOpen) {
         ? [
             figure({
               lines: [
-                [95, "5 4"],
-                [50, null],
-                [5, "2 3"],
-              ].map(([percent, dash]) => ({
+                { percent: 95, dash: [5, 4] },
+                { percent: 50, dash: [] },
+                { percent: 5, dash: [2, 3] },
+              ].map(({ percent, dash }) => ({
                 name: `${percent} % are below`,
                 color: "currentColor",
-                dash: dash?.split(" "),
-                x: all.map((each) => each.output_torque_n_m),
-                y: all.map((each) => percentile(each, percent).value * factor),
+                dash,
+                x: all.map((each) => each.output_torque_n_m ?? NaN),
+                y: all.map((each) => (percentile(each, percent)?.value ?? NaN) * factor),
               })),
               x: "output torque in N m",
               y: inUnit(looked),
@@ -319,9 +362,14 @@ export function population(place, design, form, limits, onOpen) {
     );
   }
 
-  /** What makes the variance, as bars with their limits. */
+  /**
+   * What makes the variance, as bars with their limits.
+   *
+   * @param {QuantityResults} quantity
+   */
   function influencesOf({ influences }) {
     if (!influences.length) return h("p", { className: "note" }, "Nothing varies so far.");
+    /** @type {(influence: QuantityResults["influences"][number]) => string} */
     const name = ({ path, accuracy }) => (path ? form.named(path) : `teeth of the ${accuracy} gear`);
     const rows = influences.map((each) => {
       const [low, high] = [each.low ?? each.share, each.high ?? each.share];
@@ -350,6 +398,7 @@ export function population(place, design, form, limits, onOpen) {
     );
   }
 
+  /** @type {(address: string, member: number) => Promise<void>} */
   async function open(address, member) {
     onOpen({ ...(await json(`${address}/designs/${member}`)), ...apart(design.submission).further }, null);
   }
@@ -358,20 +407,30 @@ export function population(place, design, form, limits, onOpen) {
   return { refresh: suggest, resume };
 }
 
-/** The outline of a histogram's bars. */
+/**
+ * The outline of a histogram's bars.
+ *
+ * @type {(histogram: QuantityResults["histogram"], factor: number) => { x: number[], y: number[] }}
+ */
 function outlineOf({ edges, counts }, factor) {
-  const x = [edges[0], ...counts.flatMap((_, i) => [edges[i], edges[i + 1]]), edges.at(-1)];
+  const x = [edges[0], ...counts.flatMap((_, i) => [edges[i], edges[i + 1]]), edges[edges.length - 1]];
   return { x: x.map((each) => each * factor), y: [0, ...counts.flatMap((count) => [count, count]), 0] };
 }
 
-/** A field and the law that it follows, around the value that the design has. */
+/**
+ * A field and the law that it follows, around the value that the design has.
+ *
+ * @param {number} index
+ * @param {Design} design
+ * @param {Form} form
+ */
 function law(index, design, form) {
   const id = `law-${index}`;
   const field = h("select", {
     id,
     on: {
       change: () => {
-        spread.value = suggested();
+        spread.value = String(suggested());
       },
     },
   });
@@ -392,6 +451,7 @@ function law(index, design, form) {
     kind,
     spread,
   );
+  /** @type {() => unknown} */
   const valueOf = () => at(design.submission, field.value);
   const suggested = () => {
     const usual = FIRST.find(([path]) => path === field.value)?.[1];
@@ -400,7 +460,7 @@ function law(index, design, form) {
   };
 
   function read() {
-    const [value, by] = [valueOf(), given(spread)];
+    const [value, by = 0] = [valueOf(), given(spread)];
     if (!field.value || typeof value !== "number" || !(by > 0)) return [];
     const path = field.value;
     if (kind.value === "normal")
@@ -423,7 +483,7 @@ function law(index, design, form) {
     if (!element.dataset.begun && [...field.options].some(({ value }) => value === FIRST[index][0]))
       field.value = FIRST[index][0];
     element.dataset.begun = "yes";
-    if (!spread.value) spread.value = suggested();
+    if (!spread.value) spread.value = String(suggested());
   }
   return { element, read, refresh };
 }

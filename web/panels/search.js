@@ -14,6 +14,13 @@ import { preview } from "../state/preview.js";
 import { inUnit, inWords, quantityOf } from "../state/quantities.js";
 import { DASHES } from "../state/series.js";
 
+/** @import { How } from "./question.js" */
+/** @import { Design } from "../state/design.js" */
+/** @import { AskedSearch, FoundDesign, Open, Search, SearchProgress, StudyState } from "../state/documents.js" */
+/** @import { Submission } from "../state/documents.js" */
+/** @import { Quantity } from "../state/quantities.js" */
+/** @import { Form } from "../views/form.js" */
+
 /** How a search stands is fetched so often at most, in milliseconds. */
 const PAUSE = 500;
 
@@ -35,6 +42,7 @@ const VARIABLES = 3;
 /** So many of them begin with a field. */
 const BEGUN = 2;
 
+/** @type {(id: string, label: string, none: string | null) => HTMLSelectElement} */
 const chosen = (id, label, none) =>
   h(
     "select",
@@ -43,7 +51,14 @@ const chosen = (id, label, none) =>
     ...options(none ? "" : FIRST_GOAL),
   );
 
-/** The search of `design` in `place`; `form` knows the fields, `onOpen` opens a design. */
+/**
+ * The search of `design` in `place`; `form` knows the fields, `onOpen` opens a design.
+ *
+ * @param {HTMLElement} place
+ * @param {Design} design
+ * @param {Form} form
+ * @param {Open} onOpen
+ */
 export function search(place, design, form, onOpen) {
   const variables = Array.from({ length: VARIABLES }, (_, i) => variable(i, design, form));
   const goals = [
@@ -56,10 +71,13 @@ export function search(place, design, form, onOpen) {
   const out = h("div", { className: "out", id: "search-out" });
   /** The design that the search began with and the best one, drawn beside each other; which row that is. */
   const beside = h("div", { className: "beside", id: "search-beside" });
+  /** @type {string | null} */
   let drawn = null;
   /**
    * What the design has beside its curves: no design that is looked at needs it, and the one that is opened has it
    * again.
+   *
+   * @type {Partial<Submission>}
    */
   let further = {};
   place.replaceChildren(
@@ -103,16 +121,19 @@ export function search(place, design, form, onOpen) {
     out,
   );
 
+  /** @returns {AskedSearch} */
   function asked() {
+    // The names of the choices are those of the service.
     const minimize = goals
       .map(({ value }) => value)
       .filter(Boolean)
-      .map((quantity) => ({ quantity }));
+      .map((quantity) => /** @type {Search["minimize"][number]} */ ({ quantity }));
     const subject_to = conditions.flatMap((each) => each.read());
     // What is asked for by a goal or a bound is told; gears are what they are.
     const needs = [...minimize, ...subject_to]
-      .flatMap(({ quantity }) => quantityOf(quantity).needs)
+      .flatMap(({ quantity }) => quantityOf(quantity ?? "").needs)
       .filter((pointer) => !pointer.startsWith("/pair/"));
+    /** @type {(base: Submission, pointer: string) => Submission} */
     const give = (base, pointer) =>
       withValue(
         base,
@@ -131,11 +152,12 @@ export function search(place, design, form, onOpen) {
     };
   }
 
+  /** @type {(about: () => AskedSearch | null) => How<StudyState>} */
   const how = (about) => ({
     pause: PAUSE,
     show: (study, address) => show(study.search, address, about()),
     progress: (done, total, left) => `${done} of at most ${total} designs${left(done, total)}`,
-    ended: (study) => study.problem?.detail ?? `${study.search.evaluations} designs looked at, ${study.status}`,
+    ended: (study) => study.problem?.detail ?? `${study.search?.evaluations} designs looked at, ${study.status}`,
   });
 
   function clear() {
@@ -147,6 +169,7 @@ export function search(place, design, form, onOpen) {
 
   function start() {
     clear();
+    /** @type {AskedSearch | null} */
     let about = null;
     return question.study(
       () => (about = asked()),
@@ -154,7 +177,12 @@ export function search(place, design, form, onOpen) {
     );
   }
 
-  /** Shows a search that was asked for before. */
+  /**
+   * Shows a search that was asked for before.
+   *
+   * @param {string} id
+   * @param {AskedSearch} about
+   */
   function resume(id, about) {
     clear();
     return question.resume(
@@ -164,23 +192,32 @@ export function search(place, design, form, onOpen) {
     );
   }
 
+  /**
+   * @param {SearchProgress | null | undefined} found
+   * @param {string} address
+   * @param {AskedSearch | null} about
+   */
   function show(found, address, about) {
+    /** @type {(asked: { quantity?: string | null, percent?: number | null }) => Quantity} */
+    if (!found || !about) return;
+    /** @type {(asked: { quantity?: string | null, percent?: number | null }) => Quantity} */
     const called = ({ quantity, percent }) => {
       const known = quantityOf(quantity ?? "Cost");
       return percent ? { ...known, title: `${known.title} (p${percent})` } : known;
     };
     const [parts, held] = [about.search.minimize, about.search.subject_to ?? []].map((asked) => asked.map(called));
+    /** @type {(values: (number | null)[], names: Quantity[]) => string} */
     const told = (values, names) =>
       names
         .map((quantity, i) =>
           `${inWords(quantity)} ${values?.[i] === null || values?.[i] === undefined ? "?" : number(quantity.factor * values[i], 4)} ${quantity.printed}`.trim(),
         )
         .join(", ");
-    const { best, front, confirmed, generations } = found;
+    const { best, front = [], confirmed, generations } = found;
     const failed = [
-      ["designs", found.refusals],
-      ["members of the others", found.member_refusals],
-    ].flatMap(([what, refusals = []]) =>
+      { what: "designs", refusals: found.refusals },
+      { what: "members of the others", refusals: found.member_refusals },
+    ].flatMap(({ what, refusals = [] }) =>
       refusals.length
         ? [
             `${refusals.reduce((sum, { count }) => sum + count, 0)} ${what} cannot be computed${mostOften(refusals, (detail) => form.inWords(detail))}.`,
@@ -209,21 +246,22 @@ export function search(place, design, form, onOpen) {
       h("tbody", {}, ...rows),
     );
     const atEnd = about.search.variables
-      .filter(({ path, low, high }) => [low, high].includes(best.values[path]))
+      .filter(({ path, low, high }) => [low, high].includes(at(best, "/values")?.[path]))
       .map(({ path }) => form.named(path));
-    const open = async (row) => onOpen({ ...(await json(`${address}/designs/${row}`)), ...further }, null);
+    /** @type {(row: number) => Promise<void>} */
+    const open = async (row) => void onOpen({ ...(await json(`${address}/designs/${row}`)), ...further }, null);
+    /** @type {(row: number, words: string) => HTMLButtonElement} */
     const use = (row, words) => h("button", { type: "button", on: { click: () => open(row) } }, words);
     drawBeside(address, best.row, about.base);
     const reached = generations
-      .map((each, i) => [i + 1, each.best === null ? null : parts[0].factor * each.best])
-      .filter(([, value]) => value !== null);
+      .flatMap(({ best: value = null }, i) => (value === null ? [] : [[i + 1, parts[0].factor * value]]));
     const pictures =
       front.length > 1
         ? [
             figure({
               points: front.map(({ goals: [x, y], row }) => ({
-                x: parts[0].factor * x,
-                y: parts[1].factor * y,
+                x: parts[0].factor * (x ?? NaN),
+                y: parts[1].factor * (y ?? NaN),
                 label: `design ${row}`,
                 strong: row === best.row,
                 open: () => open(row),
@@ -275,6 +313,10 @@ export function search(place, design, form, onOpen) {
 
   /**
    * Draws the design of a row beside the one that the search began with, and their curves where a preview takes them.
+   *
+   * @param {string} address
+   * @param {number} row
+   * @param {Submission} base
    */
   async function drawBeside(address, row, base) {
     if (drawn === `${address} ${row}`) return;
@@ -333,7 +375,13 @@ export function search(place, design, form, onOpen) {
     }
   }
 
-  /** The designs of a front, each to be used. */
+  /**
+   * The designs of a front, each to be used.
+   *
+   * @param {FoundDesign[]} front
+   * @param {Quantity[]} parts
+   * @param {(row: number, words: string) => HTMLButtonElement} use
+   */
   function frontOf(front, parts, use) {
     const head = [...parts.map(inUnit), ""].map((words) =>
       h("th", { scope: "col" }, words || h("span", { className: "visually-hidden" }, "Actions")),
@@ -342,7 +390,7 @@ export function search(place, design, form, onOpen) {
       h(
         "tr",
         {},
-        ...goals.map((value, i) => h("td", {}, number(parts[i].factor * value, 4))),
+        ...goals.map((value, i) => h("td", {}, number(parts[i].factor * (value ?? NaN), 4))),
         h("td", {}, use(row, "Use")),
       ),
     );
@@ -358,7 +406,12 @@ export function search(place, design, form, onOpen) {
   return { refresh, resume };
 }
 
-/** A quantity and the bound that it has to keep. */
+/**
+ * A quantity and the bound that it has to keep.
+ *
+ * @param {string} end
+ * @param {number} index
+ */
 function condition(end, index) {
   const bounded = chosen(`search-bounded${end}`, "What has to hold", index ? "nothing else" : "nothing");
   const side = h(
@@ -378,12 +431,23 @@ function condition(end, index) {
   );
   const read = () =>
     bounded.value && bound.value
-      ? [{ quantity: bounded.value, [side.value]: given(bound) / quantityOf(bounded.value).factor }]
+      ? [
+          /** @type {NonNullable<Search["subject_to"]>[number]} */ ({
+            quantity: bounded.value,
+            [side.value]: (given(bound) ?? NaN) / quantityOf(bounded.value).factor,
+          }),
+        ]
       : [];
   return { element, read };
 }
 
-/** A field and the range that is searched, around the value that the design has. */
+/**
+ * A field and the range that is searched, around the value that the design has.
+ *
+ * @param {number} index
+ * @param {Design} design
+ * @param {Form} form
+ */
 function variable(index, design, form) {
   const id = `variable-${index}`;
   // Until somebody chooses one the field is one that the design has, whichever design that is.
@@ -420,13 +484,14 @@ function variable(index, design, form) {
     const value = at(design.submission, field.value);
     if (typeof value !== "number") return;
     const ends = value === 0 ? [0, 1] : [0.4 * value, 2 * value].sort((a, b) => a - b);
+    /** @type {(end: number) => number} */
     const round = (end) => (known?.kind.whole ? Math.round(end) : Number(end.toPrecision(3)));
-    [low.value, high.value, step.value] = [round(ends[0]), round(ends[1]), known?.kind.whole ? 1 : ""];
+    [low.value, high.value, step.value] = [`${round(ends[0])}`, `${round(ends[1])}`, known?.kind.whole ? "1" : ""];
   }
 
   const read = () =>
     field.value && low.value !== "" && high.value !== ""
-      ? [{ path: field.value, low: given(low), high: given(high), step: given(step) ?? null }]
+      ? [{ path: field.value, low: given(low) ?? NaN, high: given(high) ?? NaN, step: given(step) ?? null }]
       : [];
 
   /** Only fields that have a number in this design can be searched. */

@@ -2,7 +2,7 @@
 // Many designs at once: axes of values over any fields, a table, a picture of two of its columns, and which designs no
 // other beats; or a search that chooses the values itself.
 
-import { h } from "../draw/dom.js";
+import { h, within } from "../draw/dom.js";
 import { save } from "../draw/download.js";
 import { figure } from "../draw/figure.js";
 import { allGiven, given, numeric } from "../draw/inputs.js";
@@ -15,6 +15,12 @@ import { number } from "../state/numbers.js";
 import { calledOf, inRow, inUnit, inWords, quantityOf, shown, worstInRow } from "../state/quantities.js";
 import { usualAt } from "../state/schema.js";
 import { fileOfDesign } from "../state/tables.js";
+
+/** @import { How } from "./question.js" */
+/** @import { Design } from "../state/design.js" */
+/** @import { AskedStudy, Open, RowCurve, StudyResults, TableRow } from "../state/documents.js" */
+/** @import { Quantity } from "../state/quantities.js" */
+/** @import { Form } from "../views/form.js" */
 
 /** A table is fetched so often at most while a study runs, in milliseconds. */
 const PAUSE = 400;
@@ -31,6 +37,7 @@ const [COUNT, COUNTS] = [/^\/pair\/driven\/blank\/holes\/(0\/)?count$/, "6, 8, 1
 
 /** The parts of gears that a design may lack and an axis may change all the same, and their fields. */
 const PART = /^(\/pair\/\w+\/(?:blank\/holes|blank\/web|tip_relief))\//;
+/** @type {string[]} */
 const LACKING = ["driving", "driven"].flatMap((gear) =>
   [
     "tip_relief/amount_um",
@@ -43,7 +50,14 @@ const LACKING = ["driving", "driven"].flatMap((gear) =>
   ].map((name) => `/pair/${gear}/${name}`),
 );
 
-/** The study of `design` in `place`; `form` knows the fields, `onOpen` opens the design of a row. */
+/**
+ * The study of `design` in `place`; `form` knows the fields, `onOpen` opens the design of a row.
+ *
+ * @param {HTMLElement} place
+ * @param {Design} design
+ * @param {Form} form
+ * @param {Open} onOpen
+ */
 export function study(place, design, form, onOpen) {
   const axes = [axis(0, design, form), axis(1, design, form)];
   const constant = h("input", { type: "checkbox", id: "study-mass" });
@@ -111,8 +125,12 @@ export function study(place, design, form, onOpen) {
     h("details", { id: "search" }, h("summary", {}, "Let a search choose the values"), searched),
   );
   const seeker = search(searched, design, form, onOpen);
+  /** @type {StudyResults | null} */
   let last = null;
+  /** The name of the study. */
+  let called = "";
 
+  /** @type {How<StudyResults>} */
   const how = {
     part: "/results",
     pause: PAUSE,
@@ -130,19 +148,31 @@ export function study(place, design, form, onOpen) {
   function start() {
     clear();
     return question.study(() => {
+      /** @type {AskedStudy} */
       const asked = { base: base(), axes: axes.flatMap((each) => each.read()), name: nameOf(design.submission) };
-      if (constant.checked) asked.constant_mass = { gear: gear.value, mass_removed_percent: given(removed) };
+      if (constant.checked) {
+        // What is missing the service says.
+        const mass_removed_percent = /** @type {number} */ (given(removed));
+        asked.constant_mass = { gear: gear.value === "driving" ? "driving" : "driven", mass_removed_percent };
+      }
+      called = asked.name ?? "";
       return asked;
     }, how);
   }
 
-  /** Shows a study, or the search, that was asked for before. */
+  /**
+   * Shows a study, or the search, that was asked for before.
+   *
+   * @param {string} id
+   * @param {AskedStudy} asked
+   */
   function resume(id, asked) {
     if (asked.search) {
-      place.querySelector("#search").open = true;
-      return seeker.resume(id, asked);
+      within(place, "#search", HTMLDetailsElement).open = true;
+      return seeker.resume(id, { ...asked, search: asked.search });
     }
     clear();
+    called = asked.name ?? "";
     return question.resume(id, asked.base, how);
   }
 
@@ -150,14 +180,17 @@ export function study(place, design, form, onOpen) {
   function base() {
     const touched = axes
       .flatMap((each) => each.read())
-      .map(({ path }) => PART.exec(path)?.[1])
-      .filter(Boolean);
+      .flatMap(({ path }) => PART.exec(path)?.[1] ?? []);
     let submission = design.submission;
     for (const pointer of touched)
       if (!at(submission, pointer)) submission = withValue(submission, pointer, form.beginnings.object(pointer, null));
     return submission;
   }
 
+  /**
+   * @param {StudyResults} results
+   * @param {string} address
+   */
   function show(results, address) {
     last = results;
     draw(results);
@@ -168,7 +201,7 @@ export function study(place, design, form, onOpen) {
         on: {
           click: async () =>
             save(
-              fileOfDesign(results.name ?? "", "study.csv"),
+              fileOfDesign(called, "study.csv"),
               "text/csv",
               await (await request(`${address}/results/table.csv`)).blob(),
             ),
@@ -186,23 +219,27 @@ export function study(place, design, form, onOpen) {
     );
   }
 
+  /** @param {StudyResults} results */
   function draw({ rows, gear }) {
     const computed = rows.filter((row) => row.curves?.length && row.curves[0].statistics);
     for (const option of [...across.options, ...up.options])
       option.hidden = !computed.some((row) => Number.isFinite(worstInRow(quantityOf(option.value), row, gear)));
-    const [x, y] = [across, up].map((select) => quantityOf(select.value));
-    const [readX, readY] = [x, y].map((quantity) => (row) => quantity.factor * worstInRow(quantity, row, gear));
+    const [x, y] = [quantityOf(across.value), quantityOf(up.value)];
+    /** @type {(quantity: Quantity, row: TableRow) => number} */
+    const readOf = (quantity, row) => quantity.factor * worstInRow(quantity, row, gear);
     const points = computed
-      .map((row) => ({ x: readX(row), y: readY(row), label: nameOfRow(row), strong: row.pareto }))
+      .map((row) => ({ x: readOf(x, row), y: readOf(y, row), label: nameOfRow(row), strong: row.pareto }))
       .filter((point) => Number.isFinite(point.x) && Number.isFinite(point.y));
     picker.hidden = computed.length < 2;
     const title = `Designs by ${inWords(x)} and ${inWords(y)}, of several torques the worst; large points are the best`;
     picture.replaceChildren(...(points.length > 1 ? [figure({ points, x: inUnit(x), y: inUnit(y), title })] : []));
   }
 
+  /** @param {StudyResults} results */
   function tableOf({ rows, gear }) {
-    const ofRow = OF_ROW.map((name) => [name, `${name}.${gear}`].map(quantityOf).find((each) => each.of));
+    const ofRow = OF_ROW.map((name) => [name, `${name}.${gear}`].map(quantityOf).find((each) => each.of) ?? quantityOf(name));
     const ofCurve = OF_CURVE.map(quantityOf);
+    /** @type {(quantity: Quantity) => string} */
     const named = (quantity) => `${calledOf(quantity)} ${quantity.printed}`;
     const names = ["Design", "Best", ...ofRow.map(named), "Torque N m", ...ofCurve.map(named), ""];
     const head = h(
@@ -210,13 +247,19 @@ export function study(place, design, form, onOpen) {
       {},
       ...names.map((name) => h("th", { scope: "col" }, name || h("span", { className: "visually-hidden" }, "Actions"))),
     );
+    /** @type {(row: TableRow, curve: RowCurve) => string[]} */
     const cells = (row, curve) => {
+      /** @type {(quantity: Quantity) => string} */
       const each = (quantity) => shown(quantity, inRow(quantity, row, curve, gear));
       return [...ofRow.map(each), number(curve.output_torque_n_m), ...ofCurve.map(each)];
     };
     return h("table", {}, h("thead", {}, head), h("tbody", {}, ...rows.flatMap((row) => rowsOf(row, cells))));
   }
 
+  /**
+   * @param {TableRow} row
+   * @param {(row: TableRow, curve: RowCurve) => string[]} cells
+   */
   function rowsOf(row, cells) {
     const lead = [
       h("th", { scope: "row" }, nameOfRow(row)),
@@ -257,15 +300,20 @@ export function study(place, design, form, onOpen) {
     );
   }
 
-  /** What a row changes, in the words of the form. */
+  /**
+   * What a row changes, in the words of the form.
+   *
+   * @param {TableRow} row
+   */
   function nameOfRow({ label, changes }) {
-    const words = Object.entries(changes).map(
+    const words = Object.entries(/** @type {Record<string, unknown>} */ (changes)).map(
       ([pointer, value]) =>
         `${form.named(pointer)} ${typeof value === "number" ? number(value, 5) : Array.isArray(value) ? value.join(", ") : String(value).replace(/_/g, " ")}`,
     );
     return words.join("; ") || label;
   }
 
+  /** @param {TableRow} row */
   async function openRow(row) {
     const job = await json(`v1/jobs/${row.job}`);
     onOpen(job.submission, null);
@@ -274,7 +322,13 @@ export function study(place, design, form, onOpen) {
   return { refresh: () => [...axes, seeker].forEach((each) => each.refresh()), resume };
 }
 
-/** Values over a field that is chosen from all that the form has. */
+/**
+ * Values over a field that is chosen from all that the form has.
+ *
+ * @param {number} index
+ * @param {Design} design
+ * @param {Form} form
+ */
 function axis(index, design, form) {
   const id = `axis-${index}`;
   const values = h("input", {
@@ -311,7 +365,7 @@ function axis(index, design, form) {
         ? at(form.beginnings.object(part, null), field.value.slice(part.length))
         : undefined;
     const value = at(design.submission, field.value) ?? usualAt(form.api, design.submission, field.value) ?? begun;
-    if (known?.kind.kind === "choice") return known.kind.schema.enum.join(", ");
+    if (known?.kind.kind === "choice") return (known.kind.schema.enum ?? []).join(", ");
     if (typeof value !== "number") return "";
     if (value === 0) return known?.kind.whole ? "0, 1, 2" : "0, 0.1, 0.2";
     return [0.9, 1, 1.1]
@@ -319,9 +373,10 @@ function axis(index, design, form) {
       .join(", ");
   }
 
+  /** @type {Record<string, boolean | null>} */
   const WORDS = { true: true, false: false, null: null };
   const isWord = () =>
-    ["choice", "flag"].includes(form.fields().find(({ pointer }) => pointer === field.value)?.kind.kind);
+    ["choice", "flag"].includes(form.fields().find(({ pointer }) => pointer === field.value)?.kind.kind ?? "");
   const listed = () =>
     isWord()
       ? values.value
@@ -329,9 +384,14 @@ function axis(index, design, form) {
           .filter(Boolean)
           .map((word) => (word in WORDS ? WORDS[word] : word))
       : allGiven(values);
-  const read = () => (field.value && values.value.trim() ? [pathOf(field.value, [...new Set(listed())])] : []);
+  const read = () => (field.value && values.value.trim() ? [pathOf(field.value, [...new Set(/** @type {unknown[]} */ (listed()))])] : []);
 
-  /** A field within a list is changed by its place; the torque as the list that it is. */
+  /**
+   * A field within a list is changed by its place; the torque as the list that it is.
+   *
+   * @param {string} path
+   * @param {unknown[]} list
+   */
   function pathOf(path, list) {
     return path === TORQUE ? { path, values: list.map((value) => [value]) } : { path, values: list };
   }
@@ -341,9 +401,9 @@ function axis(index, design, form) {
     // Several patterns have fields of their own, and none of one pattern.
     const absent = LACKING.filter(
       (pointer) =>
-        !fields.some((each) => each.pointer === pointer) && !Array.isArray(design.get(PART.exec(pointer)[1])),
+        !fields.some((each) => each.pointer === pointer) && !Array.isArray(design.get(PART.exec(pointer)?.[1] ?? "")),
     );
-    const all = [...absent, TORQUE].map((pointer) => ({ pointer, title: form.titled(pointer) })).concat(fields);
+    const all = [...[...absent, TORQUE].map((pointer) => ({ pointer, title: form.titled(pointer) })), ...fields];
     const before = field.value;
     // The field that was chosen may not be there any more.
     if (!offer(field, "none", all)) values.value = "";

@@ -10,16 +10,30 @@ import { ProblemError } from "../state/api.js";
 import { apart, nameOf } from "../state/design.js";
 import { fixed, number } from "../state/numbers.js";
 
+/** @import { Dot, Figure } from "../draw/figure.js" */
+/** @import { How } from "./question.js" */
+/** @import { Design } from "../state/design.js" */
+/** @import { AskedStudy, Study, StudyResults } from "../state/documents.js" */
+
 const MOST_TORQUES = 24;
 /** Points are fetched so often at most while a sweep runs, in milliseconds. */
 const PAUSE = 400;
 const TORQUE = "/output_torques_n_m";
 
-/** Whether a study is a sweep: torques alone differ, one at a time. */
+/**
+ * Whether a study is a sweep: torques alone differ, one at a time.
+ *
+ * @type {(study: Study) => boolean}
+ */
 export const isSweep = ({ axes }) =>
-  axes?.length === 1 && axes[0].path === TORQUE && axes[0].values.every((each) => each.length === 1);
+  axes?.length === 1 && axes[0].path === TORQUE && axes[0].values.every((each) => Array.isArray(each) && each.length === 1);
 
-/** The sweep of `design` in `place`. */
+/**
+ * The sweep of `design` in `place`.
+ *
+ * @param {HTMLElement} place
+ * @param {Design} design
+ */
 export function sweep(place, design) {
   const [from, to] = ["from", "to"].map((end) => numeric({ id: `sweep-${end}` }));
   const question = new Question(design, { id: "sweep", words: "Sweep", ignored: [TORQUE] });
@@ -67,15 +81,16 @@ export function sweep(place, design) {
     if (!to.dataset.typed || !to.value) to.value = number(torque * 2, 2);
   };
 
+  /** @type {How<StudyResults>} */
   const how = {
     part: "/results",
     pause: PAUSE,
     show: ({ rows, status }) => {
       const points = rows
         .flatMap((row) =>
-          (row.curves ?? []).map((curve) => ({
+          row.curves.map((curve) => ({
             x: curve.output_torque_n_m,
-            y: curve.statistics?.transmission_error_um.peak_to_peak,
+            y: curve.statistics?.transmission_error_um.peak_to_peak ?? NaN,
             label: `${number(curve.output_torque_n_m)} N m`,
           })),
         )
@@ -87,13 +102,13 @@ export function sweep(place, design) {
     ended: ({ rows, status }) =>
       status === "dismissed"
         ? `Cancelled after ${rows.filter(({ curves }) => curves?.length).length} torques.`
-        : (rows.find(({ problem }) => problem)?.problem.detail ?? ""),
+        : (rows.find(({ problem }) => problem)?.problem?.detail ?? ""),
   };
 
   function start() {
     out.replaceChildren();
     return question.study(() => {
-      const [low, high] = [given(from), given(to)];
+      const [low = 0, high = 0] = [given(from), given(to)];
       if (!(low > 0 && high > low))
         throw new ProblemError({ detail: "The torques have to be positive, the second larger than the first." });
       question.say("Computing");
@@ -110,14 +125,21 @@ export function sweep(place, design) {
     }, how);
   }
 
-  /** Shows a sweep that was asked for before. */
-  function resume(id, { base, axes: [{ values }] }) {
-    [from.value, to.value] = [values[0], values.at(-1)];
+  /**
+   * Shows a sweep that was asked for before.
+   *
+   * @param {string} id
+   * @param {AskedStudy} study
+   */
+  function resume(id, { base, axes }) {
+    const values = axes?.[0].values ?? [];
+    [from.value, to.value] = [String(values[0]), String(values.at(-1))];
     for (const input of [from, to]) input.dataset.typed = "yes";
     out.replaceChildren();
     return question.resume(id, base, how);
   }
 
+  /** @type {(points: Dot[]) => Figure} */
   const pictureOf = (points) =>
     figure({
       points,
@@ -127,6 +149,10 @@ export function sweep(place, design) {
       title: "Peak-to-peak transmission error over the torque",
     });
 
+  /**
+   * @param {Dot[]} points
+   * @param {string} status
+   */
   function shown(points, status) {
     if (status !== "successful") return [pictureOf(points)];
     const least = points.reduce((best, point) => (point.y < best.y ? point : best));

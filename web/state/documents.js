@@ -14,6 +14,8 @@
 /** @typedef {Schemas["Spectrum"]} Spectrum */
 /** @typedef {Schemas["NamedOrder"]} NamedOrder */
 /** @typedef {Schemas["Face"]} Face */
+/** @typedef {Schemas["Dynamics"]} Dynamics */
+/** @typedef {Schemas["RunUpBranch"]} RunUpBranch */
 /** @typedef {Schemas["LeadModification"]} LeadModification */
 /** @typedef {Schemas["ForceTable"]} ForceTable */
 /** @typedef {NonNullable<Holes["slot"]>} Slot */
@@ -26,6 +28,27 @@
 /** @typedef {Schemas["Study"]} Study */
 /** @typedef {Schemas["StudyList"]["items"][number]} StudyState */
 /** @typedef {Schemas["StudyResults"]} StudyResults */
+/** @typedef {Schemas["PopulationResults"]} PopulationResults */
+/** @typedef {Schemas["QuantityResults"]} QuantityResults */
+/** @typedef {Schemas["Percentile"]} Percentile */
+/** @typedef {Schemas["SearchProgress"]} SearchProgress */
+/** @typedef {Schemas["FoundDesign"]} FoundDesign */
+/** @typedef {Schemas["Search"]} Search */
+
+/**
+ * A study as the page asks for it: of a whole design.
+ *
+ * @typedef {Study & { base: Submission }} AskedStudy
+ */
+
+/** @typedef {AskedStudy & { search: Search }} AskedSearch */
+
+/**
+ * What opens a submission as a design, with its results where they are known.
+ *
+ * @typedef {(submission: Submission, results: Results | null) => unknown} Open
+ */
+
 /** @typedef {Schemas["TableRow"]} TableRow */
 /** @typedef {Schemas["RowCurve"]} RowCurve */
 /** @typedef {Schemas["Limits"]} Limits */

@@ -2,7 +2,7 @@
 // The motion of the gears at a speed, step by step from the force table of the results: what turns the drawing. The
 // numbers of a run-up are those of the service, which finds both branches; this goes on from where it was.
 
-/** @import { Curve, ForceTable, Results } from "./documents.js" */
+/** @import { Curve, Dynamics, ForceTable, Results } from "./documents.js" */
 
 /** Steps in a period of the natural frequency, and in one of the mesh. */
 const STEPS = 40;
@@ -42,7 +42,7 @@ export function forceAt(table, place, approach) {
  * state that an earlier motion ended with.
  *
  * @param {Results & { force_table: ForceTable }} results
- * @param {Curve & { dynamics: object }} curve
+ * @param {Curve & { dynamics: Dynamics }} curve
  * @param {{ rpm: number, teeth: number, damping?: number, from?: [number, number] | null }} how
  */
 export function motionAt(results, curve, { rpm, teeth, damping = 0.05, from = null }) {
@@ -79,5 +79,7 @@ export function motionAt(results, curve, { rpm, teeth, damping = 0.05, from = nu
       v += 0.5 * dt * (first + second);
     }
   }
-  return { state: [x, v], span, approach, factor };
+  /** @type {[number, number]} */
+  const state = [x, v];
+  return { state, span, approach, factor };
 }

@@ -3,19 +3,26 @@
 // resonances named, and one speed that is looked at, turned and heard.
 
 import { looks } from "../draw/charts.js";
-import { debounced, h, s } from "../draw/dom.js";
+import { debounced, dress, h, s } from "../draw/dom.js";
 import { figure, ticks } from "../draw/figure.js";
 import { Tones } from "../draw/sound.js";
 import { motionAt } from "../state/motion.js";
 import { fixed, number } from "../state/numbers.js";
 import { wordsOf } from "../state/orders.js";
 
+/** @import { Attributes, Figure, Frame } from "../draw/figure.js" */
+/** @import { Curve, Dynamics, NamedDesign, NamedOrder, RunUpBranch } from "../state/documents.js" */
+
 /** What is drawn over speed: name, unit, and how a branch tells it. */
-const QUANTITIES = {
+/** @type {Record<string, [words: string, unit: string, read: (branch: RunUpBranch) => number[]]>} */
+const OVER_SPEED = {
   p_p: ["dynamic STE, peak-to-peak", "µm", (branch) => branch.dynamic_transmission_error_um.peak_to_peak],
   rms: ["dynamic STE, rms", "µm", (branch) => branch.dynamic_transmission_error_um.rms],
   factor: ["dynamic load factor", "1", (branch) => branch.dynamic_load_factor],
 };
+/** @typedef {"up" | "down"} Way */
+
+/** @type {Record<Way, string>} */
 const BRANCHES = { up: "running up", down: "running down" };
 const HEIGHT = 290;
 /** So many orders are drawn; a run-up tells many more. */
@@ -27,26 +34,58 @@ const FRAME = { left: 74, right: 14, top: 44, bottom: 44 };
 const SLOW_MOTION = 1.5;
 const REST = 60;
 
+/** @type {(value: number) => string} */
 const rpm = (value) => `${Math.round(value).toLocaleString("en")} rpm`;
 
+const WAYS = /** @type {Way[]} */ (Object.keys(BRANCHES));
+
+/** @typedef {NamedOrder & { amplitude: number[] }} Ridge */
+
+/**
+ * What a run-up needs of the page: `ask` puts one into the design, `asked` says whether it has one, `focus` shows its
+ * fields, `designs` gives what is shown, the live one first, and `stage` turns the drawing.
+ *
+ * @typedef {object} Page
+ * @property {() => void} ask
+ * @property {() => boolean} asked
+ * @property {() => void} focus
+ * @property {() => NamedDesign[]} designs
+ * @property {{ turn: (by: number) => void, move: (factorAt: (position: number) => number) => void, rest: () => void }}
+ *   stage
+ */
+
 export class RunUp {
-  #speed = null;
+  /** @type {number} */
+  #speed = NaN;
+  /** @type {Way} */
   #branch = "up";
   #playing = false;
+  /** @type {ReturnType<typeof motionAt> | null} */
   #motion = null;
+  /** @type {((speed: number) => void)[]} */
   #cursors = [];
 
   /**
-   * The run-up in `place`. `ask` puts one into the design, `asked` says whether it has one, `focus` shows its fields,
-   * `designs` gives what is shown, the live one first, and `stage` turns the drawing.
+   * The run-up in `place`.
+   *
+   * @param {HTMLElement} place
+   * @param {Page} page
    */
   constructor(place, { ask, asked, focus, designs, stage }) {
     this.place = place;
     this.asked = asked;
+    /**
+     * The live design, once it has a run-up.
+     *
+     * @type {NamedDesign}
+     */
+    this.live = /** @type {any} */ (null);
     this.designs = designs;
     this.stage = stage;
     this.tones = new Tones();
+    /** @type {(name: string, id: string, work: () => void) => HTMLButtonElement} */
     const button = (name, id, work) => h("button", { type: "button", id, on: { click: work } }, name);
+    /** @type {(id: string, options: Record<string, string>) => HTMLSelectElement} */
     const select = (id, options) =>
       h(
         "select",
@@ -56,7 +95,7 @@ export class RunUp {
     this.quantity = select(
       "run-up-quantity",
       Object.fromEntries(
-        Object.entries(QUANTITIES).map(([name, [words, unit]]) => [name, unit === "1" ? words : `${words} in ${unit}`]),
+        Object.entries(OVER_SPEED).map(([name, [words, unit]]) => [name, unit === "1" ? words : `${words} in ${unit}`]),
       ),
     );
     this.torque = select("run-up-torque", {});
@@ -157,17 +196,18 @@ export class RunUp {
     this.live = live;
     this.#offer(
       this.torque,
-      live.results.curves.map((curve) => [curve.output_torque_n_m, number(curve.output_torque_n_m, 6)]),
+      live.results.curves.map(({ output_torque_n_m: torque }) => [String(torque), number(torque, 6)]),
     );
+    /** @returns {Dynamics} */
     const dynamics = this.#dynamics;
     this.#offer(
       this.way,
-      Object.entries(BRANCHES).filter(([name]) => dynamics[name]),
+      WAYS.filter((name) => dynamics[name]).map((name) => [name, BRANCHES[name]]),
     );
-    this.#branch = this.way.value;
+    this.#branch = this.way.value === "down" ? "down" : "up";
     const speeds = dynamics.driving_speed_rpm;
-    this.slider.max = speeds.length - 1;
-    if (this.#speed === null || this.#speed < speeds[0] || this.#speed > speeds.at(-1)) this.#speed = this.#loudest();
+    this.slider.max = String(speeds.length - 1);
+    if (!(this.#speed >= speeds[0] && this.#speed <= speeds[speeds.length - 1])) this.#speed = this.#loudest();
     this.#motion = null;
     this.#draw(designs);
     return this.#look(this.#speed);
@@ -187,14 +227,19 @@ export class RunUp {
   }
 
   get #dynamics() {
-    return this.#curve.dynamics;
+    return /** @type {Dynamics} */ (this.#curve.dynamics);
   }
 
   get #run() {
-    return this.#dynamics[this.#branch];
+    return /** @type {RunUpBranch} */ (this.#dynamics[this.#branch]);
   }
 
-  /** The options of a select, keeping what was chosen where it is still there. */
+  /**
+   * The options of a select, keeping what was chosen where it is still there.
+   *
+   * @param {HTMLSelectElement} select
+   * @param {[value: string, words: string][]} options
+   */
   #offer(select, options) {
     const before = select.value;
     select.replaceChildren(...options.map(([value, words]) => h("option", { value }, words)));
@@ -206,14 +251,16 @@ export class RunUp {
     return this.#dynamics.driving_speed_rpm[values.indexOf(Math.max(...values))];
   }
 
+  /** @param {number} speed */
   #index(speed) {
     const speeds = this.#dynamics.driving_speed_rpm;
-    const step = (speeds.at(-1) - speeds[0]) / (speeds.length - 1);
+    const step = (speeds[speeds.length - 1] - speeds[0]) / (speeds.length - 1);
     return Math.min(speeds.length - 1, Math.max(0, Math.round((speed - speeds[0]) / step)));
   }
 
+  /** @param {NamedDesign[]} designs */
   #draw(designs) {
-    const [words, unit, read] = QUANTITIES[this.quantity.value];
+    const [words, unit, read] = OVER_SPEED[this.quantity.value];
     // Letters of a figure grow with those of the page.
     const scale = parseFloat(getComputedStyle(document.documentElement).fontSize) / 16;
     const width = Math.max(300, this.place.clientWidth / scale - 8);
@@ -224,20 +271,21 @@ export class RunUp {
       // Kept designs may have been computed at other torques; the nearest stands beside this one.
       const curves = each.results.curves.filter(({ dynamics }) => dynamics);
       if (!curves.length) return [];
+      /** @returns {Curve} */
       const curve = curves.reduce((best, other) =>
         Math.abs(other.output_torque_n_m - torque) < Math.abs(best.output_torque_n_m - torque) ? other : best,
       );
       const color = series(each.look ?? 0);
       const name =
         curve.output_torque_n_m === torque ? each.name : `${each.name}, ${number(curve.output_torque_n_m)} N m`;
-      return Object.keys(BRANCHES)
-        .filter((way) => curve.dynamics[way])
-        .flatMap((way) => {
-          const branch = curve.dynamics[way];
+      const { dynamics } = curve;
+      return WAYS.flatMap((way) => {
+          const branch = dynamics?.[way];
+          if (!dynamics || !branch) return [];
           const y = read(branch);
           const parted = {
             color,
-            x: curve.dynamics.driving_speed_rpm,
+            x: dynamics.driving_speed_rpm,
             y: y.map((value, i) => (branch.contact_lost[i] ? value : null)),
             width: 5,
             parted: true,
@@ -247,7 +295,7 @@ export class RunUp {
               name: `${name}, ${way}`,
               color,
               dash: way === "down" ? [5, 4] : [],
-              x: curve.dynamics.driving_speed_rpm,
+              x: dynamics.driving_speed_rpm,
               y,
             },
             ...(branch.contact_lost.includes(true) ? [parted] : []),
@@ -274,19 +322,22 @@ export class RunUp {
   /** What a listener should know of the run-up. */
   #told() {
     const dynamics = this.#dynamics;
-    return Object.keys(BRANCHES)
-      .filter((way) => dynamics[way])
-      .map((way) => {
+    return WAYS.flatMap((way) => {
         const branch = dynamics[way];
+        if (!branch) return [];
         const values = branch.dynamic_transmission_error_um.peak_to_peak;
-        const most = Math.max(...values);
+              const most = Math.max(...values);
         const parted = dynamics.driving_speed_rpm.filter((_, i) => branch.contact_lost[i]);
-        return `${BRANCHES[way]}, at most ${fixed(most, 2)} µm peak-to-peak at ${rpm(dynamics.driving_speed_rpm[values.indexOf(most)])}; ${parted.length ? `flanks part from ${rpm(parted[0])} to ${rpm(parted.at(-1))}` : "flanks never part"}.`;
+        return `${BRANCHES[way]}, at most ${fixed(most, 2)} µm peak-to-peak at ${rpm(dynamics.driving_speed_rpm[values.indexOf(most)])}; ${parted.length ? `flanks part from ${rpm(parted[0])} to ${rpm(parted[parted.length - 1])}` : "flanks never part"}.`;
       })
       .join(" ");
   }
 
-  /** A line in a figure at the speed that is looked at; a pointer in it looks at another. */
+  /**
+   * A line in a figure at the speed that is looked at; a pointer in it looks at another.
+   *
+   * @param {Figure} svg
+   */
   #cursor(svg) {
     const { frame } = svg;
     const now = s("line", { class: "speed-now", y1: frame.top, y2: frame.bottom });
@@ -297,14 +348,18 @@ export class RunUp {
       if (x >= frame.px(frame.x[0]) && x <= frame.px(frame.x[1])) this.#look(frame.valueAt(x));
     });
     return (speed) => {
-      now.setAttribute("x1", frame.px(speed));
-      now.setAttribute("x2", frame.px(speed));
+      dress(now, { x1: frame.px(speed), x2: frame.px(speed) });
     };
   }
 
-  /** The named orders of the run-up with their numbers, rising: those that move most. */
+  /**
+   * The named orders of the run-up with their numbers, rising: those that move most.
+   *
+   * @returns {Ridge[]}
+   */
   #orders() {
     const named = this.#curve.spectrum?.named ?? [];
+    /** @type {(order: Ridge) => number} */
     const most = ({ amplitude }) => Math.max(...amplitude);
     return this.#run.orders
       .flatMap((each) => {
@@ -316,16 +371,24 @@ export class RunUp {
       .sort((a, b) => a.order - b.order);
   }
 
-  /** A ridge for each order over speed, the lowest in front, and a mark where an order resonates. */
+  /**
+   * A ridge for each order over speed, the lowest in front, and a mark where an order resonates.
+   *
+   * @param {number} width
+   * @returns {Figure}
+   */
   #waterfallOf(width) {
     const orders = this.#orders();
     const speeds = this.#dynamics.driving_speed_rpm;
     const height = FRAME.top + ROW * orders.length + FRAME.bottom;
     // One speed stands in the middle.
-    const [first, last] = speeds.length > 1 ? [speeds[0], speeds.at(-1)] : [0.9 * speeds[0], 1.1 * speeds[0] || 1];
+    const [first, last] = speeds.length > 1 ? [speeds[0], speeds[speeds.length - 1]] : [0.9 * speeds[0], 1.1 * speeds[0] || 1];
+    /** @type {(speed: number) => number} */
     const px = (speed) => FRAME.left + ((speed - first) / (last - first)) * (width - FRAME.left - FRAME.right);
     const most = Math.max(1e-9, ...orders.flatMap(({ amplitude }) => amplitude));
+    /** @type {(i: number) => number} */
     const foot = (i) => height - FRAME.bottom - ROW * i - 4;
+    /** @type {(value: number) => number} */
     const rise = (value) => (RISE * ROW * value) / most;
     const svg = s("svg", {
       viewBox: `0 0 ${width} ${height}`,
@@ -333,6 +396,7 @@ export class RunUp {
       role: "img",
       "aria-label": `Waterfall: the amplitudes of ${orders.length} orders over speed, the highest ${number(most, 3)} µm. Resonances stand in the table below.`,
     });
+    /** @type {(words: string, attributes: Attributes) => SVGTextElement} */
     const text = (words, attributes) => Object.assign(s("text", attributes), { textContent: words });
     this.ridges.textContent = `Orders over speed, ${BRANCHES[this.#branch]}; the highest ridge is ${number(most, 3)} µm. ◆ marks where an order meets the natural frequency, ◇ where it meets twice that.`;
     for (const value of ticks(first, last))
@@ -366,14 +430,15 @@ export class RunUp {
       mark.append(Object.assign(s("title"), { textContent: resonance.words }));
       svg.append(mark);
     }
-    svg.frame = {
+    /** @type {Frame} */
+    const frame = {
       x: [first, last],
       px,
       valueAt: (x) => first + ((x - FRAME.left) / (width - FRAME.left - FRAME.right)) * (last - first),
       top: FRAME.top - ROW,
       bottom: height - FRAME.bottom,
     };
-    return svg;
+    return Object.assign(svg, { frame });
   }
 
   /** The resonances within the speeds, each as a sentence would name it. */
@@ -383,10 +448,11 @@ export class RunUp {
     return this.#dynamics.resonances
       .filter(
         ({ driving_speed_rpm: speed, label }) =>
-          speed >= speeds[0] && speed <= speeds.at(-1) && orders.some((order) => order.label === label),
+          speed >= speeds[0] && speed <= speeds[speeds.length - 1] && orders.some((order) => order.label === label),
       )
       .map((each) => {
-        const what = wordsOf(orders.find(({ label }) => label === each.label));
+        const order = orders.find(({ label }) => label === each.label);
+        const what = order ? wordsOf(order) : each.label;
         return {
           ...each,
           what,
@@ -439,20 +505,25 @@ export class RunUp {
     );
   }
 
-  /** Looks at a speed: the nearest that was computed. */
+  /**
+   * Looks at a speed: the nearest that was computed.
+   *
+   * @param {number} speed
+   */
   #look(speed) {
     const i = this.#index(speed);
     const speeds = this.#dynamics.driving_speed_rpm;
     this.#speed = speeds[i];
-    this.slider.value = i;
+    this.slider.value = String(i);
     for (const move of this.#cursors) move(this.#speed);
     this.said.textContent = rpm(this.#speed);
+    /** @returns {RunUpBranch} */
     const run = this.#run;
     const lost = run.contact_lost[i];
-    const [multiple] = [run.period_multiple?.[i] ?? 1];
+    const multiple = run.period_multiple[i] ?? 1;
     const strongest = this.#orders().reduce(
       (best, each) => (each.amplitude[i] > (best?.amplitude[i] ?? 0) ? each : best),
-      null,
+      /** @type {Ridge | null} */ (null),
     );
     const near = this.#named()
       .filter((each) => Math.abs(each.driving_speed_rpm - this.#speed) < 0.03 * this.#speed)
@@ -477,6 +548,7 @@ export class RunUp {
     this.later();
   }
 
+  /** @param {number} i */
   #sound(i) {
     if (!this.tones.on) return;
     const { driving, driven } = this.live.submission.pair;
@@ -488,6 +560,7 @@ export class RunUp {
     this.tones.play(orders.map(({ order, amplitude }) => ({ hz: order * turns, part: amplitude[i] / most })));
   }
 
+  /** @param {boolean} on */
   #listen(on) {
     if (on === this.tones.on) return;
     if (on) this.tones.start();
@@ -499,6 +572,8 @@ export class RunUp {
   /**
    * Turns the gears as they move at the speed, slowly; arrows are as long as the force is then, and none is there while
    * the flanks are apart.
+   *
+   * @param {boolean} on
    */
   #play(on) {
     if (on === this.#playing) return;
@@ -508,10 +583,11 @@ export class RunUp {
     this.#move();
     const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
     let last = performance.now();
+    /** @type {FrameRequestCallback} */
     const step = (now) => {
       if (!this.#playing) return;
       if (!still || now - last > 500) {
-        const top = this.#dynamics.driving_speed_rpm.at(-1);
+        const [top] = this.#dynamics.driving_speed_rpm.slice(-1);
         this.stage.turn(still ? 0.1 : (SLOW_MOTION * this.#speed * (now - last)) / 1000 / top);
         last = now;
       }
@@ -525,9 +601,11 @@ export class RunUp {
   #move() {
     if (!this.#playing) return;
     const { submission, results } = this.live;
+    const { force_table } = results;
+    const { dynamics } = this.#curve;
     this.#motion =
-      this.#speed > 0
-        ? motionAt(results, this.#curve, {
+      this.#speed > 0 && force_table && dynamics
+        ? motionAt({ ...results, force_table }, { ...this.#curve, dynamics }, {
             rpm: this.#speed,
             teeth: submission.pair.driving.tooth_count,
             damping: submission.dynamics?.damping_ratio ?? undefined,
@@ -544,6 +622,6 @@ export class RunUp {
     if (!motion) return;
     const range = Math.max(...motion.approach) - Math.min(...motion.approach);
     this.turning.title = `In slow motion, from the force table: ${fixed(range, 2)} µm peak-to-peak`;
-    this.turning.dataset.peakToPeak = range;
+    this.turning.dataset.peakToPeak = String(range);
   }
 }
