@@ -104,7 +104,8 @@ export function looks() {
     faint: of("--faint"),
     accent: of("--accent"),
     panel: of("--panel"),
-    series: (/** @type {number} */ look) => (look < CHOSEN ? of(`--series-${look + 1}`) : further(look, of("--lightness"))),
+    series: (/** @type {number} */ look) =>
+      look < CHOSEN ? of(`--series-${look + 1}`) : further(look, of("--lightness")),
     parts: ["--line-of-action", "--faint", "--steel-2-edge", "--steel-edge"].map(of),
     rem,
     height: parseFloat(of("--chart-height")),
@@ -480,8 +481,7 @@ export class Charts {
           ...axis,
           size: 3.6 * colors.rem,
           space: 2.1 * colors.rem,
-          values: (/** @type {unknown} */ _, /** @type {number[]} */ splits) =>
-            splits.map((value) => number(value, 6)),
+          values: (/** @type {unknown} */ _, /** @type {number[]} */ splits) => splits.map((value) => number(value, 6)),
         },
       ],
     };
@@ -657,12 +657,13 @@ export class Charts {
     panel.names = this.#names(wanted);
     panel.levels = this.decibels ? this.#levels(wanted) : null;
     const data = Plot.join(
-      wanted.map(({ orders }) =>
-        /** @type {Data} */ (
-          orders.length
-            ? [orders.map(([order]) => order), orders.map(([, value]) => this.#level(value))]
-            : [[this.shown[0].teeth], [null]]
-        ),
+      wanted.map(
+        ({ orders }) =>
+          /** @type {Data} */ (
+            orders.length
+              ? [orders.map(([order]) => order), orders.map(([, value]) => this.#level(value))]
+              : [[this.shown[0].teeth], [null]]
+          ),
       ),
     );
     const shape = JSON.stringify([wanted.map(({ name, look }) => [name, look]), last, panel.levels]);
@@ -799,12 +800,7 @@ function drawCells(plot, face) {
  * @param {Omit<Parts, "x"> & { panel: Panel, color?: string }} how
  */
 function faceFigure(face, { panel, xRange = null, color, ...common }) {
-  if (!face.every)
-    return figure({
-      ...common,
-      x: "z in mm",
-      lines: [{ x: face.z, y: face.rows[0], color }],
-    });
+  if (!face.every) return figure({ ...common, x: "z in mm", lines: [{ x: face.z, y: face.rows[0], color }] });
   const [from, to] = xRange ?? [0, face.span];
   // As many cells as can be seen: each position of a long period would make a file of megabytes.
   const cells = cellsOf(face, [from, to], (to - from) / (common.width ?? 1)).map(({ z, part, ...cell }) => ({

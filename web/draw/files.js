@@ -32,11 +32,10 @@ const FILES = [
     ["txt", "CombiTable2D"],
     ["mo", "Modelica"],
     ["fmu", "FMU"],
-  ].map(([kind, name]) => /** @type {[string, string, typeof hasForces]} */ ([
-    `force-table.${kind}`,
-    `Force table, ${name}`,
-    hasForces,
-  ])),
+  ].map(
+    ([kind, name]) =>
+      /** @type {[string, string, typeof hasForces]} */ ([`force-table.${kind}`, `Force table, ${name}`, hasForces]),
+  ),
 ];
 
 /**

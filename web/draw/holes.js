@@ -194,7 +194,10 @@ const wrap = (degrees) => ((((degrees + 180) % 360) + 360) % 360) - 180;
 function place(handle, pattern, angle, [least, most]) {
   if (!handle) return;
   const words = pattern.slot ? `slot ${number(pattern.slot.width_mm)} mm` : `r ${number(pattern.radius_mm)} mm`;
-  handle.setAttribute("d", pattern.slot ? slotPath({ ...pattern, slot: pattern.slot }, angle) : diskPath(pattern, angle));
+  handle.setAttribute(
+    "d",
+    pattern.slot ? slotPath({ ...pattern, slot: pattern.slot }, angle) : diskPath(pattern, angle),
+  );
   within(handle, "title", SVGTitleElement).textContent = `${words}, R ${number(pattern.circle_radius_mm)} mm`;
   if (handle.getAttribute("role")) {
     dress(handle, {

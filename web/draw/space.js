@@ -470,7 +470,7 @@ export class Space {
   #nearestPosition({ positions }) {
     const span =
       positions.length > 1 ? positions.length * (positions[1].mesh_position - positions[0].mesh_position) : 1;
-      /** @type {(position: { mesh_position: number }) => number} */
+    /** @type {(position: { mesh_position: number }) => number} */
     const apart = ({ mesh_position: each }) =>
       Math.abs(((((each - this.#position) % span) + 1.5 * span) % span) - span / 2);
     return positions.reduce((best, each) => (apart(each) < apart(best) ? each : best));
@@ -479,8 +479,7 @@ export class Space {
   /** @param {PatternCurve & { most?: number }} pattern */
   #mostOfPattern(pattern) {
     pattern.most ??= Math.max(
-      extent(pattern.positions.flatMap(({ lines }) => lines.flatMap(({ load_n_per_mm: loads }) => loads)))?.[1] ??
-        0,
+      extent(pattern.positions.flatMap(({ lines }) => lines.flatMap(({ load_n_per_mm: loads }) => loads)))?.[1] ?? 0,
       1e-9,
     );
     return pattern.most;

@@ -12,7 +12,7 @@ import { apart, at, nameOf } from "../state/design.js";
 import { fixed, number, timeOf } from "../state/numbers.js";
 import { inUnit, inWords, quantityOf, shown } from "../state/quantities.js";
 
-/** @import { How } from "./question.js" */
+/** @import { Watching } from "./question.js" */
 /** @import { Design } from "../state/design.js" */
 /** @import { AskedStudy, GearName, Limits, Open, Percentile, PopulationResults } from "../state/documents.js" */
 /** @import { QuantityResults } from "../state/documents.js" */
@@ -132,10 +132,7 @@ export function population(place, design, form, limits, onOpen) {
         { className: "line" },
         h("label", { htmlFor: size.id }, "Members"),
         size,
-        ...classes.flatMap((each, i) => [
-          h("label", { htmlFor: each.id }, `teeth of the ${MEMBERS[i]} gear`),
-          each,
-        ]),
+        ...classes.flatMap((each, i) => [h("label", { htmlFor: each.id }, `teeth of the ${MEMBERS[i]} gear`), each]),
       ),
       ...laws.map((each) => each.element),
       h(
@@ -235,7 +232,7 @@ export function population(place, design, form, limits, onOpen) {
     };
   }
 
-  /** @type {How<PopulationResults>} */
+  /** @type {Watching<PopulationResults>} */
   const how = {
     part: "/results/population",
     pause: PAUSE,
@@ -313,10 +310,15 @@ export function population(place, design, form, limits, onOpen) {
     const at95 = `95 of 100 pairs stay below ${told(at95th)} ${printed} ${low === null || high === null ? "(too few members to say how surely)" : `(with 95 % confidence between ${told(low)} and ${told(high)})`}; half are below ${told(percentile(one, 50)?.value)}.`;
     const beyond = Object.entries(results.beyond_total_pitch_tolerance)
       .filter(([, share]) => share !== null)
-      .map(([gear, share]) => `${fixed(100 * (share ?? NaN), 1)} % of the ${gear} gears are beyond F_pT of their class.`);
+      .map(
+        ([gear, share]) => `${fixed(100 * (share ?? NaN), 1)} % of the ${gear} gears are beyond F_pT of their class.`,
+      );
     const rejected = Object.entries(results.rejected_by_inspection ?? {})
       .filter(([, share]) => share !== null)
-      .map(([gear, share]) => `${fixed(100 * (share ?? NaN), 1)} % of the ${gear} gears made were rejected by the inspection.`);
+      .map(
+        ([gear, share]) =>
+          `${fixed(100 * (share ?? NaN), 1)} % of the ${gear} gears made were rejected by the inspection.`,
+      );
     /** @type {(name: string, number: number) => HTMLButtonElement} */
     const member = (name, number) =>
       h("button", { type: "button", on: { click: () => open(address, number) } }, `Open the ${name} member`);

@@ -15,7 +15,7 @@ import { remaining } from "../state/numbers.js";
  * address; `progress` says how far it is, and `ended` how it ended.
  *
  * @template F what `part` tells
- * @typedef {object} How
+ * @typedef {object} Watching
  * @property {string} [part]
  * @property {number} pause
  * @property {(done: number, total: number, left: (done: number, total: number) => string) => string} progress
@@ -86,7 +86,7 @@ export class Question {
    *
    * @template F
    * @param {() => object} asked
-   * @param {How<F>} how
+   * @param {Watching<F>} how
    */
   study(asked, how) {
     return this.ask(async (cancelling) => this.#watch(await post("v1/studies", asked()), how, cancelling));
@@ -98,7 +98,7 @@ export class Question {
    * @template F
    * @param {string} id
    * @param {Submission} base
-   * @param {How<F>} how
+   * @param {Watching<F>} how
    */
   resume(id, base, how) {
     return this.ask(async (cancelling) => this.#watch(await json(`v1/studies/${id}`), how, cancelling), base);
@@ -107,7 +107,7 @@ export class Question {
   /**
    * @template F
    * @param {StudyState} made
-   * @param {How<F>} how
+   * @param {Watching<F>} how
    * @param {(cancel: () => void) => void} cancelling
    */
   async #watch(made, { part = "", pause, progress, show, ended }, cancelling) {

@@ -14,7 +14,7 @@ import { preview } from "../state/preview.js";
 import { inUnit, inWords, quantityOf } from "../state/quantities.js";
 import { DASHES } from "../state/series.js";
 
-/** @import { How } from "./question.js" */
+/** @import { Watching } from "./question.js" */
 /** @import { Design } from "../state/design.js" */
 /** @import { AskedSearch, FoundDesign, Open, Search, SearchProgress, StudyState } from "../state/documents.js" */
 /** @import { Submission } from "../state/documents.js" */
@@ -152,7 +152,7 @@ export function search(place, design, form, onOpen) {
     };
   }
 
-  /** @type {(about: () => AskedSearch | null) => How<StudyState>} */
+  /** @type {(about: () => AskedSearch | null) => Watching<StudyState>} */
   const how = (about) => ({
     pause: PAUSE,
     show: (study, address) => show(study.search, address, about()),
@@ -253,8 +253,9 @@ export function search(place, design, form, onOpen) {
     /** @type {(row: number, words: string) => HTMLButtonElement} */
     const use = (row, words) => h("button", { type: "button", on: { click: () => open(row) } }, words);
     drawBeside(address, best.row, about.base);
-    const reached = generations
-      .flatMap(({ best: value = null }, i) => (value === null ? [] : [[i + 1, parts[0].factor * value]]));
+    const reached = generations.flatMap(({ best: value = null }, i) =>
+      value === null ? [] : [[i + 1, parts[0].factor * value]],
+    );
     const pictures =
       front.length > 1
         ? [

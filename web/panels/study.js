@@ -16,7 +16,7 @@ import { calledOf, inRow, inUnit, inWords, quantityOf, shown, worstInRow } from 
 import { usualAt } from "../state/schema.js";
 import { fileOfDesign } from "../state/tables.js";
 
-/** @import { How } from "./question.js" */
+/** @import { Watching } from "./question.js" */
 /** @import { Design } from "../state/design.js" */
 /** @import { AskedStudy, Open, RowCurve, StudyResults, TableRow } from "../state/documents.js" */
 /** @import { Quantity } from "../state/quantities.js" */
@@ -130,7 +130,7 @@ export function study(place, design, form, onOpen) {
   /** The name of the study. */
   let called = "";
 
-  /** @type {How<StudyResults>} */
+  /** @type {Watching<StudyResults>} */
   const how = {
     part: "/results",
     pause: PAUSE,
@@ -178,9 +178,7 @@ export function study(place, design, form, onOpen) {
 
   /** The design, with holes or a web to begin with where an axis changes what it lacks. */
   function base() {
-    const touched = axes
-      .flatMap((each) => each.read())
-      .flatMap(({ path }) => PART.exec(path)?.[1] ?? []);
+    const touched = axes.flatMap((each) => each.read()).flatMap(({ path }) => PART.exec(path)?.[1] ?? []);
     let submission = design.submission;
     for (const pointer of touched)
       if (!at(submission, pointer)) submission = withValue(submission, pointer, form.beginnings.object(pointer, null));
@@ -237,7 +235,9 @@ export function study(place, design, form, onOpen) {
 
   /** @param {StudyResults} results */
   function tableOf({ rows, gear }) {
-    const ofRow = OF_ROW.map((name) => [name, `${name}.${gear}`].map(quantityOf).find((each) => each.of) ?? quantityOf(name));
+    const ofRow = OF_ROW.map(
+      (name) => [name, `${name}.${gear}`].map(quantityOf).find((each) => each.of) ?? quantityOf(name),
+    );
     const ofCurve = OF_CURVE.map(quantityOf);
     /** @type {(quantity: Quantity) => string} */
     const named = (quantity) => `${calledOf(quantity)} ${quantity.printed}`;
@@ -384,7 +384,8 @@ function axis(index, design, form) {
           .filter(Boolean)
           .map((word) => (word in WORDS ? WORDS[word] : word))
       : allGiven(values);
-  const read = () => (field.value && values.value.trim() ? [pathOf(field.value, [...new Set(/** @type {unknown[]} */ (listed()))])] : []);
+  const read = () =>
+    field.value && values.value.trim() ? [pathOf(field.value, [...new Set(/** @type {unknown[]} */ (listed()))])] : [];
 
   /**
    * A field within a list is changed by its place; the torque as the list that it is.

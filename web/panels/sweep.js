@@ -11,7 +11,7 @@ import { apart, nameOf } from "../state/design.js";
 import { fixed, number } from "../state/numbers.js";
 
 /** @import { Dot, Figure } from "../draw/figure.js" */
-/** @import { How } from "./question.js" */
+/** @import { Watching } from "./question.js" */
 /** @import { Design } from "../state/design.js" */
 /** @import { AskedStudy, Study, StudyResults } from "../state/documents.js" */
 
@@ -26,7 +26,9 @@ const TORQUE = "/output_torques_n_m";
  * @type {(study: Study) => boolean}
  */
 export const isSweep = ({ axes }) =>
-  axes?.length === 1 && axes[0].path === TORQUE && axes[0].values.every((each) => Array.isArray(each) && each.length === 1);
+  axes?.length === 1 &&
+  axes[0].path === TORQUE &&
+  axes[0].values.every((each) => Array.isArray(each) && each.length === 1);
 
 /**
  * The sweep of `design` in `place`.
@@ -81,7 +83,7 @@ export function sweep(place, design) {
     if (!to.dataset.typed || !to.value) to.value = number(torque * 2, 2);
   };
 
-  /** @type {How<StudyResults>} */
+  /** @type {Watching<StudyResults>} */
   const how = {
     part: "/results",
     pause: PAUSE,

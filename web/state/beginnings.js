@@ -95,10 +95,7 @@ export class Beginnings {
    */
   further(pointer, kind, values) {
     if (pointer.endsWith("/profile_modifications"))
-      return this.#modification(
-        pointer,
-        kindOf(this.api, kind.items?.variants?.[0] ?? kind.items?.schema ?? {}),
-      );
+      return this.#modification(pointer, kindOf(this.api, kind.items?.variants?.[0] ?? kind.items?.schema ?? {}));
     if (pointer.endsWith("/lead_modifications")) return { kind: "crowning", amount_um: 5 };
     if (!pointer.endsWith("/holes")) return this.#begin(kind.items);
     const gear = this.#gear(pointer);
@@ -141,7 +138,7 @@ export class Beginnings {
     }
     if (name === "spokes") {
       const [inner, outer] = web ? [web.inner_radius_mm, web.outer_radius_mm] : [bore, root];
-            /** @type {(part: number) => number} */
+      /** @type {(part: number) => number} */
       const at = (part) => rounded(inner + part * (outer - inner));
       return {
         count: 5,

@@ -52,6 +52,8 @@
 /** @typedef {Schemas["TableRow"]} TableRow */
 /** @typedef {Schemas["RowCurve"]} RowCurve */
 /** @typedef {Schemas["Limits"]} Limits */
+/** @typedef {Schemas["Example"]} Example */
+/** @typedef {Schemas["RexsModel"]} RexsModel */
 /** @typedef {Schemas["Status"]} Status */
 /** @typedef {Schemas["Warning"]} Warning */
 /** @typedef {Schemas["FieldError"]} FieldError */

@@ -80,7 +80,8 @@ export async function resultsOf(submission, options = {}) {
  *
  * @type {(error: unknown) => boolean}
  */
-const isTooLarge = (error) => error instanceof ProblemError && ["too_large", "time_limit"].includes(error.problem.code ?? "");
+const isTooLarge = (error) =>
+  error instanceof ProblemError && ["too_large", "time_limit"].includes(error.problem.code ?? "");
 
 /**
  * A design that is followed: what changed it, the period of its last results while a hand moves it, and when it came.
@@ -434,7 +435,11 @@ export class Follower {
     const begun = performance.now();
     try {
       const results = await preview(asked, this.#interrupt.signal);
-      this.#show({ results, asked }, submission, { took: performance.now() - begun, since, draft: this.#now?.drafting === true });
+      this.#show({ results, asked }, submission, {
+        took: performance.now() - begun,
+        since,
+        draft: this.#now?.drafting === true,
+      });
       return "shown";
     } catch (error) {
       if (isAborted(error)) return "left";

@@ -353,3 +353,22 @@ export function wordsOfSpectrum(designs) {
   };
   return `Strongest orders of the transmission error, per revolution of the driven gear. ${designs.map(of).join(" ")}`;
 }
+
+/**
+ * What a curve has at its position `i`.
+ *
+ * @type {(curve: Curve, i: number) => string}
+ */
+export function wordsAt(curve, i) {
+  const [pairs, pressure] = [curve.pairs_in_contact[i], curve.peak_contact_pressure_mpa[i]];
+  const stressed = stresses(curve).map(
+    ({ name, values }) => `${fixed(values[i], 1)} at a ${name.replace(",", " of the")}`,
+  );
+  const parts = [
+    `Transmission error ${fixed(curve.transmission_error_um[i], 3)} µm`,
+    `stiffness ${fixed(curve.mesh_stiffness_tangent_n_per_m[i] * 1e-6, 1)} N/µm`,
+    `${pairs} ${pairs === 1 ? "pair" : "pairs"} in contact`,
+    pressure === null ? "a tip corner carries" : `${fixed(pressure, 0)} MPa`,
+  ];
+  return `${parts.join(", ")}.${curve.stress ? ` Stress in MPa: ${stressed.join(", ")}.` : ""}`;
+}

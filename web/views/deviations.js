@@ -177,7 +177,8 @@ export function deviations(member, design) {
       );
       out.textContent = `Taken: ${Object.entries(lists)
         .map(
-          ([name, values = []]) => `${name} from ${number(Math.min(...values), 3)} to ${number(Math.max(...values), 3)} µm`,
+          ([name, values = []]) =>
+            `${name} from ${number(Math.min(...values), 3)} to ${number(Math.max(...values), 3)} µm`,
         )
         .join(", ")}.`;
       text.value = "";

@@ -137,7 +137,10 @@ export function exporting(place, { current, designs, drawing, charts, position, 
     const live = await current();
     const files = live ? filesOf(live.asked) : [];
     // The same buttons stay, with whoever stands on one.
-    if (files.map(({ name }) => name).join() !== [...ofJob.querySelectorAll("button")].map((each) => each.dataset.download).join()) {
+    if (
+      files.map(({ name }) => name).join() !==
+      [...ofJob.querySelectorAll("button")].map((each) => each.dataset.download).join()
+    ) {
       ofJob.replaceChildren(
         ...files.map(({ name, title }) =>
           h(
@@ -148,9 +151,11 @@ export function exporting(place, { current, designs, drawing, charts, position, 
         ),
       );
     }
-    if (live) code.textContent = Object.entries(snippets(live.asked, new URL(".", document.baseURI).href)).find(
-        ([name]) => name === language.value,
-      )?.[1] ?? "";
+    if (live)
+      code.textContent =
+        Object.entries(snippets(live.asked, new URL(".", document.baseURI).href)).find(
+          ([name]) => name === language.value,
+        )?.[1] ?? "";
   }
 
   return { refresh: show };

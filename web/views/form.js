@@ -193,9 +193,7 @@ export class Form {
    */
   titleOf(pointer) {
     const place = pointer.replace(/\/\d+$/, "");
-    return (
-      (this.#fields.get(place)?.schema ?? schemaAt(this.api, place))?.title ?? lastOf(place).replace(/_/g, " ")
-    );
+    return (this.#fields.get(place)?.schema ?? schemaAt(this.api, place))?.title ?? lastOf(place).replace(/_/g, " ");
   }
 
   /**
@@ -206,8 +204,7 @@ export class Form {
   named(pointer) {
     const member = /^\/pair\/(driving|driven)\//.exec(pointer)?.[1];
     const place = /\/(\d+)\//.exec(pointer)?.[1];
-    const words =
-      this.titleOf(pointer) + (place ? ` (${Number(place) + 1})` : "");
+    const words = this.titleOf(pointer) + (place ? ` (${Number(place) + 1})` : "");
     return member && !this.#isAlike(pointer) ? `${words}, ${member} gear` : words;
   }
 
@@ -691,7 +688,8 @@ export class Form {
       () => {
         if (!needed && "placeholder" in input) {
           const modules =
-            (schema["x-default-modules"] ?? NaN) * this.design.get(`${pointer.slice(0, pointer.lastIndexOf("/"))}/module_mm`);
+            (schema["x-default-modules"] ?? NaN) *
+            this.design.get(`${pointer.slice(0, pointer.lastIndexOf("/"))}/module_mm`);
           input.placeholder =
             schema.default !== undefined && schema.default !== null
               ? String(schema.default)
@@ -1035,8 +1033,7 @@ export class Form {
   #variants(pointer, kind) {
     const { variants = [] } = kind;
     const value = this.design.get(pointer);
-    const index =
-      value === undefined || value === null ? -1 : variants.findIndex((variant) => fits(variant, value));
+    const index = value === undefined || value === null ? -1 : variants.findIndex((variant) => fits(variant, value));
     const none =
       kind.optional || kind.schema.default !== undefined
         ? [h("option", { value: "" }, pointer.endsWith("/holes") ? "none" : "default")]

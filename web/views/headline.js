@@ -48,9 +48,7 @@ function alone(curve) {
  */
 function largestStress({ stress }) {
   if (!stress) return null;
-  return largest(
-    [stress.driving, stress.driven].flatMap((gear) => [...gear.root_mpa, ...(gear.hole_mpa ?? [])]),
-  );
+  return largest([stress.driving, stress.driven].flatMap((gear) => [...gear.root_mpa, ...(gear.hole_mpa ?? [])]));
 }
 
 /**
@@ -76,7 +74,8 @@ function largestStressWhere({ statistics: { stress } }) {
  */
 function placed({ mesh_position, pair_offset, driving_diameter_mm, driven_diameter_mm, z_mm }) {
   /** @type {(gear: GearName, diameter: number | null | undefined) => string[]} */
-  const of = (gear, diameter) => (diameter === undefined || diameter === null ? [] : [`⌀ ${fixed(diameter, 2)} mm of the ${gear} gear`]);
+  const of = (gear, diameter) =>
+    diameter === undefined || diameter === null ? [] : [`⌀ ${fixed(diameter, 2)} mm of the ${gear} gear`];
   const pair = pair_offset === undefined || pair_offset === null ? [] : [`pair ${pair_offset}`];
   const z = z_mm === undefined || z_mm === null ? [] : [`z ${fixed(z_mm, 1)} mm`];
   return [

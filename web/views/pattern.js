@@ -131,9 +131,7 @@ export class Pattern {
     const gears = /** @type {GearName[]} */ (["driving", "driven"]);
     const sharp = gears.some((gear) => curve[gear].pressure_mpa.flat().includes(null));
     this.state.textContent = `At ${number(torque)} N m, from the form diameter to the tip. Empty: nothing touches.${sharp ? " Hatched: a sharp tip edge carries, where the pressure has no limit." : ""}`;
-    this.flanks.replaceChildren(
-      ...gears.map((gear) => flankOf(gear, pattern, curve[gear].pressure_mpa, most)),
-    );
+    this.flanks.replaceChildren(...gears.map((gear) => flankOf(gear, pattern, curve[gear].pressure_mpa, most)));
   }
 }
 

@@ -280,27 +280,21 @@ export class RunUp {
         curve.output_torque_n_m === torque ? each.name : `${each.name}, ${number(curve.output_torque_n_m)} N m`;
       const { dynamics } = curve;
       return WAYS.flatMap((way) => {
-          const branch = dynamics?.[way];
-          if (!dynamics || !branch) return [];
-          const y = read(branch);
-          const parted = {
-            color,
-            x: dynamics.driving_speed_rpm,
-            y: y.map((value, i) => (branch.contact_lost[i] ? value : null)),
-            width: 5,
-            parted: true,
-          };
-          return [
-            {
-              name: `${name}, ${way}`,
-              color,
-              dash: way === "down" ? [5, 4] : [],
-              x: dynamics.driving_speed_rpm,
-              y,
-            },
-            ...(branch.contact_lost.includes(true) ? [parted] : []),
-          ];
-        });
+        const branch = dynamics?.[way];
+        if (!dynamics || !branch) return [];
+        const y = read(branch);
+        const parted = {
+          color,
+          x: dynamics.driving_speed_rpm,
+          y: y.map((value, i) => (branch.contact_lost[i] ? value : null)),
+          width: 5,
+          parted: true,
+        };
+        return [
+          { name: `${name}, ${way}`, color, dash: way === "down" ? [5, 4] : [], x: dynamics.driving_speed_rpm, y },
+          ...(branch.contact_lost.includes(true) ? [parted] : []),
+        ];
+      });
     });
     const label = `${words} over the speed of the driving gear. ${this.#told()}`;
     const chart = figure({
@@ -323,14 +317,13 @@ export class RunUp {
   #told() {
     const dynamics = this.#dynamics;
     return WAYS.flatMap((way) => {
-        const branch = dynamics[way];
-        if (!branch) return [];
-        const values = branch.dynamic_transmission_error_um.peak_to_peak;
-              const most = Math.max(...values);
-        const parted = dynamics.driving_speed_rpm.filter((_, i) => branch.contact_lost[i]);
-        return `${BRANCHES[way]}, at most ${fixed(most, 2)} µm peak-to-peak at ${rpm(dynamics.driving_speed_rpm[values.indexOf(most)])}; ${parted.length ? `flanks part from ${rpm(parted[0])} to ${rpm(parted[parted.length - 1])}` : "flanks never part"}.`;
-      })
-      .join(" ");
+      const branch = dynamics[way];
+      if (!branch) return [];
+      const values = branch.dynamic_transmission_error_um.peak_to_peak;
+      const most = Math.max(...values);
+      const parted = dynamics.driving_speed_rpm.filter((_, i) => branch.contact_lost[i]);
+      return `${BRANCHES[way]}, at most ${fixed(most, 2)} µm peak-to-peak at ${rpm(dynamics.driving_speed_rpm[values.indexOf(most)])}; ${parted.length ? `flanks part from ${rpm(parted[0])} to ${rpm(parted[parted.length - 1])}` : "flanks never part"}.`;
+    }).join(" ");
   }
 
   /**
@@ -347,9 +340,7 @@ export class RunUp {
       const x = ((event.clientX - box.left) / box.width) * svg.viewBox.baseVal.width;
       if (x >= frame.px(frame.x[0]) && x <= frame.px(frame.x[1])) this.#look(frame.valueAt(x));
     });
-    return (speed) => {
-      dress(now, { x1: frame.px(speed), x2: frame.px(speed) });
-    };
+    return (/** @type {number} */ speed) => dress(now, { x1: frame.px(speed), x2: frame.px(speed) });
   }
 
   /**
@@ -382,7 +373,8 @@ export class RunUp {
     const speeds = this.#dynamics.driving_speed_rpm;
     const height = FRAME.top + ROW * orders.length + FRAME.bottom;
     // One speed stands in the middle.
-    const [first, last] = speeds.length > 1 ? [speeds[0], speeds[speeds.length - 1]] : [0.9 * speeds[0], 1.1 * speeds[0] || 1];
+    const [first, last] =
+      speeds.length > 1 ? [speeds[0], speeds[speeds.length - 1]] : [0.9 * speeds[0], 1.1 * speeds[0] || 1];
     /** @type {(speed: number) => number} */
     const px = (speed) => FRAME.left + ((speed - first) / (last - first)) * (width - FRAME.left - FRAME.right);
     const most = Math.max(1e-9, ...orders.flatMap(({ amplitude }) => amplitude));
@@ -605,12 +597,16 @@ export class RunUp {
     const { dynamics } = this.#curve;
     this.#motion =
       this.#speed > 0 && force_table && dynamics
-        ? motionAt({ ...results, force_table }, { ...this.#curve, dynamics }, {
-            rpm: this.#speed,
-            teeth: submission.pair.driving.tooth_count,
-            damping: submission.dynamics?.damping_ratio ?? undefined,
-            from: this.#motion?.state,
-          })
+        ? motionAt(
+            { ...results, force_table },
+            { ...this.#curve, dynamics },
+            {
+              rpm: this.#speed,
+              teeth: submission.pair.driving.tooth_count,
+              damping: submission.dynamics?.damping_ratio ?? undefined,
+              from: this.#motion?.state,
+            },
+          )
         : null;
     const motion = this.#motion;
     this.stage.move(
