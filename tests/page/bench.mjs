@@ -10,16 +10,17 @@ import {
   designOf,
   downloaded,
   drag,
+  ends,
   field,
   holeAt,
   named,
   open,
   openDesign,
-  seenByDeuteranopia,
   settled,
   step,
   tab,
 } from "./harness.mjs";
+import { seenByDeuteranopia } from "./colors.mjs";
 
 const DRIVEN = "/pair/driven";
 const HOLES = `${DRIVEN}/blank/holes`;
@@ -145,7 +146,7 @@ export async function benchSteps(service) {
       assert.match(await page.locator(".rotor.driven .hole title").first().textContent(), new RegExp(`R ${circle} mm`));
       await tab(page, "export");
       const { bytes } = await downloaded(page, () => page.locator("[data-download=json]").click());
-      const { submission, results } = JSON.parse(bytes);
+      const { submission, results } = JSON.parse(bytes.toString());
       assert.equal(submission.pair.driven.blank.holes.circle_radius_mm, circle);
       assert.equal(results.curves[0].mesh_position.length, 200, "no draft");
       assert.equal(
@@ -252,7 +253,7 @@ export async function benchSteps(service) {
         ? route.fulfill({ status: 202, contentType: "application/json", body: JSON.stringify(event) })
         : route.continue(),
     );
-    let go = null;
+    let go = (_ = null) => {};
     const waited = new Promise((resolve) => {
       go = resolve;
     });
@@ -642,7 +643,7 @@ export async function benchSteps(service) {
   await step("the excitation sounds when it is asked for, at the orders of the speed", service, async (page) => {
     await page.addInitScript(() => {
       window.audio = { contexts: 0, closed: 0, tones: [] };
-      window.AudioContext = class {
+      /** @type {any} */ (window).AudioContext = class {
         constructor() {
           window.audio.contexts += 1;
           this.currentTime = 0;
@@ -658,7 +659,7 @@ export async function benchSteps(service) {
           this.value = to;
         },
       });
-      window.GainNode = class {
+      /** @type {any} */ (window).GainNode = class {
         constructor(_, { gain }) {
           this.gain = param(gain);
         }
@@ -666,7 +667,7 @@ export async function benchSteps(service) {
           return to;
         }
       };
-      window.OscillatorNode = class {
+      /** @type {any} */ (window).OscillatorNode = class {
         constructor(_, { frequency }) {
           this.frequency = param(frequency);
         }
@@ -989,7 +990,7 @@ export async function benchSteps(service) {
       ["fields.vtu", 100_000],
     ]) {
       const { length } = await get(kind);
-      assert.ok(length > least, `${kind} has ${length} bytes`);
+      assert.ok(length > Number(least), `${kind} has ${length} bytes`);
     }
     const curves = (await get("svg")).toString();
     for (const words of [
@@ -1097,9 +1098,7 @@ export async function benchSteps(service) {
       assert.match(await page.locator("#axis-1-values").inputValue(), /^\d/);
       await page.locator("#axis-1-values").fill("9, 12");
       await page.locator("#study-run").click();
-      await page.waitForFunction(() =>
-        /of 4 designs, successful/.test(document.querySelector("#study [role=status]").innerText),
-      );
+      await ends(page, "#study-state", /of 4 designs, successful/);
       assert.equal(await page.locator("#study tbody tr").count(), 4);
       // Less web is less mass.
       await page.locator("#study-up").selectOption("pair_mass_kg");
@@ -1119,9 +1118,7 @@ export async function benchSteps(service) {
     await page.locator("#axis-1").selectOption("/output_torques_n_m");
     await page.locator("#axis-1-values").fill("50, 100");
     await page.locator("#study-run").click();
-    await page.waitForFunction(() =>
-      /4 of 4 designs, successful/.test(document.querySelector("#study [role=status]").innerText),
-    );
+    await ends(page, "#study-state", /4 of 4 designs, successful/);
     await page.locator("#study-across").selectOption("mesh_stiffness_tangent_n_per_m.mean");
     assert.match(await page.locator("#study .scatter").getAttribute("aria-label"), /mean mesh stiffness/);
     assert.match(await page.locator("#study .scatter").innerHTML(), /Mean mesh stiffness in N\/µm/);
@@ -1167,9 +1164,7 @@ export async function benchSteps(service) {
       await page.locator("#study-mass").check();
       await page.locator("#study-removed").fill("12");
       await page.locator("#study-run").click();
-      await page.waitForFunction(() =>
-        /6 of 6 designs, successful/.test(document.querySelector("#study-state").innerText),
-      );
+      await ends(page, "#study-state", /6 of 6 designs, successful/);
       const cells = await page
         .locator("#study tbody tr")
         .evaluateAll((rows) => rows.map((row) => [...row.children].map((cell) => cell.innerText)));
@@ -1213,9 +1208,7 @@ export async function benchSteps(service) {
     }
     await page.locator("#search-evaluations").fill("4");
     await page.locator("#search-evaluations").press("Enter");
-    await page.waitForFunction(() =>
-      /4 designs looked at, successful/.test(document.querySelector("#search-state").innerText),
-    );
+    await ends(page, "#search-state", /4 designs looked at, successful/);
     const [, stress, removed] =
       /with hole stress of the driven gear ([\d.]+) MPa, mass removed by holes of the driven gear ([\d.]+) %/.exec(
         await page.locator("#search-out").innerText(),
@@ -1321,9 +1314,7 @@ export async function benchSteps(service) {
       await page.locator("#axis-0").selectOption(`${HOLES}/radius_mm`);
       await page.locator("#axis-0-values").fill("5, 7");
       await page.locator("#study-run").click();
-      await page.waitForFunction(() =>
-        /2 of 2 designs, successful/.test(document.querySelector("#study [role=status]").innerText),
-      );
+      await ends(page, "#study-state", /2 of 2 designs, successful/);
       const row = page.locator("#study tbody tr").first();
       assert.match(await row.innerText(), /^Radius of a hole, driven gear 5\t/);
       const mass = await page.evaluate(
@@ -1453,9 +1444,7 @@ export async function benchSteps(service) {
         ),
       );
       await page.locator("#population button[type=submit]").click();
-      await page.waitForFunction(() =>
-        /8 of 8 members, successful/.test(document.querySelector("#population [role=status]").innerText),
-      );
+      await ends(page, "#population-state", /8 of 8 members, successful/);
       assert.match(
         await page.locator("#population .influences tbody").innerText(),
         /Amount of tip relief, driving gear/,
@@ -1473,11 +1462,7 @@ export async function benchSteps(service) {
         await page.locator(`#variable-0-${name}`).fill(value);
       await page.locator("#search-evaluations").fill("2");
       await page.locator("#search-run").click();
-      await page.waitForFunction(
-        () => /designs looked at, successful/.test(document.querySelector("#search-state").innerText),
-        null,
-        { timeout: 120_000 },
-      );
+      await ends(page, "#search-state", /designs looked at, successful/);
       assert.match(
         await page.locator("#search-out").innerText(),
         /At an end of its range: Amount of tip relief, driving gear/,
@@ -1541,9 +1526,7 @@ export async function benchSteps(service) {
       await page.locator("#law-0-kind").selectOption("uniform");
       await page.locator("#law-0-spread").fill("1");
       await page.locator("#population button[type=submit]").click();
-      await page.waitForFunction(() =>
-        /24 of 24 members, successful/.test(document.querySelector("#population [role=status]").innerText),
-      );
+      await ends(page, "#population-state", /24 of 24 members, successful/);
       const told = page.locator("#population .outdated", { hasText: "cannot be computed" });
       await told.waitFor();
       const [, failed, why] =
@@ -1578,7 +1561,7 @@ export async function benchSteps(service) {
     async (page) => {
       await open(page, service);
       const found = await page.evaluate(async () => {
-        const { follow, json, post } = await import(new URL("web/state/api.js", document.baseURI));
+        const { follow, json, post } = await import(`${document.baseURI}web/state/api.js`);
         const gear = { tooth_count: 50, module_mm: 2, face_width_mm: 20, blank: { bore_radius_mm: 16 } };
         const base = {
           method: "load_distribution",
@@ -1668,9 +1651,7 @@ export async function benchSteps(service) {
         /A member has 1220 positions, all torques together/.test(document.querySelector("#population").innerText),
       );
       await page.locator("#population-run").click();
-      await page.waitForFunction(() =>
-        /4 of 4 members, successful/.test(document.querySelector("#population-state").innerText),
-      );
+      await ends(page, "#population-state", /4 of 4 members, successful/);
       assert.ok(posted.length === 2 && posted.every(({ base }) => base.stress === undefined));
       await changing(page, () => page.locator("#population button", { hasText: "Open the median member" }).click());
       assert.equal((await designOf(page)).stress, true);

@@ -3,7 +3,7 @@
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { axe, changing, designOf, downloaded, field, settled, step, tab } from "./harness.mjs";
+import { axe, changing, designOf, downloaded, ends, field, settled, step, tab } from "./harness.mjs";
 
 /** Numbers of the guide may be off by so much: its last digit, or what another processor rounds. */
 const TOLERANCE = 0.01;
@@ -175,9 +175,7 @@ export async function hourSteps(service) {
     await page.locator("#axis-0").selectOption(`${blank}/web/thickness_mm`);
     await typed(page.locator("#axis-0-values"), "6, 8, 10");
     await page.locator("#study-run").click();
-    await page.waitForFunction(() =>
-      /3 of 3 designs, successful/.test(document.querySelector("#study [role=status]").innerText),
-    );
+    await ends(page, "#study-state", /3 of 3 designs, successful/);
     for (const row of [0, 2])
       await answered(
         await page
@@ -199,9 +197,7 @@ export async function hourSteps(service) {
       await typed(page.locator(`#variable-0-${name}`), value);
     await typed(page.locator("#search-evaluations"), 15);
     await page.locator("#search-run").click();
-    await page.waitForFunction(() =>
-      /designs looked at, successful/.test(document.querySelector("#search-state").innerText),
-    );
+    await ends(page, "#search-state", /designs looked at, successful/);
     await answered(
       await page
         .locator("#search-out")
@@ -226,9 +222,7 @@ export async function hourSteps(service) {
     await typed(page.locator("#population-size"), 80);
     await typed(page.locator("#population-torques"), "150");
     await page.locator("#population button[type=submit]").click();
-    await page.waitForFunction(() =>
-      /80 of 80 members, successful/.test(document.querySelector("#population [role=status]").innerText),
-    );
+    await ends(page, "#population-state", /80 of 80 members, successful/);
     await page.locator("#population-quantity").selectOption("mesh_order_um");
     await answered((await page.locator("#population .out p").first().innerText()).split(";")[0]);
 

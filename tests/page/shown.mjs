@@ -8,6 +8,7 @@ import {
   changing,
   designOf,
   downloaded,
+  ends,
   field,
   open,
   openDesign,
@@ -82,7 +83,9 @@ const estimateSeconds = (page) =>
 const watch = (page) =>
   page.evaluate(() => {
     window.drawn = [];
-    document.addEventListener("drawn", ({ detail }) => window.drawn.push(detail.submission.output_torques_n_m[0]));
+    document.addEventListener("drawn", (/** @type {CustomEvent} */ { detail }) =>
+      window.drawn.push(detail.submission.output_torques_n_m[0]),
+    );
   });
 
 /** @param service the service whose page is used */
@@ -215,7 +218,7 @@ export async function shownSteps(service) {
     service,
     async (page) => {
       const hold = async () => {
-        let go = null;
+        let go = (_ = null) => {};
         const waits = new Promise((resolve) => {
           go = resolve;
         });
@@ -246,7 +249,8 @@ export async function shownSteps(service) {
               );
               const stands = (element) => {
                 let opacity = 1;
-                for (let each = element; each; each = each.parentElement) opacity *= getComputedStyle(each).opacity;
+                for (let each = element; each; each = each.parentElement)
+                  opacity *= Number(getComputedStyle(each).opacity);
                 return (
                   opacity > 0.6 && (element.matches("canvas, svg, g") || getComputedStyle(element).color !== faint)
                 );
@@ -441,7 +445,7 @@ export async function shownSteps(service) {
       // What is exported and kept says which method it is of.
       await tab(page, "export");
       const { submission, results } = JSON.parse(
-        (await downloaded(page, () => page.locator("[data-download=json]").click())).bytes,
+        (await downloaded(page, () => page.locator("[data-download=json]").click())).bytes.toString(),
       );
       assert.deepEqual(
         [submission.method, results.method],
@@ -477,53 +481,6 @@ export async function shownSteps(service) {
     { viewport: { width: 1280, height: 800 } },
   );
 
-  await step("the time that is left is that of the pace at which it goes now", service, async (page) => {
-    await page.goto(service.url);
-    const said = await page.evaluate(async () => {
-      const { remaining } = await import(new URL("web/state/numbers.js", document.baseURI));
-      // 60 s for the gears, of which 3 % tell, then a percent each 0.65 s: 65 s before the end.
-      let now = 0;
-      const left = remaining(null, () => now);
-      const all = [];
-      const tell = (at, done) => {
-        now = 1000 * at;
-        all.push([at, done, left(done, 100)]);
-      };
-      for (const [at, done] of [
-        [20, 1],
-        [40, 2],
-        [60, 3],
-      ])
-        tell(at, done);
-      for (let done = 4; done <= 100; done += 1) tell(60 + 0.65 * (done - 3), done);
-      // A third in ten seconds: twenty more. Of too few nothing is said; what was expected counts before anything is
-      // known.
-      const of = (done, total, expected, after = 10_000) => {
-        let at = 0;
-        const words = remaining(expected, () => at);
-        at = after;
-        return words(done, total);
-      };
-      return {
-        all,
-        of: [of(5, 15), of(2, 15), of(15, 15), of(5, 155), of(0, 100, 60_000), of(0, 100, 60_000, 70_000)],
-      };
-    });
-    assert.deepEqual(said.of, [
-      ", about 20 s more",
-      "",
-      "",
-      ", about 5 min more",
-      ", about 50 s more",
-      ", longer than was thought",
-    ]);
-    for (const [at, done, words] of said.all.filter(([, done]) => done > 6 && done < 98)) {
-      const told = Number(/about (\d+) s/.exec(words)?.[1]);
-      const true_ = 60 + 0.65 * 97 - at;
-      assert.ok(told > 0.7 * true_ - 1 && told < 1.4 * true_ + 1, `${done} %: ${words} for ${true_} s`);
-    }
-  });
-
   await step(
     "what was computed is found again after a reload: a sweep, a study, a population, a search that runs, kept designs and the way back",
     service,
@@ -543,16 +500,12 @@ export async function shownSteps(service) {
       await page.locator("#population-size").fill("24");
       await page.locator("#population-torques").fill("60 115");
       await page.locator("#population button[type=submit]").click();
-      await page.waitForFunction(() =>
-        /24 of 24 members, successful/.test(document.querySelector("#population [role=status]").innerText),
-      );
+      await ends(page, "#population-state", /24 of 24 members, successful/);
       const good = await page.locator("#population .out p").first().innerText();
       await tab(page, "study");
       await page.locator("#axis-0-values").fill("6 9");
       await page.locator("#study-run").click();
-      await page.waitForFunction(() =>
-        /2 of 2 designs, successful/.test(document.querySelector("#study [role=status]").innerText),
-      );
+      await ends(page, "#study-state", /2 of 2 designs, successful/);
       const studied = await page.locator("#study table tbody").first().innerText();
       await page.locator("#search summary").click();
       await page.locator("#search-evaluations").fill("4000");
@@ -561,7 +514,7 @@ export async function shownSteps(service) {
       await page.waitForTimeout(500);
 
       // The page has not asked for anything yet, and the kept designs are there.
-      let go = null;
+      let go = (_ = null) => {};
       const waits = new Promise((resolve) => {
         go = resolve;
       });
@@ -603,18 +556,14 @@ export async function shownSteps(service) {
       await back("searched");
       await page.locator("#search-state", { hasText: "of at most" }).waitFor();
       await page.locator("#search button", { hasText: "Cancel" }).click();
-      await page.waitForFunction(() =>
-        /designs looked at, dismissed/.test(document.querySelector("#search-state").innerText),
-      );
+      await ends(page, "#search-state", /designs looked at, dismissed/);
       await back("torque sweep");
       await page.locator("#sweep .scatter .strong").waitFor();
       assert.equal(await page.locator("#sweep .out p").first().innerText(), found);
       assert.equal(await page.locator("#sweep-from").inputValue(), "20");
       assert.ok(await page.locator("#sweep .outdated").isVisible(), "the design is another one now");
       await back("2 of 2");
-      await page.waitForFunction(() =>
-        /2 of 2 designs, successful/.test(document.querySelector("#study [role=status]").innerText),
-      );
+      await ends(page, "#study-state", /2 of 2 designs, successful/);
       assert.equal(await page.locator("#study table tbody").first().innerText(), studied);
       await back("as made");
       await page.locator("#population .scatter").first().waitFor();
@@ -624,85 +573,33 @@ export async function shownSteps(service) {
     },
   );
 
-  await step(
-    "a spectrum has levels, its names cross no mark, and the shares of pairs have no colors of designs",
-    service,
-    async (page) => {
-      await open(page, service);
-      const found = await page.evaluate(async () => {
-        const of = (name) => import(new URL(`web/${name}.js`, document.baseURI));
-        const [{ placedNames, linesOf, PANELS }, { looks }] = await Promise.all([
-          of("state/series"),
-          of("draw/charts"),
-        ]);
-        // A name of a low order between tall neighbors.
-        const stems = [
-          [40, 0.5],
-          [50, 0.1],
-          [60, 0.6],
-          [100, 0.3],
-        ].map(([order, value]) => ({ order, value }));
-        const names = stems.map(({ order, value }) => ({ order, value, label: `H_${order}` }));
-        const placed = placedNames(names, {
-          stems,
-          mark: 3,
-          px: (order) => 2 * order,
-          py: (value) => 300 - 300 * value,
-          left: 0,
-          right: 400,
-          letter: 11,
-          widthOf: (label) => 7 * label.length,
-        });
-        const crossing = placed.filter(({ x, y, label }) =>
-          stems.some(
-            ({ order, value }) => Math.abs(2 * order - x) < 3.5 * label.length + 3 && 300 - 300 * value - 3 < y,
-          ),
-        );
-        const { series, parts } = looks();
-        // Eighty-three periods, at forty positions each.
-        const mesh_position = Array.from({ length: 3320 }, (_, i) => i / 40);
-        const curve = {
-          mesh_position,
-          load_shares: [0, -1].map((pair_offset) => ({
-            pair_offset,
-            share: mesh_position.map((at) => (pair_offset === 0 ? at % 1 : 1 - (at % 1))),
-          })),
-          statistics: {},
-        };
-        const share = PANELS.find(({ id }) => id === "share");
-        const [most] = linesOf(share, [{ results: { curves: [curve] }, name: "" }], true);
-        return {
-          placed: placed.length,
-          crossing: crossing.map(({ label }) => label),
-          shared: parts.filter((color) => Array.from({ length: 12 }, (_, i) => series(i)).includes(color)),
-          span: most.span,
-          ends: [Math.min(...most.values), Math.max(...most.values)],
-        };
-      });
-      assert.deepEqual(found.crossing, []);
-      assert.ok(found.placed >= 3);
-      assert.deepEqual(found.shared, []);
-      assert.deepEqual([Math.round(found.span), ...found.ends.map(Math.round)], [83, 50, 100]);
-      // 0.02 beside 0.53 is 28 dB below it, and seen.
-      await page.locator("#spectrum-scale").selectOption("db");
-      await tab(page, "export");
-      const svg = (await downloaded(page, () => page.locator("[data-download=svg]").click())).bytes.toString();
-      assert.match(svg, /Spectrum of the transmission error in dB re 0\.001 µm/);
-      await tab(page, "curves");
-      await axe(page);
-      const heights = await page.evaluate((text) => {
-        const document_ = new DOMParser().parseFromString(text, "image/svg+xml");
-        const spectrum = [...document_.querySelectorAll("svg svg")].find((each) =>
-          each.getAttribute("aria-label")?.startsWith("Spectrum"),
-        );
-        return [...spectrum.querySelectorAll("line:not(.grid)")]
-          .map((line) => Number(line.getAttribute("y1")) - Number(line.getAttribute("y2")))
-          .filter((height) => height > 0);
-      }, svg);
-      const [most, least] = [Math.max(...heights), Math.min(...heights.filter((height) => height > 5))];
-      assert.ok(heights.length > 5 && least > 0.05 * most, heights.join());
-    },
-  );
+  await step("a spectrum has levels, and the shares of pairs have no colors of designs", service, async (page) => {
+    await open(page, service);
+    const shared = await page.evaluate(async () => {
+      const { looks } = await import(`${document.baseURI}web/draw/charts.js`);
+      const { series, parts } = looks();
+      return parts.filter((color) => Array.from({ length: 12 }, (_, i) => series(i)).includes(color));
+    });
+    assert.deepEqual(shared, []);
+    // 0.02 beside 0.53 is 28 dB below it, and seen.
+    await page.locator("#spectrum-scale").selectOption("db");
+    await tab(page, "export");
+    const svg = (await downloaded(page, () => page.locator("[data-download=svg]").click())).bytes.toString();
+    assert.match(svg, /Spectrum of the transmission error in dB re 0\.001 µm/);
+    await tab(page, "curves");
+    await axe(page);
+    const heights = await page.evaluate((text) => {
+      const document_ = new DOMParser().parseFromString(text, "image/svg+xml");
+      const spectrum = [...document_.querySelectorAll("svg svg")].find((each) =>
+        each.getAttribute("aria-label")?.startsWith("Spectrum"),
+      );
+      return [...spectrum.querySelectorAll("line:not(.grid)")]
+        .map((line) => Number(line.getAttribute("y1")) - Number(line.getAttribute("y2")))
+        .filter((height) => height > 0);
+    }, svg);
+    const [most, least] = [Math.max(...heights), Math.min(...heights.filter((height) => height > 5))];
+    assert.ok(heights.length > 5 && least > 0.05 * most, heights.join());
+  });
 
   await step(
     "files carry the name of their design, and however somebody prints, a report of one page comes of it",
@@ -744,7 +641,7 @@ export async function shownSteps(service) {
         await page.addInitScript(() => {
           [window.shift, window.moved] = [0, []];
           new PerformanceObserver((list) => {
-            for (const { hadRecentInput, value, sources } of list.getEntries())
+            for (const { hadRecentInput, value, sources } of /** @type {any[]} */ (list.getEntries()))
               if (!hadRecentInput) {
                 window.shift += value;
                 window.moved.push(
@@ -994,7 +891,9 @@ export async function shownSteps(service) {
       await leads.locator(":scope > button").click();
       await page.evaluate(() => {
         window.drawn = [];
-        document.addEventListener("drawn", ({ detail }) => window.drawn.push(detail.submission.output_torques_n_m[0]));
+        document.addEventListener("drawn", (/** @type {CustomEvent} */ { detail }) =>
+          window.drawn.push(detail.submission.output_torques_n_m[0]),
+        );
       });
       await typed("/output_torques_n_m", "180");
       await page.waitForFunction(() => document.body.classList.contains("other"));
@@ -1019,7 +918,7 @@ export async function shownSteps(service) {
       assert.ok(await page.locator("#projected").isVisible());
       const { statistics, face } = await page.evaluate(
         async (submission) => {
-          const { resultsOf } = await import(new URL("web/state/preview.js", document.baseURI));
+          const { resultsOf } = await import(`${document.baseURI}web/state/preview.js`);
           return (await resultsOf(submission)).curves[0];
         },
         { ...design, method: "three_dimensional_projected" },

@@ -133,7 +133,8 @@ export class Charts {
    * null for all; `onEveryPosition` that the load along the face is wanted at every position.
    *
    * @param {HTMLElement} place
-   * @param {{ onPosition: (to: number) => void, onRange: (range: [number, number] | null) => void, onEveryPosition: () => void }} hearers
+   * @param {{ onPosition: (to: number) => void, onRange: (range: [number, number] | null) => void, onEveryPosition: ()
+   *   => void }} hearers
    */
   constructor(place, { onPosition, onRange, onEveryPosition }) {
     this.place = place;

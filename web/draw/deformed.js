@@ -32,7 +32,8 @@ export class Deformation {
   /**
    * `live` waits for the results that are shown and gives them with their submission, `position` is the mesh position.
    *
-   * @param {{ drawing: Drawing, button: HTMLElement, note: HTMLElement, live: () => Promise<NamedDesign | null>, position: () => number }} parts
+   * @param {{ drawing: Drawing, button: HTMLElement, note: HTMLElement, live: () => Promise<NamedDesign | null>,
+   *   position: () => number }} parts
    */
   constructor({ drawing, button, note, live, position }) {
     this.drawing = drawing;
@@ -152,7 +153,8 @@ export function deformedShape(edges, outline) {
  * The edges of a gear with the displacement of each node in mm, that of the driven gear with its turn by the
  * transmission error.
  *
- * @type {(edges: LoadedEdges, outline: PairOutline, member: GearName) => { member: GearName, teeth: StrainedEdge[], openings: StrainedEdge[], bore: string }}
+ * @type {(edges: LoadedEdges, outline: PairOutline, member: GearName) => { member: GearName, teeth: StrainedEdge[],
+ *   openings: StrainedEdge[], bore: string }}
  */
 function moved(edges, outline, member) {
   const {

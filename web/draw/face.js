@@ -72,7 +72,8 @@ export function faceOf({ face, mesh_position: positions, ...curve }) {
  * The rectangles of the map between two mesh positions, each at least so wide: `{ x, width, z, height, part }`. One
  * that several positions share tells the most of each z, so that no peak is lost.
  *
- * @type {(face: Pick<FaceLoad, "rows" | "positions" | "edges" | "most" | "span">, range: number[], least?: number) => FaceCell[]}
+ * @type {(face: Pick<FaceLoad, "rows" | "positions" | "edges" | "most" | "span">, range: number[], least?: number) =>
+ *   FaceCell[]}
  */
 export function cellsOf({ rows, positions, edges, most, span }, [from, to], least = 0) {
   const step = span / positions.length;

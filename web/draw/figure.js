@@ -295,7 +295,8 @@ export function figure({
 /**
  * A scale of colors that ends at a place, with what its ends mean.
  *
- * @type {(scale: { colors: string[], words: [string, string] }, right: number, y: number, ink: Attributes) => SVGGElement}
+ * @type {(scale: { colors: string[], words: [string, string] }, right: number, y: number, ink: Attributes) =>
+ *   SVGGElement}
  */
 function scaleAt({ colors, words: [least, most] }, right, y, ink) {
   const step = 72 / colors.length;
@@ -330,7 +331,9 @@ function legendRows(named, width) {
   return rows;
 }
 
-/** @type {(line: FigureLine, px: (value: number) => number, py: (value: number) => number, range: number[]) => string} */
+/**
+ * @type {(line: FigureLine, px: (value: number) => number, py: (value: number) => number, range: number[]) => string}
+ */
 function pathOf({ x, y }, px, py, [left, right]) {
   let pen = "M";
   let path = "";

@@ -41,7 +41,8 @@ export class Raster {
   /**
    * A triangle of one color; x and y in pixels, what has more z is nearer.
    *
-   * @type {(ax: number, ay: number, az: number, bx: number, by: number, bz: number, cx: number, cy: number, cz: number, color: number) => void}
+   * @type {(ax: number, ay: number, az: number, bx: number, by: number, bz: number, cx: number, cy: number, cz: number,
+   *   color: number) => void}
    */
   triangle(ax, ay, az, bx, by, bz, cx, cy, cz, color) {
     const area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
@@ -87,7 +88,8 @@ export class Raster {
   /**
    * A line so many pixels wide, seen where nothing is nearer by more than `lift`.
    *
-   * @type {(ax: number, ay: number, az: number, bx: number, by: number, bz: number, wide: number, lift: number, color: number) => void}
+   * @type {(ax: number, ay: number, az: number, bx: number, by: number, bz: number, wide: number, lift: number, color:
+   *   number) => void}
    */
   line(ax, ay, az, bx, by, bz, wide, lift, color) {
     const steps = Math.max(1, Math.ceil(Math.max(Math.abs(bx - ax), Math.abs(by - ay))));

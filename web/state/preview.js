@@ -63,7 +63,8 @@ export async function preview(submission, signal) {
 /**
  * The results of `submission`: at once, or of a job where a preview has too many positions.
  *
- * @type {(submission: Submission, options?: { told?: (event: string, data: any) => void, signal?: AbortSignal }) => Promise<Results>}
+ * @type {(submission: Submission, options?: { told?: (event: string, data: any) => void, signal?: AbortSignal }) =>
+ *   Promise<Results>}
  */
 export async function resultsOf(submission, options = {}) {
   try {

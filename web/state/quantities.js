@@ -21,7 +21,8 @@ const SMALL = 0.1;
  * A quantity, with its unit and its values as they are printed. Of one that this page does not know it has the name
  * alone.
  *
- * @typedef {Pick<Told, "name" | "title" | "symbol" | "needs"> & Partial<Told> & { printed: string, factor: number }} Quantity
+ * @typedef {Pick<Told, "name" | "title" | "symbol" | "needs"> & Partial<Told> & { printed: string, factor: number }}
+ *   Quantity
  */
 
 /** @type {Map<string, Quantity>} */
@@ -88,7 +89,10 @@ export function shown({ printed, factor }, value) {
 
 /** @type {(object: any, name: string) => any} */
 const at = (object, name) => name.split(".").reduce((part, step) => part?.[step], object);
-/** @type {(curve: Curve, pattern: RegExp, value?: "transmission_error_um" | "transmission_error_of_holes_um") => number | null | undefined} */
+/**
+ * @type {(curve: Curve, pattern: RegExp, value?: "transmission_error_um" | "transmission_error_of_holes_um") => number
+ *   | null | undefined}
+ */
 const order = (curve, pattern, value = "transmission_error_um") =>
   curve.spectrum?.named.find(({ label }) => pattern.test(label))?.[value];
 

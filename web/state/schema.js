@@ -33,7 +33,8 @@ import { at } from "./design.js";
  * What a field takes: of a list its `items`, of one of several its `variants`.
  *
  * @typedef {object} Kind
- * @property {"variants" | "choice" | "object" | "number" | "numbers" | "texts" | "json" | "list" | "flag" | "text"} kind
+ * @property {"variants" | "choice" | "object" | "number" | "numbers" | "texts" | "json" | "list" | "flag" | "text"}
+ *   kind
  * @property {Schema} schema
  * @property {boolean} optional
  * @property {boolean} [whole]

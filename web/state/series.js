@@ -200,7 +200,8 @@ export function linesOf(panel, designs, crowded = false) {
  * The names of orders up to `last` that spectra have, each at the most that any of them has there: a name stands above
  * every line of its order.
  *
- * @type {(spectra: { named: { order: number, label: string, transmission_error_um: number }[], orders: Point[] }[], last: number) => OrderName[]}
+ * @type {(spectra: { named: { order: number, label: string, transmission_error_um: number }[], orders: Point[] }[],
+ *   last: number) => OrderName[]}
  */
 export function namesOf(spectra, last) {
   /** @type {Map<string, OrderName>} */
@@ -225,7 +226,9 @@ export function namesOf(spectra, last) {
  * another, nor over one of the `stems` `{ order, value }`, of which a mark stands on top; a name rises above the stems
  * and names beside it. `{ label, x, y }`, centered over their lines.
  *
- * @type {(names: OrderName[], how: { stems?: { order: number, value: number }[], mark?: number, px: (order: number) => number, py: (value: number) => number, left: number, right: number, top?: number, letter: number, widthOf: (label: string) => number }) => { label: string, x: number, y: number }[]}
+ * @type {(names: OrderName[], how: { stems?: { order: number, value: number }[], mark?: number, px: (order: number) =>
+ *   number, py: (value: number) => number, left: number, right: number, top?: number, letter: number, widthOf: (label:
+ *   string) => number }) => { label: string, x: number, y: number }[]}
  */
 export function placedNames(names, { stems = [], mark = 0, px, py, left, right, top = 0, letter, widthOf }) {
   /** @type {Box[]} */

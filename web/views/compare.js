@@ -15,7 +15,8 @@ import { csvOf, fileOfDesign } from "../state/tables.js";
 /** @typedef {{ name: string, curve: Curve, results: Results, live: boolean }} Column */
 
 /**
- * `onKept` changes the kept design of an index, or takes it away; `onOpen` opens a design, `onMethods` compares methods.
+ * `onKept` changes the kept design of an index, or takes it away; `onOpen` opens a design, `onMethods` compares
+ * methods.
  *
  * @typedef {object} Hearers
  * @property {(index: number, change: Partial<NamedDesign> | null) => void} onKept

@@ -19,7 +19,8 @@ const twice = (radius) => 2 * radius;
  * Rows of the table of gears: what it is called, its symbol and unit, and how it is read from a gear's geometry and
  * document.
  *
- * @type {[name: string, symbol: string, unit: string, read: (geometry: Results["pair"]["driving"], gear: Gear) => string][]}
+ * @type {[name: string, symbol: string, unit: string, read: (geometry: Results["pair"]["driving"], gear: Gear) =>
+ *   string][]}
  */
 export const OF_GEARS = [
   ["Teeth", "z", "", (_, gear) => String(gear.tooth_count)],

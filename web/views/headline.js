@@ -272,7 +272,7 @@ export class Headline {
  *
  * @type {(now: number, before: number) => string}
  */
-function changeOf(now, before) {
+export function changeOf(now, before) {
   if (Math.abs(before) < 1e-9) return now === before ? "±0 %" : "";
   const percent = (100 * (now - before)) / Math.abs(before);
   if (Math.abs(percent) < 0.05) return "±0 %";
