@@ -40,8 +40,8 @@ import { Warnings } from "./views/warnings.js";
 
 /** @import { Space } from "./draw/space.js" */
 /** @import { Cause } from "./state/design.js" */
-/** @import { AskedStudy, Curve, Example, Limits, Method, NamedDesign, Open, Pair } from "./state/documents.js" */
-/** @import { PairOutline, Problem, Results, Submission } from "./state/documents.js" */
+/** @import { AskedStudy, Curve, Limits, Method, NamedDesign, Open, Pair, PairOutline } from "./state/documents.js" */
+/** @import { Problem, Results, Submission } from "./state/documents.js" */
 /** @import { How } from "./state/preview.js" */
 /** @import { TabPanel } from "./views/tabs.js" */
 
@@ -153,7 +153,7 @@ class Page {
     onOpen: ({ submission, results, asked }) => this.#open(submission, results, asked),
     onMethods: () => void this.#compareMethods(),
     named: (pointer) => this.#form?.named(pointer) ?? pointer,
-    usual: (submission, pointer) => this.#form && usualAt(this.#form.api, submission, pointer),
+    usual: (submission, pointer) => (this.#form ? usualAt(this.#form.api, submission, pointer) : undefined),
   });
   #follower = new Follower({
     onResults: (results, submission, how) => this.#onResults(results, submission, how),
@@ -201,8 +201,7 @@ class Page {
     ]);
     if (!given) this.#unreadable();
     setUpStart(this.#design, examples, given !== null);
-    const isFirst = (/** @type {Example} */ { name }) => name === FIRST_EXAMPLE;
-    const first = given ?? examples.find(isFirst).submission;
+    const first = given ?? (examples.find(({ name }) => name === FIRST_EXAMPLE) ?? examples[0]).submission;
     if (before) this.#design.restore(first, before);
     else this.#design.replace(first, "start");
     const [api, limits] = await fetched(() => Promise.all([openapi(), json("v1/limits")]));

@@ -14,8 +14,11 @@ const runsUp = ({ dynamics }) => dynamics;
 /** @type {(submission: Submission) => unknown} */
 const hasForces = ({ dynamics, force_table: table }) => dynamics || table;
 
-/** The name of each file, what it is called on the page, and what its submission asks for, if not every job has it. */
-/** @type {[name: string, title: string, asks?: (submission: Submission) => unknown][]} */
+/**
+ * The name of each file, what it is called on the page, and what its submission asks for, if not every job has it.
+ *
+ * @type {[name: string, title: string, asks?: (submission: Submission) => unknown][]}
+ */
 const FILES = [
   ["submission.rexs", "Pair for a gearbox program, REXS"],
   ["look-up-table.csv", "Look-up table, CSV"],

@@ -1,7 +1,7 @@
 // @ts-check
 // The service: requests with the key, and problems as errors.
 
-/** @import { Job, Problem, Submission } from "./documents.js" */
+/** @import { AnswerAt, Job, Problem, Submission } from "./documents.js" */
 
 /**
  * @typedef {{ method?: string, body?: unknown, headers?: Record<string, string>, signal?: AbortSignal }} Options
@@ -133,16 +133,27 @@ export async function patiently(work, told = () => {}) {
 /**
  * The JSON of an answer.
  *
- * @param {string} path
+ * @template {string} P
+ * @param {P} path
  * @param {Options} [options]
- * @returns {Promise<any>} what the contract says of the answer at this path
+ * @returns {Promise<AnswerAt<P, "get">>}
  */
 export async function json(path, options) {
   return (await request(path, options)).json();
 }
 
-/** @type {(path: string, body: unknown, options?: Options) => Promise<any>} */
-export const post = (path, body, options = {}) => json(path, { ...options, method: "POST", body });
+/**
+ * The JSON of the answer to a document.
+ *
+ * @template {string} P
+ * @param {P} path
+ * @param {unknown} body
+ * @param {Options} [options]
+ * @returns {Promise<AnswerAt<P, "post">>}
+ */
+export async function post(path, body, options = {}) {
+  return (await request(path, { ...options, method: "POST", body })).json();
+}
 
 /**
  * The pieces of an answer that end with `end`, as far as somebody reads them.

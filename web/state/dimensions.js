@@ -7,14 +7,13 @@ import { number } from "./numbers.js";
 /** @import { Design } from "./design.js" */
 /** @import { GearName } from "./documents.js" */
 
-/** The method that a pair gets with its first extent along the axis, and the one that it goes back to. */
-
 /**
  * Changes that belong together, and what is said of them.
  *
  * @typedef {{ changes: Record<string, unknown>, told: string[] }} Step
  */
 
+/** The method that a pair gets with its first extent along the axis, and the one that it goes back to. */
 const SOLID = "three_dimensional";
 const PLANE = "flexible";
 /** A helix begins with so many degrees. */

@@ -2,6 +2,26 @@
 // The documents of the service as types, made of its contract. A browser never fetches this module.
 
 /** @typedef {import("meshwright").components["schemas"]} Schemas */
+
+/** @typedef {import("meshwright").paths} Paths */
+
+/**
+ * The JSON of an answer.
+ *
+ * @template R
+ * @typedef {R extends { 200: { content: { "application/json": infer T } } } ? T
+ *   : R extends { 202: { content: { "application/json": infer T } } } ? T : any} JsonOf
+ */
+
+/**
+ * What the contract says of the answer at a path, as far as the path is no more than a text that stands in it.
+ *
+ * @template {string} P
+ * @template {"get" | "post"} M
+ * @typedef {`/${P}` extends keyof Paths
+ *   ? Paths[`/${P}`][M] extends { responses: infer R } ? JsonOf<R> : any : any} AnswerAt
+ */
+
 /** @typedef {Schemas["Submission"]} Submission */
 /** @typedef {Submission["method"]} Method */
 /** @typedef {Schemas["Gear"]} Gear */

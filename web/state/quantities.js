@@ -7,11 +7,17 @@ import { extent, fixed, number, unit } from "./numbers.js";
 
 /** @import { Curve, GearName, Results, RowCurve, TableRow } from "./documents.js" */
 
-/** Units that are printed as multiples of the service's, and what numbers are multiplied by. */
-/** @type {Record<string, [string, number]>} */
-const MULTIPLES = { "N/m": ["N/µm", 1e-6], "kg m^2": ["kg cm²", 1e4] };
-/** So many decimals have numbers in a unit; small ones have three digits. */
-/** @type {Record<string, number>} */
+/**
+ * Units that are printed as multiples of the service's, and what numbers are multiplied by.
+ *
+ * @type {Record<string, [string, number]>}
+ */
+const PRINTED = { "N/m": ["N/µm", 1e-6], "kg m^2": ["kg cm²", 1e4] };
+/**
+ * So many decimals have numbers in a unit; small ones have three digits.
+ *
+ * @type {Record<string, number>}
+ */
 const DECIMALS = { "N/µm": 2, MPa: 1, "%": 1, mm: 2 };
 const SMALL = 0.1;
 
@@ -21,8 +27,8 @@ const SMALL = 0.1;
  * A quantity, with its unit and its values as they are printed. Of one that this page does not know it has the name
  * alone.
  *
- * @typedef {Pick<Told, "name" | "title" | "symbol" | "needs"> & Partial<Told> & { printed: string, factor: number }}
- *   Quantity
+ * @typedef {Pick<Told, "name" | "title" | "symbol" | "needs"> & Partial<Told> &
+ *   { printed: string, factor: number }} Quantity
  */
 
 /** @type {Map<string, Quantity>} */
@@ -33,7 +39,7 @@ export async function fetchQuantities() {
   const { items } = await json("v1/quantities");
   known = new Map(
     items.map((/** @type {Told} */ item) => {
-      const [printed, factor] = MULTIPLES[item.unit] ?? [unit(item.unit), 1];
+      const [printed, factor] = PRINTED[item.unit] ?? [unit(item.unit), 1];
       return [item.name, { ...item, printed, factor }];
     }),
   );

@@ -38,8 +38,11 @@ import { fixed, number } from "./numbers.js";
 
 /** What lies below is noise of the solution, in um. */
 export const LEAST_AMPLITUDE = 1e-4;
-/** Told apart without color: full, dashed, dotted, and both. */
-/** @type {number[][]} */
+/**
+ * Told apart without color: full, dashed, dotted, and both.
+ *
+ * @type {number[][]}
+ */
 export const DASHES = [[], [7, 4], [2, 3], [10, 3, 2, 3], [12, 4], [4, 2, 1, 2], [1, 2]];
 
 /** @type {(values: number[]) => number[]} */

@@ -13,8 +13,11 @@ import { wordsOf } from "../state/orders.js";
 /** @import { Attributes, Figure, Frame } from "../draw/figure.js" */
 /** @import { Curve, Dynamics, NamedDesign, NamedOrder, RunUpBranch } from "../state/documents.js" */
 
-/** What is drawn over speed: name, unit, and how a branch tells it. */
-/** @type {Record<string, [words: string, unit: string, read: (branch: RunUpBranch) => number[]]>} */
+/**
+ * What is drawn over speed: name, unit, and how a branch tells it.
+ *
+ * @type {Record<string, [words: string, unit: string, read: (branch: RunUpBranch) => number[]]>}
+ */
 const OVER_SPEED = {
   p_p: ["dynamic STE, peak-to-peak", "µm", (branch) => branch.dynamic_transmission_error_um.peak_to_peak],
   rms: ["dynamic STE, rms", "µm", (branch) => branch.dynamic_transmission_error_um.rms],

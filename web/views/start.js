@@ -97,7 +97,6 @@ async function openFile(design, file) {
       design.replace(document.submission ?? document, "open");
       return;
     }
-    /** @type {RexsModel} */
     const model = await post("v1/rexs", file, { headers: { "content-type": "application/octet-stream" } });
     const [submission] = model.submissions;
     const refused = model.refused.map(({ place, detail }) => `${place}: ${detail}`).join(" ");
