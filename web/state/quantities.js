@@ -103,12 +103,11 @@ const order = (curve, pattern, value = "transmission_error_um") =>
   curve.spectrum?.named.find(({ label }) => pattern.test(label))?.[value];
 
 /**
- * Where results have what does not stand there under its name: of a curve, and of all results.
+ * Where a curve has what does not stand among its statistics under its name.
  *
- * @type {Record<string, (curve: Curve, results: Results) => number | null | undefined>}
+ * @type {Record<string, (curve: Curve) => number | null | undefined>}
  */
 const ELSEWHERE = {
-  pair_mass_kg: (_, { pair }) => pair.driving.mass_kg + pair.driven.mass_kg,
   hole_order_um: (curve) => order(curve, /^H_N\d?$/),
   hole_order_of_holes_um: (curve) => order(curve, /^H_N\d?$/, "transmission_error_of_holes_um"),
   mesh_order_um: (curve) => order(curve, /^H_Z2?$/),
@@ -122,14 +121,21 @@ const ELSEWHERE = {
 };
 
 /**
+ * The value of a quantity of curves in one of them.
+ *
+ * @type {(quantity: Quantity, curve: Curve) => number | null | undefined}
+ */
+export const inCurve = ({ name }, curve) => (ELSEWHERE[name] ?? (({ statistics }) => at(statistics, name)))(curve);
+
+/**
  * The value of a quantity in `results`, of one of their curves.
  *
  * @type {(quantity: Quantity, curve: Curve, results: Results) => number | null | undefined}
  */
-export function inResults({ name, of }, curve, results) {
-  if (ELSEWHERE[name]) return ELSEWHERE[name](curve, results);
-  const [own, gear] = name.split(".");
-  return of === "curve" ? at(curve.statistics, name) : at(results.pair, gear ? `${gear}.${own}` : name);
+export function inResults(quantity, curve, { pair }) {
+  if (quantity.of === "curve") return inCurve(quantity, curve);
+  const [own, gear] = quantity.name.split(".");
+  return own === "pair_mass_kg" ? pair.driving.mass_kg + pair.driven.mass_kg : at(pair, gear ? `${gear}.${own}` : own);
 }
 
 /**

@@ -4,6 +4,7 @@
 
 import { h } from "../draw/dom.js";
 import { extent, fixed, number } from "../state/numbers.js";
+import { inCurve, quantityOf } from "../state/quantities.js";
 
 /** @import { Curve, GearName } from "../state/documents.js" */
 
@@ -14,19 +15,14 @@ import { extent, fixed, number } from "../state/numbers.js";
  * @property {string} id
  * @property {string} name
  * @property {string} unit
- * @property {boolean} [less]
  * @property {boolean} [some]
- * @property {(curve: Curve) => number | null} of
+ * @property {string} [quantity] which of the service it is
+ * @property {(curve: Curve) => number | null} [of] how it is read where it is none of the service: less is better then
  * @property {(curve: Curve) => Where | null | undefined} [where]
  * @property {(value: number) => string} print
  * @property {string} about
  */
 
-/** @type {(curve: Curve, pattern: RegExp) => number | null} */
-const named = (curve, pattern) =>
-  curve.spectrum?.named.find(({ label }) => pattern.test(label))?.transmission_error_um ?? null;
-/** @type {(value: number | null | undefined) => number | null} */
-const mega = (value) => (value === null || value === undefined ? null : value * 1e-6);
 /** @type {(values: (number | null)[]) => number | null} */
 const largest = (values) => extent(values)?.[1] ?? null;
 
@@ -88,8 +84,8 @@ function placed({ mesh_position, pair_offset, driving_diameter_mm, driven_diamet
 }
 
 /**
- * What each answer is: its name, unit, how it is read from a curve, how it is printed, and what a visitor asks of it.
- * `less` says whether less is better, `some` that not every method tells it, `where` the place at which it stands.
+ * What each answer is: its name, unit, which quantity it is, how it is printed, and what a visitor asks of it.
+ * `some` that not every method tells it, `where` the place at which it stands.
  *
  * @type {HeadlineAnswer[]}
  */
@@ -98,8 +94,7 @@ export const ANSWERS = [
     id: "p-p",
     name: "STE p-p",
     unit: "µm",
-    less: true,
-    of: (curve) => curve.statistics.transmission_error_um.peak_to_peak,
+    quantity: "transmission_error_um.peak_to_peak",
     print: (value) => fixed(value, 3),
     about:
       "Peak-to-peak transmission error: how unevenly the driven gear lags. It excites gear whine; half of it is 6 dB less. As a rule of thumb below 1 µm is quiet and above 5 µm is heard.",
@@ -108,7 +103,7 @@ export const ANSWERS = [
     id: "mean",
     name: "STE mean",
     unit: "µm",
-    of: (curve) => curve.statistics.transmission_error_um.mean,
+    quantity: "transmission_error_um.mean",
     print: (value) => fixed(value, 2),
     about:
       "How far the driven gear lags under load on average, along the line of action. A constant lag makes no noise.",
@@ -117,8 +112,7 @@ export const ANSWERS = [
     id: "k",
     name: "k mean",
     unit: "N/µm",
-    less: false,
-    of: (curve) => mega(curve.statistics.mesh_stiffness_tangent_n_per_m.mean),
+    quantity: "mesh_stiffness_tangent_n_per_m.mean",
     print: (value) => fixed(value, 1),
     about: "Mesh stiffness: how much more load bends the teeth and blanks by how much more, on average.",
   },
@@ -126,9 +120,8 @@ export const ANSWERS = [
     id: "face",
     name: "K_Hβ",
     unit: "",
-    less: true,
     some: true,
-    of: (curve) => curve.face?.face_load_factor ?? null,
+    quantity: "face_load_factor",
     print: (value) => fixed(value, 3),
     about:
       "Face load factor: of ten equal strips of the face, how much more the heaviest carries than all of them on average. 1 is even; at 2 one strip carries twice its part, and its teeth live accordingly shorter.",
@@ -137,8 +130,7 @@ export const ANSWERS = [
     id: "h-n",
     name: "H_N",
     unit: "µm",
-    less: true,
-    of: (curve) => named(curve, /^H_N\d?$/),
+    quantity: "hole_order_um",
     print: (value) => number(value, 3),
     about:
       "The part of the transmission error that repeats with the holes: its amplitude at as many waves in a revolution of the driven gear as there are holes. None without holes.",
@@ -147,8 +139,7 @@ export const ANSWERS = [
     id: "h-z",
     name: "H_Z2",
     unit: "µm",
-    less: true,
-    of: (curve) => named(curve, /^H_Z2?$/),
+    quantity: "mesh_order_um",
     print: (value) => number(value, 3),
     about: "The part that repeats with every tooth: its amplitude at the mesh order.",
   },
@@ -156,7 +147,6 @@ export const ANSWERS = [
     id: "share",
     name: "One pair alone",
     unit: "%",
-    less: true,
     some: true,
     of: alone,
     print: (value) => fixed(value, 0),
@@ -166,8 +156,7 @@ export const ANSWERS = [
     id: "pressure",
     name: "Max pressure",
     unit: "MPa",
-    less: true,
-    of: (curve) => largest(curve.peak_contact_pressure_mpa),
+    quantity: "peak_contact_pressure_mpa",
     where: (curve) => curve.statistics.peak_contact_pressure_mpa?.largest_where,
     print: (value) => fixed(value, 0),
     about:
@@ -177,7 +166,6 @@ export const ANSWERS = [
     id: "stress",
     name: "Max stress",
     unit: "MPa",
-    less: true,
     of: largestStress,
     where: largestStressWhere,
     print: (value) => fixed(value, 1),
@@ -185,6 +173,28 @@ export const ANSWERS = [
       "The largest von Mises stress at the roots and holes of both gears. Computed where Stress is on, under Load and method.",
   },
 ];
+
+/**
+ * An answer of a curve, in its unit; null where the method does not tell it.
+ *
+ * @type {(answer: HeadlineAnswer, curve: Curve) => number | null}
+ */
+export function valueOf({ quantity, of }, curve) {
+  if (of || !quantity) return of?.(curve) ?? null;
+  const known = quantityOf(quantity);
+  const value = inCurve(known, curve) ?? null;
+  return value === null ? null : known.factor * value;
+}
+
+/**
+ * Whether less of an answer is better; null where that depends.
+ *
+ * @type {(answer: HeadlineAnswer) => boolean | null}
+ */
+function isLessBetter({ quantity }) {
+  const better = quantity ? quantityOf(quantity).better : "smaller";
+  return better ? better === "smaller" : null;
+}
 
 /**
  * @typedef {{ tile: HTMLElement, value: HTMLElement, change: HTMLElement, name: HTMLElement, about: HTMLElement }} Tile
@@ -235,7 +245,7 @@ export class Headline {
       const parts = this.tiles.get(answer.id);
       if (!parts) continue;
       const { tile, value, change, about } = parts;
-      const [now, before] = [answer.of(curve), other && answer.of(other.curve)];
+      const [now, before] = [valueOf(answer, curve), other && valueOf(answer, other.curve)];
       if (answer.some) tile.hidden = now === null;
       value.textContent = now === null ? "–" : answer.print(now);
       const where = now === null ? undefined : answer.where?.(curve);
@@ -245,13 +255,14 @@ export class Headline {
       const known = other && now !== null && before !== null;
       change.textContent = known ? changeOf(now, before) : "";
       change.title = known ? `${other.name}: ${answer.print(before)} ${answer.unit}` : "";
+      const less = isLessBetter(answer);
       // At another torque less is not better: it is another question.
       const better =
         known &&
         other.curve.output_torque_n_m === curve.output_torque_n_m &&
-        answer.less !== undefined &&
+        less !== null &&
         Math.abs(now - before) > 1e-3 * Math.abs(before)
-          ? now < before === answer.less
+          ? now < before === less
           : null;
       change.classList.toggle("better", better === true);
       change.classList.toggle("worse", better === false);

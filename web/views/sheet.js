@@ -7,7 +7,7 @@ import { drawingOf } from "../draw/download.js";
 import { flattened, told } from "../state/design.js";
 import { number } from "../state/numbers.js";
 import { rowsOf } from "./geometry.js";
-import { ANSWERS } from "./headline.js";
+import { ANSWERS, valueOf } from "./headline.js";
 
 /** @import { Charts } from "../draw/charts.js" */
 /** @import { NamedDesign, Submission } from "../state/documents.js" */
@@ -133,7 +133,7 @@ export function sheetOf({ live, drawing, charts, form }) {
 
   let y = 104;
   for (const answer of ANSWERS) {
-    const value = answer.of(curve);
+    const value = valueOf(answer, curve);
     if (value === null) continue;
     page.append(
       words(answer.name, 510, y),

@@ -10,6 +10,7 @@ import { linesOf, namesOf, ordersOf, PANELS, partialSpectrum, placedNames, spanO
 import { snippets } from "../../../web/state/snippets.js";
 import { csv, csvOf, fileOfDesign, ordersCsv } from "../../../web/state/tables.js";
 import { measured, tableOf } from "../../../web/views/deviations.js";
+import { ANSWERS, valueOf } from "../../../web/views/headline.js";
 import { seenByDeuteranopia } from "../colors.mjs";
 import { example } from "./contract.mjs";
 
@@ -189,4 +190,19 @@ test("programs ask for the same results: with curl, from Python and from TypeScr
   assert.match(python, /with Client\("http:\/\/here\.example"\)/);
   assert.match(typescript, /const submission: Submission = \{/);
   for (const program of [curl, python, typescript]) assert.doesNotMatch(program, /mw_/);
+});
+
+test("answers are quantities of the service, in their printed unit, or the page's own", () => {
+  const curve = {
+    ...curveOver(1),
+    pairs_in_contact: [1, 1, 2, 2],
+    statistics: { transmission_error_um: { peak_to_peak: 2 } },
+    spectrum: { named: [{ label: "H_Z2", transmission_error_um: 0.5 }] },
+  };
+  const value = (id) =>
+    valueOf(
+      ANSWERS.find((answer) => answer.id === id),
+      curve,
+    );
+  assert.deepEqual(["p-p", "h-z", "h-n", "share", "stress"].map(value), [2, 0.5, null, 50, null]);
 });
