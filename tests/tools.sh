@@ -33,3 +33,13 @@ python_tool() {
         timeout $patience "$1/bin/pip" install --quiet --requirement "$3" >/dev/null 2>&1 </dev/null &&
         cp "$3" "$1/requirements.txt"
 }
+
+# Whether PROGRAM is in node_modules of FOLDER, once the packages of PACKAGE_JSON are installed there: npm_tool FOLDER PROGRAM PACKAGE_JSON
+npm_tool() {
+    cmp -s "$3" "$1/package.json" && "$1/node_modules/.bin/$2" --version >/dev/null 2>&1 && return
+    provide 'npm --version' nodejs npm || return 1
+    say "installing the packages of $3."
+    mkdir -p "$1" && cp "$3" "$1/package.json" &&
+        timeout $patience npm install --silent --no-audit --no-fund --prefix "$1" </dev/null &&
+        "$1/node_modules/.bin/$2" --version >/dev/null
+}

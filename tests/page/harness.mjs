@@ -7,6 +7,8 @@ import { chromium } from "playwright-core";
 
 /** In milliseconds, for a machine that has much else to do. */
 const PATIENCE = 120_000;
+/** What is computed says something new at least once in so many milliseconds. */
+const STANDSTILL = 180_000;
 const only = process.env.ONLY ? new RegExp(process.env.ONLY) : null;
 
 const browser = await chromium.launch({ executablePath: process.env.BROWSER, args: ["--no-sandbox"] });
@@ -16,18 +18,27 @@ let failed = 0;
 /** Runs a step in a page of its own, which must neither log an error nor ask another host. */
 export async function step(name, service, work, options = {}, others = []) {
   if (only && !only.test(name)) return;
-  const context = await browser.newContext({ viewport: { width: 1280, height: 1000 }, acceptDownloads: true, ...options });
+  const context = await browser.newContext({
+    viewport: { width: 1280, height: 1000 },
+    acceptDownloads: true,
+    ...options,
+  });
   context.setDefaultTimeout(PATIENCE);
   const page = await context.newPage();
   if (process.env.WEB) await fromDisk(page, service);
   const faults = [];
   page.on("console", (message) => {
     // The browser itself logs a refusal and a service that is away; the page shows both.
-    if (message.type() === "error" && !/status of 4(01|22)|ERR_INTERNET_DISCONNECTED/.test(message.text())) faults.push(message.text());
+    if (message.type() === "error" && !/status of 4(01|22)|ERR_INTERNET_DISCONNECTED/.test(message.text()))
+      faults.push(message.text());
   });
   page.on("pageerror", (error) => faults.push(error.stack));
   page.on("request", (request) => {
-    if (![service.url, ...others].some((known) => request.url().startsWith(known)) && !/^(blob|data):/.test(request.url())) faults.push(`asks ${request.url()}`);
+    if (
+      ![service.url, ...others].some((known) => request.url().startsWith(known)) &&
+      !/^(blob|data):/.test(request.url())
+    )
+      faults.push(`asks ${request.url()}`);
   });
   try {
     await work(page, context);
@@ -36,8 +47,13 @@ export async function step(name, service, work, options = {}, others = []) {
     console.log(`page: ok: ${name}`);
   } catch (error) {
     failed += 1;
-    const said = await page.locator("[role=status]:visible, [role=alert]:visible").allInnerTexts().catch(() => []);
-    console.log(`page: FAILED: ${name}\n${error.stack}\n${faults.join("\n")}\nThe page says: ${said.filter(Boolean).join(" | ")}`);
+    const said = await page
+      .locator("[role=status]:visible, [role=alert]:visible")
+      .allInnerTexts()
+      .catch(() => []);
+    console.log(
+      `page: FAILED: ${name}\n${error.stack}\n${faults.join("\n")}\nThe page says: ${said.filter(Boolean).join(" | ")}`,
+    );
   }
   await context.close();
 }
@@ -45,10 +61,16 @@ export async function step(name, service, work, options = {}, others = []) {
 /** The page as it lies in the folder WEB, not as it is in the program: what is being changed needs no build. */
 async function fromDisk(page, { url }) {
   const types = { html: "text/html", js: "text/javascript", css: "text/css", svg: "image/svg+xml" };
-  await page.route((address) => address.href.startsWith(`${url}web/`) || (address.origin + address.pathname === url), async (route) => {
-    const name = new URL(route.request().url()).pathname.replace(/^\/(web\/)?/, "") || "index.html";
-    await route.fulfill({ body: readFileSync(`${process.env.WEB}/${name}`), contentType: `${types[name.split(".").pop()]}; charset=utf-8` });
-  });
+  await page.route(
+    (address) => address.href.startsWith(`${url}web/`) || address.origin + address.pathname === url,
+    async (route) => {
+      const name = new URL(route.request().url()).pathname.replace(/^\/(web\/)?/, "") || "index.html";
+      await route.fulfill({
+        body: readFileSync(`${process.env.WEB}/${name}`),
+        contentType: `${types[name.split(".").pop()]}; charset=utf-8`,
+      });
+    },
+  );
 }
 
 /** Ends the browser and tells how it went. */
@@ -63,10 +85,17 @@ export const answer = async (page, id) => Number(await page.locator(`#answer-${i
 
 /** Waits until an answer is another one than before, and no draft; gives it. */
 export async function changed(page, id, before) {
-  await page.waitForFunction(([place, old]) => {
-    const value = document.querySelector(`#answer-${place} .value`);
-    return !value.classList.contains("draft") && !document.body.classList.contains("busy") && Number(value.innerText) !== old;
-  }, [id, before]);
+  await page.waitForFunction(
+    ([place, old]) => {
+      const value = document.querySelector(`#answer-${place} .value`);
+      return (
+        !value.classList.contains("draft") &&
+        !document.body.classList.contains("busy") &&
+        Number(value.innerText) !== old
+      );
+    },
+    [id, before],
+  );
   return answer(page, id);
 }
 
@@ -81,7 +110,9 @@ export async function open(page, service, fragment = "") {
 export async function field(page, pointer) {
   const found = page.locator(`[id="field-${pointer}"]`);
   await found.waitFor({ state: "attached" });
-  await found.evaluate((element) => { for (let at = element; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true; });
+  await found.evaluate((element) => {
+    for (let at = element; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true;
+  });
   return found;
 }
 
@@ -89,10 +120,18 @@ export async function field(page, pointer) {
 export const tab = (page, name) => page.locator(`#tab-${name}`).click();
 
 /** What the live design is called in the table, once it is called so. */
-export const named = (page, words) => page.waitForFunction((name) => document.querySelector("#table th.live")?.textContent.includes(name) && !document.body.classList.contains("busy"), words);
+export const named = (page, words) =>
+  page.waitForFunction(
+    (name) =>
+      document.querySelector("#table th.live")?.textContent.includes(name) && !document.body.classList.contains("busy"),
+    words,
+  );
 
 /** Waits until the last change of the design has been answered, and the address carries it. */
-export const settled = (page) => page.waitForFunction(() => !document.body.classList.contains("busy") && history.state?.changes === Number(document.body.dataset.changes));
+export const settled = (page) =>
+  page.waitForFunction(
+    () => !document.body.classList.contains("busy") && history.state?.changes === Number(document.body.dataset.changes),
+  );
 
 /** Does what changes the design sooner or later, and waits until it has, and is settled. */
 export async function changing(page, work) {
@@ -100,6 +139,21 @@ export async function changing(page, work) {
   await work();
   await page.waitForFunction((known) => document.body.dataset.changes !== known, before);
   await settled(page);
+}
+
+/**
+ * Waits until the place that says how far something is says that it has ended. However long that takes on a machine that
+ * has much else to do, it is waited for as long as it goes on.
+ */
+export async function ends(page, place, words) {
+  let [last, since] = ["", Date.now()];
+  for (;;) {
+    const said = await page.locator(place).innerText();
+    if (words.test(said)) return;
+    if (said !== last) [last, since] = [said, Date.now()];
+    assert.ok(Date.now() - since < STANDSTILL, `for ${STANDSTILL} ms it has said: ${said}`);
+    await page.waitForTimeout(100);
+  }
 }
 
 /** The address that the page gives away. */
@@ -115,7 +169,9 @@ export async function designOf(page) {
   return page.evaluate(async () => {
     const text = location.hash.slice("#design=".length).replace(/-/g, "+").replace(/_/g, "/");
     const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-    return JSON.parse(await new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"))).text());
+    return JSON.parse(
+      await new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"))).text(),
+    );
   });
 }
 
@@ -123,7 +179,11 @@ export async function designOf(page) {
 export async function openDesign(page, service, design) {
   await page.goto(service.url);
   const fragment = await page.evaluate(async (submission) => {
-    const packed = new Uint8Array(await new Response(new Blob([JSON.stringify(submission)]).stream().pipeThrough(new CompressionStream("deflate-raw"))).arrayBuffer());
+    const packed = new Uint8Array(
+      await new Response(
+        new Blob([JSON.stringify(submission)]).stream().pipeThrough(new CompressionStream("deflate-raw")),
+      ).arrayBuffer(),
+    );
     let letters = "";
     for (const byte of packed) letters += String.fromCharCode(byte);
     return `#design=${btoa(letters).replace(/\+/g, "-").replace(/\//g, "_").replace(/=+$/, "")}`;
@@ -136,7 +196,12 @@ export async function openDesign(page, service, design) {
 export async function axe(page) {
   const { violations } = await new AxeBuilder({ page }).analyze();
   const serious = violations.filter(({ impact }) => ["serious", "critical"].includes(impact));
-  assert.deepEqual(serious.map(({ id, nodes }) => `${id}: ${nodes.map(({ target, failureSummary }) => `${target} ${failureSummary}`).join(" ")}`), []);
+  assert.deepEqual(
+    serious.map(
+      ({ id, nodes }) => `${id}: ${nodes.map(({ target, failureSummary }) => `${target} ${failureSummary}`).join(" ")}`,
+    ),
+    [],
+  );
 }
 
 /** Drags with the mouse from one place to another in steps. */
@@ -153,7 +218,10 @@ export async function holeAt(page, index) {
     const box = await locator.boundingBox();
     return [box.x + box.width / 2, box.y + box.height / 2];
   };
-  return [await middle(page.locator(".rotor.driven .hole").nth(index)), await middle(page.locator(".rotor.driven circle.opening"))];
+  return [
+    await middle(page.locator(".rotor.driven .hole").nth(index)),
+    await middle(page.locator(".rotor.driven circle.opening")),
+  ];
 }
 
 /** A file that `work` makes the page give, as text or bytes. */
@@ -164,13 +232,4 @@ export async function downloaded(page, work) {
   const chunks = [];
   for await (const chunk of await download.createReadStream()) chunks.push(chunk);
   return { name: download.suggestedFilename(), bytes: Buffer.concat(chunks) };
-}
-
-/** Colors as an eye without green cones sees them (Machado 2009), in a space where distances are seen. */
-export function seenByDeuteranopia(color) {
-  const linear = color.map((value) => (value / 255 <= 0.04045 ? value / 255 / 12.92 : ((value / 255 + 0.055) / 1.055) ** 2.4));
-  const seen = [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.01182, 0.04294, 0.968881]].map((row) => Math.min(1, Math.max(0, row.reduce((sum, part, i) => sum + part * linear[i], 0))));
-  const f = (t) => (t > 0.008856 ? Math.cbrt(t) : 7.787 * t + 16 / 116);
-  const [x, y, z] = [[0.4124, 0.3576, 0.1805, 0.95047], [0.2126, 0.7152, 0.0722, 1], [0.0193, 0.1192, 0.9505, 1.08883]].map(([a, b, c, white]) => f((a * seen[0] + b * seen[1] + c * seen[2]) / white));
-  return [116 * y - 16, 500 * (x - y), 200 * (y - z)];
 }

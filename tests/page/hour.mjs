@@ -1,17 +1,24 @@
-// docs/an-hour-at-the-bench.md, click by click: what it says that the page answers is compared with what the page answers.
+// docs/an-hour-at-the-bench.md, click by click: what it says that the page answers is compared with what the page
+// answers.
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { axe, changing, designOf, downloaded, field, settled, step, tab } from "./harness.mjs";
+import { axe, changing, designOf, downloaded, ends, field, settled, step, tab } from "./harness.mjs";
 
 /** Numbers of the guide may be off by so much: its last digit, or what another processor rounds. */
 const TOLERANCE = 0.01;
 const MINUTES = 180_000;
 
-/** The guide's answers, its quotations in the order in which they come, and the names that it tells a reader to look for, in italics. */
+/**
+ * The guide's answers, its quotations in the order in which they come, and the names that it tells a reader to look
+ * for, in italics.
+ */
 function guide() {
   const text = readFileSync(process.env.HOUR, "utf8");
-  return { answers: [...text.matchAll(/^> (.+)$/gm)].map(([, words]) => words), names: [...new Set([...text.matchAll(/\*([^*\n]+)\*/g)].map(([, words]) => words))] };
+  return {
+    answers: [...text.matchAll(/^> (.+)$/gm)].map(([, words]) => words),
+    names: [...new Set([...text.matchAll(/\*([^*\n]+)\*/g)].map(([, words]) => words))],
+  };
 }
 
 const NUMBER = /-?\d+(?:,\d{3})*(?:\.\d+)?/g;
@@ -24,7 +31,10 @@ function assertAlike(found, said) {
   const pairs = (found.match(NUMBER) ?? []).map((digits, i) => [valueOf(digits), said.match(NUMBER)[i]]);
   for (const [value, digits] of pairs) {
     const last = 10 ** -(digits.split(".")[1]?.length ?? 0);
-    assert.ok(Math.abs(value - valueOf(digits)) <= Math.max(TOLERANCE * Math.abs(value), 1.01 * last), `the guide says ${said}; the page says ${found}`);
+    assert.ok(
+      Math.abs(value - valueOf(digits)) <= Math.max(TOLERANCE * Math.abs(value), 1.01 * last),
+      `the guide says ${said}; the page says ${found}`,
+    );
   }
 }
 
@@ -37,7 +47,15 @@ export async function hourSteps(service) {
     let begun = Date.now();
     /** Remembers what stands on the page, for the names that the guide uses. */
     const look = async () => {
-      seen += await page.evaluate(() => [document.body.innerText, ...[...document.querySelectorAll("summary, option, label, legend, button, h2, th, [role=tab]")].map((each) => each.textContent), ...[...document.querySelectorAll("svg text")].map((each) => each.textContent)].join("\n"));
+      seen += await page.evaluate(() =>
+        [
+          document.body.innerText,
+          ...[...document.querySelectorAll("summary, option, label, legend, button, h2, th, [role=tab]")].map(
+            (each) => each.textContent,
+          ),
+          ...[...document.querySelectorAll("svg text")].map((each) => each.textContent),
+        ].join("\n"),
+      );
     };
     /** The next answer of the guide is what the page says. */
     const answered = async (found) => {
@@ -50,9 +68,24 @@ export async function hourSteps(service) {
     /** The numbers of the headline that the guide tells next. */
     const headline = async () => {
       await settled(page);
-      const tiles = await page.evaluate(() => [...document.querySelectorAll(".tile:not([hidden])")].map((tile) => [...tile.querySelectorAll(".name, .value, small")].map((each) => each.textContent.trim())));
-      const wanted = process.env.HOUR_LOG ? tiles.map(([name]) => name) : answers[0].split(", ").map((each) => tiles.map(([name]) => name).find((name) => each.startsWith(name)));
-      await answered(wanted.map((name) => tiles.find(([each]) => each === name).filter(Boolean).join(" ")).join(", "));
+      const tiles = await page.evaluate(() =>
+        [...document.querySelectorAll(".tile:not([hidden])")].map((tile) =>
+          [...tile.querySelectorAll(".name, .value, small")].map((each) => each.textContent.trim()),
+        ),
+      );
+      const wanted = process.env.HOUR_LOG
+        ? tiles.map(([name]) => name)
+        : answers[0].split(", ").map((each) => tiles.map(([name]) => name).find((name) => each.startsWith(name)));
+      await answered(
+        wanted
+          .map((name) =>
+            tiles
+              .find(([each]) => each === name)
+              .filter(Boolean)
+              .join(" "),
+          )
+          .join(", "),
+      );
     };
     const typed = async (input, value) => {
       await input.click();
@@ -68,7 +101,17 @@ export async function hourSteps(service) {
     await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
     await page.locator("#form .field").first().waitFor();
     await page.locator("#start").selectOption({ label: "a new pair, all by default" });
-    for (const [name, value] of [["driving/module_mm", 2.5], ["center_distance_mm", 106], ["driving/tooth_count", 23], ["driving/profile_shift", 0.3], ["driving/face_width_mm", 24], ["driven/tooth_count", 61], ["driven/profile_shift", -0.1], ["driven/face_width_mm", 22]]) await type(`/pair/${name}`, value);
+    for (const [name, value] of [
+      ["driving/module_mm", 2.5],
+      ["center_distance_mm", 106],
+      ["driving/tooth_count", 23],
+      ["driving/profile_shift", 0.3],
+      ["driving/face_width_mm", 24],
+      ["driven/tooth_count", 61],
+      ["driven/profile_shift", -0.1],
+      ["driven/face_width_mm", 22],
+    ])
+      await type(`/pair/${name}`, value);
     await type("/output_torques_n_m", 150);
     await headline();
 
@@ -82,21 +125,39 @@ export async function hourSteps(service) {
     await changing(page, () => press("#form", "Add to several patterns"));
     await headline();
     await page.locator("#warned").click();
-    await answered(await page.locator("#warnings li").filter({ hasText: "The web of" }).evaluate((item) => item.firstChild.textContent));
+    await answered(
+      await page
+        .locator("#warnings li")
+        .filter({ hasText: "The web of" })
+        .evaluate((item) => item.firstChild.textContent),
+    );
     await page.locator("#warned").click();
 
     // Crowning, and the torque that it suits.
-    const list = page.locator("#form fieldset.list", { has: page.locator("legend", { hasText: /profile modifications/i }) }).first();
-    await list.evaluate((element) => { for (let at = element; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true; });
+    const list = page
+      .locator("#form fieldset.list", { has: page.locator("legend", { hasText: /profile modifications/i }) })
+      .first();
+    await list.evaluate((element) => {
+      for (let at = element; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true;
+    });
     await changing(page, () => list.locator(":scope > button").click());
-    await changing(page, async () => (await field(page, "/pair/driving/profile_modifications/0")).selectOption({ label: "Crowning" }));
+    await changing(page, async () =>
+      (await field(page, "/pair/driving/profile_modifications/0")).selectOption({ label: "Crowning" }),
+    );
     await headline();
     await tab(page, "sweep");
     await typed(page.locator("#sweep-from"), 25);
     await typed(page.locator("#sweep-to"), 300);
     await page.locator("#sweep button[type=submit]").click();
     await page.locator("#sweep .scatter .strong").waitFor();
-    await answered((await page.locator("#sweep .out p").first().evaluate((line) => line.firstChild.textContent)).trim());
+    await answered(
+      (
+        await page
+          .locator("#sweep .out p")
+          .first()
+          .evaluate((line) => line.firstChild.textContent)
+      ).trim(),
+    );
 
     // Two designs under names.
     await page.locator("#pin").click();
@@ -105,29 +166,54 @@ export async function hourSteps(service) {
     await page.locator("#name-1").press("Enter");
     await type("/pair/driving/profile_modifications/0/amount_um", 8);
     await headline();
-    await answered((await page.locator("#differences tr").last().innerText()).replace(/\t/g, ": ").replace(/: (\d+)$/, " and $1"));
+    await answered(
+      (await page.locator("#differences tr").last().innerText()).replace(/\t/g, ": ").replace(/: (\d+)$/, " and $1"),
+    );
 
     // A study, and a search.
     await tab(page, "study");
     await page.locator("#axis-0").selectOption(`${blank}/web/thickness_mm`);
     await typed(page.locator("#axis-0-values"), "6, 8, 10");
     await page.locator("#study-run").click();
-    await page.waitForFunction(() => /3 of 3 designs, successful/.test(document.querySelector("#study [role=status]").innerText));
-    for (const row of [0, 2]) await answered(await page.locator("#study tbody tr").nth(row).evaluate((line) => `${line.children[0].textContent}: ${line.children[2].textContent} kg, p-p ${line.children[6].textContent} µm, H_N ${line.children[8].textContent} µm`));
+    await ends(page, "#study-state", /3 of 3 designs, successful/);
+    for (const row of [0, 2])
+      await answered(
+        await page
+          .locator("#study tbody tr")
+          .nth(row)
+          .evaluate(
+            (line) =>
+              `${line.children[0].textContent}: ${line.children[2].textContent} kg, p-p ${line.children[6].textContent} µm, H_N ${line.children[8].textContent} µm`,
+          ),
+      );
     await page.locator("#search summary").click();
     await page.locator("#variable-0").selectOption("/pair/driving/profile_modifications/0/amount_um");
     await page.locator("#variable-1").selectOption("");
-    for (const [name, value] of [["low", 2], ["high", 16], ["step", 1]]) await typed(page.locator(`#variable-0-${name}`), value);
+    for (const [name, value] of [
+      ["low", 2],
+      ["high", 16],
+      ["step", 1],
+    ])
+      await typed(page.locator(`#variable-0-${name}`), value);
     await typed(page.locator("#search-evaluations"), 15);
     await page.locator("#search-run").click();
-    await page.waitForFunction(() => /designs looked at, successful/.test(document.querySelector("#search-state").innerText));
-    await answered(await page.locator("#search-out").evaluate((out) => `${out.querySelector("strong").textContent} with ${out.querySelector("tbody th").textContent} ${out.querySelectorAll("tbody td")[1].textContent}`));
+    await ends(page, "#search-state", /designs looked at, successful/);
+    await answered(
+      await page
+        .locator("#search-out")
+        .evaluate(
+          (out) =>
+            `${out.querySelector("strong").textContent} with ${out.querySelector("tbody th").textContent} ${out.querySelectorAll("tbody td")[1].textContent}`,
+        ),
+    );
     await changing(page, () => press("#search-out", "Use this design"));
     await headline();
 
     // As it will be made.
     const tool = page.locator("#deviations-driven-class");
-    await tool.evaluate((element) => { for (let at = element; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true; });
+    await tool.evaluate((element) => {
+      for (let at = element; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true;
+    });
     await changing(page, () => page.locator("details.tool[open] button", { hasText: "Draw teeth" }).last().click());
     await headline();
     await answered(await page.locator("details.tool[open] [role=status]").last().innerText());
@@ -136,7 +222,7 @@ export async function hourSteps(service) {
     await typed(page.locator("#population-size"), 80);
     await typed(page.locator("#population-torques"), "150");
     await page.locator("#population button[type=submit]").click();
-    await page.waitForFunction(() => /80 of 80 members, successful/.test(document.querySelector("#population [role=status]").innerText));
+    await ends(page, "#population-state", /80 of 80 members, successful/);
     await page.locator("#population-quantity").selectOption("mesh_order_um");
     await answered((await page.locator("#population .out p").first().innerText()).split(";")[0]);
 
@@ -146,18 +232,30 @@ export async function hourSteps(service) {
     await page.locator("#run-up .waterfall").waitFor();
     await settled(page);
     await answered((await page.locator("#speed-readout").innerText()).split(". ")[0]);
-    const without = async () => { for (const name of ["dynamics", "force_table"]) await changing(page, async () => (await field(page, `/${name}`)).uncheck()); };
+    const without = async () => {
+      for (const name of ["dynamics", "force_table"])
+        await changing(page, async () => (await field(page, `/${name}`)).uncheck());
+    };
     await without();
 
     // Out of the page.
     await tab(page, "export");
     const sizes = {};
-    for (const kind of ["json", "csv", "orders", "designs", "svg", "png", "submission.rexs", "look-up-table.csv"]) sizes[kind] = (await downloaded(page, () => page.locator(`[data-download="${kind}"]`).click())).bytes.length;
-    assert.ok(Object.values(sizes).every((bytes) => bytes > 300), JSON.stringify(sizes));
+    for (const kind of ["json", "csv", "orders", "designs", "svg", "png", "submission.rexs", "look-up-table.csv"])
+      sizes[kind] = (await downloaded(page, () => page.locator(`[data-download="${kind}"]`).click())).bytes.length;
+    assert.ok(
+      Object.values(sizes).every((bytes) => bytes > 300),
+      JSON.stringify(sizes),
+    );
     await tab(page, "geometry");
-    await page.evaluate(() => { window.print = () => {}; });
+    await page.evaluate(() => {
+      window.print = () => {};
+    });
     await press("#geometry", "Print one page");
-    assert.equal([...(await page.pdf({ preferCSSPageSize: true })).toString("latin1").matchAll(/\/Type\s*\/Page\b/g)].length, 1);
+    assert.equal(
+      [...(await page.pdf({ preferCSSPageSize: true })).toString("latin1").matchAll(/\/Type\s*\/Page\b/g)].length,
+      1,
+    );
     await axe(page);
     const last = await designOf(page);
     // Back to the example by keys alone, and forth again.
@@ -191,9 +289,16 @@ export async function hourSteps(service) {
     await page.mouse.move(box.x + 0.55 * box.width, box.y + 0.55 * box.height, { steps: 6 });
     await page.mouse.up();
     await tab(page, "export");
-    assert.match((await downloaded(page, () => page.locator('[data-download="contact-pattern.svg"]').click())).bytes.toString(), /<svg/);
+    assert.match(
+      (await downloaded(page, () => page.locator('[data-download="contact-pattern.svg"]').click())).bytes.toString(),
+      /<svg/,
+    );
     await look();
     assert.deepEqual(answers, [], "the guide says no more than this");
-    assert.deepEqual(names.filter((name) => !seen.toLowerCase().includes(name.toLowerCase())), [], "names of the guide that are nowhere on the page");
+    assert.deepEqual(
+      names.filter((name) => !seen.toLowerCase().includes(name.toLowerCase())),
+      [],
+      "names of the guide that are nowhere on the page",
+    );
   });
 }

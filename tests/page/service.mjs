@@ -1,6 +1,7 @@
 // A service on a free port with a database of its own, for as long as the test takes.
 
 import { execFileSync, spawn } from "node:child_process";
+import { once } from "node:events";
 import { mkdtempSync, rmSync } from "node:fs";
 import { createServer } from "node:net";
 import { tmpdir } from "node:os";
@@ -10,8 +11,8 @@ const PATIENCE = 30_000;
 
 async function freePort() {
   const server = createServer();
-  await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
-  const { port } = server.address();
+  await once(server.listen(0, "127.0.0.1"), "listening");
+  const { port } = /** @type {import("node:net").AddressInfo} */ (server.address());
   await new Promise((resolve) => server.close(resolve));
   return port;
 }
@@ -21,16 +22,29 @@ export async function start(env = {}) {
   const folder = mkdtempSync(join(tmpdir(), "meshwright-"));
   const program = process.env.MESHWRIGHT;
   const port = await freePort();
-  const all = { ...process.env, MESHWRIGHT_LOG: "warn", MESHWRIGHT_PREVIEW_TIME_LIMIT_SECONDS: "60", MESHWRIGHT_LISTEN: `127.0.0.1:${port}`, MESHWRIGHT_DATABASE: join(folder, "jobs.db"), ...env };
+  const all = {
+    ...process.env,
+    MESHWRIGHT_LOG: "warn",
+    MESHWRIGHT_PREVIEW_TIME_LIMIT_SECONDS: "60",
+    MESHWRIGHT_LISTEN: `127.0.0.1:${port}`,
+    MESHWRIGHT_DATABASE: join(folder, "jobs.db"),
+    ...env,
+  };
   const child = spawn(program, ["serve"], { cwd: folder, env: all, stdio: ["ignore", "ignore", "inherit"] });
   const ended = new Promise((resolve) => child.once("exit", resolve));
   const url = `http://127.0.0.1:${port}/`;
   const deadline = Date.now() + PATIENCE;
-  while (!(await fetch(`${url}health/ready`).then((answer) => answer.ok, () => false))) {
+  while (
+    !(await fetch(`${url}health/ready`).then(
+      (answer) => answer.ok,
+      () => false,
+    ))
+  ) {
     if (Date.now() > deadline || child.exitCode !== null) throw new Error("the service does not start");
     await new Promise((resolve) => setTimeout(resolve, 50));
   }
-  const key = (name) => execFileSync(program, ["keys", "create", name], { cwd: folder, env: all, encoding: "utf8" }).match(/mw_\w+/)[0];
+  const key = (name) =>
+    execFileSync(program, ["keys", "create", name], { cwd: folder, env: all, encoding: "utf8" }).match(/mw_\w+/)[0];
   const stop = async () => {
     child.kill("SIGTERM");
     await ended;

@@ -1,0 +1,117 @@
+// @ts-check
+// Elements.
+
+/** @typedef {string | Node | null | undefined} Child */
+
+/**
+ * The listeners of an element: what happens to it is told with the element itself as its `target`.
+ *
+ * @template {Element} E
+ * @typedef {{ [N in keyof HTMLElementEventMap]?:
+ *   (event: HTMLElementEventMap[N] & { target: E, currentTarget: E }) => unknown }} Listeners
+ */
+
+/**
+ * Properties of an element by their names, or attributes where it has no such property; `on` holds its listeners,
+ * `data` its data attributes, `aria` its ARIA attributes.
+ *
+ * @template {Element} E
+ * @typedef {{ [name: string]: unknown, on?: Listeners<E>, data?: Record<string, string>,
+ *   aria?: Record<string, string | number> }} Properties
+ */
+
+/**
+ * An element with properties and children.
+ *
+ * @template {keyof HTMLElementTagNameMap} T
+ * @param {T} tag
+ * @param {Properties<HTMLElementTagNameMap[T]>} [properties]
+ * @param {(Child | Child[])[]} children
+ */
+export function h(tag, properties = {}, ...children) {
+  const element = document.createElement(tag);
+  const { on = {}, data = {}, aria = {}, ...rest } = properties;
+  for (const [name, value] of Object.entries(rest)) {
+    if (value === undefined || value === null) continue;
+    if (name in element && name !== "list") Object.assign(element, { [name]: value });
+    else element.setAttribute(name, String(value));
+  }
+  for (const [name, value] of Object.entries(data)) element.dataset[name] = value;
+  for (const [name, value] of Object.entries(aria)) element.setAttribute(`aria-${name}`, String(value));
+  for (const [name, listener] of Object.entries(on)) {
+    element.addEventListener(name, /** @type {EventListener} */ (/** @type {unknown} */ (listener)));
+  }
+  element.append(...children.flat().filter((child) => child !== null && child !== undefined));
+  return element;
+}
+
+/**
+ * An element of a drawing; all its properties are attributes.
+ *
+ * @template {keyof SVGElementTagNameMap} T
+ * @param {T} tag
+ * @param {Record<string, string | number | null | undefined>} [attributes]
+ * @param {(string | Node)[]} children
+ */
+export function s(tag, attributes = {}, ...children) {
+  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  dress(element, attributes);
+  element.append(...children);
+  return element;
+}
+
+/**
+ * Gives an element attributes.
+ *
+ * @param {Element} element
+ * @param {Record<string, string | number | null | undefined>} attributes
+ */
+export function dress(element, attributes) {
+  for (const [name, value] of Object.entries(attributes)) {
+    if (value !== undefined && value !== null) element.setAttribute(name, String(value));
+  }
+}
+
+/**
+ * The element of the page with this id, of a kind that it is known to have.
+ *
+ * @template {HTMLElement} [E=HTMLElement]
+ * @param {string} id
+ * @param {(new () => E) | typeof HTMLElement} [kind]
+ */
+export function byId(id, kind = HTMLElement) {
+  const element = document.getElementById(id);
+  if (!(element instanceof kind)) throw new Error(`the page has no ${id}`);
+  return /** @type {E} */ (element);
+}
+
+/**
+ * The first element within `place` that `selector` finds, of a kind that the page knows to be there.
+ *
+ * @template {Element} E
+ * @param {ParentNode} place
+ * @param {string} selector
+ * @param {new () => E} kind
+ */
+export function within(place, selector, kind) {
+  const element = place.querySelector(selector);
+  if (!(element instanceof kind)) throw new Error(`the page has no ${selector}`);
+  return element;
+}
+
+/**
+ * Calls `work` with the last arguments, `wait` milliseconds after the last call.
+ *
+ * @template {unknown[]} P
+ * @param {number} wait
+ * @param {(...parameters: P) => void} work
+ */
+export function debounced(wait, work) {
+  /** @type {number | undefined} */
+  let timer;
+  /** @param {P} parameters */
+  return (...parameters) => {
+    clearTimeout(timer);
+    timer = setTimeout(() => work(...parameters), wait);
+  };
+}

@@ -1,0 +1,61 @@
+// @ts-check
+// The files that the service makes of a job.
+
+import { save } from "./download.js";
+import { request } from "../state/api.js";
+import { isSolid } from "../state/dimensions.js";
+
+/** @import { Submission } from "../state/documents.js" */
+
+/** @type {(submission: Submission) => boolean} */
+const isInThree = ({ method }) => isSolid(method);
+/** @type {(submission: Submission) => unknown} */
+const runsUp = ({ dynamics }) => dynamics;
+/** @type {(submission: Submission) => unknown} */
+const hasForces = ({ dynamics, force_table: table }) => dynamics || table;
+
+/**
+ * The name of each file, what it is called on the page, and what its submission asks for, if not every job has it.
+ *
+ * @type {[name: string, title: string, asks?: (submission: Submission) => unknown][]}
+ */
+const FILES = [
+  ["submission.rexs", "Pair for a gearbox program, REXS"],
+  ["look-up-table.csv", "Look-up table, CSV"],
+  ["look-up-table.txt", "Look-up table, Modelica text"],
+  ["fields.vtu", "Stress and displacement, VTU"],
+  ["contact-pattern.json", "Contact pattern, JSON", isInThree],
+  ["contact-pattern.svg", "Contact pattern, SVG", isInThree],
+  ["face-load.csv", "Load along the face, CSV", isInThree],
+  ["face-load.svg", "Load along the face, SVG", isInThree],
+  ["run-up.csv", "Run-up, CSV", runsUp],
+  ["run-up.svg", "Run-up, SVG", runsUp],
+  ...[
+    ["csv", "CSV"],
+    ["txt", "CombiTable2D"],
+    ["mo", "Modelica"],
+    ["fmu", "FMU"],
+  ].map(
+    ([kind, name]) =>
+      /** @type {[string, string, typeof hasForces]} */ ([`force-table.${kind}`, `Force table, ${name}`, hasForces]),
+  ),
+];
+
+/**
+ * Names and titles of the files of a job of `submission`.
+ *
+ * @type {(submission: Submission) => { name: string, title: string }[]}
+ */
+export const filesOf = (submission) =>
+  FILES.filter(([, , asks]) => !asks || asks(submission)).map(([name, title]) => ({ name, title }));
+
+/**
+ * Saves the file `name` of the job `id`, with `prefix` before its name, which ends with a hyphen, as it is asked for by
+ * `query`.
+ *
+ * @type {(id: string, name: string, prefix: string, query?: string) => Promise<void>}
+ */
+export async function saveFile(id, name, prefix, query = "") {
+  const place = name === "submission.rexs" ? name : `results${name === "results.json" ? "" : `/${name}`}`;
+  save(`${prefix}${name}`, "", await (await request(`v1/jobs/${id}/${place}${query}`)).blob());
+}

@@ -1,0 +1,76 @@
+// @ts-check
+// What is typed into a control, as a value of the design, and back.
+
+import { h } from "./dom.js";
+import { ProblemError } from "../state/api.js";
+import { numberOf, unreadable, wordsOf } from "../state/typed.js";
+
+/** @import { Properties } from "./dom.js" */
+/** @import { Kind } from "../state/schema.js" */
+
+/**
+ * The number in a control of a panel, undefined where there is none; throws what is wrong with it.
+ *
+ * @type {(input: { value: string }) => number | undefined}
+ */
+export function given(input) {
+  const value = input.value.trim() === "" ? undefined : numberOf(input.value);
+  if (typeof value === "string") throw new ProblemError({ detail: unreadable(value) });
+  return value;
+}
+
+/**
+ * The numbers in a control of a panel; throws what is wrong with one of them.
+ *
+ * @type {(input: { value: string }) => number[]}
+ */
+export function allGiven(input) {
+  return wordsOf(input.value)
+    .map(numberOf)
+    .map((value) => {
+      if (typeof value === "string") throw new ProblemError({ detail: unreadable(value) });
+      return value;
+    });
+}
+
+/**
+ * A control for a number, with the mark that its user writes: a browser drops the comma of `type="number"`.
+ *
+ * @type {(properties: Properties<HTMLInputElement>) => HTMLInputElement}
+ */
+export const numeric = (properties) =>
+  h("input", { type: "text", inputMode: "decimal", className: "number", autocomplete: "off", ...properties });
+
+/**
+ * The value in a control; undefined where there is none, and what is no number as it stands, which is refused.
+ *
+ * @param {{ value: string }} input
+ * @param {Pick<Kind, "kind">} kind
+ * @returns {unknown}
+ */
+export function read(input, kind) {
+  const text = input.value.trim();
+  if (text === "") return undefined;
+  if (kind.kind === "numbers") return wordsOf(text).map(numberOf);
+  if (kind.kind === "texts")
+    return text
+      .split(",")
+      .map((word) => word.trim())
+      .filter(Boolean);
+  return kind.kind === "number" ? numberOf(text) : text;
+}
+
+/**
+ * Shows a value in a control; where there is none, what it is then.
+ *
+ * @param {HTMLInputElement | HTMLSelectElement | HTMLTextAreaElement} input
+ * @param {Kind} kind
+ * @param {any} value that of the field, which the schema describes
+ */
+export function write(input, kind, value) {
+  if (input instanceof HTMLInputElement && kind.kind === "flag") input.checked = value ?? kind.schema.default ?? false;
+  else if (kind.kind === "choice") input.value = value ?? kind.schema.default ?? kind.schema.enum?.[0];
+  else if (value === undefined || value === null) input.value = "";
+  else if (Array.isArray(value)) input.value = value.join(", ");
+  else input.value = typeof value === "object" ? JSON.stringify(value) : String(value);
+}

@@ -1,0 +1,491 @@
+// @ts-check
+// How good the pairs will be that are made by a design: members drawn from laws and classes of accuracy, and what they
+// come to.
+
+import { debounced, h, s } from "../draw/dom.js";
+import { figure } from "../draw/figure.js";
+import { allGiven, given, numeric } from "../draw/inputs.js";
+import { offer, options } from "./offer.js";
+import { mostOften, Question } from "./question.js";
+import { json, post, ProblemError } from "../state/api.js";
+import { apart, at, nameOf } from "../state/design.js";
+import { fixed, number, timeOf } from "../state/numbers.js";
+import { inUnit, inWords, quantityOf, shown } from "../state/quantities.js";
+
+/** @import { Watching } from "./question.js" */
+/** @import { Design } from "../state/design.js" */
+/** @import { AskedStudy, GearName, Limits, Open, Percentile, PopulationResults } from "../state/documents.js" */
+/** @import { QuantityResults } from "../state/documents.js" */
+/** @import { Form } from "../views/form.js" */
+
+/** What has come so far is fetched so often at most while members are computed, in milliseconds. */
+const PAUSE = 1000;
+
+/** What is looked at first. */
+const SHOWN = "transmission_error_um.peak_to_peak";
+
+/**
+ * A member has at most so many positions in a mesh period: what many members tell settles long before one curve does.
+ */
+const POSITIONS = 10;
+
+/** Of how many torques, as parts of that of the design, a member has curves where it has room for them. */
+const TORQUES = [[1], [0.6, 1], [0.6, 1, 1.4], [0.4, 0.7, 1, 1.4]];
+
+/** What the members will take is asked for so long after the last change, in milliseconds. */
+const REST = 400;
+
+/** What the members have of their own, whatever the design gives. */
+const NOT_ASKED = [
+  "/output_torques_n_m",
+  "/resolution",
+  "/pair/driving/tooth_deviations",
+  "/pair/driven/tooth_deviations",
+];
+
+/** @type {GearName[]} */
+const MEMBERS = ["driving", "driven"];
+
+const CLASSES = Array.from({ length: 11 }, (_, i) => i + 1);
+
+/**
+ * The fields that are offered first, with what they usually vary by.
+ *
+ * @type {[pointer: string, deviation: number][]}
+ */
+const FIRST = [
+  ["/pair/center_distance_mm", 0.02],
+  ["/pair/driving/tip_relief/amount_um", 1.5],
+];
+
+/**
+ * The population of `design` in `place`; `form` knows the fields, `limits` are those of the service, `onOpen` opens a
+ * member as a design.
+ *
+ * @param {HTMLElement} place
+ * @param {Design} design
+ * @param {Form} form
+ * @param {Limits} limits
+ * @param {Open} onOpen
+ */
+export function population(place, design, form, limits, onOpen) {
+  const size = h("input", { type: "number", id: "population-size", value: 200, min: 2, max: 100000, step: 1 });
+  const torques = h("input", {
+    type: "text",
+    id: "population-torques",
+    spellcheck: false,
+    on: {
+      input: () => {
+        torques.dataset.typed = "yes";
+      },
+    },
+  });
+  const classes = MEMBERS.map((gear) =>
+    h(
+      "select",
+      { id: `population-${gear}` },
+      h("option", { value: "" }, "as designed"),
+      ...CLASSES.map((each) => h("option", { value: each, selected: each === 6 }, `class ${each}`)),
+    ),
+  );
+  const laws = FIRST.map((_, i) => law(i, design, form));
+  const question = new Question(design, {
+    id: "population",
+    words: "Draw them",
+    inWords: (detail) => form.inWords(detail),
+    ignored: NOT_ASKED,
+  });
+  const ahead = h("p", { className: "note" });
+  const quantity = h("select", { id: "population-quantity", on: { change: () => last && draw() } }, ...options(SHOWN));
+  const torque = h("select", { id: "population-torque", on: { change: () => last && draw() } });
+  const picker = h(
+    "div",
+    { className: "line", hidden: true },
+    h("label", { htmlFor: quantity.id }, "Look at"),
+    quantity,
+    h("label", { htmlFor: torque.id }, "at"),
+    torque,
+    h("span", { className: "unit" }, "N m"),
+  );
+  const missing = h("p", { className: "outdated", role: "status", hidden: true });
+  const out = h("div", { className: "out" });
+  place.replaceChildren(
+    h(
+      "p",
+      { className: "note" },
+      "Every member has teeth of its own, made by the class of ISO 1328-1 in place of those that the design may give, and fields that vary by a law. How many are beyond the total pitch tolerance F_pT of their class, or were rejected by its inspection, stands with what was found. ",
+      h("a", { href: "guides/how-good-will-they-be" }, "How good will they be?"),
+    ),
+    h(
+      "form",
+      {
+        on: {
+          submit: (event) => {
+            event.preventDefault();
+            start();
+          },
+          input: () => foresee(),
+        },
+      },
+      h(
+        "div",
+        { className: "line" },
+        h("label", { htmlFor: size.id }, "Members"),
+        size,
+        ...classes.flatMap((each, i) => [h("label", { htmlFor: each.id }, `teeth of the ${MEMBERS[i]} gear`), each]),
+      ),
+      ...laws.map((each) => each.element),
+      h(
+        "div",
+        { className: "line" },
+        h("label", { htmlFor: torques.id }, "Torques"),
+        torques,
+        h("span", { className: "unit" }, "N m"),
+      ),
+      h("div", { className: "line" }, question.run, question.cancel),
+    ),
+    ahead,
+    question.state,
+    question.of.element,
+    missing,
+    picker,
+    out,
+  );
+  /** @type {{ results: PopulationResults, address: string } | null} */
+  let last = null;
+
+  const suggest = () => {
+    laws.forEach((each) => each.refresh());
+    suggestTorques(TORQUES.length);
+    foresee();
+  };
+
+  /**
+   * So many torques about that of the design, or its own, until somebody types other ones.
+   *
+   * @param {number} most
+   */
+  function suggestTorques(most) {
+    if (torques.dataset.typed && torques.value) return;
+    const own = design.get("/output_torques_n_m") ?? [100];
+    const about =
+      own.length > 1
+        ? own
+        : TORQUES[Math.min(most, TORQUES.length) - 1].map((part) => Number((part * own[0]).toPrecision(3)));
+    torques.value = about.slice(0, most).join(", ");
+  }
+
+  /** Says what the members will take: one whose teeth all differ repeats only when every tooth has met every other. */
+  const foresee = debounced(REST, async () => {
+    if (place.hidden) return;
+    try {
+      const {
+        base,
+        population: { size: count, accuracy },
+      } = asked();
+      for (const member of MEMBERS.filter((each) => accuracy?.[each]))
+        base.pair[member].tooth_deviations = {
+          pitch_cumulative_um: Array.from({ length: base.pair[member].tooth_count }, (_, i) => Number(i === 1)),
+        };
+      const {
+        estimate: { seconds, positions },
+      } = await post("v1/validate", { ...base, output_torques_n_m: base.output_torques_n_m.slice(0, 1) });
+      const most = Math.floor(limits.positions / positions);
+      suggestTorques(most);
+      const { length } = asked().base.output_torques_n_m;
+      ahead.textContent =
+        length > most
+          ? `A member has ${number(positions)} positions for each torque, which leaves room for ${most} of them.`
+          : `A member has ${number(length * positions)} positions, all torques together, and takes a core ${timeOf(1000 * length * seconds)} at most, by a rough estimate: ${timeOf(1000 * length * seconds * count)} for all ${number(count)}.`;
+    } catch (error) {
+      if (!(error instanceof ProblemError)) throw error;
+      // What is wrong with the design is told beside it.
+      ahead.textContent =
+        error.problem.code === "too_large"
+          ? `${form.inWords(error.reason)} Teeth of one gear as designed leave room too: the pair repeats after fewer mesh periods then.`
+          : "";
+    }
+  });
+
+  function asked() {
+    const base = structuredClone(apart(design.submission).curves);
+    base.output_torques_n_m = allGiven(torques);
+    base.resolution = {
+      ...base.resolution,
+      positions_per_mesh_period: Math.min(POSITIONS, base.resolution?.positions_per_mesh_period ?? POSITIONS),
+    };
+    // The span of the drawing is not that of teeth that all differ.
+    delete base.resolution.span_mesh_periods;
+    /** @type {Partial<Record<GearName, { iso_1328_class: number }>>} */
+    const accuracy = {};
+    MEMBERS.forEach((member, i) => {
+      if (!classes[i].value) return;
+      accuracy[member] = { iso_1328_class: Number(classes[i].value) };
+      delete base.pair[member].tooth_deviations;
+    });
+    const vary = laws.flatMap((each) => each.read());
+    return {
+      base,
+      keep: "statistics",
+      name: `${nameOf(design.submission)} as made`,
+      population: { size: Number(size.value), vary, accuracy: Object.keys(accuracy).length ? accuracy : null },
+    };
+  }
+
+  /** @type {Watching<PopulationResults>} */
+  const how = {
+    part: "/results/population",
+    pause: PAUSE,
+    show,
+    // Those that cannot be built are known at once, and tell nothing of the time that the others take.
+    progress: (done, total, left) =>
+      `${done} of ${total} members${last ? left(done - last.results.failed, total - last.results.failed) : ""}`,
+    ended: ({ done, size: all, status }) => `${done} of ${all} members, ${status}`,
+  };
+
+  function clear() {
+    last = null;
+    missing.hidden = true;
+    out.replaceChildren();
+  }
+
+  function start() {
+    clear();
+    return question.study(asked, how);
+  }
+
+  /**
+   * Shows a population that was asked for before.
+   *
+   * @param {string} id
+   * @param {AskedStudy} study
+   */
+  function resume(id, { base }) {
+    clear();
+    return question.resume(id, base, how);
+  }
+
+  /**
+   * Says how many members have no results, and why most of these.
+   *
+   * @param {PopulationResults} results
+   */
+  function missed({ failed, size, refusals }) {
+    missing.hidden = !failed;
+    missing.textContent = `${failed === size ? "None of the members can be computed" : `${failed} of ${size} members cannot be computed`}${mostOften(refusals, (detail) => form.inWords(detail))}.${failed === size ? "" : " What stands below is of the others alone."}`;
+  }
+
+  /**
+   * @param {PopulationResults} results
+   * @param {string} address
+   */
+  function show(results, address) {
+    last = { results, address };
+    missed(results);
+    const known = [
+      ...new Set(results.quantities.map((each) => each.output_torque_n_m).filter((each) => each !== null)),
+    ];
+    if (torque.options.length !== known.length || known.some((each, i) => Number(torque.options[i].value) !== each))
+      torque.replaceChildren(...known.map((each) => h("option", { value: each }, number(each))));
+    const there = new Set(results.quantities.map(({ name }) => name));
+    for (const option of quantity.options) option.hidden = !there.has(option.value);
+    draw();
+  }
+
+  function draw() {
+    if (!last) return;
+    const { results, address } = last;
+    const looked = quantityOf(quantity.value);
+    const { printed, factor } = looked;
+    const words = inWords(looked);
+    const all = results.quantities.filter(({ name }) => name === quantity.value);
+    const one = all.find((each) => each.output_torque_n_m === Number(torque.value)) ?? all[0];
+    picker.hidden = !one;
+    if (!one) return out.replaceChildren();
+    /** @type {(each: QuantityResults, percent: number) => Percentile | undefined} */
+    const percentile = (each, percent) => each.percentiles.find((found) => found.percent === percent);
+    const { value: at95th, low = null, high = null } = percentile(one, 95) ?? {};
+    /** @type {(value: number | null | undefined) => string} */
+    const told = (value) => shown(looked, value);
+    const at95 = `95 of 100 pairs stay below ${told(at95th)} ${printed} ${low === null || high === null ? "(too few members to say how surely)" : `(with 95 % confidence between ${told(low)} and ${told(high)})`}; half are below ${told(percentile(one, 50)?.value)}.`;
+    const beyond = Object.entries(results.beyond_total_pitch_tolerance)
+      .filter(([, share]) => share !== null)
+      .map(
+        ([gear, share]) => `${fixed(100 * (share ?? NaN), 1)} % of the ${gear} gears are beyond F_pT of their class.`,
+      );
+    const rejected = Object.entries(results.rejected_by_inspection ?? {})
+      .filter(([, share]) => share !== null)
+      .map(
+        ([gear, share]) =>
+          `${fixed(100 * (share ?? NaN), 1)} % of the ${gear} gears made were rejected by the inspection.`,
+      );
+    /** @type {(name: string, number: number) => HTMLButtonElement} */
+    const member = (name, number) =>
+      h("button", { type: "button", on: { click: () => open(address, number) } }, `Open the ${name} member`);
+    const pictures = [
+      figure({
+        lines: [outlineOf(one.histogram, factor)],
+        x: inUnit(looked),
+        y: "members",
+        title: `Histogram of the ${words}`,
+      }),
+      ...(all.length > 1
+        ? [
+            figure({
+              lines: [
+                { percent: 95, dash: [5, 4] },
+                { percent: 50, dash: [] },
+                { percent: 5, dash: [2, 3] },
+              ].map(({ percent, dash }) => ({
+                name: `${percent} % are below`,
+                color: "currentColor",
+                dash,
+                x: all.map((each) => each.output_torque_n_m ?? NaN),
+                y: all.map((each) => (percentile(each, percent)?.value ?? NaN) * factor),
+              })),
+              x: "output torque in N m",
+              y: inUnit(looked),
+              title: `Percentiles of the ${words} over the torque`,
+            }),
+          ]
+        : []),
+    ];
+    out.replaceChildren(
+      h("p", {}, at95, " ", [...beyond, ...rejected].join(" ")),
+      ...pictures,
+      influencesOf(one),
+      h(
+        "div",
+        { className: "buttons" },
+        member("median", one.members.median),
+        member("smallest", one.members.smallest),
+        member("largest", one.members.largest),
+      ),
+    );
+  }
+
+  /**
+   * What makes the variance, as bars with their limits.
+   *
+   * @param {QuantityResults} quantity
+   */
+  function influencesOf({ influences }) {
+    if (!influences.length) return h("p", { className: "note" }, "Nothing varies so far.");
+    /** @type {(influence: QuantityResults["influences"][number]) => string} */
+    const name = ({ path, accuracy }) => (path ? form.named(path) : `teeth of the ${accuracy} gear`);
+    const rows = influences.map((each) => {
+      const [low, high] = [each.low ?? each.share, each.high ?? each.share];
+      const bar = s(
+        "svg",
+        { viewBox: "0 0 200 14", width: 200, height: 14, "aria-hidden": "true" },
+        s("rect", { x: 0, y: 3, width: 200 * each.share, height: 8, class: "dot" }),
+        s("line", { x1: 200 * low, x2: 200 * high, y1: 7, y2: 7, stroke: "currentColor", "stroke-width": 1.5 }),
+      );
+      return h(
+        "tr",
+        {},
+        h("th", { scope: "row" }, name(each)),
+        h("td", {}, bar),
+        h("td", {}, `${fixed(100 * each.share, 0)} %`),
+        h("td", {}, each.low === null ? "–" : `${fixed(100 * low, 0)} to ${fixed(100 * high, 0)} %`),
+      );
+    });
+    const head = ["Part of the variance by", "", "Share", "95 % limits"].map((words) =>
+      h("th", { scope: "col" }, words || h("span", { className: "visually-hidden" }, "Bar")),
+    );
+    return h(
+      "div",
+      { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Influences" },
+      h("table", { className: "influences" }, h("thead", {}, h("tr", {}, ...head)), h("tbody", {}, ...rows)),
+    );
+  }
+
+  /** @type {(address: string, member: number) => Promise<void>} */
+  async function open(address, member) {
+    onOpen({ ...(await json(`${address}/designs/${member}`)), ...apart(design.submission).further }, null);
+  }
+
+  suggest();
+  return { refresh: suggest, resume };
+}
+
+/**
+ * The outline of a histogram's bars.
+ *
+ * @type {(histogram: QuantityResults["histogram"], factor: number) => { x: number[], y: number[] }}
+ */
+function outlineOf({ edges, counts }, factor) {
+  const x = [edges[0], ...counts.flatMap((_, i) => [edges[i], edges[i + 1]]), edges[edges.length - 1]];
+  return { x: x.map((each) => each * factor), y: [0, ...counts.flatMap((count) => [count, count]), 0] };
+}
+
+/**
+ * A field and the law that it follows, around the value that the design has.
+ *
+ * @param {number} index
+ * @param {Design} design
+ * @param {Form} form
+ */
+function law(index, design, form) {
+  const id = `law-${index}`;
+  const field = h("select", {
+    id,
+    on: {
+      change: () => {
+        spread.value = String(suggested());
+      },
+    },
+  });
+  const kind = h(
+    "select",
+    { id: `${id}-kind`, ariaLabel: "Law" },
+    h("option", { value: "normal" }, "normal, standard deviation"),
+    h("option", { value: "uniform" }, "uniform, plus or minus"),
+    h("option", { value: "triangular" }, "triangular, plus or minus"),
+  );
+  const spread = numeric({ id: `${id}-spread`, ariaLabel: "Spread" });
+  const element = h(
+    "div",
+    { className: "line" },
+    h("label", { htmlFor: id }, index ? "and" : "Vary"),
+    field,
+    h("label", { htmlFor: kind.id }, "by"),
+    kind,
+    spread,
+  );
+  /** @type {() => unknown} */
+  const valueOf = () => at(design.submission, field.value);
+  const suggested = () => {
+    const usual = FIRST.find(([path]) => path === field.value)?.[1];
+    const value = valueOf();
+    return usual ?? (typeof value === "number" && value ? Number(Math.abs(0.02 * value).toPrecision(2)) : 0.01);
+  };
+
+  function read() {
+    const [value, by = 0] = [valueOf(), given(spread)];
+    if (!field.value || typeof value !== "number" || !(by > 0)) return [];
+    const path = field.value;
+    if (kind.value === "normal")
+      return [{ path, kind: "normal", mean: value, standard_deviation: by, low: value - 3 * by, high: value + 3 * by }];
+    const ends = { low: value - by, high: value + by };
+    return [
+      kind.value === "uniform"
+        ? { path, kind: "uniform", ...ends }
+        : { path, kind: "triangular", mode: value, ...ends },
+    ];
+  }
+
+  /** Only fields that have a number in this design can vary. */
+  function refresh() {
+    offer(
+      field,
+      "nothing else",
+      form.fields().filter(({ pointer }) => typeof at(design.submission, pointer) === "number"),
+    );
+    if (!element.dataset.begun && [...field.options].some(({ value }) => value === FIRST[index][0]))
+      field.value = FIRST[index][0];
+    element.dataset.begun = "yes";
+    if (!spread.value) spread.value = String(suggested());
+  }
+  return { element, read, refresh };
+}

@@ -1,0 +1,115 @@
+// @ts-check
+// Results as tables, and the names of files.
+
+/** @import { Curve, Results } from "./documents.js" */
+
+/**
+ * The name of a file of the design or study that is called `name`: what file systems do not take is left out.
+ *
+ * @type {(name: string, rest: string) => string}
+ */
+export function fileOfDesign(name, rest) {
+  const plain = name
+    .replace(/×/g, "x")
+    .replace(/°/g, "deg")
+    .replace(/[^\p{Alphabetic}\p{Number}.]+/gu, "-")
+    .replace(/^[-.]+|[-.]+$/g, "")
+    .slice(0, 80);
+  return `meshwright-${plain ? `${plain}-` : ""}${rest}`;
+}
+
+const COLUMNS = /** @type {const} */ ([
+  "mesh_position",
+  "driving_angle_deg",
+  "driven_angle_deg",
+  "transmission_error_um",
+  "mesh_stiffness_tangent_n_per_m",
+  "mesh_stiffness_secant_n_per_m",
+  "driving_torque_n_m",
+  "pairs_in_contact",
+  "peak_contact_pressure_mpa",
+]);
+
+const PLACES = ["root", "root_tension", "root_compression", "hole"];
+const STRESSES = ["driving", "driven"].flatMap((gear) =>
+  PLACES.flatMap((place) => ["mpa", "angle_deg", "z_mm"].map((unit) => `stress.${gear}.${place}_${unit}`)),
+);
+
+// What may not be seen before the sign that makes a formula, as in the tables of the service: whatever is neither a
+// letter or figure (fillers stand for none) nor a sign of ASCII.
+const UNSEEN = /^(?:(?![!-~＝＋－＠])[^\p{Alphabetic}\p{Number}]|[\u115f\u1160\u3164\uffa0])+/u;
+const FORMULA = /^[=+\-@＝＋－＠]/;
+
+/**
+ * Lines of values as CSV; texts with commas in quotes, and none that a spreadsheet takes for a formula.
+ *
+ * @type {(lines: unknown[][]) => string}
+ */
+export function csvOf(lines) {
+  /** @type {(value: unknown) => string} */
+  const cell = (value) => {
+    if (typeof value !== "string") return String(value ?? "");
+    const safe = FORMULA.test(value.replace(UNSEEN, "")) || /^[\t\r\n]/.test(value) ? `'${value}` : value;
+    return /[",\r\n]/.test(safe) ? `"${safe.replace(/"/g, '""')}"` : safe;
+  };
+  return `${lines.map((line) => line.map(cell).join(",")).join("\r\n")}\r\n`;
+}
+
+/**
+ * Every curve of the results as one table: a line for each torque and position.
+ *
+ * @type {(results: Results) => string}
+ */
+export function csv(results) {
+  const offsets = [
+    ...new Set(results.curves.flatMap((curve) => curve.load_shares.map(({ pair_offset: offset }) => offset))),
+  ].sort((a, b) => a - b);
+  /** @type {(curve: Curve, name: string) => unknown[] | undefined} */
+  const within = (curve, name) => name.split(".").reduce((/** @type {any} */ value, part) => value?.[part], curve);
+  // Heights are told along faces alone.
+  const stressed = results.curves.some(({ stress }) => stress)
+    ? STRESSES.filter((name) => !name.endsWith("_z_mm") || results.curves.some((curve) => within(curve, name)))
+    : [];
+  /** @type {unknown[][]} */
+  const lines = [["output_torque_n_m", ...COLUMNS, ...stressed, ...offsets.map((offset) => `load_share.${offset}`)]];
+  for (const curve of results.curves) {
+    /** @type {(offset: number) => number[] | undefined} */
+    const share = (offset) => curve.load_shares.find((each) => each.pair_offset === offset)?.share;
+    curve.mesh_position.forEach((_, i) => {
+      lines.push([
+        curve.output_torque_n_m,
+        ...COLUMNS.map((name) => curve[name]?.[i]),
+        ...stressed.map((name) => within(curve, name)?.[i]),
+        ...offsets.map((offset) => share(offset)?.[i] ?? 0),
+      ]);
+    });
+  }
+  return csvOf(lines);
+}
+
+/**
+ * The spectra of the results as one table: a line for each torque and order.
+ *
+ * @type {(results: Results) => string}
+ */
+export function ordersCsv(results) {
+  const names = /** @type {const} */ ([
+    "order",
+    "transmission_error_um",
+    "transmission_error_phase_deg",
+    "mesh_stiffness_tangent_n_per_m",
+    "mesh_stiffness_tangent_phase_deg",
+  ]);
+  /** @type {unknown[][]} */
+  const lines = [["output_torque_n_m", ...names, "label"]];
+  for (const { output_torque_n_m: torque, spectrum } of results.curves) {
+    spectrum?.order.forEach((order, i) => {
+      const label = spectrum.named
+        .filter((each) => each.order === order)
+        .map((each) => each.label)
+        .join(" ");
+      lines.push([torque, ...names.map((name) => spectrum[name]?.[i]), label]);
+    });
+  }
+  return csvOf(lines);
+}

@@ -1,0 +1,162 @@
+// @ts-check
+// What is on the screen for other programs: curves, orders, tables, pictures, files of a job, and the request as a
+// program.
+
+import { looks } from "../draw/charts.js";
+import { h } from "../draw/dom.js";
+import { copied, drawingOf, save } from "../draw/download.js";
+import { fileOf, pictureOf, stacked } from "../draw/figure.js";
+import { filesOf, saveFile } from "../draw/files.js";
+import { ProblemError, solved } from "../state/api.js";
+import { snippets } from "../state/snippets.js";
+import { csv, fileOfDesign, ordersCsv } from "../state/tables.js";
+import { designsCsv } from "./compare.js";
+import { inLight } from "./sheet.js";
+
+/** @import { Charts } from "../draw/charts.js" */
+/** @import { Drawing } from "../draw/drawing.js" */
+/** @import { NamedDesign } from "../state/documents.js" */
+
+/**
+ * @typedef {object} Sources
+ * @property {() => Promise<NamedDesign | null>} current
+ * @property {() => NamedDesign[]} designs
+ * @property {Drawing} drawing
+ * @property {Charts} charts
+ * @property {() => number} position
+ * @property {(live: NamedDesign) => SVGSVGElement} sheet
+ */
+
+/** @type {Record<keyof ReturnType<typeof snippets>, string>} */
+const LANGUAGES = { curl: "curl", python: "Python", typescript: "TypeScript" };
+
+/**
+ * The exports in `place`. `current` waits for the live design and gives it, or null where it cannot be computed;
+ * `designs` gives all that are shown, and `sheet` the page of one.
+ *
+ * @param {HTMLElement} place
+ * @param {Sources} sources
+ */
+export function exporting(place, { current, designs, drawing, charts, position, sheet }) {
+  const state = h("p", { className: "note", role: "status" });
+  /** @type {Record<string, [name: string, work: (live: NamedDesign) => unknown]>} */
+  const kinds = {
+    json: [
+      "Submission and results, JSON",
+      (live) =>
+        save(
+          called(live, "results.json"),
+          "application/json",
+          JSON.stringify({ submission: live.asked, results: live.results }, null, 1),
+        ),
+    ],
+    csv: ["Curves, CSV", (live) => save(called(live, "curves.csv"), "text/csv", csv(live.results))],
+    orders: ["Orders, CSV", (live) => save(called(live, "orders.csv"), "text/csv", ordersCsv(live.results))],
+    designs: ["Designs, CSV", (live) => save(called(live, "designs.csv"), "text/csv", designsCsv(designs()))],
+    svg: ["Curves, SVG", (live) => save(called(live, "curves.svg"), "image/svg+xml", fileOf(curves()))],
+    png: ["Curves, PNG", async (live) => save(called(live, "curves.png"), "image/png", await pictureOf(curves()))],
+    pair: [
+      "Drawing, SVG",
+      (live) => save(called(live, "pair.svg"), "image/svg+xml", fileOf(inLight(() => drawingOf(drawing.element)))),
+    ],
+    page: ["Report page, SVG", (live) => save(called(live, "report.svg"), "image/svg+xml", fileOf(sheet(live)))],
+  };
+  const buttons = Object.entries(kinds).map(([kind, [name, work]]) =>
+    h("button", { type: "button", data: { download: kind }, on: { click: () => run(work) } }, name),
+  );
+  const ofJob = h("div", { className: "buttons wrap" });
+  const code = h("pre", { id: "code", tabIndex: 0, ariaLabel: "Program" });
+  const language = h(
+    "select",
+    { id: "language", on: { change: () => void show() } },
+    ...Object.entries(LANGUAGES).map(([value, name]) => h("option", { value }, name)),
+  );
+  const copy = h(
+    "button",
+    {
+      type: "button",
+      on: {
+        click: async () => {
+          state.textContent = (await copied(code.textContent ?? ""))
+            ? "The program is copied."
+            : "Copying is not allowed here: select the text.";
+        },
+      },
+    },
+    "Copy it",
+  );
+  place.replaceChildren(
+    h(
+      "p",
+      { className: "note" },
+      "Everything is of one design: the one that is drawn, with the curves and numbers that are shown.",
+    ),
+    h("div", { className: "buttons wrap" }, ...buttons),
+    h("h3", {}, "Files that a job makes"),
+    ofJob,
+    state,
+    h("h3", {}, "This as a program"),
+    h("div", { className: "line" }, h("label", { htmlFor: language.id }, "Language"), language, copy),
+    code,
+  );
+
+  /** @type {(design: NamedDesign, rest: string) => string} */
+  const called = ({ name }, rest) => fileOfDesign(name, rest);
+  const curves = () => inLight(() => stacked(charts.figures(), looks().panel));
+
+  /** @type {(work: (live: NamedDesign) => unknown) => Promise<void>} */
+  async function run(work) {
+    state.textContent = "";
+    try {
+      const live = await current();
+      if (!live) {
+        state.textContent = "This design cannot be computed, so nothing is exported: mend what is wrong, or go back.";
+        return;
+      }
+      await work(live);
+    } catch (error) {
+      if (!(error instanceof ProblemError)) throw error;
+      state.textContent = error.reason;
+    }
+  }
+
+  /** @type {(live: NamedDesign, file: string) => Promise<void>} */
+  async function fileOfJob(live, file) {
+    state.textContent = "A job computes it.";
+    const job = await solved(live.asked);
+    await saveFile(
+      job.id,
+      file,
+      called(live, ""),
+      file === "fields.vtu" ? `?mesh_position=${position().toFixed(4)}` : "",
+    );
+    state.textContent = "";
+  }
+
+  async function show() {
+    const live = await current();
+    const files = live ? filesOf(live.asked) : [];
+    // The same buttons stay, with whoever stands on one.
+    if (
+      files.map(({ name }) => name).join() !==
+      [...ofJob.querySelectorAll("button")].map((each) => each.dataset.download).join()
+    ) {
+      ofJob.replaceChildren(
+        ...files.map(({ name, title }) =>
+          h(
+            "button",
+            { type: "button", data: { download: name }, on: { click: () => run((live) => fileOfJob(live, name)) } },
+            title,
+          ),
+        ),
+      );
+    }
+    if (live)
+      code.textContent =
+        Object.entries(snippets(live.asked, new URL(".", document.baseURI).href)).find(
+          ([name]) => name === language.value,
+        )?.[1] ?? "";
+  }
+
+  return { refresh: show };
+}

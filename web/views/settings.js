@@ -1,0 +1,49 @@
+// @ts-check
+// What belongs to the visitor and not to the design: light or dark, and the key of the service.
+
+import { byId } from "../draw/dom.js";
+import { hasKey, onKeyNeeded, setKey } from "../state/api.js";
+
+const THEME = "meshwright-theme";
+
+/**
+ * The theme, chosen by the button or by the system; `onTheme` draws anew what has its colors in itself.
+ *
+ * @param {() => void} onTheme
+ */
+export function setUpTheme(onTheme) {
+  /** @type {(theme: string | null) => void} */
+  const apply = (theme) => {
+    if (theme) document.documentElement.dataset.theme = theme;
+    onTheme();
+  };
+  apply(localStorage.getItem(THEME));
+  byId("theme-button").addEventListener("click", () => {
+    const other = getComputedStyle(document.documentElement).colorScheme === "dark" ? "light" : "dark";
+    localStorage.setItem(THEME, other);
+    apply(other);
+  });
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => apply(null));
+}
+
+/**
+ * The key, asked for by the service or given by the button; `onKey` asks again for what was refused.
+ *
+ * @param {() => void} onKey
+ */
+export function setUpKey(onKey) {
+  const dialog = byId("key-dialog", HTMLDialogElement);
+  const input = byId("key", HTMLInputElement);
+  const ask = (words = "") => {
+    byId("key-error").textContent = words;
+    if (!dialog.open) dialog.showModal();
+  };
+  byId("key-button").addEventListener("click", () => ask());
+  onKeyNeeded(({ detail }) => ask(hasKey() ? detail : ""));
+  byId("key-form").addEventListener("submit", ({ submitter }) => {
+    if (!(submitter instanceof HTMLButtonElement) || submitter.value !== "use") return;
+    setKey(input.value);
+    input.value = "";
+    onKey();
+  });
+}

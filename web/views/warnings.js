@@ -1,0 +1,76 @@
+// @ts-check
+// What the service warns of, with what would mend it.
+
+import { byId, h } from "../draw/dom.js";
+import { cured, wordsOfCure } from "../draw/face.js";
+import { number } from "../state/numbers.js";
+
+/** @import { Design } from "../state/design.js" */
+/** @import { Curve, Warning } from "../state/documents.js" */
+/** @import { Form } from "./form.js" */
+
+export class Warnings {
+  #button = byId("warned");
+  #list = byId("warnings");
+  #cure = byId("cure");
+
+  /**
+   * @param {Design} design
+   * @param {() => Form | null} form
+   */
+  constructor(design, form) {
+    this.design = design;
+    this.form = form;
+    this.#button.addEventListener("click", () => this.#open(this.#list.hidden));
+  }
+
+  /** @param {Warning[]} warnings */
+  show(warnings) {
+    this.#button.hidden = warnings.length === 0;
+    this.#button.textContent = `${warnings.length} ${warnings.length === 1 ? "warning" : "warnings"}`;
+    this.#list.replaceChildren(...warnings.map((warning) => this.#item(warning)));
+    if (!warnings.length) this.#open(false);
+  }
+
+  /** @param {Warning} warning */
+  #item({ code, detail, guide, changes = {} }) {
+    const form = this.form();
+    /** @type {(work: () => void, words: string) => HTMLElement} */
+    const button = (work, words) => h("button", { type: "button", on: { click: work } }, words);
+    // What would mend it, by the pointers of the fields.
+    const values = Object.entries(changes).map(
+      ([pointer, value]) => `${form?.named(pointer) ?? pointer} ${number(value, 7)}`,
+    );
+    return h(
+      "li",
+      {},
+      form?.inWords(detail) ?? detail,
+      ...(guide ? [" ", h("a", { href: guide.replace(/^\//, "") }, "The guide says why")] : []),
+      ...(code === "web_outside_plane_model"
+        ? [" ", button(() => form?.compute(true), "Compute it in three dimensions")]
+        : []),
+      ...(values.length ? [" ", button(() => form?.take(changes), `Use ${values.join(", ")}`)] : []),
+    );
+  }
+
+  /** @param {boolean} open */
+  #open(open) {
+    this.#button.setAttribute("aria-expanded", String(open));
+    this.#list.hidden = !open;
+  }
+
+  /**
+   * Which lead would even the load along the face, and the button that gives it to the design.
+   *
+   * @param {Curve} curve
+   */
+  showCure({ face }) {
+    const words = face && wordsOfCure(face);
+    this.#cure.hidden = !words;
+    if (!words || !face.cure) return this.#cure.replaceChildren();
+    const { cure } = face;
+    const leads = "/pair/driving/lead_modifications";
+    const apply = () => this.design.set(leads, cured(this.design.get(leads), cure), "mend");
+    this.#cure.replaceChildren(words, " ", h("button", { type: "button", on: { click: apply } }, "Apply"));
+  }
+}
