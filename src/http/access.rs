@@ -16,8 +16,9 @@ use axum::response::{IntoResponse, Response};
 use meshwright_wire::{Code, Problem};
 use tokio::time::Instant;
 
-use super::connections::{Address, Connection, Rates, Unauthenticated};
-use super::problem::Refusal;
+use super::connections::{ActiveRequest, Address, Connection, Rates, Unauthenticated};
+use super::credential::{Credential, bearer};
+use super::problem::{Refusal, overloaded};
 use crate::compute::{Budget, Part};
 
 /// A client may send so many times its requests of a second at once.
@@ -127,7 +128,11 @@ impl Access {
     fn count_unauthenticated(&self, address: Address, headers: &HeaderMap) -> Result<(), Duration> {
         let asks = self.asks_for_keys(headers) == Some(true);
         match self.unauthenticated.as_ref().filter(|_| asks) {
-            Some(unauthenticated) => unauthenticated.count(address, headers),
+            Some(unauthenticated) => {
+                let shown = bearer(headers).ok().flatten();
+                let fingerprint = shown.as_ref().map(Credential::fingerprint);
+                unauthenticated.count(address, fingerprint.as_deref())
+            }
             None => Ok(()),
         }
     }
@@ -216,12 +221,39 @@ pub(super) async fn limit_unauthenticated(
         Ok(()) => next.run(request).await,
         Err(wait) => {
             metrics::counter!("meshwright_strangers_refused_total").increment(1);
-            let mut response = Refusal::too_many_unauthenticated(wait).into_response();
-            let close = HeaderValue::from_static("close");
-            response.headers_mut().insert(CONNECTION, close);
-            response
+            last_of_its_connection(Refusal::too_many_unauthenticated(wait).into_response())
         }
     }
+}
+
+/// Refuses a request where its client has as many active as one may have, or all connections are busy. Health is answered always.
+pub(super) async fn limit_active(request: Request, next: Next) -> Response {
+    let active = request.extensions().get::<Arc<ActiveRequest>>().cloned();
+    let Some(active) = active.filter(|_| !request.uri().path().starts_with("/health/")) else {
+        return next.run(request).await;
+    };
+    let refused = |error| Refusal::from(overloaded(error)).into_response();
+    if let Err(error) = active.leave_reserve().await {
+        return last_of_its_connection(refused(error));
+    }
+    // One with a key counts for its client, once that is known. Behind a proxy all have one address.
+    let may_have_key = matches!(bearer(request.headers()), Ok(Some(_)));
+    match active.count_for_address() {
+        Err(error) if !may_have_key => return refused(error),
+        _ => {}
+    }
+    let response = next.run(request).await;
+    match active.count_for_address() {
+        Ok(()) => response,
+        // It was not asked for its key, or had none that is known.
+        Err(error) => refused(error),
+    }
+}
+
+fn last_of_its_connection(mut response: Response) -> Response {
+    let close = HeaderValue::from_static("close");
+    response.headers_mut().insert(CONNECTION, close);
+    response
 }
 
 /// Refuses requests that were not meant for this service.

@@ -14,6 +14,7 @@ use axum::response::{IntoResponse, Response};
 use meshwright_wire::{Code, Problem, Status, too_much_memory};
 use tracing::error;
 
+use super::connections::Overloaded;
 use super::edge::Edge;
 use crate::compute::PreviewError;
 use crate::jobs::JobError;
@@ -279,6 +280,12 @@ pub(super) fn of_panic(panic: Box<dyn Any + Send>) -> Response {
         .unwrap_or("no message");
     error!(panic = message, "a handler panicked");
     Refusal::from(internal()).into_response()
+}
+
+/// The refusal of a request that is not answered now.
+pub(super) fn overloaded(error: Overloaded) -> Problem {
+    let detail = format!("{}. Try again in a moment.", sentence(&error));
+    Problem::new(Code::Overloaded, detail)
 }
 
 pub(super) fn internal() -> Problem {

@@ -28,7 +28,7 @@ use super::app::App;
 use super::headers::Trace;
 use super::problem::Refusal;
 use super::{
-    access, batch, connections, contact_pattern, docs, draw, events, fields, guides, headers,
+    access, batch, contact_pattern, docs, draw, events, fields, guides, headers,
     health, jobs, memory, metrics, outline, packing, previews, problem, problem_pages, reference,
     results, rexs, studies, submit, tables, web, webhooks,
 };
@@ -56,7 +56,7 @@ pub fn router(app: App) -> Router {
             Arc::clone(&access),
             access::limit_unauthenticated,
         ))
-        .layer(from_fn(connections::limit))
+        .layer(from_fn(access::limit_active))
         .layer(
             TraceLayer::new_for_http()
                 .make_span_with(span)

@@ -5,12 +5,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
 
-use meshwright_wire::Problem;
 use tokio::sync::OwnedSemaphorePermit;
 use tokio::time::Instant;
 use tokio_util::sync::CancellationToken;
 
-use super::limit::Connections;
+use super::limit::{Connections, Overloaded};
 use super::stalled_reads::Reads;
 use super::stalled_writes::Writes;
 use crate::compute::Part;
@@ -170,12 +169,21 @@ impl ActiveRequest {
         }
     }
 
+    /// Waits for a regular place, where its connection has none.
+    ///
+    /// # Errors
+    ///
+    /// [`Overloaded::Connections`], after a while.
+    pub(in crate::http) async fn leave_reserve(&self) -> Result<(), Overloaded> {
+        self.connection.leave_reserve().await
+    }
+
     /// Counts it for its address, unless it is counted already.
     ///
     /// # Errors
     ///
-    /// `overloaded`, where as many are active as may be.
-    pub(super) fn count_for_address(&self) -> Result<(), Problem> {
+    /// [`Overloaded::Client`], where as many are active as may be.
+    pub(in crate::http) fn count_for_address(&self) -> Result<(), Overloaded> {
         if self.part().is_some() {
             return Ok(());
         }
@@ -186,13 +194,13 @@ impl ActiveRequest {
     ///
     /// # Errors
     ///
-    /// `overloaded`, where as many of it are active as may be.
-    pub(in crate::http) fn authenticated(&self, client: &Arc<str>) -> Result<(), Problem> {
+    /// [`Overloaded::Client`], where as many of it are active as may be.
+    pub(in crate::http) fn authenticated(&self, client: &Arc<str>) -> Result<(), Overloaded> {
         self.connection.authenticated(client);
         self.count_for(&Owner::Client(Arc::clone(client)))
     }
 
-    fn count_for(&self, owner: &Owner) -> Result<(), Problem> {
+    fn count_for(&self, owner: &Owner) -> Result<(), Overloaded> {
         *self.part() = None;
         *self.part() = Some(self.connection.limit.count_active(&owner.name())?);
         Ok(())

@@ -13,7 +13,8 @@ mod stalled_writes;
 mod unauthenticated;
 
 pub(super) use connection::{ActiveRequest, Address, Connection};
-pub(super) use limit::limit;
+pub(super) use limit::Overloaded;
 pub(super) use rates::Rates;
-pub use server::{Bounds, Server};
+pub use server::{Answer, AnswerBody, Bounds, Server};
+pub use stalled_reads::WatchedBody;
 pub(super) use unauthenticated::Unauthenticated;
