@@ -7,9 +7,10 @@ use std::time::Duration;
 use axum::http::{HeaderValue, Uri};
 use jiff::SignedDuration;
 use jsonwebtoken::Algorithm;
+use meshwright_connections::Bounds;
 
 use crate::compute::{Cores, PreviewRules};
-use crate::http::{AccessRules, Bounds, KeysRule};
+use crate::http::{AccessRules, KeysRule};
 use crate::jobs::{DatabaseAddress, Keep, Migrate, Pace, Rules};
 use crate::machine;
 use crate::tokens::{self, Claim, ClaimValue, IssuerUrl, TokenRules};

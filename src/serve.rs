@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use anyhow::{Context, bail};
+use meshwright_connections::Server;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use meshwright_wire::{Problem, Results, Submission};
@@ -15,7 +16,7 @@ use tracing::{info, warn};
 use crate::compute::{Previews, Solve};
 use crate::config::{Config, Part};
 use crate::http::{
-    Access, App, BodyMemory, Edge, KeysRule, Outlines, Readings, Server, router, router_of_metrics,
+    Access, App, BodyMemory, Edge, KeysRule, Outlines, Readings, router, router_of_metrics,
 };
 use crate::jobs::store::lock::{DatabaseLock, LockError};
 use crate::jobs::{Clock, DatabaseAddress, Jobs, Keeper, Migrate, OpenError, Store, Workers};

@@ -13,13 +13,12 @@ use axum::http::uri::Authority;
 use axum::http::{HeaderMap, Uri};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
+use meshwright_connections::{ActiveRequest, Address, Budget, Connection, Part, Rates, Unauthenticated};
 use meshwright_wire::{Code, Problem};
 use tokio::time::Instant;
 
-use super::connections::{ActiveRequest, Address, Connection, Rates, Unauthenticated};
 use super::credential::{Credential, bearer};
 use super::problem::{Refusal, overloaded};
-use crate::compute::{Budget, Part};
 
 /// A client may send so many times its requests of a second at once.
 const BURST_SECONDS: NonZeroU32 = NonZeroU32::new(2).unwrap();

@@ -4,11 +4,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, LazyLock};
 use std::thread;
 
+use meshwright_connections::{Budget, Part};
 use meshwright_engine::run::Run;
 use meshwright_wire::Problem;
 
 use super::problem::internal;
-use crate::compute::{Budget, Part};
 
 /// So many pieces of such work are done at the same time; others wait for their turn, which clients take one after the other.
 /// It is the cores that are short. Some takes seconds, so one client never has all places.

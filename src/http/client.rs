@@ -6,10 +6,10 @@ use axum::extract::FromRequestParts;
 use axum::http::request::Parts;
 use axum::http::{HeaderMap, Method};
 use jiff::Timestamp;
+use meshwright_connections::ActiveRequest;
 use meshwright_wire::{Code, Problem};
 
 use super::app::App;
-use super::connections::ActiveRequest;
 use super::credential::{Credential, bearer, no_credential, unauthorized};
 use super::problem::{Refusal, overloaded};
 use crate::jobs::{JobError, KeyRecord, Member, Role};

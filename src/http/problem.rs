@@ -11,10 +11,10 @@ use axum::http::header::{
 use axum::http::{HeaderMap, StatusCode};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
+use meshwright_connections::Overloaded;
 use meshwright_wire::{Code, Problem, Status, too_much_memory};
 use tracing::error;
 
-use super::connections::Overloaded;
 use super::edge::Edge;
 use crate::compute::PreviewError;
 use crate::jobs::JobError;

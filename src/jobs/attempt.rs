@@ -8,6 +8,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use jiff::{SignedDuration, Timestamp};
+use meshwright_connections::Budget;
 use meshwright_engine::run::Run;
 use meshwright_wire::{Code, Kept, Problem, SOLVER_VERSION, Submission, Summary, memory_of};
 use opentelemetry::KeyValue;
@@ -21,7 +22,7 @@ use super::job::{Job, Progress};
 use super::live::Entered;
 use super::store::{Came, Claim, Damaged, End, Ended, Packed, Started, StoreError};
 use super::worker_context::{Threads, WorkerContext};
-use crate::compute::{Budget, Solve, message_of};
+use crate::compute::{Solve, message_of};
 use crate::spans::{self, Span};
 
 /// What a computation leaves: the results document or its name, and what the tables of studies show of it.

@@ -5,13 +5,13 @@ use std::sync::Arc;
 use axum::extract::Path;
 use axum::http::HeaderMap;
 use axum::response::{IntoResponse, Response};
+use meshwright_connections::Part;
 use meshwright_engine::run::Run;
 use meshwright_wire::{
     Code, PopulationResults, PopulationSample, Problem, RowState, SearchState, Study, Submission,
 };
 
 use super::{MIB, over_rows, tag_of};
-use crate::compute::Part;
 use crate::http::answer::{json, tell_when_to_return};
 use crate::http::app::App;
 use crate::http::blocking::blocking;

@@ -9,7 +9,7 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::time::{Instant, timeout};
 
 use super::connection::{Address, Connection, NEW, Owner};
-use crate::compute::{Budget, Part};
+use super::budget::{Budget, Part};
 
 /// One client, or one address without a key, has so large a part of the connections busy at most.
 const OF_CLIENT: usize = 4;
@@ -30,7 +30,7 @@ const EVICTING: Duration = Duration::from_millis(50);
 
 /// Why a request is not answered now.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-pub(in crate::http) enum Overloaded {
+pub enum Overloaded {
     /// Its client, or its address, has as many as it may have.
     #[error("as many requests of yours are being answered as one client may have at the same time")]
     Client,
@@ -59,7 +59,7 @@ impl Places {
 
 /// The connections that there are.
 #[derive(Debug)]
-pub(in crate::http) struct Connections {
+pub(super) struct Connections {
     regular: Places,
     reserve: Places,
     /// The requests in the reserve that wait for a regular place, by address.

@@ -26,7 +26,7 @@ type Source = (Address, bool);
 
 /// The limits of requests without a key that is known.
 #[derive(Debug)]
-pub(in crate::http) struct Unauthenticated {
+pub struct Unauthenticated {
     rate: NonZeroU32,
     of_address: Rates<Source>,
     of_all: Rates<()>,
@@ -37,7 +37,7 @@ pub(in crate::http) struct Unauthenticated {
 
 impl Unauthenticated {
     /// So many requests a second of one address.
-    pub(in crate::http) fn new(rate: NonZeroU32) -> Self {
+    pub fn new(rate: NonZeroU32) -> Self {
         Self {
             rate,
             of_address: Rates::default(),
@@ -52,7 +52,7 @@ impl Unauthenticated {
     /// # Errors
     ///
     /// The time after which the next is answered.
-    pub(in crate::http) fn count(
+    pub fn count(
         &self,
         address: Address,
         fingerprint: Option<&str>,
@@ -76,7 +76,7 @@ impl Unauthenticated {
     }
 
     /// A key or token of this fingerprint was found to be known.
-    pub(in crate::http) fn remember(&self, fingerprint: String) {
+    pub fn remember(&self, fingerprint: String) {
         let mut known = self.known.lock().expect("nothing panics with this lock");
         if known.len() >= MOST_REMEMBERED {
             known.clear();
