@@ -13,7 +13,9 @@ use axum::http::uri::Authority;
 use axum::http::{HeaderMap, Uri};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
-use meshwright_connections::{ActiveRequest, Address, Budget, Connection, Part, Rates, Unauthenticated};
+use meshwright_connections::{
+    ActiveRequest, Address, Budget, Connection, Part, Rates, Unauthenticated,
+};
 use meshwright_wire::{Code, Problem};
 use tokio::time::Instant;
 

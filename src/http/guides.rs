@@ -8,11 +8,12 @@ use axum::http::HeaderMap;
 use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
+use meshwright_connections::Keep;
 use meshwright_wire::{Code, Problem};
 use pulldown_cmark::{CowStr, Event, Options, Parser, Tag, TagEnd, html};
 
+use super::answer::tag_of_parts;
 use super::app::App;
-use super::conditional::{Keep, Tag as EntityTag};
 use super::problem::Refusal;
 
 /// A guide by its name, as it is written.
@@ -121,7 +122,7 @@ async fn answer(
     bytes: Vec<u8>,
     request: &HeaderMap,
 ) -> Result<Response, Refusal> {
-    let tag = EntityTag::of(&[&String::from_utf8_lossy(&bytes)]);
+    let tag = tag_of_parts(&[&String::from_utf8_lossy(&bytes)]);
     let made = async { Ok(([(CONTENT_TYPE, media_type)], bytes).into_response()) };
     tag.answer(Keep::AskAgain, request, made).await
 }

@@ -9,10 +9,10 @@ use tokio::sync::OwnedSemaphorePermit;
 use tokio::time::Instant;
 use tokio_util::sync::CancellationToken;
 
+use super::budget::Part;
 use super::limit::{Connections, Overloaded};
 use super::stalled_reads::Reads;
 use super::stalled_writes::Writes;
-use super::budget::Part;
 
 /// A connection whose client has sent nothing of its request for so long counts as idle; so does one of a client with a key that has read
 /// nothing of its answer, and one without a key at once.

@@ -8,8 +8,8 @@ use std::time::Duration;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::time::{Instant, timeout};
 
-use super::connection::{Address, Connection, NEW, Owner};
 use super::budget::{Budget, Part};
+use super::connection::{Address, Connection, NEW, Owner};
 
 /// One client, or one address without a key, has so large a part of the connections busy at most.
 const OF_CLIENT: usize = 4;

@@ -52,11 +52,7 @@ impl Unauthenticated {
     /// # Errors
     ///
     /// The time after which the next is answered.
-    pub fn count(
-        &self,
-        address: Address,
-        fingerprint: Option<&str>,
-    ) -> Result<(), Duration> {
+    pub fn count(&self, address: Address, fingerprint: Option<&str>) -> Result<(), Duration> {
         if fingerprint.is_some_and(|fingerprint| self.is_known(fingerprint)) {
             return Ok(());
         }
