@@ -111,7 +111,7 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
         None
     };
     let address = listener.as_ref().and_then(|it| it.local_addr().ok());
-    let metrics_listener = match config.door.metrics_listen {
+    let metrics_listener = match config.admission.metrics_listen {
         Some(address) => Some(listen(address).await?),
         None => None,
     };
@@ -149,7 +149,7 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
     if has_keys {
         access.found_keys();
     }
-    let keys_are_off = config.door.keys == Some(KeysRule::None);
+    let keys_are_off = config.admission.keys == Some(KeysRule::None);
     let tokens = match config.oidc.rules().filter(|_| config.role.answers()) {
         Some(rules) => {
             let tokens = Tokens::start(rules, jobs.clock().clone());

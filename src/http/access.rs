@@ -389,30 +389,30 @@ mod tests {
 
     #[test]
     fn a_client_that_asks_too_often_waits_and_no_other_one_does() {
-        let door = access(|_| {});
+        let access = access(|_| {});
         let taken = (0..20)
-            .take_while(|_| door.count_request("a", None).is_ok())
+            .take_while(|_| access.count_request("a", None).is_ok())
             .count();
         assert_eq!(taken, 6, "two seconds' worth at once");
-        let wait = door.count_request("a", None).unwrap_err();
+        let wait = access.count_request("a", None).unwrap_err();
         assert!(
             wait > Duration::ZERO && wait <= Duration::from_secs(1),
             "{wait:?}"
         );
-        assert!(door.count_request("b", None).is_ok());
+        assert!(access.count_request("b", None).is_ok());
         assert!(
-            (0..100).all(|_| door.count_request("c", Some(0)).is_ok()),
+            (0..100).all(|_| access.count_request("c", Some(0)).is_ok()),
             "0 is any number"
         );
     }
 
     #[test]
     fn two_keys_of_a_client_by_turns_get_no_more_than_both_may() {
-        let door = access(|_| {});
+        let access = access(|_| {});
         let taken = (0..100)
             .filter(|turn| {
                 let rate = if turn % 2 == 0 { 3 } else { 5 };
-                door.count_request("a", Some(rate)).is_ok()
+                access.count_request("a", Some(rate)).is_ok()
             })
             .count();
         assert!(taken <= 6 + 10 + 1, "{taken}");
@@ -420,13 +420,13 @@ mod tests {
 
     #[test]
     fn places_to_wait_are_bounded_for_each_and_for_all() {
-        let door = access(|_| {});
-        let first = door.place_to_wait("a").unwrap();
-        let _second = door.place_to_wait("a").unwrap();
-        assert!(door.place_to_wait("a").is_none());
-        let _third = door.place_to_wait("b").unwrap();
-        assert!(door.place_to_wait("b").is_none(), "all places are taken");
+        let access = access(|_| {});
+        let first = access.place_to_wait("a").unwrap();
+        let _second = access.place_to_wait("a").unwrap();
+        assert!(access.place_to_wait("a").is_none());
+        let _third = access.place_to_wait("b").unwrap();
+        assert!(access.place_to_wait("b").is_none(), "all places are taken");
         drop(first);
-        assert!(door.place_to_wait("b").is_some());
+        assert!(access.place_to_wait("b").is_some());
     }
 }

@@ -21,15 +21,15 @@ pub(super) fn file(media_type: &str, name: &str, body: impl IntoResponse) -> Res
     (headers, body).into_response()
 }
 
-/// What a submission came to, which stands at `address`: 200 where the client is `told_the_end`, 202 otherwise.
+/// What a submission came to, which stands at `address`: 200 where it has ended and the client `expects_end`, 202 otherwise.
 pub(super) fn submitted(
     view: impl IntoResponse,
     address: &str,
     has_ended: bool,
-    told_the_end: bool,
+    expects_end: bool,
 ) -> Response {
     let mut response = json(view);
-    if !(has_ended && told_the_end) {
+    if !(has_ended && expects_end) {
         *response.status_mut() = StatusCode::ACCEPTED;
     }
     let address = HeaderValue::from_str(address);

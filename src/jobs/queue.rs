@@ -29,7 +29,7 @@ const BATCH: usize = 64;
 /// What the queue allows.
 #[derive(Debug, Clone, Copy)]
 pub struct Rules {
-    /// So many jobs may wait, those of studies aside.
+    /// So many jobs may wait, not counting those of studies.
     pub queue_limit: u32,
     /// So many of them may be of one client.
     pub client_queue_limit: u32,

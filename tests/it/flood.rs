@@ -93,7 +93,7 @@ fn flood(service: SocketAddr, addresses: u8) -> JoinSet<()> {
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn eighty_sockets_that_take_nothing_lock_nobody_out_of_sixty_four_places() {
     let engine = Arc::new(|_: &_, _: &_| Ok(results()));
-    let bench = Bench::start(|config| config.door.connections = 64, engine).await;
+    let bench = Bench::start(|config| config.admission.connections = 64, engine).await;
     let key = make_key(&bench.config.database, "portal").await;
     let service = bench.service().address().unwrap();
     let ask = async || {

@@ -13,8 +13,8 @@ use serde_json::{Value, json};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpListener;
 
+use crate::admission::key_of;
 use crate::bench::{Asked, Bench, PATIENCE, Said, problem, results, submission};
-use crate::door::key_of;
 use crate::stores;
 
 /// A receiver that answers one request after the other with these statuses, and tells what it was sent.
@@ -394,7 +394,7 @@ async fn webhooks_are_off_unless_hosts_are_allowed_and_addresses_that_are_not_pu
     let bench = Bench::start(
         |config| {
             let hosts = ["hooks.example.com", "10.0.0.1", "http://*.254.169.254"];
-            config.door.webhook_hosts = hosts.map(|host| host.parse().unwrap()).to_vec();
+            config.admission.webhook_hosts = hosts.map(|host| host.parse().unwrap()).to_vec();
         },
         Arc::new(|_, _| Ok(results())),
     )
