@@ -52,8 +52,8 @@ struct Fleet {
     lease: String,
 }
 
-/// What a process of the fleet is told.
-fn told<'a>(role: &'a str, lease: &'a str) -> [&'a str; 8] {
+/// The arguments of a process of the fleet.
+fn arguments<'a>(role: &'a str, lease: &'a str) -> [&'a str; 8] {
     [
         "--role",
         role,
@@ -67,7 +67,7 @@ fn told<'a>(role: &'a str, lease: &'a str) -> [&'a str; 8] {
 }
 
 fn start(place: &DatabaseAddress, role: &str, lease: &str) -> Process {
-    Process::start_with(place, &told(role, lease))
+    Process::start_with(place, &arguments(role, lease))
 }
 
 impl Fleet {

@@ -791,12 +791,12 @@ async fn the_program_takes_tokens_by_its_options_and_logs_whose_they_are_and_not
     service.kill().unwrap();
     service.wait().unwrap();
     let log = std::fs::read_to_string(folder.path().join("log")).unwrap();
-    let told = |line: &&str| {
+    let is_of_request = |line: &&str| {
         ["/metrics", "4711", "gear works", "token-7", "status=200"]
             .iter()
             .all(|part| line.contains(part))
     };
-    assert!(log.lines().any(|line| told(&line)), "{log}");
+    assert!(log.lines().any(|line| is_of_request(&line)), "{log}");
     assert!(!log.contains(token.rsplit_once('.').unwrap().1));
 
     // What does not go together is said at once.
