@@ -8,22 +8,25 @@ WORKDIR /source
 # Names of functions stay for backtraces; lines of sources would be most of the image.
 ENV CARGO_PROFILE_RELEASE_STRIP=debuginfo
 # First the dependencies, in a layer that stays as long as the manifests do: the sources are empty, so that nothing else is built.
-COPY Cargo.toml Cargo.lock build.rs ./
+COPY Cargo.toml Cargo.lock ./
+COPY crates/connections/Cargo.toml crates/connections/
 COPY crates/engine/Cargo.toml crates/engine/
+COPY crates/engine/benches/Cargo.toml crates/engine/benches/
 COPY crates/exchange/Cargo.toml crates/exchange/build.rs crates/exchange/
+COPY crates/fuzz-check/Cargo.toml crates/fuzz-check/
 COPY crates/paper/Cargo.toml crates/paper/build.rs crates/paper/
 COPY crates/plot/Cargo.toml crates/plot/
 COPY crates/sample/Cargo.toml crates/sample/
 COPY crates/search/Cargo.toml crates/search/
-COPY migrations migrations
-RUN mkdir -p web src/http benches/load crates/engine/benches && touch src/http/docs.js src/lib.rs \
-    && for name in engine exchange paper plot sample search; do mkdir -p crates/$name/src && touch crates/$name/src/lib.rs; done \
-    && for file in src/main benches/load/main crates/engine/benches/jobs crates/engine/benches/parts crates/paper/src/main; do \
+COPY crates/wire/Cargo.toml crates/wire/
+RUN mkdir -p build src benches/load && touch src/lib.rs crates/engine/benches/lib.rs \
+    && for name in connections engine exchange fuzz-check paper plot sample search wire; do mkdir -p crates/$name/src && touch crates/$name/src/lib.rs; done \
+    && for file in build/main src/main benches/load/main crates/engine/benches/jobs crates/engine/benches/parts crates/paper/src/main; do \
          echo 'fn main() {}' > "$file.rs"; done \
     && cargo build --release --locked --bin meshwright
 COPY . .
 # The empty sources were newer than these.
-RUN touch src/lib.rs src/main.rs crates/*/src/lib.rs && cargo build --release --locked --bin meshwright
+RUN touch build/main.rs src/lib.rs src/main.rs crates/*/src/lib.rs && cargo build --release --locked --bin meshwright
 
 FROM ${RUN_IMAGE}
 # The certificates are for webhooks and for a PostgreSQL elsewhere.

@@ -30,7 +30,7 @@ pub(crate) fn bounded(time: Duration) -> ClientBuilder {
 }
 
 /// An error with its causes, without the address, which may have a secret in it.
-pub(crate) fn told(error: &dyn Error) -> String {
+pub(crate) fn unreachable(error: &dyn Error) -> String {
     let mut causes = Vec::new();
     let mut cause = error.source();
     while let Some(error) = cause {

@@ -7,9 +7,10 @@ use std::time::Duration;
 use axum::http::{HeaderValue, Uri};
 use jiff::SignedDuration;
 use jsonwebtoken::Algorithm;
+use meshwright_connections::Bounds;
 
 use crate::compute::{Cores, PreviewRules};
-use crate::http::{AccessRules, Bounds, KeysRule};
+use crate::http::{AccessRules, KeysRule};
 use crate::jobs::{DatabaseAddress, Keep, Migrate, Pace, Rules};
 use crate::machine;
 use crate::tokens::{self, Claim, ClaimValue, IssuerUrl, TokenRules};
@@ -117,9 +118,9 @@ pub struct Config {
 
     /// Who gets in, and how much of the service each gets.
     #[command(flatten)]
-    pub door: DoorOptions,
+    pub admission: AdmissionOptions,
 
-    /// Whose tokens open the door as keys do.
+    /// Whose tokens are accepted beside keys.
     #[command(flatten)]
     pub oidc: OidcOptions,
 }
@@ -170,7 +171,7 @@ pub struct KeepOptions {
 
 /// Who gets in, and how much of the service each gets.
 #[derive(Debug, Clone, clap::Args)]
-pub struct DoorOptions {
+pub struct AdmissionOptions {
     /// Names under which clients call the service, beside localhost, its addresses and the public one; separated by commas.
     #[arg(
         long = "allowed-host",
@@ -208,7 +209,7 @@ pub struct DoorOptions {
     )]
     pub requests_per_second: u32,
 
-    /// Jobs of one client that may wait, designs of studies aside [default: half of --queue-limit].
+    /// Jobs of one client that may wait, not counting designs of studies [default: half of --queue-limit].
     #[arg(long, env = "MESHWRIGHT_CLIENT_QUEUE_LIMIT", value_name = "NUMBER")]
     pub client_queue_limit: Option<u32>,
 
@@ -252,10 +253,10 @@ pub struct DoorOptions {
     pub webhook_hosts: Vec<HookTarget>,
 }
 
-/// Whose tokens open the door as keys do.
+/// Whose tokens are accepted beside keys.
 #[derive(Debug, Clone, clap::Args)]
 pub struct OidcOptions {
-    /// Identity provider (OpenID Connect) whose tokens open the door beside keys, as they have it under iss [default: keys alone].
+    /// Identity provider (OpenID Connect) whose tokens are accepted beside keys, as they have it under iss [default: keys alone].
     #[arg(
         long,
         env = "MESHWRIGHT_OIDC_ISSUER",
@@ -369,10 +370,10 @@ impl Config {
         Rules {
             queue_limit: self.queue_limit,
             client_queue_limit: self
-                .door
+                .admission
                 .client_queue_limit
                 .unwrap_or(self.queue_limit.div_ceil(2)),
-            client_design_limit: self.door.client_design_limit,
+            client_design_limit: self.admission.client_design_limit,
             // What is larger than all that there is could only be computed by taking more.
             job_memory_mb: self.job_memory_mb.min(self.memory().computing),
             memory_mb: self.memory().computing,
@@ -400,19 +401,19 @@ impl Config {
             uri.host().map(str::to_owned)
         });
         let hosts: Vec<String> = public
-            .chain(self.door.allowed_hosts.iter().cloned())
+            .chain(self.admission.allowed_hosts.iter().cloned())
             .collect();
         let loopback = self.listen.ip().is_loopback();
-        let (connections, streams) = (self.bounds().connections, self.door.client_streams);
+        let (connections, streams) = (self.bounds().connections, self.admission.client_streams);
         AccessRules {
-            keys: self.door.keys.unwrap_or_default(),
+            keys: self.admission.keys.unwrap_or_default(),
             // Who names somebody that vouches for people wants to know who they are.
             local: loopback && hosts.is_empty() && self.oidc.oidc_issuer.is_none(),
             // Elsewhere the names of the service are known only if they are told; there, keys are needed anyway.
             strict_hosts: loopback || !hosts.is_empty(),
             hosts,
-            requests_per_second: self.door.requests_per_second,
-            unauthenticated_per_second: self.door.requests_without_key,
+            requests_per_second: self.admission.requests_per_second,
+            unauthenticated_per_second: self.admission.requests_without_key,
             // Each has a connection: one client's leave half of those that it may have busy to its other requests, and those of all leave
             // half to others.
             waiting_per_client: streams.min((connections / 8).max(1)) as u64,
@@ -423,9 +424,12 @@ impl Config {
     /// How connections are bounded.
     pub fn bounds(&self) -> Bounds {
         Bounds {
-            connections: self.door.connections.min(descriptors_for_connections()),
-            head: self.door.idle_time,
-            stall: self.door.idle_time.max(LEAST_STALL),
+            connections: self
+                .admission
+                .connections
+                .min(descriptors_for_connections()),
+            head: self.admission.idle_time,
+            stall: self.admission.idle_time.max(LEAST_STALL),
         }
     }
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use anyhow::{Context, bail};
+use meshwright_connections::Server;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use meshwright_wire::{Problem, Results, Submission};
@@ -15,7 +16,7 @@ use tracing::{info, warn};
 use crate::compute::{Previews, Solve};
 use crate::config::{Config, Part};
 use crate::http::{
-    Access, App, BodyMemory, Edge, KeysRule, Outlines, Readings, Server, router, router_of_metrics,
+    Access, App, BodyMemory, Edge, KeysRule, Outlines, Readings, router, router_of_metrics,
 };
 use crate::jobs::store::lock::{DatabaseLock, LockError};
 use crate::jobs::{Clock, DatabaseAddress, Jobs, Keeper, Migrate, OpenError, Store, Workers};
@@ -110,7 +111,7 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
         None
     };
     let address = listener.as_ref().and_then(|it| it.local_addr().ok());
-    let metrics_listener = match config.door.metrics_listen {
+    let metrics_listener = match config.admission.metrics_listen {
         Some(address) => Some(listen(address).await?),
         None => None,
     };
@@ -148,7 +149,7 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
     if has_keys {
         access.found_keys();
     }
-    let keys_are_off = config.door.keys == Some(KeysRule::None);
+    let keys_are_off = config.admission.keys == Some(KeysRule::None);
     let tokens = match config.oidc.rules().filter(|_| config.role.answers()) {
         Some(rules) => {
             let tokens = Tokens::start(rules, jobs.clock().clone());

@@ -1,6 +1,6 @@
 //! Spans for a collector of OpenTelemetry (OTLP): each request, and each job from its submission to its end.
 //!
-//! A span is told when it has ended and forgotten when nobody takes it: what is told waits in a queue that never holds anybody up.
+//! A span is exported when it has ended and dropped when the collector does not take it: it waits in a bounded queue, and nobody waits for that.
 //! The trace of a job has the job's id, so that a request that submits one can point to it, whichever process computes it and when.
 
 use std::borrow::Cow;
@@ -23,7 +23,7 @@ use uuid::Uuid;
 
 use crate::client::bounded;
 
-/// So many spans wait to be taken; further ones are forgotten.
+/// So many spans wait to be taken; further ones are dropped.
 const MOST_WAITING: usize = 8192;
 
 /// So many go in one message, and so long it is waited for more of them.
@@ -36,17 +36,17 @@ const TIME_OUT: Duration = Duration::from_secs(5);
 /// At the end it has so much time for what is left: with all of [`END`](crate::serve::END) before it, less than ten seconds.
 const LAST: Duration = Duration::from_millis(400);
 
-/// Where spans are told. Like the numbers of the process, they are of the process.
+/// Where spans wait for their export. Like the numbers of the process, they are of the process.
 static QUEUE: OnceLock<Sender<SpanData>> = OnceLock::new();
 
-/// The telling of spans.
+/// The export of spans.
 pub struct Spans {
     end: CancellationToken,
-    telling: JoinHandle<()>,
+    exporting: JoinHandle<()>,
 }
 
 impl Spans {
-    /// Tells spans to the collector at `endpoint` from now on.
+    /// Exports spans to the collector at `endpoint` from now on.
     ///
     /// # Errors
     ///
@@ -65,28 +65,32 @@ impl Spans {
             .with_service_name("meshwright")
             .with_attribute(version);
         exporter.set_resource(&resource.build());
-        let (queue, told) = channel(MOST_WAITING);
+        let (queue, waiting) = channel(MOST_WAITING);
         let _ = QUEUE.set(queue);
         let end = CancellationToken::new();
-        let telling = tokio::spawn(tell_all(exporter, told, end.clone()));
-        Ok(Self { end, telling })
+        let exporting = tokio::spawn(export_all(exporter, waiting, end.clone()));
+        Ok(Self { end, exporting })
     }
 
-    /// Tells what is left, as far as the collector takes it soon.
+    /// Exports what is left, as far as the collector takes it soon.
     pub async fn end(self) {
         self.end.cancel();
-        if timeout(LAST, self.telling).await.is_err() {
-            warn!("some spans were not told to their end");
+        if timeout(LAST, self.exporting).await.is_err() {
+            warn!("some spans were not exported");
         }
     }
 }
 
-async fn tell_all(exporter: SpanExporter, mut told: Receiver<SpanData>, end: CancellationToken) {
+async fn export_all(
+    exporter: SpanExporter,
+    mut waiting: Receiver<SpanData>,
+    end: CancellationToken,
+) {
     let mut works = true;
     let mut batch = Vec::with_capacity(AT_ONCE);
     loop {
         tokio::select! {
-            _ = told.recv_many(&mut batch, AT_ONCE) => {}
+            _ = waiting.recv_many(&mut batch, AT_ONCE) => {}
             () = end.cancelled() => {}
         }
         if batch.len() < AT_ONCE {
@@ -96,7 +100,7 @@ async fn tell_all(exporter: SpanExporter, mut told: Receiver<SpanData>, end: Can
             }
         }
         while batch.len() < AT_ONCE
-            && let Ok(span) = told.try_recv()
+            && let Ok(span) = waiting.try_recv()
         {
             batch.push(span);
         }
@@ -106,15 +110,15 @@ async fn tell_all(exporter: SpanExporter, mut told: Receiver<SpanData>, end: Can
         let taken = exporter.export(std::mem::take(&mut batch)).await;
         match (&taken, works) {
             (Ok(()), false) => info!("the collector takes spans again"),
-            (Err(error), true) => warn!(%error, "the collector takes no spans; they are forgotten"),
+            (Err(error), true) => warn!(%error, "the collector takes no spans; they are dropped"),
             _ => {}
         }
         works = taken.is_ok();
     }
 }
 
-/// Whether somebody is told.
-pub(crate) fn are_told() -> bool {
+/// Whether there is a collector.
+pub(crate) fn are_exported() -> bool {
     QUEUE.get().is_some()
 }
 
@@ -133,8 +137,8 @@ pub(crate) struct Span {
     pub(crate) failed: bool,
 }
 
-/// Tells a span, if anybody wants it. One that finds no place is forgotten.
-pub(crate) fn tell(span: impl FnOnce() -> Span) {
+/// Exports a span, if there is a collector. One that finds no place is dropped.
+pub(crate) fn export(span: impl FnOnce() -> Span) {
     let Some(queue) = QUEUE.get() else {
         return;
     };
@@ -176,7 +180,7 @@ impl Span {
     }
 }
 
-/// The place of a span that is told.
+/// The place of a span that is exported.
 pub(crate) fn place(trace: [u8; 16], span: [u8; 8]) -> SpanContext {
     SpanContext::new(
         TraceId::from_bytes(trace),

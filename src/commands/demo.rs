@@ -91,20 +91,20 @@ async fn follow(client: &reqwest::Client, events: &str) -> anyhow::Result<()> {
             let Some(percent) = data["progress_percent"].as_u64() else {
                 continue;
             };
-            let told = format!(
+            let line = format!(
                 "  {percent:3} %  {} of {} positions",
                 data["positions_done"], data["positions_total"]
             );
-            if told == last {
+            if line == last {
                 continue;
             }
             if std::io::stdout().is_terminal() {
-                print!("\r{told}");
+                print!("\r{line}");
                 std::io::stdout().flush()?;
             } else {
-                println!("{told}");
+                println!("{line}");
             }
-            last = told;
+            last = line;
         }
     }
     println!();

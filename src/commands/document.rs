@@ -40,12 +40,15 @@ pub(super) fn is_dash(path: &Path) -> bool {
 }
 
 /// A problem as a person reads it.
-pub(super) fn told(problem: &Problem) -> String {
-    told_with(problem, |_| None)
+pub(super) fn text_of(problem: &Problem) -> String {
+    text_with_origins(problem, |_| None)
 }
 
 /// The same, with where each field is from.
-pub(super) fn told_with<'a>(problem: &Problem, origin: impl Fn(&str) -> Option<&'a str>) -> String {
+pub(super) fn text_with_origins<'a>(
+    problem: &Problem,
+    origin: impl Fn(&str) -> Option<&'a str>,
+) -> String {
     let mut text = format!("{} ({}).\n", problem.title, problem.code.word());
     if problem.errors.is_empty() {
         text.push_str(&format!("  {}\n", problem.detail));

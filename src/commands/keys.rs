@@ -52,13 +52,13 @@ struct Create {
     /// What its bearer may do.
     #[arg(long, value_enum, default_value = "client")]
     role: Role,
-    /// How long it opens the door, such as 90d or 12h [default: until it is revoked].
+    /// How long it is accepted, such as 90d or 12h [default: until it is revoked].
     #[arg(long, value_parser = lasting, value_name = "TIME")]
     expires_in: Option<Duration>,
     /// Requests a second; 0 for any number [default: that of the service].
     #[arg(long, value_name = "NUMBER")]
     requests_per_second: Option<u32>,
-    /// Jobs that may wait, designs of studies aside [default: that of the service].
+    /// Jobs that may wait, not counting designs of studies [default: that of the service].
     #[arg(long, value_name = "NUMBER")]
     queue_limit: Option<u32>,
 }

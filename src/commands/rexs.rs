@@ -9,7 +9,7 @@ use meshwright_exchange::rexs::{Choices, Import, import};
 use meshwright_wire::{Submission, model_of};
 use serde_json::Value;
 
-use super::document::{EXIT_PROBLEM, read, told, told_with, write};
+use super::document::{EXIT_PROBLEM, read, text_of, text_with_origins, write};
 
 /// Take a pair out of a REXS model, or write one.
 #[derive(Debug, clap::Subcommand)]
@@ -91,7 +91,12 @@ impl ModelChoices {
         }
         let parsed = Submission::parse(imported.submission.to_string().as_bytes());
         parsed
-            .map_err(|problem| eprint!("{}", told_with(&problem, |field| imported.origin(field))))
+            .map_err(|problem| {
+                eprint!(
+                    "{}",
+                    text_with_origins(&problem, |field| imported.origin(field))
+                )
+            })
             .ok()
     }
 }
@@ -123,7 +128,7 @@ impl Rexs {
                 let submission = match Submission::parse(&read(submission)?) {
                     Ok(submission) => submission,
                     Err(problem) => {
-                        eprint!("{}", told(&problem));
+                        eprint!("{}", text_of(&problem));
                         return Ok(ExitCode::from(EXIT_PROBLEM));
                     }
                 };

@@ -23,8 +23,8 @@ pub(crate) struct Serve {
     /// Submit test case 2 of the paper to the service once it runs, show what comes of it, and go on serving.
     #[arg(long)]
     demo: bool,
-    /// Collector of OpenTelemetry that is told a span of each request and each job, by OTLP over HTTP: http://localhost:4318 [default:
-    /// nobody is told].
+    /// Collector of OpenTelemetry that takes a span of each request and each job, by OTLP over HTTP: http://localhost:4318 [default:
+    /// none].
     #[arg(long, env = "MESHWRIGHT_OTLP_ENDPOINT", value_parser = endpoint, value_name = "URL")]
     otlp_endpoint: Option<String>,
     /// Write the log as JSON, one object to a line.
@@ -64,10 +64,10 @@ impl Serve {
         let world = World {
             compute: Arc::new(meshwright_wire::solve),
             clock: Clock::system(),
-            hooks: HookRules::to_named(self.config.door.webhook_hosts.clone()),
+            hooks: HookRules::to_named(self.config.admission.webhook_hosts.clone()),
         };
         let spans = self.otlp_endpoint.as_deref().map(Spans::start);
-        let spans = spans.transpose().context("spans cannot be told")?;
+        let spans = spans.transpose().context("spans cannot be exported")?;
         let service = serve(&self.config, world).await?;
         match service.address() {
             Some(address) => {

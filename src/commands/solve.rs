@@ -12,7 +12,7 @@ use meshwright_exchange::rexs::is_model;
 use meshwright_wire::results::{CurveDocument, GearPeakStress, PeakStressDocument, Results};
 use meshwright_wire::{Problem, Submission, solve};
 
-use super::document::{EXIT_PROBLEM, is_dash, read, told, write};
+use super::document::{EXIT_PROBLEM, is_dash, read, text_of, write};
 use super::rexs::ModelChoices;
 
 /// What the substructures of one submission may take; it is never reached by one pair.
@@ -45,7 +45,7 @@ impl Solve {
         let results = match compute(&submission) {
             Ok(results) => results,
             Err(problem) => {
-                eprint!("{}", told(&problem));
+                eprint!("{}", text_of(&problem));
                 return Ok(ExitCode::from(EXIT_PROBLEM));
             }
         };
@@ -76,7 +76,9 @@ impl Solve {
             return None;
         }
         let parsed = Submission::parse(document);
-        parsed.map_err(|problem| eprint!("{}", told(&problem))).ok()
+        parsed
+            .map_err(|problem| eprint!("{}", text_of(&problem)))
+            .ok()
     }
 }
 
@@ -204,7 +206,7 @@ mod tests {
     #[test]
     fn a_problem_is_told_with_its_place_and_the_nearest_value() {
         let bad = include_str!("../../api/examples/bad-case-3-as-printed.json");
-        let text = told(&Submission::parse(bad.as_bytes()).expect_err("the teeth do not reach"));
+        let text = text_of(&Submission::parse(bad.as_bytes()).expect_err("the teeth do not reach"));
         for part in [
             "teeth_do_not_reach",
             "/pair/center_distance_mm",

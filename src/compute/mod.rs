@@ -1,9 +1,8 @@
-//! What runs the engine: threads of its own, what clients share of the machine, and computations that are no jobs.
+//! What runs the engine: threads of its own, and computations that are no jobs.
 //!
-//! In reading order: the [`Cores`] of the machine and the threads on them; the [`Budget`] of what clients share; and [`Previews`], for each of
+//! In reading order: the [`Cores`] of the machine and the threads on them; and [`Previews`], for each of
 //! which a request waits, and of which nothing is kept. Jobs are computed by their workers in the same way.
 
-mod budget;
 mod previews;
 mod threads;
 
@@ -14,7 +13,6 @@ use meshwright_engine::run::Run;
 
 use meshwright_wire::{Problem, Results, Submission};
 
-pub use budget::{Budget, Part};
 pub use previews::{Computed, PreviewError, PreviewRules, Previewed, Previews};
 pub use threads::{Cores, NoThreads};
 pub(crate) use threads::{Work, engine_threads};

@@ -11,6 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
 
+use meshwright_connections::{Budget, Part};
 use meshwright_engine::run::Run;
 use meshwright_wire::{Code, Preview, Problem, memory_of};
 use rayon::ThreadPool;
@@ -19,7 +20,6 @@ use tokio::time::{Instant, sleep_until};
 use tokio_util::sync::CancellationToken;
 use tracing::error;
 
-use super::budget::{Budget, Part};
 use super::threads::{Cores, NoThreads, Work, engine_threads};
 use super::{Solve, message_of};
 

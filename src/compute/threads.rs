@@ -32,7 +32,7 @@ impl Cores {
         }
     }
 
-    /// Jobs computed at the same time, unless it is told.
+    /// Jobs computed at the same time, unless it is set.
     pub fn workers(self) -> usize {
         let threads = THREADS_A_CORE * self.available;
         self.available.min(threads / self.for_one()).max(1)

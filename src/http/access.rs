@@ -13,12 +13,14 @@ use axum::http::uri::Authority;
 use axum::http::{HeaderMap, Uri};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
+use meshwright_connections::{
+    ActiveRequest, Address, Budget, Connection, Part, Rates, Unauthenticated,
+};
 use meshwright_wire::{Code, Problem};
 use tokio::time::Instant;
 
-use super::connections::{Address, Connection, Rates, Unauthenticated};
-use super::problem::Refusal;
-use crate::compute::{Budget, Part};
+use super::credential::{Credential, bearer};
+use super::problem::{Refusal, overloaded};
 
 /// A client may send so many times its requests of a second at once.
 const BURST_SECONDS: NonZeroU32 = NonZeroU32::new(2).unwrap();
@@ -127,7 +129,11 @@ impl Access {
     fn count_unauthenticated(&self, address: Address, headers: &HeaderMap) -> Result<(), Duration> {
         let asks = self.asks_for_keys(headers) == Some(true);
         match self.unauthenticated.as_ref().filter(|_| asks) {
-            Some(unauthenticated) => unauthenticated.count(address, headers),
+            Some(unauthenticated) => {
+                let shown = bearer(headers).ok().flatten();
+                let fingerprint = shown.as_ref().map(Credential::fingerprint);
+                unauthenticated.count(address, fingerprint.as_deref())
+            }
             None => Ok(()),
         }
     }
@@ -216,12 +222,39 @@ pub(super) async fn limit_unauthenticated(
         Ok(()) => next.run(request).await,
         Err(wait) => {
             metrics::counter!("meshwright_strangers_refused_total").increment(1);
-            let mut response = Refusal::too_many_unauthenticated(wait).into_response();
-            let close = HeaderValue::from_static("close");
-            response.headers_mut().insert(CONNECTION, close);
-            response
+            last_of_its_connection(Refusal::too_many_unauthenticated(wait).into_response())
         }
     }
+}
+
+/// Refuses a request where its client has as many active as one may have, or all connections are busy. Health is answered always.
+pub(super) async fn limit_active(request: Request, next: Next) -> Response {
+    let active = request.extensions().get::<Arc<ActiveRequest>>().cloned();
+    let Some(active) = active.filter(|_| !request.uri().path().starts_with("/health/")) else {
+        return next.run(request).await;
+    };
+    let refused = |error| Refusal::from(overloaded(error)).into_response();
+    if let Err(error) = active.leave_reserve().await {
+        return last_of_its_connection(refused(error));
+    }
+    // One with a key counts for its client, once that is known. Behind a proxy all have one address.
+    let may_have_key = matches!(bearer(request.headers()), Ok(Some(_)));
+    match active.count_for_address() {
+        Err(error) if !may_have_key => return refused(error),
+        _ => {}
+    }
+    let response = next.run(request).await;
+    match active.count_for_address() {
+        Ok(()) => response,
+        // It was not asked for its key, or had none that is known.
+        Err(error) => refused(error),
+    }
+}
+
+fn last_of_its_connection(mut response: Response) -> Response {
+    let close = HeaderValue::from_static("close");
+    response.headers_mut().insert(CONNECTION, close);
+    response
 }
 
 /// Refuses requests that were not meant for this service.
@@ -356,30 +389,30 @@ mod tests {
 
     #[test]
     fn a_client_that_asks_too_often_waits_and_no_other_one_does() {
-        let door = access(|_| {});
+        let access = access(|_| {});
         let taken = (0..20)
-            .take_while(|_| door.count_request("a", None).is_ok())
+            .take_while(|_| access.count_request("a", None).is_ok())
             .count();
         assert_eq!(taken, 6, "two seconds' worth at once");
-        let wait = door.count_request("a", None).unwrap_err();
+        let wait = access.count_request("a", None).unwrap_err();
         assert!(
             wait > Duration::ZERO && wait <= Duration::from_secs(1),
             "{wait:?}"
         );
-        assert!(door.count_request("b", None).is_ok());
+        assert!(access.count_request("b", None).is_ok());
         assert!(
-            (0..100).all(|_| door.count_request("c", Some(0)).is_ok()),
+            (0..100).all(|_| access.count_request("c", Some(0)).is_ok()),
             "0 is any number"
         );
     }
 
     #[test]
     fn two_keys_of_a_client_by_turns_get_no_more_than_both_may() {
-        let door = access(|_| {});
+        let access = access(|_| {});
         let taken = (0..100)
             .filter(|turn| {
                 let rate = if turn % 2 == 0 { 3 } else { 5 };
-                door.count_request("a", Some(rate)).is_ok()
+                access.count_request("a", Some(rate)).is_ok()
             })
             .count();
         assert!(taken <= 6 + 10 + 1, "{taken}");
@@ -387,13 +420,13 @@ mod tests {
 
     #[test]
     fn places_to_wait_are_bounded_for_each_and_for_all() {
-        let door = access(|_| {});
-        let first = door.place_to_wait("a").unwrap();
-        let _second = door.place_to_wait("a").unwrap();
-        assert!(door.place_to_wait("a").is_none());
-        let _third = door.place_to_wait("b").unwrap();
-        assert!(door.place_to_wait("b").is_none(), "all places are taken");
+        let access = access(|_| {});
+        let first = access.place_to_wait("a").unwrap();
+        let _second = access.place_to_wait("a").unwrap();
+        assert!(access.place_to_wait("a").is_none());
+        let _third = access.place_to_wait("b").unwrap();
+        assert!(access.place_to_wait("b").is_none(), "all places are taken");
         drop(first);
-        assert!(door.place_to_wait("b").is_some());
+        assert!(access.place_to_wait("b").is_some());
     }
 }

@@ -3,6 +3,8 @@
 use axum::http::StatusCode;
 use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE, HeaderValue, LOCATION, RETRY_AFTER};
 use axum::response::{IntoResponse, Response};
+use meshwright_connections::Tag;
+use meshwright_wire::hash::sha256_hex_of;
 
 /// A document that is JSON already.
 pub(super) fn json(text: impl IntoResponse) -> Response {
@@ -19,15 +21,15 @@ pub(super) fn file(media_type: &str, name: &str, body: impl IntoResponse) -> Res
     (headers, body).into_response()
 }
 
-/// What a submission came to, which stands at `address`: 200 where the client is `told_the_end`, 202 otherwise.
+/// What a submission came to, which stands at `address`: 200 where it has ended and the client `expects_end`, 202 otherwise.
 pub(super) fn submitted(
     view: impl IntoResponse,
     address: &str,
     has_ended: bool,
-    told_the_end: bool,
+    expects_end: bool,
 ) -> Response {
     let mut response = json(view);
-    if !(has_ended && told_the_end) {
+    if !(has_ended && expects_end) {
         *response.status_mut() = StatusCode::ACCEPTED;
     }
     let address = HeaderValue::from_str(address);
@@ -36,6 +38,11 @@ pub(super) fn submitted(
     response.headers_mut().insert(LOCATION, address);
     tell_when_to_return(has_ended, &mut response);
     response
+}
+
+/// The tag of an answer that is the same as long as these parts are.
+pub(super) fn tag_of_parts(parts: &[&str]) -> Tag {
+    Tag::of_hash(&sha256_hex_of(parts)[..32], "")
 }
 
 /// Until something has ended it is worth looking again.

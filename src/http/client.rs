@@ -6,12 +6,12 @@ use axum::extract::FromRequestParts;
 use axum::http::request::Parts;
 use axum::http::{HeaderMap, Method};
 use jiff::Timestamp;
+use meshwright_connections::ActiveRequest;
 use meshwright_wire::{Code, Problem};
 
 use super::app::App;
-use super::connections::ActiveRequest;
 use super::credential::{Credential, bearer, no_credential, unauthorized};
-use super::problem::Refusal;
+use super::problem::{Refusal, overloaded};
 use crate::jobs::{JobError, KeyRecord, Member, Role};
 use crate::keys::Key;
 use crate::tokens::{Bearer, TokenError};
@@ -151,7 +151,7 @@ impl Caller {
         if let Some(fingerprint) = fingerprint {
             app.access.remember(fingerprint);
             if let Some(active) = parts.extensions.get::<Arc<ActiveRequest>>() {
-                active.authenticated(&client)?;
+                active.authenticated(&client).map_err(overloaded)?;
             }
             tracing::Span::current().record("client", &caller.member.client);
         }

@@ -218,7 +218,7 @@ fn add_answers_to_conditions(operation: &mut Operation) {
     responses.insert("304".to_owned(), same.into());
 }
 
-/// Says whether requests need a key, those aside that never do, and whose tokens will do as well.
+/// Says whether requests need a key, but for those that never do, and whose tokens will do as well.
 pub(super) fn say_whether_keys_are_needed(
     openapi: &mut OpenApi,
     needed: bool,

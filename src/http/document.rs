@@ -11,6 +11,7 @@ use axum::http::HeaderMap;
 use axum::http::header::{CONTENT_ENCODING, CONTENT_TYPE, EXPECT};
 use futures_util::StreamExt;
 use http_body::Body as _;
+use meshwright_connections::Part;
 use meshwright_engine::run::Run;
 use meshwright_exchange::rexs::{Refused, is_packed, unpacked};
 use meshwright_wire::{Code, Problem};
@@ -23,7 +24,6 @@ use super::app::App;
 use super::blocking::blocking;
 use super::client::ClientName;
 use super::problem::Refusal;
-use crate::compute::Part;
 
 /// So many times the limit is read and thrown away, because a client that is still sending does not see the answer.
 const DRAINED: usize = 64;

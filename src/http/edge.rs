@@ -11,7 +11,7 @@ pub struct Edge {
     pub cors_origins: Vec<HeaderValue>,
     /// Whether keys are needed from the start, for the OpenAPI document.
     pub asks_for_keys: bool,
-    /// Whose tokens open the door as keys do, for the same.
+    /// Whose tokens are accepted beside keys, for the same.
     pub issuer: Option<String>,
     /// Whether the numbers of the service are served beside everything else.
     pub metrics_here: bool,

@@ -7,6 +7,7 @@ use std::time::Duration;
 use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
 use futures_util::stream;
+use meshwright_connections::Part;
 use meshwright_wire::{Code, Problem, Status};
 use serde::Serialize;
 use utoipa::ToSchema;
@@ -17,7 +18,6 @@ use super::client::{Client, Pass};
 use super::parameters::JobId;
 use super::problem::Refusal;
 use super::view::JobView;
-use crate::compute::Part;
 use crate::jobs::{News, Progress};
 
 /// While nothing happens, it is looked so often whether who watches may still do so.

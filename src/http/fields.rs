@@ -12,6 +12,7 @@ use flate2::Compression;
 use flate2::read::GzDecoder;
 use flate2::write::GzEncoder;
 use futures_util::stream;
+use meshwright_connections::{Keep, takes_gzip};
 use meshwright_engine::analysis::{self, Case, Estimate, FaceHoles, Model, SectionHoles};
 use meshwright_engine::gear::Member;
 use meshwright_engine::library::Library;
@@ -23,9 +24,8 @@ use serde::Deserialize;
 use utoipa::{IntoParams, IntoResponses};
 use uuid::Uuid;
 
-use super::accepts::takes_gzip;
+use super::answer::{self, tag_of_parts};
 use super::client::Client;
-use super::conditional::{Keep, Tag};
 use super::memory::Held;
 use super::parameters::{IfNoneMatch, JobId, Parameters, invalid};
 use super::problem::{Refusal, internal, of_missing_results};
@@ -282,13 +282,13 @@ impl Done {
                 false => document.into_response(),
             };
             Ok::<_, Refusal>(if has_grids {
-                super::answer::file(media_type, &format!("{}-{name}", job.id), body)
+                answer::file(media_type, &format!("{}-{name}", job.id), body)
             } else {
                 ([(CONTENT_TYPE, media_type)], body).into_response()
             })
         };
         // What this version of the solver says of the job; another one that answers under the same address may say it otherwise.
-        let mut response = Tag::of(&[&hash, name, form, SOLVER_VERSION])
+        let mut response = tag_of_parts(&[&hash, name, form, SOLVER_VERSION])
             .answer(Keep::AskAgain, request, made)
             .await?;
         let headers = response.headers_mut();

@@ -119,12 +119,15 @@ pub(super) struct Made(pub(super) Vec<Uuid>);
 
 /// Tells the span of a request, to the head of its answer, and what it has made.
 pub(super) async fn tell(request: Request, next: Next) -> Response {
-    /// The most characters of a path that are told.
+    /// The most characters of a path that are exported.
     const LONGEST_PATH: usize = 200;
     let trace = request.extensions().get::<Trace>();
     // Health is asked for all the time, by those who keep the service alive.
     let is_quiet = request.uri().path().starts_with("/health/");
-    let Some(trace) = trace.filter(|trace| trace.is_told() && !is_quiet).cloned() else {
+    let Some(trace) = trace
+        .filter(|trace| trace.is_exported() && !is_quiet)
+        .cloned()
+    else {
         return next.run(request).await;
     };
     let begin = SystemTime::now();
@@ -147,7 +150,7 @@ pub(super) async fn tell(request: Request, next: Next) -> Response {
     attributes.push(KeyValue::new("http.response.status_code", status_code));
     let made = response.extensions_mut().remove::<Made>();
     let made = made.into_iter().flat_map(|Made(jobs)| jobs);
-    spans::tell(|| Span {
+    spans::export(|| Span {
         place: spans::place(bytes(&trace.id), bytes(&trace.span)),
         parent: SpanId::from_bytes(bytes(&trace.parent)),
         is_entry: true,
@@ -186,7 +189,7 @@ impl Trace {
             id: Uuid::new_v4().simple().to_string(),
             span: String::new(),
             parent: String::new(),
-            flags: if spans::are_told() { "01" } else { "00" }.to_owned(),
+            flags: if spans::are_exported() { "01" } else { "00" }.to_owned(),
         }
     }
 
@@ -224,10 +227,10 @@ impl Trace {
         }
     }
 
-    /// Whether spans are told, and whoever began the trace wants that.
-    fn is_told(&self) -> bool {
+    /// Whether spans are exported, and whoever began the trace wants that.
+    fn is_exported(&self) -> bool {
         let flags = u8::from_str_radix(&self.flags, 16).unwrap_or(0);
-        spans::are_told() && flags & 1 == 1
+        spans::are_exported() && flags & 1 == 1
     }
 
     fn to_header(&self) -> String {

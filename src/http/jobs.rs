@@ -4,15 +4,15 @@ use axum::Json;
 use axum::http::StatusCode;
 use axum::http::header::HeaderMap;
 use axum::response::{IntoResponse, Response};
+use meshwright_connections::Keep;
 use meshwright_wire::{Problem, Status};
 use serde::Deserialize;
 use utoipa::IntoParams;
 use uuid::Uuid;
 
-use super::answer::{json, tell_when_to_return};
+use super::answer::{json, tag_of_parts, tell_when_to_return};
 use super::blocking::turn_to_read;
 use super::client::Client;
-use super::conditional::{Keep, Tag};
 use super::page::{self, LARGEST_LIMIT, Page, USUAL_LIMIT};
 use super::parameters::{IfNoneMatch, JobId, Parameters, invalid};
 use super::prefer::Wait;
@@ -201,7 +201,7 @@ pub(super) async fn show(
 
     // The submission never changes; what has not changed is answered without reading it.
     let small = JobView::of(&job, &client.app.edge).to_json();
-    let tag = Tag::of(&["job", &String::from_utf8_lossy(&small)]);
+    let tag = tag_of_parts(&["job", &String::from_utf8_lossy(&small)]);
     let whole = async {
         let submission = client.app.jobs.submission(id).await?;
         let body = JobView::whole(&job, &submission, &client.app.edge).to_json();

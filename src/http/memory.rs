@@ -8,12 +8,11 @@ use axum::extract::{Request, State};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use http_body::Body as _;
+use meshwright_connections::{Budget, Connection, Part};
 use meshwright_wire::{Code, Problem};
 use tokio::time::timeout;
 
-use super::connections::Connection;
 use super::problem::{Refusal, internal};
-use crate::compute::{Budget, Part};
 
 /// So long a request waits for memory, at most.
 const LONGEST_WAIT: Duration = Duration::from_secs(90);

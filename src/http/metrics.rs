@@ -19,13 +19,13 @@ use super::problem::Refusal;
 use crate::jobs::JobError;
 
 /// Declares numbers: their names, and what they are.
-macro_rules! told {
+macro_rules! numbers {
     ($($name:literal: $about:literal,)*) => {
         &[$(($name, $about)),*]
     };
 }
 
-const COUNTERS: &[(&str, &str)] = told! {
+const COUNTERS: &[(&str, &str)] = numbers! {
     "meshwright_http_requests_total": "Requests answered.",
     "meshwright_jobs_ended_total": "Jobs that a worker brought to an end.",
     "meshwright_commits_total": "Transactions that were written, by whether their commit waited for the disk.",
@@ -35,20 +35,20 @@ const COUNTERS: &[(&str, &str)] = told! {
     "meshwright_cache_evictions_total": "Substructures that found no room or had to make room.",
 };
 
-/// What is rare is told from the beginning, so that an alert sees its first time as a growth.
-const RARE: &[(&str, &str)] = told! {
-    "meshwright_connections_evicted_total": "Connections that gave way to new ones: idle, or taking nothing of their answer.",
+/// What is rare is exported from the beginning, so that an alert sees its first time as a growth.
+const RARE: &[(&str, &str)] = numbers! {
+    "meshwright_connections_evicted_total": "Connections that gave way to new ones: idle, or reading nothing of their answer.",
     "meshwright_strangers_refused_total": "Requests without a known key that were refused because too many came.",
     "meshwright_spans_forgotten_total": "Spans that found no place in the queue to the collector.",
     "meshwright_removed_jobs_total": "Jobs removed because they were old or there was no room.",
     "meshwright_removed_studies_total": "Studies removed because they were old or there was no room.",
 };
 
-const GAUGES: &[(&str, &str)] = told! {
+const GAUGES: &[(&str, &str)] = numbers! {
     "meshwright_oldest_waiting_seconds": "Age of the job alone that has waited longest.",
     "meshwright_workers": "Workers that live.",
     "meshwright_storage_writable": "1 if something can be stored, 0 if not.",
-    "meshwright_database_bytes": "Size of the database, its journal aside.",
+    "meshwright_database_bytes": "Size of the database without its journal.",
     "meshwright_database_free_bytes": "Of these, bytes that nothing occupies.",
     "meshwright_database_journal_bytes": "Size of the journal.",
     "meshwright_connections": "Connections of clients.",
@@ -185,11 +185,11 @@ async fn render(app: &App) -> Result<Response, Refusal> {
             .max(0.0)
     });
     metrics::gauge!("meshwright_oldest_waiting_seconds").set(oldest);
-    tell_storage(app).await?;
+    set_storage(app).await?;
     let workers = app.workers_alive.load(Ordering::Relaxed);
     metrics::gauge!("meshwright_workers").set(workers as f64);
     metrics::gauge!("meshwright_previews_running").set(app.previews.count() as f64);
-    tell_cache(&app.library);
+    set_cache(&app.library);
     recorder().run_upkeep();
     Ok((
         [(CONTENT_TYPE, "text/plain; version=0.0.4")],
@@ -198,7 +198,7 @@ async fn render(app: &App) -> Result<Response, Refusal> {
         .into_response())
 }
 
-async fn tell_storage(app: &App) -> Result<(), Problem> {
+async fn set_storage(app: &App) -> Result<(), Problem> {
     let store = app.jobs.store();
     let space = store.space().await.map_err(JobError::from)?;
     metrics::gauge!("meshwright_database_bytes").set(space.file as f64);
@@ -210,7 +210,7 @@ async fn tell_storage(app: &App) -> Result<(), Problem> {
 }
 
 /// The cache counts for itself; what it has counted is copied when somebody looks.
-fn tell_cache(library: &Library) {
+fn set_cache(library: &Library) {
     for (shelf, usage) in library.usage() {
         metrics::gauge!("meshwright_cache_bytes", "shelf" => shelf).set(usage.bytes as f64);
         metrics::gauge!("meshwright_cache_capacity_bytes", "shelf" => shelf)

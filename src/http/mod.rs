@@ -1,18 +1,14 @@
 //! The jobs over HTTP. A handler takes a document, hands it on, and answers; all work is done below.
 //!
-//! In reading order: what handlers work with; connections and their limits (`connections`);
-//! the router and its layers; who gets in; how errors become problem documents; what requests are made of (body, client,
+//! In reading order: what handlers work with; the router and its layers; who gets in; how errors become problem documents; what requests are made of (body, client,
 //! parameters, preferences); what answers are made of (bodies and headers, entity tags, packing, pages, the view of a job); the handlers.
 
-mod accepts;
 mod access;
 mod answer;
 mod app;
 mod batch;
 mod blocking;
 mod client;
-mod conditional;
-mod connections;
 mod contact_pattern;
 mod credential;
 mod docs;
@@ -51,7 +47,6 @@ mod webhooks;
 
 pub use access::{Access, AccessRules, KeysRule};
 pub use app::App;
-pub use connections::{Bounds, Server};
 pub use edge::Edge;
 pub use memory::BodyMemory;
 pub use readings::Readings;

@@ -7,10 +7,10 @@ use axum::extract::FromRequestParts;
 use axum::http::HeaderMap;
 use axum::http::header::HeaderValue;
 use axum::http::request::Parts;
+use meshwright_connections::Part;
 use utoipa::IntoParams;
 
 use super::client::Client;
-use crate::compute::Part;
 
 /// Nobody waits longer than this, in seconds.
 pub(super) const LONGEST_WAIT_S: u64 = 60;

@@ -11,6 +11,7 @@ use axum::http::header::{
 use axum::http::{HeaderMap, StatusCode};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
+use meshwright_connections::Overloaded;
 use meshwright_wire::{Code, Problem, Status, too_much_memory};
 use tracing::error;
 
@@ -279,6 +280,12 @@ pub(super) fn of_panic(panic: Box<dyn Any + Send>) -> Response {
         .unwrap_or("no message");
     error!(panic = message, "a handler panicked");
     Refusal::from(internal()).into_response()
+}
+
+/// The refusal of a request that is not answered now.
+pub(super) fn overloaded(error: Overloaded) -> Problem {
+    let detail = format!("{}. Try again in a moment.", sentence(&error));
+    Problem::new(Code::Overloaded, detail)
 }
 
 pub(super) fn internal() -> Problem {

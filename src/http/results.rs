@@ -3,13 +3,12 @@
 use axum::http::HeaderMap;
 use axum::http::header::{CONTENT_ENCODING, CONTENT_LOCATION, CONTENT_TYPE, HeaderValue, VARY};
 use axum::response::{IntoResponse, Response};
+use meshwright_connections::{Keep, Tag, takes_gzip};
 use meshwright_wire::Problem;
 
-use super::accepts::takes_gzip;
 use super::app::App;
 use super::blocking::blocking;
 use super::client::Client;
-use super::conditional::{Keep, Tag};
 use super::parameters::{IfNoneMatch, JobId};
 use super::problem::{Refusal, of_missing_results};
 use crate::jobs::{Document, Job, JobError};

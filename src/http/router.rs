@@ -28,9 +28,9 @@ use super::app::App;
 use super::headers::Trace;
 use super::problem::Refusal;
 use super::{
-    access, batch, connections, contact_pattern, docs, draw, events, fields, guides, headers,
-    health, jobs, memory, metrics, outline, packing, previews, problem, problem_pages, reference,
-    results, rexs, studies, submit, tables, web, webhooks,
+    access, batch, contact_pattern, docs, draw, events, fields, guides, headers, health, jobs,
+    memory, metrics, outline, packing, previews, problem, problem_pages, reference, results, rexs,
+    studies, submit, tables, web, webhooks,
 };
 
 /// A request has its answer's head within this time. Longer than the longest wait that a client may ask for.
@@ -56,7 +56,7 @@ pub fn router(app: App) -> Router {
             Arc::clone(&access),
             access::limit_unauthenticated,
         ))
-        .layer(from_fn(connections::limit))
+        .layer(from_fn(access::limit_active))
         .layer(
             TraceLayer::new_for_http()
                 .make_span_with(span)

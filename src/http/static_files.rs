@@ -10,12 +10,10 @@ use axum::http::HeaderMap;
 use axum::http::header::{CONTENT_ENCODING, CONTENT_TYPE, HeaderValue, VARY};
 use axum::response::{IntoResponse, Response};
 use flate2::Compression;
+use meshwright_connections::{Keep, Tag, packed, takes_gzip};
 use meshwright_wire::hash::sha256_hex;
 
-use super::accepts::takes_gzip;
-use super::conditional::{Keep, Tag};
 use super::memory::Counted;
-use super::packing::packed;
 
 /// An answer in both forms.
 #[derive(Debug)]

@@ -4,6 +4,7 @@ use axum::Json;
 use axum::extract::Path;
 use axum::http::HeaderMap;
 use axum::response::{IntoResponse, Response};
+use meshwright_connections::{Keep, Tag};
 use meshwright_exchange::fmu::fmu;
 use meshwright_exchange::{force_table, look_up};
 use meshwright_wire::csv::CsvWriter;
@@ -18,7 +19,6 @@ use utoipa::{IntoParams, ToSchema};
 use super::answer::file;
 use super::blocking::blocking;
 use super::client::Client;
-use super::conditional::{Keep, Tag};
 use super::parameters::{IfNoneMatch, JobId, Parameters};
 use super::pictures::{self, Picture};
 use super::problem::{Refusal, internal, of_missing_results};
@@ -134,12 +134,14 @@ impl CurveColumns {
         if table == Table::Spectrum {
             let spectrum = curve.spectrum.as_ref()?;
             return Some(Self {
-                order: told(&spectrum.order),
+                order: column(&spectrum.order),
                 frequency_hz: spectrum.frequency_hz.clone(),
-                transmission_error_um: told(&spectrum.transmission_error_um),
-                transmission_error_phase_deg: told(&spectrum.transmission_error_phase_deg),
-                mesh_stiffness_tangent_n_per_m: told(&spectrum.mesh_stiffness_tangent_n_per_m),
-                mesh_stiffness_tangent_phase_deg: told(&spectrum.mesh_stiffness_tangent_phase_deg),
+                transmission_error_um: column(&spectrum.transmission_error_um),
+                transmission_error_phase_deg: column(&spectrum.transmission_error_phase_deg),
+                mesh_stiffness_tangent_n_per_m: column(&spectrum.mesh_stiffness_tangent_n_per_m),
+                mesh_stiffness_tangent_phase_deg: column(
+                    &spectrum.mesh_stiffness_tangent_phase_deg,
+                ),
                 named: Some(spectrum.named.clone()),
                 ..torque
             });
@@ -151,20 +153,20 @@ impl CurveColumns {
             return Some(torque.with_strips(curve.face.as_ref()?, &curve.mesh_position));
         }
         let positions = Self {
-            mesh_position: told(&curve.mesh_position),
-            driving_angle_deg: told(&curve.driving_angle_deg),
-            driven_angle_deg: told(&curve.driven_angle_deg),
+            mesh_position: column(&curve.mesh_position),
+            driving_angle_deg: column(&curve.driving_angle_deg),
+            driven_angle_deg: column(&curve.driven_angle_deg),
             ..torque
         };
         Some(if table == Table::TransmissionError {
             Self {
-                transmission_error_um: told(&curve.transmission_error_um),
+                transmission_error_um: column(&curve.transmission_error_um),
                 ..positions
             }
         } else {
             Self {
-                mesh_stiffness_tangent_n_per_m: told(&curve.mesh_stiffness_tangent_n_per_m),
-                mesh_stiffness_secant_n_per_m: told(&curve.mesh_stiffness_secant_n_per_m),
+                mesh_stiffness_tangent_n_per_m: column(&curve.mesh_stiffness_tangent_n_per_m),
+                mesh_stiffness_secant_n_per_m: column(&curve.mesh_stiffness_secant_n_per_m),
                 ..positions
             }
         })
@@ -208,8 +210,8 @@ impl CurveColumns {
     }
 }
 
-/// A list of the results as a column: an earlier version may not have told it.
-fn told(list: &[f64]) -> Option<Vec<f64>> {
+/// A list of the results as a column: an earlier version may not have written it.
+fn column(list: &[f64]) -> Option<Vec<f64>> {
     (!list.is_empty()).then(|| list.to_vec())
 }
 

@@ -8,6 +8,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use jiff::{SignedDuration, Timestamp};
+use meshwright_connections::Budget;
 use meshwright_engine::run::Run;
 use meshwright_wire::{Code, Kept, Problem, SOLVER_VERSION, Submission, Summary, memory_of};
 use opentelemetry::KeyValue;
@@ -21,7 +22,7 @@ use super::job::{Job, Progress};
 use super::live::Entered;
 use super::store::{Came, Claim, Damaged, End, Ended, Packed, Started, StoreError};
 use super::worker_context::{Threads, WorkerContext};
-use crate::compute::{Budget, Solve, message_of};
+use crate::compute::{Solve, message_of};
 use crate::spans::{self, Span};
 
 /// What a computation leaves: the results document or its name, and what the tables of studies show of it.
@@ -454,11 +455,11 @@ fn tell_end(job: &Job, end: End, outcome: &Outcome) {
     metrics::histogram!("meshwright_job_waiting_time_seconds", "kind" => kind)
         .record(waited.unwrap_or(0.0).max(0.0));
     info!(job = %job.id, client = job.client, status, code, wall_time_seconds = seconds, "job ended");
-    tell_spans(job, end, status, &code);
+    export_spans(job, end, status, &code);
 }
 
 /// The job from its submission to its end, and within it the attempt that brought it there.
-fn tell_spans(job: &Job, end: End, status: &'static str, code: &str) {
+fn export_spans(job: &Job, end: End, status: &'static str, code: &str) {
     let span = |attempt: Option<i64>, name: &'static str, begin: Timestamp| Span {
         place: spans::place_of_job(job.id, attempt),
         parent: attempt.map_or(SpanId::INVALID, |_| {
@@ -479,9 +480,9 @@ fn tell_spans(job: &Job, end: End, status: &'static str, code: &str) {
         causes: Vec::new(),
         failed: status != "successful",
     };
-    spans::tell(|| span(None, "job", job.submitted_at));
+    spans::export(|| span(None, "job", job.submitted_at));
     let begin = job.started_at.unwrap_or(job.submitted_at);
-    spans::tell(|| span(Some(job.attempt), "compute", begin));
+    spans::export(|| span(Some(job.attempt), "compute", begin));
 }
 
 /// The cause stands in the log; clients learn that it was not their fault.

@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use jiff::Timestamp;
+use meshwright_connections::Budget;
 use meshwright_engine::analysis::Method;
 use meshwright_wire::{DOCUMENT_VERSION, Kept, SOLVER_VERSION, Status, Submission};
 use tokio::sync::{Notify, mpsc, oneshot};
@@ -17,7 +18,6 @@ use super::live::{Changes, Live, News};
 use super::others;
 use super::resource::{Listed, Submitted};
 use super::store::{Depth, Document, Filter, NewJob, Outcome, QueueBounds, Store, StoreError};
-use crate::compute::Budget;
 use crate::machine;
 
 /// So long a repeated request is recognized by its key.
@@ -29,7 +29,7 @@ const BATCH: usize = 64;
 /// What the queue allows.
 #[derive(Debug, Clone, Copy)]
 pub struct Rules {
-    /// So many jobs may wait, those of studies aside.
+    /// So many jobs may wait, not counting those of studies.
     pub queue_limit: u32,
     /// So many of them may be of one client.
     pub client_queue_limit: u32,

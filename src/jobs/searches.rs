@@ -34,7 +34,7 @@ impl Jobs {
             return Ok(());
         };
         loop {
-            let Some(record) = self.standing(&owner).await? else {
+            let Some(record) = self.unended(&owner).await? else {
                 return Ok(());
             };
             let stands = record.expanded > search.rows();
@@ -139,7 +139,7 @@ impl Jobs {
     ) -> Result<bool, JobError> {
         let mut news = self.news(owner.study);
         loop {
-            let Some(record) = self.standing(owner).await? else {
+            let Some(record) = self.unended(owner).await? else {
                 return Ok(false);
             };
             if record.expanded < wanted.end {
@@ -200,8 +200,8 @@ impl Jobs {
         Ok(())
     }
 
-    /// The study as it stands, if it is to be gone on with.
-    async fn standing(&self, owner: &Owner) -> Result<Option<StudyRecord>, JobError> {
+    /// The study, if it goes on.
+    async fn unended(&self, owner: &Owner) -> Result<Option<StudyRecord>, JobError> {
         if self.stop().is_cancelled() {
             return Ok(None);
         }

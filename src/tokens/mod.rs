@@ -28,7 +28,7 @@ const LEEWAY: SignedDuration = SignedDuration::from_secs(30);
 const LONGEST: usize = 16 << 10;
 
 /// The most characters of what the log says of a token.
-const LONGEST_TOLD: usize = 200;
+const LONGEST_LOGGED: usize = 200;
 
 /// Those who make tokens, and what these have to be.
 #[derive(Clone)]
@@ -211,9 +211,9 @@ impl TokenRules {
             ))
         })?;
         let is_operator = |operator: &ClaimValue| operator.is_in(&claims);
-        let told = |name: &str| {
+        let logged = |name: &str| {
             let text = claims.get(name)?.as_str()?;
-            Some(text.chars().take(LONGEST_TOLD).collect())
+            Some(text.chars().take(LONGEST_LOGGED).collect())
         };
         Ok(Bearer {
             client: client.to_owned(),
@@ -222,8 +222,8 @@ impl TokenRules {
                 false => Role::Client,
             },
             until,
-            subject: told("sub"),
-            id: told("jti"),
+            subject: logged("sub"),
+            id: logged("jti"),
         })
     }
 }

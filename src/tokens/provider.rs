@@ -16,7 +16,7 @@ use tokio_util::sync::CancellationToken;
 use tracing::{info, warn};
 
 use super::rules::IssuerUrl;
-use crate::client::{bounded, told};
+use crate::client::{bounded, unreachable};
 use crate::jobs::Clock;
 
 /// Each of the provider's two documents comes in so much time, and has so many bytes at most.
@@ -216,17 +216,17 @@ impl Provider {
     }
 
     async fn document<T: DeserializeOwned>(&self, url: &str) -> Result<T, String> {
-        let told = |error: reqwest::Error| match error.is_timeout() {
+        let failed = |error: reqwest::Error| match error.is_timeout() {
             true => format!("no answer within {} s", TIME_OUT.as_secs()),
-            false => told(&error.without_url()),
+            false => unreachable(&error.without_url()),
         };
         let request = self.client.get(url).header(ACCEPT, "application/json");
-        let mut answer = request.send().await.map_err(told)?;
+        let mut answer = request.send().await.map_err(failed)?;
         if answer.status() != StatusCode::OK {
             return Err(format!("it answered {}", answer.status().as_u16()));
         }
         let mut text = Vec::new();
-        while let Some(part) = answer.chunk().await.map_err(told)? {
+        while let Some(part) = answer.chunk().await.map_err(failed)? {
             if text.len() + part.len() > MOST_BYTES {
                 return Err(format!("its answer has more than {MOST_BYTES} bytes"));
             }

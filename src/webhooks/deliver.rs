@@ -12,6 +12,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
 use hmac::{Hmac, KeyInit, Mac};
 use hyper::{Request, StatusCode};
+use meshwright_connections::{Budget, Part};
 use reqwest::Body;
 use reqwest::Url;
 use sha2::Sha256;
@@ -22,7 +23,6 @@ use uuid::Uuid;
 
 use super::send::Sender;
 use super::store::{Attempt, Message, Refusal, Waiting, Webhooks};
-use crate::compute::{Budget, Part};
 use crate::jobs::StoreError;
 
 /// So many messages are on their way at the same time, so many of them of one client, and so many to one webhook.

@@ -23,7 +23,7 @@ use tokio_util::sync::CancellationToken;
 use tower::Service;
 
 use super::addresses::Reachable;
-use crate::client::{AGENT, install_encryption, told};
+use crate::client::{AGENT, install_encryption, unreachable};
 
 /// One attempt takes so long at most.
 const TIME_OUT: Duration = Duration::from_secs(10);
@@ -72,7 +72,7 @@ impl Sender {
                 () = enough.cancelled() => Err(format!("it sent more than {MOST_INFORMATIONAL} informational answers")),
                 answer = self.0.request(request) => match answer {
                     Ok(answer) => Ok(answer.status()),
-                    Err(error) => Err(told(&error)),
+                    Err(error) => Err(unreachable(&error)),
                 },
             }
         };
@@ -118,7 +118,7 @@ mod tests {
 
     use super::*;
 
-    /// What is told of a receiver that says `first` once and `again` for ever.
+    /// What is said of a receiver that says `first` once and `again` for ever.
     async fn outcome_of(first: &'static str, again: &'static str) -> Result<StatusCode, String> {
         let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
         let address = listener.local_addr().unwrap();
@@ -140,8 +140,8 @@ mod tests {
     async fn a_receiver_that_sends_informational_answers_for_ever_is_given_up_at_once() {
         const EARLY: &str = "HTTP/1.1 103 Early Hints\r\nLink: </a>\r\n\r\n";
         let start = Instant::now();
-        let told = outcome_of("", EARLY).await.unwrap_err();
-        assert!(told.contains("informational"), "{told}");
+        let error = outcome_of("", EARLY).await.unwrap_err();
+        assert!(error.contains("informational"), "{error}");
         assert!(start.elapsed() < TIME_OUT / 2);
         let answer = "HTTP/1.1 103 Early Hints\r\n\r\nHTTP/1.1 204 No Content\r\n\r\n";
         assert_eq!(outcome_of(answer, "").await, Ok(StatusCode::NO_CONTENT));

@@ -119,7 +119,7 @@ impl Bench {
         let mut config = config(&stores::place(&folder).await);
         adjust(&mut config);
         let client = meshwright::client().timeout(PATIENCE).build().unwrap();
-        let hooks = HookRules::to_named(config.door.webhook_hosts.clone());
+        let hooks = HookRules::to_named(config.admission.webhook_hosts.clone());
         let mut bench = Self {
             config,
             compute,

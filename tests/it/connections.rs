@@ -6,8 +6,8 @@ use meshwright::config::Config;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 
+use crate::admission::key_of;
 use crate::bench::{Asked, Bench, PATIENCE, Said, problem, results, submission};
-use crate::door::key_of;
 
 async fn service(adjust: impl FnOnce(&mut Config)) -> Bench {
     Bench::start(adjust, std::sync::Arc::new(|_, _| Ok(results()))).await
@@ -29,7 +29,7 @@ async fn closed(mut stream: TcpStream) {
 
 #[tokio::test]
 async fn a_connection_that_sends_no_head_in_time_is_closed() {
-    let bench = service(|config| config.door.idle_time = Duration::from_millis(200)).await;
+    let bench = service(|config| config.admission.idle_time = Duration::from_millis(200)).await;
     let silent = connect(&bench).await;
     let mut slow = connect(&bench).await;
     slow.write_all(b"GET /v1/jobs HTTP/1.1\r\nHost: localhost\r\nX-A")
@@ -47,7 +47,7 @@ async fn a_connection_that_sends_no_head_in_time_is_closed() {
 
 #[tokio::test]
 async fn silent_connections_give_way_to_those_who_ask() {
-    let bench = service(|config| config.door.connections = 16).await;
+    let bench = service(|config| config.admission.connections = 16).await;
     let mut silent = Vec::new();
     for _ in 0..100 {
         silent.push(connect(&bench).await);
@@ -60,7 +60,7 @@ async fn silent_connections_give_way_to_those_who_ask() {
 
 #[tokio::test]
 async fn a_client_whose_requests_never_come_whole_locks_no_other_one_out() {
-    let bench = service(|config| config.door.connections = 16).await;
+    let bench = service(|config| config.admission.connections = 16).await;
     let (hog, other) = (key_of(&bench, "hog").await, key_of(&bench, "other").await);
     let head = format!(
         "POST /v1/jobs HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer {hog}\r\nContent-Type: application/json\r\nContent-Length: 1000\r\n\r\n"
@@ -97,7 +97,7 @@ async fn a_client_whose_requests_never_come_whole_locks_no_other_one_out() {
 
 #[tokio::test]
 async fn the_streams_of_one_client_leave_most_connections_to_others() {
-    let adjust = |config: &mut Config| config.door.connections = 16;
+    let adjust = |config: &mut Config| config.admission.connections = 16;
     let (bench, _engine) = Bench::steered_with(adjust).await;
     let (hog, other) = (key_of(&bench, "hog").await, key_of(&bench, "other").await);
     let request = bench.post("/v1/jobs", &submission(1.0)).bearer_auth(&hog);
@@ -118,7 +118,7 @@ async fn the_streams_of_one_client_leave_most_connections_to_others() {
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn one_client_has_a_quarter_of_the_connections_busy_and_health_is_answered_where_all_are() {
     let adjust = |config: &mut Config| {
-        config.door.connections = 16;
+        config.admission.connections = 16;
         config.previews = 32;
     };
     let (bench, _engine) = Bench::steered_with(adjust).await;

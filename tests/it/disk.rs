@@ -257,18 +257,18 @@ async fn a_file_that_was_removed_takes_nothing_more_and_says_so() {
     let file = bench.config.database.file().unwrap().to_owned();
     let journal = PathBuf::from(format!("{}-wal", file.display()));
     for (torque, file) in [(2.0, file), (3.0, journal)] {
-        let aside = file.with_extension("aside");
-        fs::rename(&file, &aside).unwrap();
+        let moved = file.with_extension("moved");
+        fs::rename(&file, &moved).unwrap();
         let answer = bench.post("/v1/jobs", &submission(torque)).answer().await;
         problem(answer, 503, "storage_unavailable").await;
         let ready = bench.get("/health/ready").answer().await;
         assert_eq!(ready.status(), 503);
         // Another file of this name is not the one that is served.
-        fs::copy(&aside, &file).unwrap();
+        fs::copy(&moved, &file).unwrap();
         let answer = bench.post("/v1/jobs", &submission(torque)).answer().await;
         problem(answer, 503, "storage_unavailable").await;
         // It is there again, and so is the service.
-        fs::rename(&aside, &file).unwrap();
+        fs::rename(&moved, &file).unwrap();
         while bench.get("/health/ready").answer().await.status() != 200 {
             tokio::task::yield_now().await;
         }

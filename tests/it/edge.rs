@@ -18,7 +18,7 @@ async fn every_link_bears_the_public_address() {
     let (bench, mut engine) = Bench::steered_with(|config| {
         config.public_url = Some(public.to_owned());
         // Under a public name keys are needed, unless that is told.
-        config.door.keys = Some(KeysRule::None);
+        config.admission.keys = Some(KeysRule::None);
     })
     .await;
     let response = bench.post("/v1/jobs", &submission(1.0)).answer().await;

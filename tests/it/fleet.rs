@@ -52,8 +52,8 @@ struct Fleet {
     lease: String,
 }
 
-/// What a process of the fleet is told.
-fn told<'a>(role: &'a str, lease: &'a str) -> [&'a str; 8] {
+/// The arguments of a process of the fleet.
+fn arguments<'a>(role: &'a str, lease: &'a str) -> [&'a str; 8] {
     [
         "--role",
         role,
@@ -67,7 +67,7 @@ fn told<'a>(role: &'a str, lease: &'a str) -> [&'a str; 8] {
 }
 
 fn start(place: &DatabaseAddress, role: &str, lease: &str) -> Process {
-    Process::start_with(place, &told(role, lease))
+    Process::start_with(place, &arguments(role, lease))
 }
 
 impl Fleet {
@@ -176,6 +176,12 @@ impl Fleet {
 
     async fn number(&self, query: &'static str) -> i64 {
         stores::number(&self.place, query).await
+    }
+
+    /// What the whole database comes to for each of `count` jobs, in bytes.
+    async fn bytes_of_each(&self, count: u64) -> i64 {
+        let size = self.number("select pg_database_size(current_database())");
+        size.await / i64::try_from(count).unwrap()
     }
 }
 
@@ -292,13 +298,16 @@ async fn calm_on_a_server(count: u64, workers: usize) -> f64 {
     let connections = fleet
         .number("select count(*) from pg_stat_activity where datname = current_database()")
         .await;
+    let bytes = fleet.bytes_of_each(count).await;
     println!(
-        "{count} jobs, {workers} workers: {rate:.1} a second, shares {shares:?}, peak memory of workers {memory:?} MB, {connections} connections, {} bytes a job",
-        fleet
-            .number("select pg_database_size(current_database())")
-            .await
-            / i64::try_from(count).unwrap(),
+        "{count} jobs, {workers} workers: {rate:.1} a second, shares {shares:?}, peak memory of workers {memory:?} MB, {connections} connections, {bytes} bytes a job"
     );
+    assert!(memory.iter().all(|mb| *mb < 400), "{memory:?} MB");
+    // Ten of each process, and the one that asks.
+    let processes = i64::try_from(workers + fleet.apis.len()).unwrap();
+    assert!(connections <= 10 * processes + 1, "{connections}");
+    // An empty database has 8 MB, which a thousand jobs share.
+    assert!(bytes < 40_000, "{bytes} bytes");
     rate
 }
 
@@ -462,22 +471,25 @@ async fn a_study_of_twenty_thousand_designs_through_two_processes() {
         .timeout(Duration::from_secs(120));
     let table = table.answer().await.body().await;
     assert_eq!(table.lines().count(), 20_001);
+    let read = read.elapsed();
+    let bytes = fleet.bytes_of_each(20_000).await;
+    let memory: Vec<_> = fleet.workers.iter().map(Process::peak_memory_mb).collect();
+    let (answering, shares) = (api.peak_memory_mb(), share_of_workers(&fleet).await);
     println!(
-        "20,000 designs taken after {taken:?}, done in {seconds:.1} s, {:.1} a second; the table of {} kB took {:?}; {} bytes a design; peak memory of workers {:?} MB, of the one that answers {:?} MB; shares {:?}",
+        "20,000 designs taken after {taken:?}, done in {seconds:.1} s, {:.1} a second; the table of {} kB took {read:?}; {bytes} bytes a design; peak memory of workers {memory:?} MB, of the one that answers {answering} MB; shares {shares:?}",
         20_000.0 / seconds,
         table.len() / 1000,
-        read.elapsed(),
-        fleet
-            .number("select pg_database_size(current_database())")
-            .await
-            / 20_000,
-        fleet
-            .workers
-            .iter()
-            .map(Process::peak_memory_mb)
-            .collect::<Vec<_>>(),
-        api.peak_memory_mb(),
-        share_of_workers(&fleet).await,
+    );
+    // Each some ten times what docs/scaling.md has, but for memory and bytes, which no other work on the machine changes.
+    assert!(taken < Duration::from_secs(5), "{taken:?}");
+    assert!(read < Duration::from_secs(10), "{read:?}");
+    assert!(bytes < 20_000, "{bytes} bytes");
+    assert!(memory.iter().all(|mb| *mb < 300), "{memory:?} MB");
+    assert!(answering < 200, "{answering} MB");
+    // They take turns, whichever of them is slower.
+    assert!(
+        shares.len() == 2 && shares.iter().all(|share| *share > 4000),
+        "{shares:?}"
     );
 }
 
@@ -505,11 +517,14 @@ async fn a_study_of_designs_that_take_no_time_tells_how_fast_claims_take_turns()
             .await;
         let seconds = start.elapsed().as_secs_f64();
         let processor: f64 = fleet.workers.iter().map(Process::processor_seconds).sum();
+        let rate = f64::from(DESIGNS) / seconds;
+        let each_ms = 1e3 * processor / f64::from(DESIGNS);
         println!(
-            "{workers} workers: {DESIGNS} designs that take no time in {seconds:.1} s, {:.0} a second; {:.2} ms of a core each in the workers",
-            f64::from(DESIGNS) / seconds,
-            1e3 * processor / f64::from(DESIGNS),
+            "{workers} workers: {DESIGNS} designs that take no time in {seconds:.1} s, {rate:.0} a second; {each_ms:.2} ms of a core each in the workers"
         );
+        // A statement for each design would be some hundreds a second. The time of a core is a fifth of a millisecond, whatever else runs.
+        assert!(rate > 500.0, "{rate:.0} a second");
+        assert!(each_ms < 1.0, "{each_ms:.2} ms");
     }
 }
 
@@ -523,6 +538,11 @@ async fn five_thousand_jobs_with_and_without_trouble() {
         "three workers are {:.2} times as fast as one, and one {:.2} times as fast as on a file",
         three / one,
         one / file
+    );
+    // On two cores further workers bring little, and a server costs statements: neither may cost most of the work.
+    assert!(
+        three > one / 2.0 && one > file / 4.0,
+        "{file}, {one}, {three}"
     );
     troubled(5000, 10).await;
 }

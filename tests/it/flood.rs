@@ -93,7 +93,7 @@ fn flood(service: SocketAddr, addresses: u8) -> JoinSet<()> {
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn eighty_sockets_that_take_nothing_lock_nobody_out_of_sixty_four_places() {
     let engine = Arc::new(|_: &_, _: &_| Ok(results()));
-    let bench = Bench::start(|config| config.door.connections = 64, engine).await;
+    let bench = Bench::start(|config| config.admission.connections = 64, engine).await;
     let key = make_key(&bench.config.database, "portal").await;
     let service = bench.service().address().unwrap();
     let ask = async || {
@@ -161,6 +161,8 @@ async fn a_flood_without_a_key_stops_nobody_who_has_one_and_holds_up_no_shutdown
             "beside 100 sockets from {addresses} addresses that ask for 20 files each and take nothing: 100 of 100 requests with a key answered, half within {:?}, 95 within {:?}; ended {end:?} after SIGTERM",
             taken[50], taken[94],
         );
+        // How fast they are on a machine of their own, the next test holds.
+        assert!(taken[94] < Duration::from_secs(5), "{:?}", taken[94]);
     }
 }
 

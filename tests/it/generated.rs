@@ -170,7 +170,7 @@ impl Maker {
 
 /// Computes what validates; the code of its problem, if it has one.
 fn compute(document: &Value, library: &Library) -> Result<Option<Code>, String> {
-    let told = |problem: &Problem| -> Result<Code, String> {
+    let code_of = |problem: &Problem| -> Result<Code, String> {
         let names_a_field = !problem.errors.is_empty();
         if names_a_field && problem.code != Code::InternalError {
             Ok(problem.code)
@@ -181,7 +181,7 @@ fn compute(document: &Value, library: &Library) -> Result<Option<Code>, String> 
     let parse = |document: &Value| Submission::parse(document.to_string().as_bytes());
     let mut submission = match parse(document) {
         Ok(submission) => submission,
-        Err(problem) => return told(&problem).map(Some),
+        Err(problem) => return code_of(&problem).map(Some),
     };
     if meshwright_wire::validate(&submission).estimate.seconds > LONGEST_S {
         let mut smaller = document.clone();
@@ -203,7 +203,7 @@ fn compute(document: &Value, library: &Library) -> Result<Option<Code>, String> 
     let run = Run::new(Arc::new(AtomicBool::new(false)), |_, _| {});
     match meshwright_wire::solve(&submission, library, &run) {
         Ok(_) => Ok(None),
-        Err(problem) => told(&problem).map(Some),
+        Err(problem) => code_of(&problem).map(Some),
     }
 }
 

@@ -14,10 +14,10 @@ mod submitters;
 /// What holds on either store: `./test` runs these suites once more with `MESHWRIGHT_TEST_STORE=postgres`.
 #[path = "."]
 mod either_store {
+    pub(crate) mod admission;
     mod batch;
     mod chaos;
     mod connections;
-    pub(crate) mod door;
     mod edge;
     mod events;
     mod growth;
@@ -60,4 +60,4 @@ mod tokens;
 mod upgrade;
 mod uploads;
 
-use either_store::{door, process};
+use either_store::{admission, process};

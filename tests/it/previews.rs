@@ -3,7 +3,8 @@
 use std::sync::{Arc, mpsc as blocking};
 use std::time::Duration;
 
-use meshwright::compute::{Budget, PreviewError, PreviewRules, Previews, Solve};
+use meshwright::compute::{PreviewError, PreviewRules, Previews, Solve};
+use meshwright_connections::Budget;
 use meshwright_engine::run::Run;
 use meshwright_wire::{Code, Preview, Problem};
 use reqwest::{Response, StatusCode};

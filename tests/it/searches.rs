@@ -1,4 +1,4 @@
-//! Searches over HTTP: generation after generation of designs that real workers compute, killed and gone on with, cancelled, and told of.
+//! Searches over HTTP: generation after generation of designs that real workers compute, killed and gone on with, cancelled, and reported.
 
 use std::num::NonZeroUsize;
 use std::sync::Arc;
@@ -154,7 +154,7 @@ async fn a_search_finds_its_best_design_confirms_it_and_gives_its_submission() {
 }
 
 /// What a search comes to, apart from the ids of its jobs.
-async fn told(bench: &Bench, path: &str) -> (Value, Vec<Value>) {
+async fn outcome(bench: &Bench, path: &str) -> (Value, Vec<Value>) {
     let mut study = ended(bench, path).await;
     let table = bench.job(&format!("{path}/results")).await;
     let rows = table["rows"].as_array().unwrap().iter().map(|row| {
@@ -169,7 +169,7 @@ async fn told(bench: &Bench, path: &str) -> (Value, Vec<Value>) {
 async fn a_search_comes_to_the_same_with_two_workers_and_after_its_process_was_killed() {
     let alone = with_workers(1).await;
     let path = begun(&alone, &reliefs(40)).await;
-    let straight = told(&alone, &path).await;
+    let straight = outcome(&alone, &path).await;
 
     let mut bench = with_workers(2).await;
     let path = begun(&bench, &reliefs(40)).await;
@@ -184,7 +184,7 @@ async fn a_search_comes_to_the_same_with_two_workers_and_after_its_process_was_k
         bench.kill().await;
         Box::pin(bench.start_again()).await;
     }
-    let interrupted = told(&bench, &path).await;
+    let interrupted = outcome(&bench, &path).await;
     assert_eq!(interrupted.0, straight.0);
     assert_eq!(interrupted.1, straight.1);
 }
@@ -202,7 +202,7 @@ async fn a_search_of_two_goals_comes_to_a_front() {
     ]);
     study["keep"] = json!("statistics");
     let path = begun(&bench, &study).await;
-    let (search, rows) = told(&bench, &path).await;
+    let (search, rows) = outcome(&bench, &path).await;
     let front = search["front"].as_array().unwrap();
     assert!(front.len() > 2, "{search}");
     let goals = |design: &Value| [0, 1].map(|i| design["goals"][i].as_f64().unwrap());
@@ -246,7 +246,7 @@ async fn a_search_over_members_takes_the_percentile_that_its_table_has() {
     study["search"]["population"] =
         json!({ "size": 9, "accuracy": { "driven": { "iso_1328_class": 6 } } });
     let path = begun(&bench, &study).await;
-    let (search, rows) = told(&bench, &path).await;
+    let (search, rows) = outcome(&bench, &path).await;
     assert_eq!(rows.len(), 6 * 10 + 1);
     let place = search["best"]["row"].as_u64().unwrap() as usize;
     assert_eq!(rows[place]["label"], format!("design {}", place / 10 + 1));

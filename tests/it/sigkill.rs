@@ -2,7 +2,7 @@
 //!
 //! The large one is ignored, because it takes a minute or more: `./test it -- --ignored --nocapture thousand`.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
@@ -147,13 +147,17 @@ async fn a_thousand_decomposition_designs_straight_through_and_killed_half_way()
             &process.get(&client, &format!("{path}/results")).await,
             1000,
         );
+        let read = read.elapsed();
+        let memory = process.peak_memory_mb();
+        let bytes = stores::bytes(&database).await;
         println!(
-            "1000 designs in {seconds:.2} s, {:.1} a second; the table took {:.3} s; peak memory {} MB; database {} MB",
+            "1000 designs in {seconds:.2} s, {:.1} a second; the table took {read:.3?}; peak memory {memory} MB; database {} MB",
             1000.0 / seconds,
-            read.elapsed().as_secs_f64(),
-            process.peak_memory_mb(),
-            stores::bytes(&database).await / 1_000_000,
+            bytes / 1_000_000,
         );
+        assert!(read < Duration::from_secs(5), "{read:?}");
+        assert!(memory < 400, "{memory} MB");
+        assert!(bytes < 40_000_000, "{bytes} bytes");
         process.kill();
     }
 }

@@ -77,10 +77,11 @@ async fn bombs_are_refused_before_they_go_off_and_hold_up_no_shutdown() {
     }
     let (all, memory) = (start.elapsed(), process.peak_memory_mb());
     assert!(memory < 400, "{memory} MB");
-    // Expanded, each would take minutes.
-    for took in [alone, large, all] {
-        assert!(took < Duration::from_secs(10), "{took:?}");
+    // Expanded, each would take minutes; on a quiet machine it is some milliseconds.
+    for took in [alone, large] {
+        assert!(took < Duration::from_millis(500), "{took:?} (median)");
     }
+    assert!(all < Duration::from_secs(5), "{all:?}");
     let end = process.terminate();
     assert!(end < Duration::from_secs(5), "{end:?}");
     println!(

@@ -230,7 +230,7 @@ async fn equal_designs_are_computed_once() {
             .await;
         assert_eq!(job["links"]["same_as"], first);
     }
-    // A second study over the same ground has its results at once.
+    // A second study over the same designs has its results at once.
     let again = submit(&bench, &study).await;
     assert_eq!(bench.job(&again).await["status"], "successful");
     assert!(engine.is_idle());

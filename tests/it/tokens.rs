@@ -1,4 +1,4 @@
-//! Tokens of an identity provider, which here is a listener of the test: what opens the door, and what does not.
+//! Tokens of an identity provider, which here is a listener of the test: what is accepted, and what is not.
 
 use std::sync::atomic::{AtomicI64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
@@ -19,8 +19,8 @@ use ring::signature::{ECDSA_P256_SHA256_FIXED_SIGNING, EcdsaKeyPair, KeyPair};
 use serde_json::{Value, json};
 use tokio::net::TcpListener;
 
+use crate::admission::key_of;
 use crate::bench::{Asked, Bench, PATIENCE, problem, submission};
-use crate::door::key_of;
 use crate::process::{LITTLE, LITTLE_MB, Process};
 use crate::stores;
 
@@ -316,8 +316,8 @@ async fn hostile_tokens_open_nothing_and_are_told_why() {
         mac.update(message.as_bytes());
         format!("{message}.{}", BASE64.encode(mac.finalize().into_bytes()))
     };
-    let stranger = Signer::new("first");
-    let with_a_key = head(json!({ "jwk": stranger.public() }));
+    let other = Signer::new("first");
+    let with_a_key = head(json!({ "jwk": other.public() }));
     let whole = signer.token(&good);
     let cases = [
         ("alg none", unsigned("none", "")),
@@ -332,10 +332,10 @@ async fn hostile_tokens_open_nothing_and_are_told_why() {
             "an algorithm of another key",
             signed(json!({ "alg": "RS256" })),
         ),
-        ("signed by somebody else", stranger.token(&good)),
+        ("signed by somebody else", other.token(&good)),
         (
             "brings its own key",
-            stranger.sign(&with_a_key, text.as_bytes()),
+            other.sign(&with_a_key, text.as_bytes()),
         ),
         ("no kid", signed(json!({ "kid": null }))),
         ("an empty kid", signed(json!({ "kid": "" }))),
@@ -730,7 +730,7 @@ async fn a_token_that_was_taken_is_no_strangers_and_one_that_was_not_is() {
     let provider = Provider::with(Keys::These(vec![signer.public()])).await;
     let (bench, _engine) = Bench::steered_with(|config| {
         provider.configure(config);
-        config.door.requests_without_key = 1;
+        config.admission.requests_without_key = 1;
     })
     .await;
     let token = signer.token(&provider.claims("ada"));
@@ -791,12 +791,12 @@ async fn the_program_takes_tokens_by_its_options_and_logs_whose_they_are_and_not
     service.kill().unwrap();
     service.wait().unwrap();
     let log = std::fs::read_to_string(folder.path().join("log")).unwrap();
-    let told = |line: &&str| {
+    let is_of_request = |line: &&str| {
         ["/metrics", "4711", "gear works", "token-7", "status=200"]
             .iter()
             .all(|part| line.contains(part))
     };
-    assert!(log.lines().any(|line| told(&line)), "{log}");
+    assert!(log.lines().any(|line| is_of_request(&line)), "{log}");
     assert!(!log.contains(token.rsplit_once('.').unwrap().1));
 
     // What does not go together is said at once.

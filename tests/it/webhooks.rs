@@ -13,8 +13,8 @@ use serde_json::{Value, json};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpListener;
 
+use crate::admission::key_of;
 use crate::bench::{Asked, Bench, PATIENCE, Said, problem, results, submission};
-use crate::door::key_of;
 use crate::stores;
 
 /// A receiver that answers one request after the other with these statuses, and tells what it was sent.
@@ -199,7 +199,7 @@ async fn a_webhook_that_was_given_up_is_taken_up_again_with_what_waited() {
     };
     bench.submit(&submission(1.0)).await;
     let first = next(&mut received).await;
-    let told = async |path: &str, pointer: &str, value: &Value| {
+    let becomes = async |path: &str, pointer: &str, value: &Value| {
         let found = async {
             while bench.job(path).await.pointer(pointer) != Some(value) {
                 tokio::time::sleep(Duration::from_millis(10)).await;
@@ -209,7 +209,7 @@ async fn a_webhook_that_was_given_up_is_taken_up_again_with_what_waited() {
         assert!(found.is_ok(), "{path}{pointer} is never {value}");
     };
     let list = format!("{path}/deliveries");
-    told(&list, "/items/0/answered", &json!(410)).await;
+    becomes(&list, "/items/0/answered", &json!(410)).await;
     assert_eq!(bench.job(&list).await["items"][0]["status"], "waiting");
     problem(post("ping").await, 409, "webhook_disabled").await;
 
@@ -220,7 +220,7 @@ async fn a_webhook_that_was_given_up_is_taken_up_again_with_what_waited() {
     );
     let again = next(&mut received).await;
     assert_eq!(header(&first, "webhook-id"), header(&again, "webhook-id"));
-    told(&list, "/items/0/status", &json!("arrived")).await;
+    becomes(&list, "/items/0/status", &json!("arrived")).await;
 
     // Another secret, and for a day the one before, too.
     let rotated = post("rotate").await.document().await;
@@ -239,7 +239,7 @@ async fn a_webhook_that_was_given_up_is_taken_up_again_with_what_waited() {
             .all(|signature| signature.starts_with("v1,"))
     );
     assert_ne!(signatures[0], signatures[1]);
-    told(&list, "/items/0/status", &json!("arrived")).await;
+    becomes(&list, "/items/0/status", &json!("arrived")).await;
     let list = bench.job(&list).await;
     assert_eq!(list["items"].as_array().unwrap().len(), 2, "{list}");
     assert_eq!(
@@ -394,7 +394,7 @@ async fn webhooks_are_off_unless_hosts_are_allowed_and_addresses_that_are_not_pu
     let bench = Bench::start(
         |config| {
             let hosts = ["hooks.example.com", "10.0.0.1", "http://*.254.169.254"];
-            config.door.webhook_hosts = hosts.map(|host| host.parse().unwrap()).to_vec();
+            config.admission.webhook_hosts = hosts.map(|host| host.parse().unwrap()).to_vec();
         },
         Arc::new(|_, _| Ok(results())),
     )

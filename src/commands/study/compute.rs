@@ -75,7 +75,7 @@ async fn compute_on_database(
 
     let computed = tokio::select! {
         computed = follow(&jobs, study, folder) => computed,
-        told = signal() => Err(told.err().unwrap_or_else(|| anyhow!("the study was stopped before its end"))),
+        stop = signal() => Err(stop.err().unwrap_or_else(|| anyhow!("the study was stopped before its end"))),
     };
     stop.cancel();
     workers.ended().await;

@@ -17,7 +17,7 @@ use self::compute::{Computed, compute};
 use self::folder::ResultFolder;
 use self::picture::picture;
 use self::tables::{search_table, short_table, spread_table};
-use super::document::{EXIT_PROBLEM, read, told};
+use super::document::{EXIT_PROBLEM, read, text_of};
 
 /// Compute a study: many variants of one submission, and their table.
 #[derive(Debug, clap::Args)]
@@ -43,7 +43,7 @@ impl Study {
         let study = match StudyDocument::submitted(&document, &Run::unattended()) {
             Ok(study) => study,
             Err(problem) => {
-                eprint!("{}", told(&problem));
+                eprint!("{}", text_of(&problem));
                 return Ok(ExitCode::from(EXIT_PROBLEM));
             }
         };

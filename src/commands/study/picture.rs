@@ -129,8 +129,8 @@ fn of_population(population: &PopulationResults) -> Vec<Chart> {
         let percentiles = percentiles
             .filter(|percentile| shown.contains(&percentile.percent))
             .map(|percentile| format!("p{} {:.3}", percentile.percent, percentile.value));
-        let told: Vec<String> = torque.into_iter().chain(percentiles).collect();
-        chart(&told.join(", "), axes, true, vec![series])
+        let label: Vec<String> = torque.into_iter().chain(percentiles).collect();
+        chart(&label.join(", "), axes, true, vec![series])
     });
     bars.collect()
 }

@@ -12,10 +12,10 @@ const MOST_PRINTED: usize = 40;
 
 /// Some numbers as they are shown.
 pub(super) fn numbers(values: &[Option<f64>]) -> String {
-    let told = values
+    let values = values
         .iter()
         .map(|value| value.map_or_else(|| "?".to_owned(), |value| format!("{value:.4}")));
-    told.collect::<Vec<_>>().join(", ")
+    values.collect::<Vec<_>>().join(", ")
 }
 
 /// What a search found: the best design, of two goals the front, and what the best one comes to once more, on the fine grid.
@@ -148,14 +148,14 @@ pub(super) fn spread_table(results: &PopulationResults, elapsed: Duration) -> St
         "{:38} {:>8} {:>10} {:>10} {:>10} {:>10} {:>10}  {}\n",
         "quantity", "torque", "mean", "std", "p5", "p50", "p95", "95 % limits of p95"
     );
-    let told = |value: f64| {
+    let number = |value: f64| {
         if value.abs() < 1e5 {
             format!("{value:.3}")
         } else {
             format!("{value:.3e}")
         }
     };
-    let limit = |value: Option<f64>| value.map_or_else(|| "?".to_owned(), told);
+    let limit = |value: Option<f64>| value.map_or_else(|| "?".to_owned(), number);
     let shown = || {
         let all = results.quantities.iter();
         all.filter(|quantity| SHOWN.contains(&quantity.name))
@@ -166,7 +166,7 @@ pub(super) fn spread_table(results: &PopulationResults, elapsed: Duration) -> St
             all.find(|percentile| percentile.percent == percent)
         };
         let value =
-            |percent| percentile(percent).map_or_else(String::new, |found| told(found.value));
+            |percent| percentile(percent).map_or_else(String::new, |found| number(found.value));
         let limits = percentile(95.0).map_or_else(String::new, |found| {
             format!("{} to {}", limit(found.low), limit(found.high))
         });
@@ -175,8 +175,8 @@ pub(super) fn spread_table(results: &PopulationResults, elapsed: Duration) -> St
             "{:38} {:>8} {:>10} {:>10} {:>10} {:>10} {:>10}  {limits}\n",
             quantity.name,
             torque.unwrap_or_default(),
-            told(quantity.mean),
-            told(quantity.standard_deviation),
+            number(quantity.mean),
+            number(quantity.standard_deviation),
             value(5.0),
             value(50.0),
             value(95.0),

@@ -9,15 +9,15 @@ use axum::Json;
 use axum::http::StatusCode;
 use axum::http::header::HeaderMap;
 use axum::response::{IntoResponse, Response};
+use meshwright_connections::{Keep, Tag};
 use meshwright_engine::run::Run;
 use meshwright_wire::Study;
 use serde::Deserialize;
 use utoipa::IntoParams;
 
-use super::answer::{self, json, tell_when_to_return};
+use super::answer::{self, json, tag_of_parts, tell_when_to_return};
 use super::blocking::{blocking, turn_to_read};
 use super::client::Client;
-use super::conditional::{Keep, Tag};
 use super::document::Document;
 use super::edge::Edge;
 use super::page::{self, Page, USUAL_LIMIT};
@@ -207,7 +207,7 @@ pub(super) async fn show(
 /// The tag of what is told of a study, in one form, as long as the study does not change.
 fn tag_of(study: &StudyRecord, form: &str, edge: &Edge) -> Tag {
     let (id, version) = (study.id.to_string(), study.version.to_string());
-    Tag::of(&["study", &id, &version, form, &edge.public_url])
+    tag_of_parts(&["study", &id, &version, form, &edge.public_url])
 }
 
 /// Get a study as it was sent
@@ -233,7 +233,7 @@ pub(super) async fn document(
         let text = client.app.jobs.study_text(study.id).await?;
         Ok::<_, Refusal>(json(memory.hold(text)))
     };
-    let tag = Tag::of(&["study document", &study.id.to_string()]);
+    let tag = tag_of_parts(&["study document", &study.id.to_string()]);
     tag.answer(Keep::ForGood, &request, text).await
 }
 

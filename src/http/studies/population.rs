@@ -5,18 +5,17 @@ use std::sync::Arc;
 use axum::extract::Path;
 use axum::http::HeaderMap;
 use axum::response::{IntoResponse, Response};
+use meshwright_connections::{Keep, Part};
 use meshwright_engine::run::Run;
 use meshwright_wire::{
     Code, PopulationResults, PopulationSample, Problem, RowState, SearchState, Study, Submission,
 };
 
 use super::{MIB, over_rows, tag_of};
-use crate::compute::Part;
-use crate::http::answer::{json, tell_when_to_return};
+use crate::http::answer::{json, tag_of_parts, tell_when_to_return};
 use crate::http::app::App;
 use crate::http::blocking::blocking;
 use crate::http::client::Client;
-use crate::http::conditional::{Keep, Tag};
 use crate::http::memory::SMALL;
 use crate::http::parameters::{IfNoneMatch, StudyId};
 use crate::http::problem::Refusal;
@@ -150,7 +149,7 @@ pub(in crate::http) async fn design(
         };
         Ok::<_, Refusal>(json(text))
     };
-    let tag = Tag::of(&["design", &record.id.to_string(), &row]);
+    let tag = tag_of_parts(&["design", &record.id.to_string(), &row]);
     tag.answer(Keep::ForGood, &request, text).await
 }
 
@@ -214,7 +213,7 @@ pub(in crate::http) async fn best(
         let text = found.ok_or_else(crate::http::problem::internal)?;
         Ok::<_, Refusal>(json(text))
     };
-    let tag = Tag::of(&["best", &record.id.to_string(), &best.row.to_string()]);
+    let tag = tag_of_parts(&["best", &record.id.to_string(), &best.row.to_string()]);
     let mut response = tag.answer(Keep::AskAgain, &request, text).await?;
     tell_when_to_return(record.status().has_ended(), &mut response);
     Ok(response)

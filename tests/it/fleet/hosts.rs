@@ -92,7 +92,7 @@ async fn a_host_that_is_cut_off_and_returns_loses_no_job_and_doubles_none() {
     let from_afar = DatabaseAddress::Postgres(address.replace("127.0.0.1", &format!("{PREFIX}.1")));
     for host in 1..=3 {
         let (name, _) = names(host);
-        let worker = Process::start_on(&name, &from_afar, &told("worker", "2s"));
+        let worker = Process::start_on(&name, &from_afar, &arguments("worker", "2s"));
         fleet.workers.push(worker);
     }
 
@@ -120,6 +120,8 @@ async fn a_host_that_is_cut_off_and_returns_loses_no_job_and_doubles_none() {
     submitters.taken().await;
     fleet.successful(JOBS.try_into().unwrap()).await;
     check(&fleet, JOBS).await;
+    assert!(taken_over < 10 * LEASE, "{taken_over:?}");
+    assert!(back < 10 * LEASE, "{back:?}");
     println!(
         "{JOBS} jobs in {:.1} s by workers on three hosts, one of which was cut off: its job taken over after {taken_over:.1?} with leases of {LEASE:?}, \
          it worked again {back:.1?} after the way was mended; by process {:?}",

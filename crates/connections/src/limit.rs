@@ -5,18 +5,11 @@ use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
 
-use axum::extract::Request;
-use axum::http::header::{CONNECTION, HeaderValue};
-use axum::middleware::Next;
-use axum::response::{IntoResponse, Response};
-use meshwright_wire::{Code, Problem};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::time::{Instant, timeout};
 
-use super::connection::{ActiveRequest, Address, Connection, NEW, Owner};
-use crate::compute::{Budget, Part};
-use crate::http::credential::bearer;
-use crate::http::problem::Refusal;
+use super::budget::{Budget, Part};
+use super::connection::{Address, Connection, NEW, Owner};
 
 /// One client, or one address without a key, has so large a part of the connections busy at most.
 const OF_CLIENT: usize = 4;
@@ -34,6 +27,17 @@ const SPARED: usize = 4;
 
 /// An evicted connection has ended in this time, or a further one is evicted.
 const EVICTING: Duration = Duration::from_millis(50);
+
+/// Why a request is not answered now.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum Overloaded {
+    /// Its client, or its address, has as many as it may have.
+    #[error("as many requests of yours are being answered as one client may have at the same time")]
+    Client,
+    /// It came on a connection of the reserve, and no regular place became free.
+    #[error("all connections are busy")]
+    Connections,
+}
 
 /// Places for connections.
 #[derive(Debug)]
@@ -55,7 +59,7 @@ impl Places {
 
 /// The connections that there are.
 #[derive(Debug)]
-pub(in crate::http) struct Connections {
+pub(super) struct Connections {
     regular: Places,
     reserve: Places,
     /// The requests in the reserve that wait for a regular place, by address.
@@ -183,11 +187,9 @@ impl Connections {
     }
 
     /// Counts a request of `owner` as active.
-    pub(super) fn count_active(&self, owner: &str) -> Result<Part, Problem> {
-        self.active.try_take(owner, 1).ok_or_else(|| {
-            let detail = "As many requests of yours are being answered as one client may have at the same time. Try again in a moment.";
-            Problem::new(Code::Overloaded, detail)
-        })
+    pub(super) fn count_active(&self, owner: &str) -> Result<Part, Overloaded> {
+        let part = self.active.try_take(owner, 1);
+        part.ok_or(Overloaded::Client)
     }
 
     fn present(&self) -> MutexGuard<'_, Present> {
@@ -200,18 +202,14 @@ impl Connection {
     ///
     /// # Errors
     ///
-    /// `overloaded`, after a while.
-    async fn leave_reserve(&self) -> Result<(), Problem> {
+    /// [`Overloaded::Connections`], after a while.
+    pub(super) async fn leave_reserve(&self) -> Result<(), Overloaded> {
         if !self.is_on(&self.limit.reserve) {
             return Ok(());
         }
         let address = Owner::Address(self.address).name();
         let place = self.limit.regular_place(&address).await;
-        let place = place.ok_or_else(|| {
-            let detail = "All connections are busy. Try again in a moment.";
-            Problem::new(Code::Overloaded, detail)
-        })?;
-        *self.place() = Some(place);
+        *self.place() = Some(place.ok_or(Overloaded::Connections)?);
         Ok(())
     }
 
@@ -224,33 +222,6 @@ impl Connection {
 
     fn place(&self) -> MutexGuard<'_, Option<OwnedSemaphorePermit>> {
         self.place.lock().expect("nothing panics with this lock")
-    }
-}
-
-/// Refuses a request where its client has as many active as one may have, or all connections are busy. Health is answered always.
-pub(in crate::http) async fn limit(request: Request, next: Next) -> Response {
-    let active = request.extensions().get::<Arc<ActiveRequest>>().cloned();
-    let Some(active) = active.filter(|_| !request.uri().path().starts_with("/health/")) else {
-        return next.run(request).await;
-    };
-    if let Err(problem) = active.connection.leave_reserve().await {
-        let mut response = Refusal::from(problem).into_response();
-        let close = HeaderValue::from_static("close");
-        response.headers_mut().insert(CONNECTION, close);
-        return response;
-    }
-    // One with a key counts for its client, once that is known. Behind a proxy all have one address.
-    let may_have_key = matches!(bearer(request.headers()), Ok(Some(_)));
-    let counted = active.count_for_address();
-    match counted {
-        Err(problem) if !may_have_key => return Refusal::from(problem).into_response(),
-        _ => {}
-    }
-    let response = next.run(request).await;
-    match active.count_for_address() {
-        Ok(()) => response,
-        // It was not asked for its key, or had none that is known.
-        Err(problem) => Refusal::from(problem).into_response(),
     }
 }
 
@@ -274,17 +245,33 @@ impl Drop for Admitted {
 
 #[cfg(test)]
 mod tests {
-    use std::io;
+    use std::convert::Infallible;
     use std::net::IpAddr;
     use std::pin::Pin;
+    use std::task::{Context, Poll};
 
-    use axum::body::Bytes;
-    use futures_util::{poll, stream};
-    use http_body::Body as _;
+    use bytes::Bytes;
+    use futures_util::poll;
+    use http_body::{Body, Frame};
 
-    use super::super::connection::STALLED;
+    use super::super::connection::{ActiveRequest, STALLED};
     use super::super::stalled_reads::WatchedBody;
     use super::*;
+
+    /// A body that never comes.
+    struct Nothing;
+
+    impl Body for Nothing {
+        type Data = Bytes;
+        type Error = Infallible;
+
+        fn poll_frame(
+            self: Pin<&mut Self>,
+            _: &mut Context<'_>,
+        ) -> Poll<Option<Result<Frame<Bytes>, Infallible>>> {
+            Poll::Pending
+        }
+    }
 
     async fn enter(limit: &Arc<Connections>, last: u8) -> Admitted {
         let address = IpAddr::from([127, 0, 0, last]);
@@ -375,8 +362,7 @@ mod tests {
         let place = enter(&limit, 1).await;
         place.connection.authenticated(&"hog".into());
         let _at_work = ActiveRequest::begin(&place.connection);
-        let nothing = axum::body::Body::from_stream(stream::pending::<io::Result<Bytes>>());
-        let mut body = WatchedBody::new(nothing, Arc::clone(&place.connection.reads));
+        let mut body = WatchedBody::new(Nothing, Arc::clone(&place.connection.reads));
         let start = Instant::now();
         let is_idle = |at| place.connection.is_idle(at);
         assert!(!is_idle(start + STALLED), "nobody has looked for the body");
@@ -446,8 +432,8 @@ mod tests {
         let late = enter(&limit, 9).await;
         let start = Instant::now();
         assert_eq!(
-            late.connection.leave_reserve().await.unwrap_err().code,
-            Code::Overloaded
+            late.connection.leave_reserve().await,
+            Err(Overloaded::Connections)
         );
         assert!(start.elapsed() >= LONGEST_WAIT);
         // One that ends makes room.

@@ -1,10 +1,10 @@
 //! In which codings a client takes answers.
 
-use axum::http::HeaderMap;
-use axum::http::header::ACCEPT_ENCODING;
+use hyper::HeaderMap;
+use hyper::header::ACCEPT_ENCODING;
 
 /// Whether the client says that it unpacks gzip.
-pub(super) fn takes_gzip(request: &HeaderMap) -> bool {
+pub fn takes_gzip(request: &HeaderMap) -> bool {
     let values = request.get_all(ACCEPT_ENCODING).iter();
     let mut codings = values
         .filter_map(|value| value.to_str().ok())
@@ -23,7 +23,7 @@ pub(super) fn takes_gzip(request: &HeaderMap) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use axum::http::HeaderValue;
+    use hyper::header::HeaderValue;
 
     use super::*;
 

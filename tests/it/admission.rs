@@ -134,7 +134,7 @@ async fn a_key_that_is_revoked_opens_nothing_from_that_moment_on() {
     assert!(store.revoke_key(&id, jiff::Timestamp::now()).await.unwrap());
     store.close().await;
     problem(get(&bench, "/v1/jobs", &key).await, 401, "unauthorized").await;
-    // The last key that goes does not open the door to everybody.
+    // The last key that goes does not let everybody in.
     problem(bench.get("/v1/jobs").answer().await, 401, "unauthorized").await;
 }
 
@@ -338,7 +338,7 @@ async fn answers_say_what_browsers_may_not_do_and_under_what_name_they_are_logge
 #[tokio::test]
 async fn numbers_and_health_may_have_a_listener_of_their_own() {
     let (bench, _engine) = Bench::steered_with(|config| {
-        config.door.metrics_listen = Some("127.0.0.1:0".parse().unwrap());
+        config.admission.metrics_listen = Some("127.0.0.1:0".parse().unwrap());
     })
     .await;
     problem(bench.get("/metrics").answer().await, 404, "not_found").await;
@@ -386,8 +386,8 @@ async fn behind_a_proxy_or_under_a_public_name_a_key_is_needed_though_it_listens
         (Some(KeysRule::None), 200),
     ] {
         let (named, _engine) = Bench::steered_with(|config| {
-            config.door.allowed_hosts = vec!["gears.example".to_owned()];
-            config.door.keys = keys;
+            config.admission.allowed_hosts = vec!["gears.example".to_owned()];
+            config.admission.keys = keys;
         })
         .await;
         let answer = named
@@ -438,8 +438,8 @@ async fn who_waits_gets_no_results_once_its_key_is_revoked() {
 #[tokio::test]
 async fn those_without_a_key_are_refused_when_they_ask_too_often_and_those_with_one_are_not() {
     let (bench, _engine) = Bench::steered_with(|config| {
-        config.door.keys = Some(KeysRule::Required);
-        config.door.requests_without_key = 1;
+        config.admission.keys = Some(KeysRule::Required);
+        config.admission.requests_without_key = 1;
     })
     .await;
     let key = key_of(&bench, "portal").await;
@@ -478,7 +478,7 @@ async fn a_key_opens_until_it_expires() {
     bench.clock = Clock::given(move || end, jiff::Timestamp::now);
     bench.start_again().await;
     problem(get(&bench, "/v1/jobs", &key).await, 401, "unauthorized").await;
-    // It was made, so that the door does not open to everybody.
+    // It was made, so that not everybody is let in.
     let without = bench.get("/v1/jobs").answer().await;
     problem(without, 401, "unauthorized").await;
 }

@@ -1,4 +1,7 @@
-//! Packs the files that are part of the program, once: those of the page, and those of the documentation. And lists the migrations of the database.
+//! Packs the files that are part of the program, once: those of the page, those of the documentation, and the guides, which it makes of their text.
+//! And lists the migrations of the database.
+
+mod guides;
 
 use std::error::Error;
 use std::fs;
@@ -21,13 +24,14 @@ const DOCS: [&str; 7] = [
 ];
 
 fn main() -> Result<(), Box<dyn Error>> {
-    for input in ["build.rs", "migrations", "web", "src/http/docs.js"] {
+    for input in ["build", "migrations", "web", "src/http/docs.js"] {
         println!("cargo:rerun-if-changed={input}");
     }
     let out = PathBuf::from(std::env::var("OUT_DIR")?);
     let list = [
         list("PAGE", &page()?, &out.join("page"))?,
         list("DOCS", &docs()?, &out.join("docs"))?,
+        list("GUIDES", &guides::files()?, &out.join("guides"))?,
     ];
     fs::write(out.join("files.rs"), list.concat())?;
     let migrations = [

@@ -1,15 +1,13 @@
 //! Entity tags: a client that has the answer already is told so (RFC 9110, section 13).
 
-use axum::http::header::{CACHE_CONTROL, CONTENT_ENCODING, ETAG, HeaderValue, IF_NONE_MATCH};
-use axum::http::{HeaderMap, StatusCode};
-use axum::response::{IntoResponse, Response};
-use meshwright_wire::hash::sha256_hex_of;
+use hyper::header::{CACHE_CONTROL, CONTENT_ENCODING, ETAG, HeaderValue, IF_NONE_MATCH};
+use hyper::{HeaderMap, Response, StatusCode};
 
 use super::accepts::takes_gzip;
 
 /// How long an answer may be kept by who asked for it.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Keep {
+pub enum Keep {
     /// It may change: ask again, with the tag.
     AskAgain,
     /// It never changes under its address.
@@ -27,16 +25,11 @@ impl Keep {
 
 /// A strong entity tag.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Tag(String);
+pub struct Tag(String);
 
 impl Tag {
-    /// The tag of an answer that is the same as long as these parts are.
-    pub(super) fn of(parts: &[&str]) -> Self {
-        Self(format!("\"{}\"", &sha256_hex_of(parts)[..32]))
-    }
-
     /// The tag of what a hash stands for, in one of its forms.
-    pub(super) fn of_hash(hash: &str, form: &str) -> Self {
+    pub fn of_hash(hash: &str, form: &str) -> Self {
         Self(format!("\"{hash}{form}\""))
     }
 
@@ -68,14 +61,18 @@ impl Tag {
     /// # Errors
     ///
     /// What `make` meets.
-    pub(super) async fn answer<E>(
+    pub async fn answer<B: Default, E>(
         &self,
         keep: Keep,
         request: &HeaderMap,
-        make: impl Future<Output = Result<Response, E>>,
-    ) -> Result<Response, E> {
+        make: impl Future<Output = Result<Response<B>, E>>,
+    ) -> Result<Response<B>, E> {
         let (mut response, tag) = match self.known(request) {
-            Some(known) => (StatusCode::NOT_MODIFIED.into_response(), known),
+            Some(known) => {
+                let mut response = Response::new(B::default());
+                *response.status_mut() = StatusCode::NOT_MODIFIED;
+                (response, known)
+            }
             None => {
                 let made = make.await?;
                 let is_packed = made.headers().contains_key(CONTENT_ENCODING);
@@ -108,7 +105,7 @@ pub(super) fn tag_as_packed(headers: &mut HeaderMap) {
 
 #[cfg(test)]
 mod tests {
-    use axum::http::header::ACCEPT_ENCODING;
+    use hyper::header::ACCEPT_ENCODING;
 
     use super::*;
 

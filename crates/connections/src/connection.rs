@@ -5,15 +5,14 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
 
-use meshwright_wire::Problem;
 use tokio::sync::OwnedSemaphorePermit;
 use tokio::time::Instant;
 use tokio_util::sync::CancellationToken;
 
-use super::limit::Connections;
+use super::budget::Part;
+use super::limit::{Connections, Overloaded};
 use super::stalled_reads::Reads;
 use super::stalled_writes::Writes;
-use crate::compute::Part;
 
 /// A connection whose client has sent nothing of its request for so long counts as idle; so does one of a client with a key that has read
 /// nothing of its answer, and one without a key at once.
@@ -24,7 +23,7 @@ pub(super) const NEW: Duration = Duration::from_secs(1);
 
 /// The address of a client. Whoever has one address of IPv6 has a network of them, so that they count as one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub(in crate::http) struct Address(IpAddr);
+pub struct Address(IpAddr);
 
 impl From<IpAddr> for Address {
     fn from(address: IpAddr) -> Self {
@@ -68,8 +67,9 @@ impl Owner {
 
 /// A connection.
 #[derive(Debug)]
-pub(in crate::http) struct Connection {
-    pub(in crate::http) address: Address,
+pub struct Connection {
+    /// Where its client is.
+    pub address: Address,
     identity: Mutex<Identity>,
     /// Requests that are being answered.
     active: AtomicUsize,
@@ -136,7 +136,7 @@ impl Connection {
     }
 
     /// The client whose key it had last; its address, if it had none.
-    pub(in crate::http) fn client(&self) -> String {
+    pub fn client(&self) -> String {
         match self.owner() {
             Owner::Client(client) => client.to_string(),
             owner @ Owner::Address(_) => owner.name(),
@@ -150,7 +150,7 @@ impl Connection {
 
 /// A request that is being answered, until the last byte of its answer was handed over to be written.
 #[derive(Debug)]
-pub(in crate::http) struct ActiveRequest {
+pub struct ActiveRequest {
     pub(super) connection: Arc<Connection>,
     /// Its part of what its client, or its address, may have active.
     part: Mutex<Option<Part>>,
@@ -170,12 +170,21 @@ impl ActiveRequest {
         }
     }
 
+    /// Waits for a regular place, where its connection has none.
+    ///
+    /// # Errors
+    ///
+    /// [`Overloaded::Connections`], after a while.
+    pub async fn leave_reserve(&self) -> Result<(), Overloaded> {
+        self.connection.leave_reserve().await
+    }
+
     /// Counts it for its address, unless it is counted already.
     ///
     /// # Errors
     ///
-    /// `overloaded`, where as many are active as may be.
-    pub(super) fn count_for_address(&self) -> Result<(), Problem> {
+    /// [`Overloaded::Client`], where as many are active as may be.
+    pub fn count_for_address(&self) -> Result<(), Overloaded> {
         if self.part().is_some() {
             return Ok(());
         }
@@ -186,13 +195,13 @@ impl ActiveRequest {
     ///
     /// # Errors
     ///
-    /// `overloaded`, where as many of it are active as may be.
-    pub(in crate::http) fn authenticated(&self, client: &Arc<str>) -> Result<(), Problem> {
+    /// [`Overloaded::Client`], where as many of it are active as may be.
+    pub fn authenticated(&self, client: &Arc<str>) -> Result<(), Overloaded> {
         self.connection.authenticated(client);
         self.count_for(&Owner::Client(Arc::clone(client)))
     }
 
-    fn count_for(&self, owner: &Owner) -> Result<(), Problem> {
+    fn count_for(&self, owner: &Owner) -> Result<(), Overloaded> {
         *self.part() = None;
         *self.part() = Some(self.connection.limit.count_active(&owner.name())?);
         Ok(())

@@ -13,7 +13,7 @@ const MOST_REMEMBERED: usize = 10_000;
 
 /// Token buckets by key.
 #[derive(Debug)]
-pub(in crate::http) struct Rates<K>(Mutex<Buckets<K>>);
+pub struct Rates<K>(Mutex<Buckets<K>>);
 
 #[derive(Debug)]
 struct Buckets<K> {
@@ -38,7 +38,7 @@ impl<K: Hash + Eq> Rates<K> {
     /// # Errors
     ///
     /// The time after which it may send the next.
-    pub(in crate::http) fn count(
+    pub fn count(
         &self,
         key: K,
         rate: NonZeroU32,

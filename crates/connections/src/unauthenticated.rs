@@ -5,11 +5,9 @@ use std::num::NonZeroU32;
 use std::sync::Mutex;
 use std::time::Duration;
 
-use axum::http::HeaderMap;
 use tokio::time::Instant;
 
 use super::{Address, Rates};
-use crate::http::credential::{Credential, bearer};
 
 /// An address may send so many times its requests of a second at once: the page alone takes thirty.
 const BURST_SECONDS: NonZeroU32 = NonZeroU32::new(5).unwrap();
@@ -28,7 +26,7 @@ type Source = (Address, bool);
 
 /// The limits of requests without a key that is known.
 #[derive(Debug)]
-pub(in crate::http) struct Unauthenticated {
+pub struct Unauthenticated {
     rate: NonZeroU32,
     of_address: Rates<Source>,
     of_all: Rates<()>,
@@ -39,7 +37,7 @@ pub(in crate::http) struct Unauthenticated {
 
 impl Unauthenticated {
     /// So many requests a second of one address.
-    pub(in crate::http) fn new(rate: NonZeroU32) -> Self {
+    pub fn new(rate: NonZeroU32) -> Self {
         Self {
             rate,
             of_address: Rates::default(),
@@ -49,21 +47,16 @@ impl Unauthenticated {
         }
     }
 
-    /// Counts a request, unless its key was found to be known.
+    /// Counts a request with a key or token of this fingerprint, if it has one, unless that was found to be known.
     ///
     /// # Errors
     ///
     /// The time after which the next is answered.
-    pub(in crate::http) fn count(
-        &self,
-        address: Address,
-        headers: &HeaderMap,
-    ) -> Result<(), Duration> {
-        let shown = bearer(headers).ok().flatten();
-        if shown.as_ref().is_some_and(|shown| self.is_known(shown)) {
+    pub fn count(&self, address: Address, fingerprint: Option<&str>) -> Result<(), Duration> {
+        if fingerprint.is_some_and(|fingerprint| self.is_known(fingerprint)) {
             return Ok(());
         }
-        let (source, now) = ((address, shown.is_some()), Instant::now());
+        let (source, now) = ((address, fingerprint.is_some()), Instant::now());
         let burst = self.rate.saturating_mul(BURST_SECONDS).get();
         self.of_address.count(source, self.rate, burst, now)?;
         let all = self.rate.saturating_mul(ADDRESSES);
@@ -79,7 +72,7 @@ impl Unauthenticated {
     }
 
     /// A key or token of this fingerprint was found to be known.
-    pub(in crate::http) fn remember(&self, fingerprint: String) {
+    pub fn remember(&self, fingerprint: String) {
         let mut known = self.known.lock().expect("nothing panics with this lock");
         if known.len() >= MOST_REMEMBERED {
             known.clear();
@@ -87,9 +80,9 @@ impl Unauthenticated {
         known.insert(fingerprint);
     }
 
-    fn is_known(&self, shown: &Credential) -> bool {
+    fn is_known(&self, fingerprint: &str) -> bool {
         let known = self.known.lock().expect("nothing panics with this lock");
-        known.contains(&shown.fingerprint())
+        known.contains(fingerprint)
     }
 }
 
@@ -97,46 +90,35 @@ impl Unauthenticated {
 mod tests {
     use std::net::IpAddr;
 
-    use axum::http::HeaderValue;
-    use axum::http::header::AUTHORIZATION;
-
     use super::*;
-    use crate::keys::Key;
 
     fn address(last: u8) -> Address {
         IpAddr::from([127, 0, 0, last]).into()
     }
 
-    fn with(key: &Key) -> HeaderMap {
-        let value = format!("Bearer {}", key.reveal());
-        HeaderMap::from_iter([(AUTHORIZATION, HeaderValue::try_from(value).unwrap())])
-    }
-
     /// How many of a thousand requests get in.
-    fn admitted(limits: &Unauthenticated, from: u8, headers: &HeaderMap) -> usize {
-        let admit = |_: &u32| limits.count(address(from), headers).is_ok();
+    fn admitted(limits: &Unauthenticated, from: u8, fingerprint: Option<&str>) -> usize {
+        let admit = |_: &u32| limits.count(address(from), fingerprint).is_ok();
         (0..1000).filter(admit).count()
     }
 
     #[test]
     fn a_request_without_a_key_has_a_burst_and_a_key_that_is_known_is_not_counted() {
         let limits = Unauthenticated::new(NonZeroU32::new(10).unwrap());
-        let (none, key) = (HeaderMap::new(), Key::random().unwrap());
-        assert!((50..60).contains(&admitted(&limits, 1, &none)));
+        assert!((50..60).contains(&admitted(&limits, 1, None)));
         // Who has a key can show it all the same; one that proves to be none stays among the limits.
-        assert!((50..60).contains(&admitted(&limits, 1, &with(&key))));
-        limits.remember(key.secret_hash());
-        assert_eq!(admitted(&limits, 1, &with(&key)), 1000);
-        assert!(admitted(&limits, 1, &with(&Key::random().unwrap())) < 10);
+        assert!((50..60).contains(&admitted(&limits, 1, Some("known"))));
+        limits.remember("known".to_owned());
+        assert_eq!(admitted(&limits, 1, Some("known")), 1000);
+        assert!(admitted(&limits, 1, Some("another")) < 10);
     }
 
     #[test]
     fn a_flood_from_many_addresses_leaves_another_one_a_page() {
         let limits = Unauthenticated::new(NonZeroU32::new(10).unwrap());
-        let none = HeaderMap::new();
-        let all: usize = (1..=50).map(|from| admitted(&limits, from, &none)).sum();
+        let all: usize = (1..=50).map(|from| admitted(&limits, from, None)).sum();
         // 400 in all at once, and 40 of each beyond that.
         assert!(all < 400 + 50 * 40 + 400, "{all}");
-        assert!(admitted(&limits, 200, &none) >= 40);
+        assert!(admitted(&limits, 200, None) >= 40);
     }
 }

@@ -5,8 +5,9 @@ use std::sync::{Arc, Mutex, MutexGuard};
 use std::task::{Context, Poll};
 use std::time::Duration;
 
-use axum::body::Bytes;
+use bytes::Bytes;
 use http_body::{Body, Frame, SizeHint};
+use hyper::body::Incoming;
 use tokio::time::Instant;
 
 use super::stalled_writes::LEAST_RATE;
@@ -28,7 +29,8 @@ impl Reads {
 }
 
 /// The body of a request whose reads are watched.
-pub(super) struct WatchedBody<B> {
+#[derive(Debug)]
+pub struct WatchedBody<B = Incoming> {
     inner: B,
     reads: Arc<Reads>,
     /// How much later than at the least rate the bytes came that are here: a byte now and then does not make a client fast.

@@ -13,13 +13,12 @@ use std::sync::Arc;
 use std::task::{Context, Poll};
 use std::time::Duration;
 
-use axum::Router;
-use axum::body::{Body, Bytes};
-use axum::http::Request;
-use http_body::{Body as HttpBody, Frame, SizeHint};
+use bytes::Bytes;
+use http_body::{Body, Frame, SizeHint};
 use hyper::body::Incoming;
 use hyper::server::conn::http1;
 use hyper::service::service_fn;
+use hyper::{Request, Response};
 use hyper_util::rt::{TokioIo, TokioTimer};
 use tokio::io::{AsyncRead, AsyncWrite};
 use tokio::net::{TcpListener, TcpStream};
@@ -27,7 +26,7 @@ use tokio::task::JoinHandle;
 use tokio::time::{Instant, sleep, timeout};
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
-use tower::ServiceExt;
+use tower::{BoxError, Service, ServiceExt};
 use tracing::{debug, warn};
 
 use super::connection::{ActiveRequest, Connection};
@@ -55,6 +54,28 @@ pub struct Bounds {
     pub stall: Duration,
 }
 
+/// The body of an answer.
+pub trait AnswerBody: Body<Data = Bytes, Error: Into<BoxError>> + Send + Unpin + 'static {}
+
+impl<B: Body<Data = Bytes, Error: Into<BoxError>> + Send + Unpin + 'static> AnswerBody for B {}
+
+/// What answers every request, such as a router.
+pub trait Answer<B>:
+    Service<Request<WatchedBody>, Response = Response<B>, Error = Infallible, Future: Send>
+    + Clone
+    + Send
+    + 'static
+{
+}
+
+impl<B, S> Answer<B> for S where
+    S: Service<Request<WatchedBody>, Response = Response<B>, Error = Infallible, Future: Send>
+        + Clone
+        + Send
+        + 'static
+{
+}
+
 /// A listener that is served.
 pub struct Server {
     task: JoinHandle<()>,
@@ -63,17 +84,22 @@ pub struct Server {
 }
 
 impl Server {
-    /// Serves `router` to all who come to `listener`, until `stop` comes.
-    pub fn start(
+    /// Answers the requests of all connections to `listener` by `service`, until `stop` comes. A request has its [`Connection`] and its
+    /// [`ActiveRequest`] as extensions, each in an `Arc`.
+    pub fn start<S, B>(
         listener: TcpListener,
-        router: Router,
+        service: S,
         bounds: Bounds,
         stop: CancellationToken,
-    ) -> Self {
+    ) -> Self
+    where
+        S: Answer<B>,
+        B: AnswerBody,
+    {
         let connections = TaskTracker::new();
         let kill = CancellationToken::new();
         let accepting = Accepting {
-            router,
+            service,
             bounds,
             limit: Connections::new(bounds.connections),
             connections: connections.clone(),
@@ -81,7 +107,7 @@ impl Server {
             kill: kill.clone(),
         };
         Self {
-            task: tokio::spawn(accepting.receive(listener)),
+            task: tokio::spawn(accepting.receive::<B>(listener)),
             connections,
             kill,
         }
@@ -109,8 +135,8 @@ impl Server {
 }
 
 /// What accepts connections.
-struct Accepting {
-    router: Router,
+struct Accepting<S> {
+    service: S,
     bounds: Bounds,
     limit: Arc<Connections>,
     connections: TaskTracker,
@@ -118,21 +144,30 @@ struct Accepting {
     kill: CancellationToken,
 }
 
-impl Accepting {
-    async fn receive(self, listener: TcpListener) {
+impl<S> Accepting<S> {
+    async fn receive<B: AnswerBody>(self, listener: TcpListener)
+    where
+        S: Answer<B>,
+    {
         loop {
             let accepted = tokio::select! {
-                accepted = self.next(&listener) => accepted,
+                accepted = next(&self.limit, &listener) => accepted,
                 () = self.stop.cancelled() => return,
                 () = self.kill.cancelled() => return,
             };
             let (stream, admitted) = accepted;
             // An answer is written whole; to wait for more of it would only make the client wait.
             let _ = stream.set_nodelay(true);
-            let (router, bounds, stop) = (self.router.clone(), self.bounds, self.stop.clone());
+            let (service, bounds, stop) = (self.service.clone(), self.bounds, self.stop.clone());
             let kill = self.kill.clone();
             self.connections.spawn(async move {
-                let serve = serve_connection(stream, router, bounds, &admitted.connection, &stop);
+                let serve = serve_connection::<_, S, B>(
+                    stream,
+                    service,
+                    bounds,
+                    &admitted.connection,
+                    &stop,
+                );
                 tokio::select! {
                     () = serve => {}
                     () = kill.cancelled() => {}
@@ -140,45 +175,45 @@ impl Accepting {
             });
         }
     }
+}
 
-    /// The next connection, once there is a place for it.
-    async fn next(&self, listener: &TcpListener) -> (TcpStream, Admitted) {
-        let (stream, address) = self.accept(listener).await;
-        let admitted = self.limit.admit(address.ip().into()).await;
-        (stream, admitted)
-    }
+/// The next connection to `listener`, once there is a place for it.
+async fn next(limit: &Arc<Connections>, listener: &TcpListener) -> (TcpStream, Admitted) {
+    let (stream, address) = accept(limit, listener).await;
+    let admitted = limit.admit(address.ip().into()).await;
+    (stream, admitted)
+}
 
-    async fn accept(&self, listener: &TcpListener) -> (TcpStream, SocketAddr) {
-        /// While the system gives no connections it is asked so often.
-        const PAUSE: Duration = Duration::from_millis(50);
-        loop {
-            match listener.accept().await {
-                Ok(accepted) => return accepted,
-                Err(error) => {
-                    // Out of descriptors, most likely: idle connections have some.
-                    warn!(%error, "no connection can be taken");
-                    self.limit.evict_one();
-                    sleep(PAUSE).await;
-                }
+async fn accept(limit: &Connections, listener: &TcpListener) -> (TcpStream, SocketAddr) {
+    /// While the system gives no connections it is asked so often.
+    const PAUSE: Duration = Duration::from_millis(50);
+    loop {
+        match listener.accept().await {
+            Ok(accepted) => return accepted,
+            Err(error) => {
+                // Out of descriptors, most likely: idle connections have some.
+                warn!(%error, "no connection can be taken");
+                limit.evict_one();
+                sleep(PAUSE).await;
             }
         }
     }
 }
 
 /// A body whose request is active until all of it was handed over to be written.
-struct ActiveBody {
-    inner: Body,
+struct ActiveBody<B> {
+    inner: B,
     _active: Arc<ActiveRequest>,
 }
 
-impl HttpBody for ActiveBody {
+impl<B: AnswerBody> Body for ActiveBody<B> {
     type Data = Bytes;
-    type Error = axum::Error;
+    type Error = B::Error;
 
     fn poll_frame(
         mut self: Pin<&mut Self>,
         context: &mut Context<'_>,
-    ) -> Poll<Option<Result<Frame<Bytes>, axum::Error>>> {
+    ) -> Poll<Option<Result<Frame<Bytes>, B::Error>>> {
         Pin::new(&mut self.inner).poll_frame(context)
     }
 
@@ -191,26 +226,28 @@ impl HttpBody for ActiveBody {
     }
 }
 
-async fn serve_connection<S>(
-    stream: S,
-    router: Router,
+async fn serve_connection<T, S, B>(
+    stream: T,
+    service: S,
     bounds: Bounds,
     connection: &Arc<Connection>,
     stop: &CancellationToken,
 ) where
-    S: AsyncRead + AsyncWrite + Unpin,
+    T: AsyncRead + AsyncWrite + Unpin,
+    S: Answer<B>,
+    B: AnswerBody,
 {
     let stream = WatchedStream::new(stream, Arc::clone(&connection.writes), bounds.stall);
-    let service = service_fn(|mut request: Request<Incoming>| {
-        let (router, connection) = (router.clone(), Arc::clone(connection));
+    let answer = service_fn(move |mut request: Request<Incoming>| {
+        let (service, connection) = (service.clone(), Arc::clone(connection));
         let active = Arc::new(ActiveRequest::begin(&connection));
         async move {
             connection.writes.flushed().await;
             let reads = Arc::clone(&connection.reads);
             request.extensions_mut().insert(connection);
             request.extensions_mut().insert(Arc::clone(&active));
-            let request = request.map(|body| Body::new(WatchedBody::new(body, reads)));
-            let Ok(response) = router.oneshot(request).await;
+            let request = request.map(|body| WatchedBody::new(body, reads));
+            let Ok(response) = service.oneshot(request).await;
             Ok::<_, Infallible>(response.map(|inner| ActiveBody {
                 inner,
                 _active: active,
@@ -224,7 +261,7 @@ async fn serve_connection<S>(
         .max_headers(MOST_FIELDS)
         // Every answer of ours has its own, by the clock of the service.
         .auto_date_header(false)
-        .serve_connection(TokioIo::new(stream), service);
+        .serve_connection(TokioIo::new(stream), answer);
     let mut served = pin!(served);
     let ended = tokio::select! {
         ended = &mut served => ended,
@@ -238,15 +275,16 @@ async fn serve_connection<S>(
 
 /// Ends a connection: with the answer that is under way, or when it has been idle for `patience`. One that has sent half a
 /// head counts as idle, and so does one that sends no body, or reads nothing of its answer.
-async fn end<I, S>(
+async fn end<I, S, B>(
     mut served: Pin<&mut http1::Connection<I, S>>,
     connection: &Connection,
     patience: Duration,
 ) -> hyper::Result<()>
 where
     I: hyper::rt::Read + hyper::rt::Write + Unpin,
-    S: hyper::service::HttpService<Incoming, ResBody = ActiveBody>,
-    S::Error: Into<Box<dyn std::error::Error + Send + Sync>>,
+    S: hyper::service::HttpService<Incoming, ResBody = ActiveBody<B>>,
+    S::Error: Into<BoxError>,
+    B: AnswerBody,
 {
     served.as_mut().graceful_shutdown();
     let mut idle_since = Instant::now();
@@ -269,10 +307,10 @@ where
 
 #[cfg(test)]
 mod tests {
+    use std::future::ready;
     use std::net::IpAddr;
     use std::sync::atomic::{AtomicUsize, Ordering};
 
-    use axum::routing::get;
     use tokio::io::{AsyncReadExt, AsyncWriteExt, DuplexStream, duplex};
     use tokio::task::yield_now;
 
@@ -288,11 +326,10 @@ mod tests {
     ) -> (JoinHandle<()>, DuplexStream, Arc<AtomicUsize>) {
         let made = Arc::new(AtomicUsize::new(0));
         let count = Arc::clone(&made);
-        let handler = async move || {
+        let service = tower::service_fn(move |_| {
             count.fetch_add(1, Ordering::Relaxed);
-            "a".repeat(answer)
-        };
-        let router = Router::new().route("/", get(handler));
+            ready(Ok(Response::new("a".repeat(answer))))
+        });
         let bounds = Bounds {
             connections: 1,
             head: PATIENCE,
@@ -302,7 +339,14 @@ mod tests {
         let serve = async move {
             let address = IpAddr::from([127, 0, 0, 1]).into();
             let connection = Arc::new(Connection::new(address, &Connections::new(1)));
-            serve_connection(ours, router, bounds, &connection, &CancellationToken::new()).await;
+            serve_connection(
+                ours,
+                service,
+                bounds,
+                &connection,
+                &CancellationToken::new(),
+            )
+            .await;
         };
         (tokio::spawn(serve), theirs, made)
     }

@@ -1,0 +1,32 @@
+//! Connections of HTTP: how many there are, which of them a client may use, and how they end. It knows requests and clients, and nothing of
+//! what is asked and answered.
+//!
+//! In reading order: the [`Budget`] of what clients share; what is known of a [`Connection`] and its requests; the [limit](Overloaded) of
+//! connections, the eviction of idle ones and the limit for one client; reads and writes that stall; the [`Rates`] of requests, and those
+//! [without a key](Unauthenticated); the [`Server`] that accepts connections and serves them. Then what answers are made with: work that holds
+//! no other request up ([`blocking`]), packing, and entity [tags](Tag).
+
+mod accepts;
+mod blocking;
+mod budget;
+mod connection;
+mod limit;
+mod packing;
+mod rates;
+mod server;
+mod stalled_reads;
+mod stalled_writes;
+mod tag;
+mod unauthenticated;
+
+pub use accepts::takes_gzip;
+pub use blocking::blocking;
+pub use budget::{Budget, Part};
+pub use connection::{ActiveRequest, Address, Connection};
+pub use limit::Overloaded;
+pub use packing::{gains_by_packing, packed, packed_stream, packed_whole, say_packed};
+pub use rates::Rates;
+pub use server::{Answer, AnswerBody, Bounds, Server};
+pub use stalled_reads::WatchedBody;
+pub use tag::{Keep, Tag};
+pub use unauthenticated::Unauthenticated;
