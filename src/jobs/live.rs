@@ -8,7 +8,7 @@ use meshwright_engine::run::Run;
 use tokio::sync::{Notify, broadcast, watch};
 use uuid::Uuid;
 
-use super::job::{Job, Progress};
+use super::store::{Job, Progress};
 
 /// Stands for every job and study.
 const ANYTHING: Uuid = Uuid::nil();

@@ -8,13 +8,13 @@ mod attempt;
 mod clock;
 mod designs;
 mod error;
-mod job;
 mod keeper;
 mod live;
 mod others;
 mod queue;
 mod resource;
 mod searches;
+mod shown;
 pub(crate) mod store;
 mod studies;
 mod study;
@@ -22,18 +22,18 @@ mod worker;
 mod worker_context;
 
 pub use clock::Clock;
-pub use error::JobError;
-pub use job::{Job, Progress};
+pub use error::{JobError, damage_problem};
 pub use keeper::{Keep, Keeper};
 pub use live::{Changes, News};
 pub(crate) use queue::KEY_LIFETIME;
 pub use queue::{Jobs, Member, Rules};
 pub use resource::{Listed, Submitted};
+pub use shown::{shown_kept, shown_status};
 pub use store::{
     BackupError, Cursor, Damaged, DatabaseAddress, Depth, Document, DocumentLine, EventKind,
-    Filter, KeyRecord, Membership, Migrate, NoCursor, OpenError, Removed, Role, Space, Span, Store,
-    StoreError, StudyFilter,
+    Filter, Job, Kept, KeyRecord, Membership, Migrate, NoCursor, OpenError, Progress, Removed,
+    Role, Space, Span, Status, Store, StoreError, StudyFilter, StudyRecord,
 };
-pub use study::StudyRecord;
+pub use study::{gear_of, search_state, why_failed};
 pub use worker::{StartError, Workers};
 pub use worker_context::Pace;

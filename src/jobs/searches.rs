@@ -11,8 +11,7 @@ use meshwright_wire::{Design, RowState, Searching, Study};
 use super::designs::{CHUNK, Owner, blocking};
 use super::error::JobError;
 use super::queue::Jobs;
-use super::store::{NewRow, SearchStep};
-use super::study::StudyRecord;
+use super::store::{NewRow, SearchStep, StudyRecord};
 
 /// Between two looks at rows of which nothing is heard.
 const PATIENCE: Duration = Duration::from_secs(5);

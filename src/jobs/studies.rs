@@ -15,8 +15,7 @@ use super::error::JobError;
 use super::queue::{Jobs, Member};
 use super::resource::{Listed, Submitted};
 use super::searches;
-use super::store::{NewRow, NewStudy, StoreError, StudyFilter, StudyOutcome};
-use super::study::StudyRecord;
+use super::store::{NewRow, NewStudy, StoreError, StudyFilter, StudyOutcome, StudyRecord};
 
 impl Jobs {
     /// Takes a study: it and its first designs are on the disk when this comes back.
@@ -48,7 +47,7 @@ impl Jobs {
             body_hash: sha256_hex(study.document()),
             document: study.document().to_owned(),
             document_version: DOCUMENT_VERSION,
-            gear: study.gear(),
+            gear: study.gear().word().to_owned(),
             total: study.total() as u64,
             search,
             submitted_at: now,

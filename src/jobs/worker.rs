@@ -279,16 +279,15 @@ impl WorkerContext {
 mod tests {
     use std::sync::mpsc;
 
-    use meshwright_wire::{Results, Status, Submission};
+    use meshwright_wire::{Results, Submission};
     use metrics::LocalRecorderGuard;
     use metrics_exporter_prometheus::{PrometheusBuilder, PrometheusHandle};
     use serde_json::json;
     use tokio_util::sync::CancellationToken;
 
     use super::super::clock::Clock;
-    use super::super::job::Job;
     use super::super::queue::{Member, Rules};
-    use super::super::store::{DatabaseAddress, Store};
+    use super::super::store::{DatabaseAddress, Job, Status, Store};
     use super::*;
     use crate::testing::RESULTS;
 

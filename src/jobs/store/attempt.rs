@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 
 use jiff::{SignedDuration, Timestamp};
-use meshwright_wire::Status;
 use serde_json::{Value, json};
 use uuid::Uuid;
 
@@ -11,8 +10,7 @@ use super::documents::{Packed, forget_document, insert_documents};
 use super::endings::tell_ends;
 use super::rows::job_columns;
 use super::statement::{list, query_as};
-use super::{Store, StoreError, column, dialect, micros, shares};
-use crate::jobs::job::{Job, Progress};
+use super::{Job, Progress, Status, Store, StoreError, column, dialect, micros, shares};
 
 /// A word for one attempt at one job: only the latest claim may report or finish.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

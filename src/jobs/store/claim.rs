@@ -3,7 +3,6 @@
 use std::collections::BTreeSet;
 
 use jiff::Timestamp;
-use meshwright_wire::Kept;
 use sqlx::Row;
 
 use super::attempt::Lease;
@@ -13,8 +12,7 @@ use super::rows::{from_row, job_columns};
 use super::shares::{self, Here, Lane};
 use super::statement::{Connection, list, query, query_as, query_scalar};
 use super::submit::{Known, find_known};
-use super::{Store, StoreError, column, dialect, micros};
-use crate::jobs::job::Job;
+use super::{Job, Kept, Store, StoreError, column, dialect, micros};
 
 /// A job that a worker is to compute.
 #[derive(Debug, Clone, PartialEq)]
@@ -278,7 +276,7 @@ impl Look<'_> {
         for (id, sequence, input_hash, cost, keep, computed) in rows {
             self.behind = sequence;
             // A word that is not known keeps everything.
-            let keep = Kept::named(&keep).unwrap_or(Kept::Results);
+            let keep = Kept::of_word(&keep).unwrap_or(Kept::Results);
             let known = if computed != 0 {
                 find_known(connection, client, &input_hash, keep, reader.solver).await?
             } else {

@@ -8,12 +8,10 @@ use bytes::Bytes;
 use flate2::read::GzDecoder;
 use flate2::write::GzEncoder;
 use flate2::{Compression, Crc};
-use meshwright_wire::hash::sha256_hex;
-use meshwright_wire::{Code, Problem};
 use serde_json::json;
-use tracing::error;
 use uuid::Uuid;
 
+use super::hash::sha256_hex;
 use super::statement::{Connection, list, query, query_as, query_scalar};
 use super::{Store, StoreError, dialect};
 
@@ -143,15 +141,6 @@ pub(super) type Columns = (String, String, Vec<u8>, Option<i64>);
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("the document {0} is damaged")]
 pub struct Damaged(String);
-
-impl Damaged {
-    /// What clients are told. The cause stands in the log.
-    pub fn problem(&self) -> Problem {
-        error!(error = %self, "the database is damaged");
-        let detail = "A document that is needed was changed since it was stored, by a fault of the disk or by other means. The failure has been logged.";
-        Problem::new(Code::DocumentDamaged, detail)
-    }
-}
 
 impl Document {
     pub(super) fn kept((hash, encoding, body, checksum): Columns) -> Self {

@@ -9,8 +9,7 @@ use super::documents::forget_document;
 use super::endings::{note_study, tell_end};
 use super::rows::job_columns;
 use super::statement::query_as;
-use super::{Store, StoreError, dialect, micros, shares};
-use crate::jobs::job::Job;
+use super::{Job, Store, StoreError, dialect, micros, shares};
 
 /// Which running jobs have lost their worker.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -8,8 +8,7 @@ use uuid::Uuid;
 use super::outbox::{EventKind, tell};
 use super::rows::study_columns;
 use super::statement::{Connection, query_as, query_scalar};
-use crate::jobs::job::Job;
-use crate::jobs::study::StudyRecord;
+use super::{Job, StudyRecord};
 
 /// Notes that `job` has ended, in the same transaction.
 pub(super) async fn tell_end(

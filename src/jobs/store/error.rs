@@ -28,6 +28,16 @@ impl From<sqlx::Error> for StoreError {
 }
 
 impl StoreError {
+    /// Nothing can be stored, for a cause that was found before.
+    pub fn unavailable(cause: String) -> Self {
+        sqlx::Error::Io(std::io::Error::other(cause)).into()
+    }
+
+    /// The store did not answer in the time that its caller had.
+    pub fn timed_out() -> Self {
+        sqlx::Error::PoolTimedOut.into()
+    }
+
     /// Whether it is worth trying again.
     pub fn may_pass(&self) -> bool {
         matches!(self, Self::Unavailable(_))

@@ -8,7 +8,7 @@ use super::statement::{query, query_as};
 use super::{Store, StoreError};
 
 /// What the bearer of a key may do.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Role {
     /// Everything with the jobs of its client.
     Client,
@@ -28,7 +28,8 @@ impl Role {
         }
     }
 
-    fn of_word(word: &str) -> Self {
+    /// What a word stands for.
+    pub fn of_word(word: &str) -> Self {
         match word {
             "client" => Self::Client,
             "operator" => Self::Operator,

@@ -4,15 +4,12 @@ use std::fmt;
 use std::str::FromStr;
 
 use jiff::Timestamp;
-use meshwright_wire::Status;
 use uuid::Uuid;
 
 use super::documents::checked;
 use super::rows::{job_columns, of_table, study_columns};
 use super::statement::{Dialect, Record, Statement, Text, query_as, query_scalar};
-use super::{Damaged, Store, StoreError, dialect};
-use crate::jobs::job::Job;
-use crate::jobs::study::StudyRecord;
+use super::{Damaged, Job, Status, Store, StoreError, StudyRecord, dialect};
 
 /// Which jobs of a client to list. An absent part does not select.
 #[derive(Debug, Clone, Default)]

@@ -29,7 +29,9 @@ mod documents;
 mod end;
 mod endings;
 mod error;
+mod hash;
 mod health;
+mod job;
 mod keys;
 mod lists;
 pub(crate) mod lock;
@@ -40,8 +42,10 @@ mod private;
 mod retention;
 pub(crate) mod rows;
 mod shares;
+mod state;
 pub(crate) mod statement;
 mod studies;
+mod study;
 mod study_tables;
 mod submit;
 #[cfg(test)]
@@ -50,22 +54,24 @@ mod write;
 
 use std::sync::Arc;
 
-use jiff::SignedDuration;
-use uuid::Uuid;
-
 use database_files::DatabaseFiles;
 use health::Health;
+use jiff::SignedDuration;
 use statement::Pool;
+use uuid::Uuid;
 
 pub use address::DatabaseAddress;
 pub use backup::BackupError;
 pub use documents::{Damaged, Document};
 pub use error::StoreError;
+pub use job::{Job, Progress};
 pub use keys::{KeyRecord, Role};
 pub use lists::{Cursor, Depth, Filter, Membership, NoCursor, Span, StudyFilter};
 pub use open::{Migrate, OpenError};
 pub use outbox::EventKind;
 pub use retention::{Removed, Space};
+pub use state::{Kept, Status};
+pub use study::StudyRecord;
 pub use study_tables::DocumentLine;
 
 pub(super) use attempt::{Came, Claim, End, Ended, Lease};

@@ -1,11 +1,10 @@
 //! What other processes tell, where there are any: the server passes it on with each commit (see `migrations/postgres`).
 
-use meshwright_wire::Status;
 use sqlx::postgres::PgListener;
 use uuid::Uuid;
 
 use super::statement::Pool;
-use super::{Store, StoreError};
+use super::{Status, Store, StoreError};
 
 /// The channel on which the triggers tell.
 const CHANNEL: &str = "meshwright";

@@ -51,7 +51,7 @@ pub(super) fn migrations(dialect: Dialect) -> Migrator {
 }
 
 /// Who brings the tables up to date.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Migrate {
     /// Every process that starts, where there is something to do.
     Auto,

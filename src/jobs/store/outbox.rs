@@ -2,22 +2,18 @@
 //! and none tells what did not happen. How they leave is the business of `webhooks`.
 
 use jiff::Timestamp;
-use meshwright_wire::Status;
-use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
+use serde::Serialize;
 use uuid::Uuid;
 
 use super::statement::{Connection, query, query_as};
-use super::{Store, StoreError};
+use super::{Status, Store, StoreError};
 
 /// What can be told.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EventKind {
     /// A job that stands alone has ended.
-    #[serde(rename = "job.ended")]
     JobEnded,
     /// A study has ended.
-    #[serde(rename = "study.ended")]
     StudyEnded,
 }
 

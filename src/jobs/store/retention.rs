@@ -8,8 +8,7 @@ use uuid::Uuid;
 use super::documents::forget_document;
 use super::rows::job_columns;
 use super::statement::{Pool, query, query_as, query_scalar};
-use super::{DatabaseAddress, Store, StoreError, dialect};
-use crate::jobs::job::Job;
+use super::{DatabaseAddress, Job, Store, StoreError, dialect};
 
 /// So many jobs are removed in one commit.
 const REMOVED_AT_ONCE: u32 = 100;

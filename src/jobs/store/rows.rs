@@ -1,15 +1,12 @@
 //! Rows of the database as what they mean.
 
 use jiff::{SignedDuration, Timestamp};
-use meshwright_wire::warning::GearName;
-use meshwright_wire::{Kept, Status};
 use sqlx::Row;
 use sqlx::postgres::PgRow;
 use sqlx::sqlite::SqliteRow;
 use uuid::Uuid;
 
-use crate::jobs::job::{Job, Progress};
-use crate::jobs::study::StudyRecord;
+use super::{Job, Kept, Progress, Status, StudyRecord};
 
 /// Reads a type from the rows of both databases by the same words.
 macro_rules! from_row {
@@ -119,9 +116,7 @@ from_row! {
             sequence: row.try_get("sequence")?,
             name: row.try_get("name")?,
             tags: json("tags", &row.try_get::<String, _>("tags")?)?,
-            gear: row
-                .try_get::<String, _>("gear")
-                .map(|word| GearName::of_word(&word).unwrap_or(GearName::Driven))?,
+            gear: row.try_get("gear")?,
             total: count(row, "total")?,
             expanded: count(row, "expanded")?,
             unbuildable: count(row, "unbuildable")?,
@@ -170,7 +165,7 @@ pub(crate) fn status(row: &impl Cells, column: &'static str) -> Result<Status, s
 
 pub(crate) fn keep(row: &impl Cells, column: &'static str) -> Result<Kept, sqlx::Error> {
     let word = row.text(column)?.unwrap_or_default();
-    Kept::named(&word).ok_or_else(|| undecodable(column, UnknownWord(word)))
+    Kept::of_word(&word).ok_or_else(|| undecodable(column, UnknownWord(word)))
 }
 
 pub(crate) fn json<T: serde::de::DeserializeOwned>(

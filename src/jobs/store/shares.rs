@@ -7,9 +7,8 @@
 
 use std::collections::BTreeSet;
 
-use uuid::Uuid;
-
 use sqlx::Row;
+use uuid::Uuid;
 
 use super::dialect;
 use super::rows::from_row;

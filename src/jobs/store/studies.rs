@@ -4,8 +4,6 @@
 use std::collections::BTreeSet;
 
 use jiff::{SignedDuration, Timestamp};
-use meshwright_wire::Status;
-use meshwright_wire::warning::GearName;
 use serde_json::json;
 use uuid::Uuid;
 
@@ -13,7 +11,7 @@ use super::documents::{checksum, forget_document};
 use super::endings::note_study;
 use super::statement::{Connection, list, query, query_as, query_scalar};
 use super::submit::{QueueBounds, find_known, insert_jobs, insert_submissions, words};
-use super::{NewJob, Store, StoreError, column, dialect, micros, shares};
+use super::{NewJob, Status, Store, StoreError, column, dialect, micros, shares};
 
 /// So many jobs of studies may wait; further studies are refused.
 pub(in crate::jobs) const MOST_WAITING_DESIGNS: i64 = 250_000;
@@ -38,7 +36,7 @@ pub(in crate::jobs) struct NewStudy {
     /// The version of its base's document.
     pub(in crate::jobs) document_version: i64,
     pub(in crate::jobs) body_hash: String,
-    pub(in crate::jobs) gear: GearName,
+    pub(in crate::jobs) gear: String,
     pub(in crate::jobs) total: u64,
     /// How a search stands before it begins.
     pub(in crate::jobs) search: Option<String>,
@@ -373,7 +371,7 @@ async fn insert_study(connection: &mut Connection, study: &NewStudy) -> Result<(
         .bind(&study.name)
         .bind(words(&study.tags))
         .bind(&study.body_hash)
-        .bind(study.gear.word())
+        .bind(&study.gear)
         .bind(column(study.total))
         .bind(study.submitted_at.as_microsecond())
         .bind(&study.idempotency_key)

@@ -3,17 +3,15 @@
 use std::collections::{BTreeSet, HashMap};
 
 use jiff::Timestamp;
-use meshwright_wire::Kept;
-use meshwright_wire::hash::sha256_hex;
 use serde_json::json;
 use uuid::Uuid;
 
 use super::documents::checksum;
 use super::endings::tell_end;
+use super::hash::sha256_hex;
 use super::rows::job_columns;
 use super::statement::{Connection, list, query, query_as};
-use super::{Store, StoreError, column, dialect, shares};
-use crate::jobs::job::Job;
+use super::{Job, Kept, Store, StoreError, column, dialect, shares};
 
 /// A job to be queued.
 #[derive(Debug, Clone)]

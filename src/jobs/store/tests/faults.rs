@@ -2,8 +2,6 @@
 
 use std::fs;
 
-use meshwright_wire::Status;
-
 use super::*;
 use crate::jobs::store::{OpenError, StoreError};
 

@@ -5,7 +5,7 @@ use crate::jobs::store::BackupError;
 
 /// A large document, another one for each name.
 fn large(name: &str) -> Packed {
-    let line = |i: usize| meshwright_wire::hash::sha256_hex(format!("{name} {i}"));
+    let line = |i: usize| crate::jobs::store::hash::sha256_hex(&format!("{name} {i}"));
     Packed::of(&(0..2000).map(line).collect::<String>())
 }
 

@@ -1,7 +1,5 @@
 //! Lists: what they select, in what order, and how little they read for it.
 
-use meshwright_wire::Status;
-
 use super::*;
 use crate::jobs::store::{Filter, Span};
 

@@ -1,6 +1,5 @@
 //! A database of the version before this one is brought up to date, and loses nothing.
 
-use meshwright_wire::Status;
 use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{ConnectOptions, Connection};
 

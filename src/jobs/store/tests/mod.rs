@@ -10,16 +10,14 @@ mod plans;
 mod server;
 
 use jiff::{SignedDuration, Timestamp};
-use meshwright_wire::Kept;
 use tempfile::TempDir;
 use uuid::Uuid;
 
 use super::statement::{Pool, query, query_as, query_scalar};
 use super::{
-    Came, Claim, DatabaseAddress, End, Ended, Lease, Lost, NewJob, Outcome, Packed, QueueBounds,
-    Reader, Store, StoreError,
+    Came, Claim, DatabaseAddress, End, Ended, Job, Kept, Lease, Lost, NewJob, Outcome, Packed,
+    Progress, QueueBounds, Reader, Status, Store, StoreError,
 };
-use crate::jobs::job::{Job, Progress};
 
 const VERSION: &str = "1.0";
 const READER: Reader<'static> = Reader {

@@ -1,7 +1,5 @@
 //! How little SQLite reads for an answer.
 
-use meshwright_wire::Status;
-
 use super::*;
 use crate::jobs::store::dialect::sqlite::NEXT_WAITING;
 use crate::jobs::store::statement::Dialect;

@@ -1,6 +1,5 @@
 //! The transitions of a job.
 
-use meshwright_wire::Status;
 use uuid::Uuid;
 
 use super::*;

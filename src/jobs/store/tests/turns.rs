@@ -1,8 +1,5 @@
 //! Whose turn it is: clients, studies and jobs alone, equal jobs, and jobs that may have brought a process down.
 
-use meshwright_wire::Status;
-use meshwright_wire::warning::GearName;
-
 use super::*;
 use crate::jobs::store::{NewRow, NewStudy, StudyOutcome};
 
@@ -35,7 +32,7 @@ async fn study_with(store: &Store, id: Uuid, client: &str, inputs: Vec<String>) 
         document: "{}".to_owned(),
         document_version: 1,
         body_hash: String::new(),
-        gear: GearName::Driven,
+        gear: "driven".to_owned(),
         total: inputs.len() as u64,
         search: None,
         submitted_at: at(1),

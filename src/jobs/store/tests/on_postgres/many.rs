@@ -3,13 +3,11 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use meshwright_wire::Status;
-use meshwright_wire::warning::GearName;
 use tokio::sync::Barrier;
 
 use super::*;
+use crate::jobs::store::StudyRecord;
 use crate::jobs::store::{NewRow, NewStudy, Notice, StudyOutcome};
-use crate::jobs::study::StudyRecord;
 
 /// Another process on the same database.
 async fn another(place: &DatabaseAddress) -> Store {
@@ -244,7 +242,7 @@ fn study(total: u64) -> NewStudy {
         document: "{}".to_owned(),
         document_version: 1,
         body_hash: "h".to_owned(),
-        gear: GearName::Driven,
+        gear: "driven".to_owned(),
         total,
         search: None,
         submitted_at: at(1),

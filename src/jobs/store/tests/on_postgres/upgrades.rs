@@ -1,7 +1,5 @@
 //! Tables that another version has changed meanwhile.
 
-use meshwright_wire::Status;
-
 use super::*;
 use crate::jobs::store::{Filter, Migrate, OpenError, StudyFilter};
 

@@ -4,7 +4,7 @@ use jiff::{SignedDuration, Timestamp};
 use serde_json::Value;
 use uuid::Uuid;
 
-use meshwright_wire::{Kept, Status};
+use super::{Kept, Status};
 
 /// Mesh positions solved, of those to solve, over all torques. Never time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
