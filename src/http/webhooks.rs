@@ -14,7 +14,7 @@ use super::document::Document;
 use super::parameters::{IdempotencyKey, WebhookId};
 use super::problem::Refusal;
 use crate::jobs::EventKind as Kind;
-use crate::webhooks::{Delivery, Webhook};
+use crate::jobs::store::webhooks::{Delivery, Webhook};
 
 /// What can be told.
 #[derive(Clone, Copy, PartialEq, Serialize, Deserialize, ToSchema)]

@@ -50,6 +50,7 @@ mod study_tables;
 mod submit;
 #[cfg(test)]
 mod tests;
+pub mod webhooks;
 mod write;
 
 use std::sync::Arc;

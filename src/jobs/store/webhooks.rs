@@ -1,16 +1,14 @@
-//! What is kept of webhooks and of the messages to them. Everything that is to happen later goes by the store's clock, so that
-//! processes whose clocks differ agree on it.
+//! Webhooks and the messages to them. Everything that is to happen later goes by the clock that all processes on the store share, so that
+//! processes whose clocks differ agree on it; each says its steady clock, which is that clock where there is one process.
 
 use jiff::{SignedDuration, Timestamp};
 use sqlx::Row;
 use uuid::Uuid;
 
-use super::addresses::HookRules;
-use crate::jobs::store::outbox::NewMessage;
-use crate::jobs::store::rows::{from_row, instant, optional_instant, optional_uuid, small, uuid};
-use crate::jobs::store::statement::{Nothing, Statement, query, query_as, query_scalar};
-use crate::jobs::store::{StoreError, dialect, micros};
-use crate::jobs::{EventKind, Jobs, KEY_LIFETIME};
+use super::outbox::NewMessage;
+use super::rows::{from_row, instant, optional_instant, optional_uuid, small, uuid};
+use super::statement::{Nothing, Statement, query, query_as, query_scalar};
+use super::{EventKind, Store, StoreError, dialect, micros};
 
 /// The kind of a message that tells nothing.
 const PING: &str = "webhook.ping";
@@ -59,7 +57,8 @@ pub struct Webhook {
 }
 
 impl Webhook {
-    pub(super) fn new(url: String, events: Vec<EventKind>, created_at: Timestamp) -> Self {
+    /// A new webhook, which has not failed yet.
+    pub fn new(url: String, events: Vec<EventKind>, created_at: Timestamp) -> Self {
         Self {
             id: Uuid::now_v7(),
             url,
@@ -108,20 +107,23 @@ from_row! {
 }
 
 /// A webhook to be kept.
-pub(super) struct NewWebhook {
-    pub(super) webhook: Webhook,
-    pub(super) client: String,
+pub struct NewWebhook {
+    /// The webhook.
+    pub webhook: Webhook,
+    /// Whose it is.
+    pub client: String,
     /// The key of the signatures, base64.
-    pub(super) secret: String,
-    /// The word under which the client may ask again and get this webhook, and the hash of what it asks for.
-    pub(super) idempotency_key: Option<String>,
-    pub(super) body_hash: String,
+    pub secret: String,
+    /// The word under which the client may ask again and get this webhook.
+    pub idempotency_key: Option<String>,
+    /// The hash of what is asked for.
+    pub body_hash: String,
     /// So many may a client have.
-    pub(super) most: i64,
+    pub most: i64,
 }
 
 /// What came of it.
-pub(super) enum Outcome {
+pub enum Outcome {
     /// It is kept.
     Made,
     /// The same was asked for before under this key: that webhook, and its secret.
@@ -173,78 +175,78 @@ from_row! {
 
 /// A webhook for which something waits.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Waiting {
-    pub(super) webhook: Uuid,
-    pub(super) client: String,
-    pub(super) is_failing: bool,
+pub struct Waiting {
+    /// The webhook.
+    pub webhook: Uuid,
+    /// Whose it is.
+    pub client: String,
+    /// Whether the last attempt has failed.
+    pub is_failing: bool,
     /// How long it is not to be tried yet.
-    pub(super) patience: SignedDuration,
+    pub patience: SignedDuration,
 }
 
 /// A message to be sent.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Message {
-    pub(super) id: Uuid,
-    pub(super) webhook: Uuid,
-    pub(super) url: String,
+pub struct Message {
+    /// Its id, the same at every attempt.
+    pub id: Uuid,
+    /// The webhook.
+    pub webhook: Uuid,
+    /// Where it is sent.
+    pub url: String,
     /// What it is signed with: the secret, and for a day the one before.
-    pub(super) secrets: Vec<String>,
-    pub(super) body: String,
+    pub secrets: Vec<String>,
+    /// Its body, JSON.
+    pub body: String,
     /// When it was taken, by the store's clock.
     taken_at: i64,
 }
 
 /// What came of an attempt.
-pub(super) struct Attempt {
+pub struct Attempt {
     /// The HTTP status, if there was an answer.
-    pub(super) answered: Option<u16>,
+    pub answered: Option<u16>,
     /// Why the message was not taken, if it was not.
-    pub(super) refusal: Option<Refusal>,
+    pub refusal: Option<Refusal>,
 }
 
 /// Why a message was not taken.
-pub(super) enum Refusal {
+pub enum Refusal {
     /// It may be the next time.
     Again(String),
     /// It will not be.
     Never(String),
 }
 
-/// The webhooks of all clients.
-#[derive(Clone)]
-pub struct Webhooks {
-    pub(super) jobs: Jobs,
-    pub(super) rules: HookRules,
-}
-
-impl Webhooks {
-    /// Webhooks that are told of `jobs`, by these rules.
-    pub fn new(jobs: Jobs, rules: HookRules) -> Self {
-        Self { jobs, rules }
-    }
-
+impl Store {
     /// Now, by the clock that all processes on the store share.
-    async fn store_now(&self) -> Result<i64, StoreError> {
-        let steady = self.jobs.clock().steady();
+    async fn shared_now(&self, steady: Timestamp) -> Result<i64, StoreError> {
         let now = query_scalar(dialect::steady_now()).bind(steady.as_microsecond());
-        Ok(now.fetch_one(&self.jobs.store().readers).await?)
+        Ok(now.fetch_one(&self.readers).await?)
     }
 
     /// Carries out a statement by itself. Gives back how many rows it was about.
     async fn write(&self, statement: Statement<Nothing>) -> Result<u64, StoreError> {
-        let mut write = self.jobs.store().begin().await?;
+        let mut write = self.begin().await?;
         let changed = statement.execute(&mut *write).await?;
         write.commit().await?;
         Ok(changed)
     }
 
-    pub(super) async fn store_new(&self, new: &NewWebhook) -> Result<Outcome, StoreError> {
-        let now = self.store_now().await?;
-        let mut write = self.jobs.store().begin().await?;
+    /// Keeps a new webhook. Keys under which webhooks were made are forgotten after `keys_last`.
+    pub async fn add_webhook(
+        &self,
+        new: &NewWebhook,
+        steady: Timestamp,
+        keys_last: SignedDuration,
+    ) -> Result<Outcome, StoreError> {
+        let now = self.shared_now(steady).await?;
+        let mut write = self.begin().await?;
         query(dialect::lock_webhooks()).execute(&mut *write).await?;
         query("update webhooks set idempotency_key = null where client = $1 and keyed_at < $2")
             .bind(&new.client)
-            .bind(now.saturating_sub(micros(KEY_LIFETIME)))
+            .bind(now.saturating_sub(micros(keys_last)))
             .execute(&mut *write)
             .await?;
         if let Some(key) = &new.idempotency_key {
@@ -298,7 +300,7 @@ impl Webhooks {
     }
 
     /// The webhooks of a client, the oldest first, or the one of this id.
-    pub(super) async fn stored(
+    pub async fn webhooks(
         &self,
         client: &str,
         id: Option<Uuid>,
@@ -308,13 +310,13 @@ impl Webhooks {
         ))
         .bind(client)
         .bind(id.map(|id| id.to_string()))
-        .fetch_all(&self.jobs.store().readers)
+        .fetch_all(&self.readers)
         .await?;
         Ok(webhooks)
     }
 
-    /// False if the client has no such webhook.
-    pub(super) async fn remove(&self, client: &str, id: Uuid) -> Result<bool, StoreError> {
+    /// Removes a webhook and its messages. False if the client has no such webhook.
+    pub async fn remove_webhook(&self, client: &str, id: Uuid) -> Result<bool, StoreError> {
         let deleted = query("delete from webhooks where id = $1 and client = $2")
             .bind(id.to_string())
             .bind(client);
@@ -322,7 +324,7 @@ impl Webhooks {
     }
 
     /// The latest messages to a webhook, the newest first, or the one of this id.
-    pub(super) async fn stored_deliveries(
+    pub async fn deliveries(
         &self,
         webhook: Uuid,
         id: Option<Uuid>,
@@ -334,16 +336,15 @@ impl Webhooks {
         .bind(webhook.to_string())
         .bind(id.map(|id| id.to_string()))
         .bind(LISTED)
-        .fetch_all(&self.jobs.store().readers)
+        .fetch_all(&self.readers)
         .await?;
         Ok(deliveries)
     }
 
     /// Writes a ping, unless one waits, and has the webhook tried at once. Gives back the id of the message.
-    pub(super) async fn store_ping(&self, webhook: Uuid) -> Result<Uuid, StoreError> {
-        let now = self.jobs.clock().now();
+    pub async fn ping_webhook(&self, webhook: Uuid, now: Timestamp) -> Result<Uuid, StoreError> {
         let id = webhook.to_string();
-        let mut write = self.jobs.store().begin().await?;
+        let mut write = self.begin().await?;
         // Whoever pings beside us waits here.
         query("update webhooks set retry_at = 0 where id = $1")
             .bind(&id)
@@ -371,7 +372,8 @@ impl Webhooks {
         Ok(message)
     }
 
-    pub(super) async fn store_enabled(&self, webhook: Uuid) -> Result<(), StoreError> {
+    /// Takes up a webhook again, whatever has failed before.
+    pub async fn enable_webhook(&self, webhook: Uuid) -> Result<(), StoreError> {
         let enabled = query(
             "update webhooks set disabled_at = null, failures = 0, retry_at = 0, problem = null where id = $1",
         );
@@ -379,9 +381,15 @@ impl Webhooks {
         Ok(())
     }
 
-    pub(super) async fn store_secret(&self, webhook: Uuid, secret: &str) -> Result<(), StoreError> {
+    /// Gives a webhook another secret. For a day messages are signed with the one before, too.
+    pub async fn rotate_secret(
+        &self,
+        webhook: Uuid,
+        secret: &str,
+        steady: Timestamp,
+    ) -> Result<(), StoreError> {
         let until = self
-            .store_now()
+            .shared_now(steady)
             .await?
             .saturating_add(micros(BOTH_SECRETS_FOR));
         let rotated = query("update webhooks set previous_secret = secret, previous_until = $3, secret = $2 where id = $1")
@@ -393,14 +401,14 @@ impl Webhooks {
     }
 
     /// The webhooks for which something waits.
-    pub(super) async fn waiting(&self) -> Result<Vec<Waiting>, StoreError> {
-        let now = self.store_now().await?;
+    pub async fn waiting_webhooks(&self, steady: Timestamp) -> Result<Vec<Waiting>, StoreError> {
+        let now = self.shared_now(steady).await?;
         let found: Vec<(String, String, i64, i64)> = query_as(
             "select w.id, w.client, w.failures, w.retry_at from webhooks w
              where w.disabled_at is null
                and exists (select 1 from messages m where m.webhook = w.id and m.arrived_at is null)",
         )
-        .fetch_all(&self.jobs.store().readers)
+        .fetch_all(&self.readers)
         .await?;
         let waiting = |(id, client, failures, retry_at): (String, String, i64, i64)| {
             Some(Waiting {
@@ -414,14 +422,15 @@ impl Webhooks {
     }
 
     /// Takes at most so many messages to a webhook, the oldest first, and a ping before them. Nobody else takes them for a while.
-    pub(super) async fn take(
+    pub async fn take_messages(
         &self,
         webhook: Uuid,
         most: usize,
+        steady: Timestamp,
     ) -> Result<Vec<Message>, StoreError> {
-        let now = self.store_now().await?;
+        let now = self.shared_now(steady).await?;
         let id = webhook.to_string();
-        let mut write = self.jobs.store().begin().await?;
+        let mut write = self.begin().await?;
         let mut taken: Vec<(String, String)> = Vec::new();
         for statement in [dialect::take_pings(), dialect::take_messages()] {
             let left = u32::try_from(most.saturating_sub(taken.len())).unwrap_or(u32::MAX);
@@ -466,8 +475,8 @@ impl Webhooks {
     }
 
     /// What another process had taken, where there is no other one: it was this one, before its start.
-    pub(super) async fn give_back_all(&self) -> Result<(), StoreError> {
-        if self.jobs.store().is_shared() {
+    pub async fn give_back_messages(&self) -> Result<(), StoreError> {
+        if self.is_shared() {
             return Ok(());
         }
         self.write(query(
@@ -478,17 +487,19 @@ impl Webhooks {
     }
 
     /// Writes down what came of an attempt. True if the webhook is given up with it.
-    pub(super) async fn attempted(
+    pub async fn attempted(
         &self,
         message: &Message,
         attempt: &Attempt,
+        steady: Timestamp,
+        now: Timestamp,
     ) -> Result<bool, StoreError> {
-        let at = self.jobs.clock().now().as_microsecond();
-        let now = self.store_now().await?;
+        let at = now.as_microsecond();
+        let now = self.shared_now(steady).await?;
         let problem = attempt.refusal.as_ref().map(|refusal| match refusal {
             Refusal::Again(why) | Refusal::Never(why) => why,
         });
-        let mut write = self.jobs.store().begin().await?;
+        let mut write = self.begin().await?;
         query(
             "update messages set attempts = attempts + 1, attempted_at = $2, answered = $3, problem = $4, arrived_at = $5, next_at = 0
              where id = $1",
