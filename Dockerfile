@@ -15,9 +15,9 @@ COPY crates/paper/Cargo.toml crates/paper/build.rs crates/paper/
 COPY crates/plot/Cargo.toml crates/plot/
 COPY crates/sample/Cargo.toml crates/sample/
 COPY crates/search/Cargo.toml crates/search/
-COPY migrations migrations
+COPY crates/store/Cargo.toml crates/store/
 RUN mkdir -p web src/http benches/load crates/engine/benches && touch src/http/docs.js src/lib.rs \
-    && for name in engine exchange paper plot sample search; do mkdir -p crates/$name/src && touch crates/$name/src/lib.rs; done \
+    && for name in engine exchange paper plot sample search store; do mkdir -p crates/$name/src && touch crates/$name/src/lib.rs; done \
     && for file in src/main benches/load/main crates/engine/benches/jobs crates/engine/benches/parts crates/paper/src/main; do \
          echo 'fn main() {}' > "$file.rs"; done \
     && cargo build --release --locked --bin meshwright

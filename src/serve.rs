@@ -7,6 +7,7 @@ use std::time::Duration;
 use anyhow::{Context, bail};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
+use meshwright_store::{DatabaseLock, LockError};
 use meshwright_wire::{Problem, Results, Submission};
 use tokio::net::TcpListener;
 use tokio_util::sync::CancellationToken;
@@ -17,7 +18,6 @@ use crate::config::{Config, Part};
 use crate::http::{
     Access, App, BodyMemory, Edge, KeysRule, Outlines, Readings, Server, router, router_of_metrics,
 };
-use crate::jobs::store::lock::{DatabaseLock, LockError};
 use crate::jobs::{Clock, DatabaseAddress, Jobs, Keeper, Migrate, OpenError, Store, Workers};
 use crate::tokens::Tokens;
 use crate::webhooks::{Deliveries, HookRules, Webhooks};

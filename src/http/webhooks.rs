@@ -4,6 +4,7 @@ use axum::Json;
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use jiff::Timestamp;
+use meshwright_store::webhooks::{Delivery, Webhook};
 use meshwright_wire::{Code, Problem, view};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -14,7 +15,6 @@ use super::document::Document;
 use super::parameters::{IdempotencyKey, WebhookId};
 use super::problem::Refusal;
 use crate::jobs::EventKind as Kind;
-use crate::jobs::store::webhooks::{Delivery, Webhook};
 
 /// What can be told.
 #[derive(Clone, Copy, PartialEq, Serialize, Deserialize, ToSchema)]

@@ -9,6 +9,9 @@ use std::time::Duration;
 
 use jiff::{SignedDuration, Timestamp};
 use meshwright_engine::run::Run;
+use meshwright_store::{
+    Came, Claim, Damaged, End, Ended, Job, Kept, Packed, Progress, Started, StoreError,
+};
 use meshwright_wire::{Code, Problem, SOLVER_VERSION, Submission, Summary, memory_of};
 use opentelemetry::KeyValue;
 use opentelemetry::trace::SpanId;
@@ -19,9 +22,6 @@ use uuid::Uuid;
 
 use super::error::damage_problem;
 use super::live::Entered;
-use super::store::{
-    Came, Claim, Damaged, End, Ended, Job, Kept, Packed, Progress, Started, StoreError,
-};
 use super::worker_context::{Threads, WorkerContext};
 use crate::compute::{Budget, Solve, message_of};
 use crate::spans::{self, Span};

@@ -1,13 +1,13 @@
 //! The designs of a study: the jobs that they become, and the rows in which they stand with what has come of them.
 
 use jiff::Timestamp;
+use meshwright_store::{Damaged, DocumentLine, Kept, NewJob, NewRow, StoredRow};
 use meshwright_wire::{Design, RowState, Status, Study, memory_above, too_much_memory};
 use uuid::Uuid;
 
 use super::error::JobError;
 use super::queue::{Jobs, new_job, rough_cost};
 use super::shown::kept_by;
-use super::store::{Damaged, DocumentLine, Kept, NewJob, NewRow, StoredRow};
 
 /// So many designs are expanded and written in one transaction. Others write in between.
 pub(super) const CHUNK: usize = 500;

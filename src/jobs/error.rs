@@ -1,10 +1,9 @@
 //! Why something cannot be done with a job or a study.
 
+use meshwright_store::{Damaged, Status, StoreError};
 use meshwright_wire::{Code, Problem};
 use tracing::error;
 use uuid::Uuid;
-
-use super::store::{Damaged, Status, StoreError};
 
 /// Why something cannot be done with a job or a study.
 #[derive(Debug, Clone, thiserror::Error)]

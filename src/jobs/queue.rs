@@ -5,6 +5,9 @@ use std::time::Duration;
 
 use jiff::Timestamp;
 use meshwright_engine::analysis::Method;
+use meshwright_store::{
+    Depth, Document, Filter, Job, Kept, NewJob, Outcome, QueueBounds, Status, Store, StoreError,
+};
 use meshwright_wire::{DOCUMENT_VERSION, SOLVER_VERSION, Submission};
 use tokio::sync::{Notify, mpsc, oneshot};
 use tokio_util::sync::CancellationToken;
@@ -15,9 +18,6 @@ use super::error::JobError;
 use super::live::{Changes, Live, News};
 use super::others;
 use super::resource::{Listed, Submitted};
-use super::store::{
-    Depth, Document, Filter, Job, Kept, NewJob, Outcome, QueueBounds, Status, Store, StoreError,
-};
 use crate::compute::Budget;
 use crate::machine;
 

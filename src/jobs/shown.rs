@@ -1,8 +1,7 @@
 //! The states of the store in the words of documents.
 
+use meshwright_store::{Kept, Status};
 use meshwright_wire as wire;
-
-use super::store::{Kept, Status};
 
 /// Where a job or a study stands.
 pub fn shown_status(status: Status) -> wire::Status {

@@ -1,9 +1,8 @@
 //! What the record of a study says in the words of documents.
 
+use meshwright_store::{Status, StudyRecord};
 use meshwright_wire::warning::GearName;
 use meshwright_wire::{Code, Problem, SearchState};
-
-use super::store::{Status, StudyRecord};
 
 /// The gear whose mass and holes the table of a study tells.
 pub fn gear_of(study: &StudyRecord) -> GearName {

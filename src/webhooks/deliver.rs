@@ -12,6 +12,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
 use hmac::{Hmac, KeyInit, Mac};
 use hyper::{Request, StatusCode};
+use meshwright_store::webhooks::{Attempt, Message, Refusal, Waiting};
 use reqwest::Body;
 use reqwest::Url;
 use sha2::Sha256;
@@ -24,7 +25,6 @@ use super::hooks::Webhooks;
 use super::send::Sender;
 use crate::compute::{Budget, Part};
 use crate::jobs::StoreError;
-use crate::jobs::store::webhooks::{Attempt, Message, Refusal, Waiting};
 
 /// So many messages are on their way at the same time, so many of them of one client, and so many to one webhook.
 const AT_ONCE: u64 = 32;

@@ -3,11 +3,11 @@
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
+use meshwright_store::webhooks::{Delivery, NewWebhook, Outcome, Webhook};
 use meshwright_wire::hash::sha256_hex_of;
 use uuid::Uuid;
 
 use super::addresses::HookRules;
-use crate::jobs::store::webhooks::{Delivery, NewWebhook, Outcome, Webhook};
 use crate::jobs::{EventKind, JobError, Jobs, KEY_LIFETIME, StoreError};
 
 /// So many webhooks may a client have.
