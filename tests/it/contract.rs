@@ -254,10 +254,7 @@ fn each_part_knows_only_the_parts_below_it() {
             "src/compute",
             &["crate::jobs", "crate::http", "crate::serve", "axum"],
         ),
-        (
-            "src",
-            &["sqlx"],
-        ),
+        ("src", &["sqlx"]),
         (
             "crates/store/src",
             &["meshwright_wire", "meshwright_engine", "axum", "hyper"],

@@ -3,12 +3,11 @@
 use std::collections::BTreeSet;
 
 use jiff::Timestamp;
-use sqlx::Row;
 
 use super::attempt::Lease;
 use super::documents::{Damaged, checked};
 use super::endings::tell_end;
-use super::rows::{from_row, job_columns};
+use super::rows::{Record, Row, job_columns};
 use super::shares::{self, Here, Lane};
 use super::statement::{Connection, list, query, query_as, query_scalar};
 use super::submit::{Known, find_known};
@@ -23,10 +22,10 @@ pub struct Started {
     pub submission: Result<String, Damaged>,
 }
 
-from_row! {
-    Started, |row| {
-        let job: Job = sqlx::FromRow::from_row(row)?;
-        let found = (row.try_get("submission")?, row.try_get("checksum")?);
+impl Record for Started {
+    fn read(row: &Row) -> Result<Self, sqlx::Error> {
+        let job: Job = Record::read(row)?;
+        let found = (row.get("submission")?, row.get("checksum")?);
         Ok(Self {
             submission: checked(format_args!("of the job {}", job.id), found),
             job,

@@ -1,9 +1,8 @@
 //! API keys as they are kept: who has them and what they may do. Of the secret part only the hash is kept.
 
 use jiff::Timestamp;
-use sqlx::Row;
 
-use super::rows::{from_row, instant, optional_instant, small};
+use super::rows::{Record, Row, instant, optional_instant, small};
 use super::statement::{query, query_as};
 use super::{Store, StoreError};
 
@@ -64,14 +63,14 @@ pub struct KeyRecord {
     pub revoked_at: Option<Timestamp>,
 }
 
-from_row! {
-    KeyRecord, |row| {
+impl Record for KeyRecord {
+    fn read(row: &Row) -> Result<Self, sqlx::Error> {
         Ok(Self {
-            id: row.try_get("id")?,
-            client: row.try_get("client")?,
-            name: row.try_get("name")?,
-            role: Role::of_word(&row.try_get::<String, _>("role")?),
-            secret_hash: row.try_get("secret_hash")?,
+            id: row.get("id")?,
+            client: row.get("client")?,
+            name: row.get("name")?,
+            role: Role::of_word(&row.get::<String>("role")?),
+            secret_hash: row.get("secret_hash")?,
             requests_per_second: small(row, "requests_per_second")?,
             queue_limit: small(row, "queue_limit")?,
             created_at: instant(row, "created_at")?,

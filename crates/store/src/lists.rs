@@ -7,8 +7,8 @@ use jiff::Timestamp;
 use uuid::Uuid;
 
 use super::documents::checked;
-use super::rows::{job_columns, of_table, study_columns};
-use super::statement::{Dialect, Record, Statement, Text, query_as, query_scalar};
+use super::rows::{Record, job_columns, of_table, study_columns};
+use super::statement::{Dialect, Statement, Text, query_as, query_scalar};
 use super::{Damaged, Job, Status, Store, StoreError, StudyRecord, dialect};
 
 /// Which jobs of a client to list. An absent part does not select.

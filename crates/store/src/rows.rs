@@ -1,27 +1,64 @@
 //! Rows of the database as what they mean.
 
 use jiff::{SignedDuration, Timestamp};
-use sqlx::Row;
-use sqlx::postgres::PgRow;
-use sqlx::sqlite::SqliteRow;
+use sqlx::postgres::{PgRow, Postgres};
+use sqlx::sqlite::{Sqlite, SqliteRow};
+use sqlx::{ColumnIndex, Decode, Row as _, Type};
 use uuid::Uuid;
 
 use super::{Job, Kept, Progress, Status, StudyRecord};
 
-/// Reads a type from the rows of both databases by the same words.
-macro_rules! from_row {
-    ($type:ty, |$row:ident| $read:block) => {
-        impl sqlx::FromRow<'_, sqlx::sqlite::SqliteRow> for $type {
-            fn from_row($row: &sqlx::sqlite::SqliteRow) -> Result<Self, sqlx::Error> $read
-        }
+/// A row of either database.
+pub(crate) enum Row {
+    Sqlite(SqliteRow),
+    Postgres(PgRow),
+}
 
-        impl sqlx::FromRow<'_, sqlx::postgres::PgRow> for $type {
-            fn from_row($row: &sqlx::postgres::PgRow) -> Result<Self, sqlx::Error> $read
+/// What a column of both databases is read as.
+pub(crate) trait Cell:
+    for<'r> Decode<'r, Sqlite> + Type<Sqlite> + for<'r> Decode<'r, Postgres> + Type<Postgres>
+{
+}
+
+impl<T> Cell for T where
+    T: for<'r> Decode<'r, Sqlite> + Type<Sqlite> + for<'r> Decode<'r, Postgres> + Type<Postgres>
+{
+}
+
+impl Row {
+    /// What stands in a column, by its name or number.
+    pub(crate) fn get<T: Cell>(
+        &self,
+        column: impl ColumnIndex<SqliteRow> + ColumnIndex<PgRow>,
+    ) -> Result<T, sqlx::Error> {
+        match self {
+            Self::Sqlite(row) => row.try_get(column),
+            Self::Postgres(row) => row.try_get(column),
+        }
+    }
+}
+
+/// What is read from a row.
+pub(crate) trait Record: Sized {
+    fn read(row: &Row) -> Result<Self, sqlx::Error>;
+}
+
+macro_rules! tuple {
+    ($($cell:ident $number:literal),+) => {
+        impl<$($cell: Cell),+> Record for ($($cell,)+) {
+            fn read(row: &Row) -> Result<Self, sqlx::Error> {
+                Ok(($(row.get($number)?,)+))
+            }
         }
     };
 }
 
-pub(crate) use from_row;
+tuple!(A 0_usize);
+tuple!(A 0_usize, B 1_usize);
+tuple!(A 0_usize, B 1_usize, C 2_usize);
+tuple!(A 0_usize, B 1_usize, C 2_usize, D 3_usize);
+tuple!(A 0_usize, B 1_usize, C 2_usize, D 3_usize, E 4_usize, F 5_usize);
+tuple!(A 0_usize, B 1_usize, C 2_usize, D 3_usize, E 4_usize, F 5_usize, G 6_usize);
 
 /// The columns of a job by their names, which is what every statement reads: a later version may add one meanwhile, and what
 /// `*` means would change under the statements that a server has prepared.
@@ -51,40 +88,17 @@ pub(crate) fn of_table(table: &str, columns: &str) -> String {
     columns.join(", ")
 }
 
-/// A row of either database, by the kinds of columns that there are.
-pub(crate) trait Cells {
-    fn integer(&self, column: &'static str) -> Result<Option<i64>, sqlx::Error>;
-    fn text(&self, column: &'static str) -> Result<Option<String>, sqlx::Error>;
-}
-
-macro_rules! cells {
-    ($row:ty) => {
-        impl Cells for $row {
-            fn integer(&self, column: &'static str) -> Result<Option<i64>, sqlx::Error> {
-                self.try_get(column)
-            }
-
-            fn text(&self, column: &'static str) -> Result<Option<String>, sqlx::Error> {
-                self.try_get(column)
-            }
-        }
-    };
-}
-
-cells!(SqliteRow);
-cells!(PgRow);
-
-from_row! {
-    Job, |row| {
-        let attempt: i64 = row.try_get("attempt")?;
-        let returned: i64 = row.try_get("returned")?;
-        let elapsed: Option<i64> = row.try_get("elapsed")?;
+impl Record for Job {
+    fn read(row: &Row) -> Result<Self, sqlx::Error> {
+        let attempt: i64 = row.get("attempt")?;
+        let returned: i64 = row.get("returned")?;
+        let elapsed: Option<i64> = row.get("elapsed")?;
         Ok(Self {
             id: uuid(row, "id")?,
-            sequence: row.try_get("sequence")?,
-            client: row.try_get("client")?,
-            method: row.try_get("method")?,
-            tags: json("tags", &row.try_get::<String, _>("tags")?)?,
+            sequence: row.get("sequence")?,
+            client: row.get("client")?,
+            method: row.get("method")?,
+            tags: json("tags", &row.get::<String>("tags")?)?,
             status: status(row, "status")?,
             attempt,
             attempts_counted: attempt - returned,
@@ -97,26 +111,26 @@ from_row! {
             finished_at: optional_instant(row, "finished_at")?,
             elapsed: elapsed.map(SignedDuration::from_micros),
             problem: row
-                .try_get::<Option<String>, _>("problem")?
+                .get::<Option<String>>("problem")?
                 .map(|text| json("problem", &text))
                 .transpose()?,
             keep: keep(row, "keep")?,
-            document: row.try_get("document")?,
-            solver_version: row.try_get("solver_version")?,
+            document: row.get("document")?,
+            solver_version: row.get("solver_version")?,
             same_as: optional_uuid(row, "same_as")?,
             study: optional_uuid(row, "study")?,
         })
     }
 }
 
-from_row! {
-    StudyRecord, |row| {
+impl Record for StudyRecord {
+    fn read(row: &Row) -> Result<Self, sqlx::Error> {
         Ok(Self {
             id: uuid(row, "id")?,
-            sequence: row.try_get("sequence")?,
-            name: row.try_get("name")?,
-            tags: json("tags", &row.try_get::<String, _>("tags")?)?,
-            gear: row.try_get("gear")?,
+            sequence: row.get("sequence")?,
+            name: row.get("name")?,
+            tags: json("tags", &row.get::<String>("tags")?)?,
+            gear: row.get("gear")?,
             total: count(row, "total")?,
             expanded: count(row, "expanded")?,
             unbuildable: count(row, "unbuildable")?,
@@ -125,46 +139,47 @@ from_row! {
             successful: count(row, "successful")?,
             failed: count(row, "failed")?,
             dismissed: count(row, "dismissed")?,
-            version: row.try_get("version")?,
+            version: row.get("version")?,
             submitted_at: instant(row, "submitted_at")?,
             last_end: optional_instant(row, "last_end")?,
             cancelled_at: optional_instant(row, "cancelled_at")?,
-            search: row.try_get("search")?,
+            search: row.get("search")?,
         })
     }
 }
 
-pub(crate) fn instant(row: &impl Cells, column: &'static str) -> Result<Timestamp, sqlx::Error> {
+pub(crate) fn instant(row: &Row, column: &'static str) -> Result<Timestamp, sqlx::Error> {
     optional_instant(row, column)?.ok_or_else(|| undecodable(column, Absent))
 }
 
 pub(crate) fn optional_instant(
-    row: &impl Cells,
+    row: &Row,
     column: &'static str,
 ) -> Result<Option<Timestamp>, sqlx::Error> {
-    let at = row.integer(column)?.map(Timestamp::from_microsecond);
+    let at = row
+        .get::<Option<i64>>(column)?
+        .map(Timestamp::from_microsecond);
     at.transpose().map_err(|error| undecodable(column, error))
 }
 
-pub(crate) fn uuid(row: &impl Cells, column: &'static str) -> Result<Uuid, sqlx::Error> {
+pub(crate) fn uuid(row: &Row, column: &'static str) -> Result<Uuid, sqlx::Error> {
     optional_uuid(row, column)?.ok_or_else(|| undecodable(column, Absent))
 }
 
-pub(crate) fn optional_uuid(
-    row: &impl Cells,
-    column: &'static str,
-) -> Result<Option<Uuid>, sqlx::Error> {
-    let id = row.text(column)?.map(|text| text.parse::<Uuid>());
+pub(crate) fn optional_uuid(row: &Row, column: &'static str) -> Result<Option<Uuid>, sqlx::Error> {
+    let id = row
+        .get::<Option<String>>(column)?
+        .map(|text| text.parse::<Uuid>());
     id.transpose().map_err(|error| undecodable(column, error))
 }
 
-pub(crate) fn status(row: &impl Cells, column: &'static str) -> Result<Status, sqlx::Error> {
-    let word = row.text(column)?.unwrap_or_default();
+pub(crate) fn status(row: &Row, column: &'static str) -> Result<Status, sqlx::Error> {
+    let word = row.get::<Option<String>>(column)?.unwrap_or_default();
     Status::of_word(&word).ok_or_else(|| undecodable(column, UnknownWord(word)))
 }
 
-pub(crate) fn keep(row: &impl Cells, column: &'static str) -> Result<Kept, sqlx::Error> {
-    let word = row.text(column)?.unwrap_or_default();
+pub(crate) fn keep(row: &Row, column: &'static str) -> Result<Kept, sqlx::Error> {
+    let word = row.get::<Option<String>>(column)?.unwrap_or_default();
     Kept::of_word(&word).ok_or_else(|| undecodable(column, UnknownWord(word)))
 }
 
@@ -175,16 +190,16 @@ pub(crate) fn json<T: serde::de::DeserializeOwned>(
     serde_json::from_str(text).map_err(|error| undecodable(column, error))
 }
 
-pub(crate) fn count(row: &impl Cells, column: &'static str) -> Result<u64, sqlx::Error> {
+pub(crate) fn count(row: &Row, column: &'static str) -> Result<u64, sqlx::Error> {
     let count = row
-        .integer(column)?
+        .get::<Option<i64>>(column)?
         .ok_or_else(|| undecodable(column, Absent))?;
     u64::try_from(count).map_err(|error| undecodable(column, error))
 }
 
 /// A number that is never large.
-pub(crate) fn small(row: &impl Cells, column: &'static str) -> Result<Option<u32>, sqlx::Error> {
-    let number = row.integer(column)?.map(u32::try_from);
+pub(crate) fn small(row: &Row, column: &'static str) -> Result<Option<u32>, sqlx::Error> {
+    let number = row.get::<Option<i64>>(column)?.map(u32::try_from);
     number
         .transpose()
         .map_err(|error| undecodable(column, error))

@@ -7,11 +7,10 @@
 
 use std::collections::BTreeSet;
 
-use sqlx::Row;
 use uuid::Uuid;
 
 use super::dialect;
-use super::rows::from_row;
+use super::rows::{Record, Row};
 use super::statement::{Connection, query, query_as};
 
 /// Jobs that stand alone have so many times the part of a study: somebody waits for them, but a study is not to starve.
@@ -93,19 +92,19 @@ struct LaneHere {
     here: Here,
 }
 
-from_row! {
-    LaneHere, |row| {
+impl Record for LaneHere {
+    fn read(row: &Row) -> Result<Self, sqlx::Error> {
         Ok(Self {
             lane: Lane {
-                client: row.try_get("client")?,
-                lane: row.try_get("lane")?,
-                client_due: row.try_get("client_due")?,
-                lane_due: row.try_get("lane_due")?,
+                client: row.get("client")?,
+                lane: row.get("lane")?,
+                client_due: row.get("client_due")?,
+                lane_due: row.get("lane_due")?,
             },
             here: Here {
-                running: row.try_get("running")?,
-                alone: row.try_get("alone")?,
-                waiting: row.try_get("waiting")?,
+                running: row.get("running")?,
+                alone: row.get("alone")?,
+                waiting: row.get("waiting")?,
             },
         })
     }

@@ -9,13 +9,12 @@ use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
 use futures_util::TryStreamExt;
-use sqlx::postgres::{PgPool, PgRow, Postgres};
-use sqlx::sqlite::{Sqlite, SqlitePool, SqliteRow};
-use sqlx::{
-    AssertSqlSafe, Either, Executor, FromRow, PgConnection, SqlSafeStr, SqlStr, SqliteConnection,
-};
+use sqlx::postgres::{PgPool, Postgres};
+use sqlx::sqlite::{Sqlite, SqlitePool};
+use sqlx::{AssertSqlSafe, Either, Executor, PgConnection, SqlSafeStr, SqlStr, SqliteConnection};
 
 use super::health::Health;
+use super::rows::{Cell, Record, Row};
 
 /// What is kept of a database: its connections.
 #[derive(Debug, Clone)]
@@ -126,20 +125,10 @@ pub(crate) struct Unsaid {
 impl Unsaid {
     /// Puts a statement behind the others. The parameters of all of them are counted through.
     fn push(&mut self, text: &str, values: Vec<Value>) {
-        let before = self.values.len();
         if !self.text.is_empty() {
             self.text.push_str("; ");
         }
-        let mut parts = text.split('$');
-        self.text.extend(parts.next());
-        for part in parts {
-            let digits = part.find(|letter: char| !letter.is_ascii_digit());
-            let (number, words) = part.split_at(digits.unwrap_or(part.len()));
-            match number.parse::<usize>() {
-                Ok(number) => self.text.push_str(&format!("${}{words}", before + number)),
-                Err(_) => self.text.extend(["$", part]),
-            }
-        }
+        self.text += &counted_on(text, self.values.len());
         self.values.extend(values);
     }
 
@@ -152,6 +141,21 @@ impl Unsaid {
         let Self { text, values, .. } = std::mem::take(self);
         (AssertSqlSafe(text).into_sql_str(), values)
     }
+}
+
+/// A statement whose parameters are counted on behind others: with two before it, `$1` becomes `$3`.
+fn counted_on(text: &str, before: usize) -> String {
+    let mut parts = text.split('$');
+    let mut counted = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let digits = part.bytes().take_while(u8::is_ascii_digit).count();
+        let (number, rest) = part.split_at(digits);
+        match number.parse::<usize>() {
+            Ok(number) => counted += &format!("${}{rest}", before + number),
+            Err(_) => counted.extend(["$", part]),
+        }
+    }
+    counted
 }
 
 impl Connection {
@@ -234,6 +238,15 @@ pub(crate) enum On<'c> {
     PostgresPool(&'c PgPool, &'c Renewal),
 }
 
+impl On<'_> {
+    fn dialect(&self) -> Dialect {
+        match self {
+            Self::Sqlite(..) | Self::SqlitePool(_) => Dialect::Sqlite,
+            Self::Postgres(..) | Self::PostgresPool(..) => Dialect::Postgres,
+        }
+    }
+}
+
 impl<'c> From<&'c Pool> for On<'c> {
     fn from(pool: &'c Pool) -> Self {
         match pool {
@@ -252,22 +265,11 @@ impl<'c> From<&'c mut Connection> for On<'c> {
     }
 }
 
-/// What can be read from a row of either database.
-pub(crate) trait Record:
-    for<'r> FromRow<'r, SqliteRow> + for<'r> FromRow<'r, PgRow> + Send + Unpin
-{
-}
-
-impl<T> Record for T where
-    T: for<'r> FromRow<'r, SqliteRow> + for<'r> FromRow<'r, PgRow> + Send + Unpin
-{
-}
-
 /// A row of which nothing is read.
 pub(crate) struct Nothing;
 
-impl<R: sqlx::Row> FromRow<'_, R> for Nothing {
-    fn from_row(_row: &R) -> Result<Self, sqlx::Error> {
+impl Record for Nothing {
+    fn read(_row: &Row) -> Result<Self, sqlx::Error> {
         Ok(Self)
     }
 }
@@ -367,7 +369,7 @@ pub(crate) fn query_as<T: Record>(text: impl Into<Text>) -> Statement<T> {
 }
 
 /// What a statement gave: rows, or how many it has changed.
-type Given = (Vec<SqliteRow>, u64);
+type Given = (Vec<Row>, u64);
 
 /// Says a statement on a connection to SQLite, and before it what has not been said. What is given back is the last one's.
 async fn ask(
@@ -378,85 +380,24 @@ async fn ask(
 ) -> Result<Given, sqlx::Error> {
     let begins = unsaid.begins.take();
     let (text, values) = unsaid.with(text, values);
-    let given = heard(connection, text, &values).await;
+    let given = on_sqlite(connection, text, &values).await;
     if let (Some(health), Err(error)) = (begins, &given) {
         health.failed(error);
     }
     given
 }
 
-/// What the last of the statements of a query gives.
-async fn heard(
-    connection: &mut SqliteConnection,
-    text: SqlStr,
-    values: &[Value],
-) -> Result<Given, sqlx::Error> {
-    // A pragma does what it does when it is read: kept by the driver, it would do nothing the next time.
-    let is_kept = !text.as_str().contains("pragma");
-    let query = bind_sqlite::<Nothing>(text, values).persistent(is_kept);
-    let mut answers = connection.fetch_many(query);
-    let (mut rows, mut given) = (Vec::new(), Given::default());
-    while let Some(answer) = answers.try_next().await? {
-        match answer {
-            Either::Left(done) => given = (std::mem::take(&mut rows), done.rows_affected()),
-            Either::Right(row) => rows.push(row),
-        }
-    }
-    Ok(given)
-}
-
-macro_rules! run {
-    ($self:ident, $on:ident, $none:expr, |$given:ident| $asked:expr, |$executor:ident, $query:ident| $run:expr) => {{
-        let Statement { text, values, .. } = $self;
-        match $on.into() {
-            On::Sqlite(connection, unsaid) => match text.of(Dialect::Sqlite) {
-                Some(text) => {
-                    let $given = ask(connection, unsaid, text, values).await?;
-                    $asked
-                }
-                None => $none,
-            },
-            On::SqlitePool($executor) => match text.of(Dialect::Sqlite) {
-                Some(text) => {
-                    let $query = bind_sqlite::<T>(text, &values);
-                    $run
-                }
-                None => $none,
-            },
-            On::Postgres($executor, renewal) => match text.of(Dialect::Postgres) {
-                Some(text) => {
-                    let $query = bind_postgres::<T>(text, &values);
-                    let result = in_time(async { $run }).await;
-                    // The transaction is lost with its connection; whoever tries it again gets a new one.
-                    renewal.finds(&result);
-                    result
-                }
-                None => $none,
-            },
-            On::PostgresPool($executor, renewal) => match text.of(Dialect::Postgres) {
-                Some(text) => {
-                    let $query = bind_postgres::<T>(text.clone(), &values);
-                    let result = in_time(async { $run }).await;
-                    if renewal.finds(&result) {
-                        let $query = bind_postgres::<T>(text, &values);
-                        in_time(async { $run }).await
-                    } else {
-                        result
-                    }
-                }
-                None => $none,
-            },
-        }
-    }};
-}
-
-macro_rules! binding {
-    ($name:ident, $database:ty) => {
-        fn $name<T: Record>(
+macro_rules! driver {
+    ($name:ident, $database:ident) => {
+        /// What the last of the statements of a query gives.
+        async fn $name<'c>(
+            executor: impl Executor<'c, Database = $database>,
             text: SqlStr,
             values: &[Value],
-        ) -> sqlx::query::QueryAs<'_, $database, T, <$database as sqlx::Database>::Arguments> {
-            let mut query = sqlx::query_as::<$database, T>(text);
+        ) -> Result<Given, sqlx::Error> {
+            // A pragma does what it does when it is read: kept by the driver, it would do nothing the next time.
+            let is_kept = !text.as_str().contains("pragma");
+            let mut query = sqlx::query::<$database>(text).persistent(is_kept);
             for value in values {
                 query = match value {
                     Value::Integer(value) => query.bind(*value),
@@ -464,13 +405,45 @@ macro_rules! binding {
                     Value::Bytes(value) => query.bind(value.as_slice()),
                 };
             }
-            query
+            let mut answers = executor.fetch_many(query);
+            let (mut rows, mut given) = (Vec::new(), Given::default());
+            while let Some(answer) = answers.try_next().await? {
+                match answer {
+                    Either::Left(done) => given = (std::mem::take(&mut rows), done.rows_affected()),
+                    Either::Right(row) => rows.push(Row::$database(row)),
+                }
+            }
+            Ok(given)
         }
     };
 }
 
-binding!(bind_sqlite, Sqlite);
-binding!(bind_postgres, Postgres);
+driver!(on_sqlite, Sqlite);
+driver!(on_postgres, Postgres);
+
+/// Runs a statement. Where a database has no text for it, there is nothing to be done.
+async fn run(on: On<'_>, text: Text, values: Vec<Value>) -> Result<Given, sqlx::Error> {
+    let Some(text) = text.of(on.dialect()) else {
+        return Ok(Given::default());
+    };
+    match on {
+        On::Sqlite(connection, unsaid) => ask(connection, unsaid, text, values).await,
+        On::SqlitePool(pool) => on_sqlite(pool, text, &values).await,
+        On::Postgres(connection, renewal) => {
+            let given = in_time(on_postgres(connection, text, &values)).await;
+            // The transaction is lost with its connection; whoever tries it again gets a new one.
+            renewal.finds(&given);
+            given
+        }
+        On::PostgresPool(pool, renewal) => {
+            let given = in_time(on_postgres(pool, text.clone(), &values)).await;
+            if renewal.finds(&given) {
+                return in_time(on_postgres(pool, text, &values)).await;
+            }
+            given
+        }
+    }
+}
 
 impl<T: Record> Statement<T> {
     /// The value of the next parameter: `$1`, then `$2`.
@@ -504,49 +477,27 @@ impl<T: Record> Statement<T> {
     }
 
     pub(crate) async fn fetch_all<'c>(self, on: impl Into<On<'c>>) -> Result<Vec<T>, sqlx::Error> {
-        run!(
-            self,
-            on,
-            Ok(Vec::new()),
-            |given| given.0.iter().map(T::from_row).collect(),
-            |executor, query| query.fetch_all(executor).await
-        )
+        let (rows, _) = run(on.into(), self.text, self.values).await?;
+        rows.into_iter().map(|row| T::read(&row)).collect()
     }
 
     pub(crate) async fn fetch_optional<'c>(
         self,
         on: impl Into<On<'c>>,
     ) -> Result<Option<T>, sqlx::Error> {
-        run!(
-            self,
-            on,
-            Ok(None),
-            |given| given.0.first().map(T::from_row).transpose(),
-            |executor, query| query.fetch_optional(executor).await
-        )
+        let (rows, _) = run(on.into(), self.text, self.values).await?;
+        rows.first().map(T::read).transpose()
     }
 
     pub(crate) async fn fetch_one<'c>(self, on: impl Into<On<'c>>) -> Result<T, sqlx::Error> {
-        run!(
-            self,
-            on,
-            Err(sqlx::Error::RowNotFound),
-            |given| given
-                .0
-                .first()
-                .map_or(Err(sqlx::Error::RowNotFound), T::from_row),
-            |executor, query| query.fetch_one(executor).await
-        )
+        let found = self.fetch_optional(on).await?;
+        found.ok_or(sqlx::Error::RowNotFound)
     }
 
     /// Runs it. Gives back how many rows it has changed.
     pub(crate) async fn execute<'c>(self, on: impl Into<On<'c>>) -> Result<u64, sqlx::Error> {
-        run!(self, on, Ok(0), |given| Ok(given.1), |executor, query| {
-            executor
-                .execute(query)
-                .await
-                .map(|done| done.rows_affected())
-        })
+        let (_, changed) = run(on.into(), self.text, self.values).await?;
+        Ok(changed)
     }
 
     /// Whether it finds a row.
@@ -559,17 +510,11 @@ impl<T: Record> Statement<T> {
 pub(crate) struct Scalar<T>(Statement<(T,)>);
 
 /// A statement whose rows have one column.
-pub(crate) fn query_scalar<T>(text: impl Into<Text>) -> Scalar<T>
-where
-    (T,): Record,
-{
+pub(crate) fn query_scalar<T: Cell>(text: impl Into<Text>) -> Scalar<T> {
     Scalar(query_as(text))
 }
 
-impl<T> Scalar<T>
-where
-    (T,): Record,
-{
+impl<T: Cell> Scalar<T> {
     pub(crate) fn bind(self, value: impl Into<Value>) -> Self {
         Self(self.0.bind(value))
     }
@@ -594,6 +539,22 @@ where
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn parameters_are_counted_on_and_other_dollars_stay() {
+        for (text, counted) in [
+            ("select 1", "select 1"),
+            (
+                "where a = $1 and b = $12 or c = $1",
+                "where a = $3 and b = $14 or c = $3",
+            ),
+            ("$2", "$4"),
+            ("select '$', '$x', $1", "select '$', '$x', $3"),
+        ] {
+            assert_eq!(counted_on(text, 2), counted);
+        }
+        assert_eq!(counted_on("a = $1", 0), "a = $1");
+    }
 
     #[tokio::test]
     async fn what_is_said_later_is_heard_before_the_next_with_parameters_of_its_own() {

@@ -1,10 +1,9 @@
 //! The rows of studies, some at a time: a table of any length is read by short looks, each of which sees the last commit.
 
-use sqlx::Row;
 use uuid::Uuid;
 
 use super::documents::checked;
-use super::rows::from_row;
+use super::rows::{Record, Row};
 use super::statement::{query_as, query_scalar};
 use super::{Damaged, Document, Store, StoreError};
 
@@ -25,22 +24,24 @@ pub struct StoredRow {
     pub problem: Option<String>,
 }
 
-from_row! {
-    StoredRow, |row| {
-        let job: Option<String> = row.try_get("job")?;
-        let (summary, written): (Option<String>, _) =
-            (row.try_get("summary")?, row.try_get("checksum")?);
+impl Record for StoredRow {
+    fn read(row: &Row) -> Result<Self, sqlx::Error> {
+        let job: Option<String> = row.get("job")?;
+        let (summary, written): (Option<String>, _) = (row.get("summary")?, row.get("checksum")?);
         let summary = summary.map(|summary| {
             let job = job.as_deref().unwrap_or_default();
-            checked(format_args!("that tables show of the job {job}"), (summary, written))
+            checked(
+                format_args!("that tables show of the job {job}"),
+                (summary, written),
+            )
         });
         Ok(Self {
-            label: row.try_get("label")?,
-            changes: row.try_get("changes")?,
+            label: row.get("label")?,
+            changes: row.get("changes")?,
             summary,
             job,
-            status: row.try_get("status")?,
-            problem: row.try_get("problem")?,
+            status: row.get("status")?,
+            problem: row.get("problem")?,
         })
     }
 }

@@ -2,11 +2,10 @@
 //! processes whose clocks differ agree on it; each says its steady clock, which is that clock where there is one process.
 
 use jiff::{SignedDuration, Timestamp};
-use sqlx::Row;
 use uuid::Uuid;
 
 use super::outbox::NewMessage;
-use super::rows::{from_row, instant, optional_instant, optional_uuid, small, uuid};
+use super::rows::{Record, Row, instant, optional_instant, optional_uuid, small, uuid};
 use super::statement::{Nothing, Statement, query, query_as, query_scalar};
 use super::{EventKind, Store, StoreError, dialect, micros};
 
@@ -81,18 +80,18 @@ macro_rules! select_webhooks {
     };
 }
 
-from_row! {
-    Webhook, |row| {
+impl Record for Webhook {
+    fn read(row: &Row) -> Result<Self, sqlx::Error> {
         let failures = small(row, "failures")?.unwrap_or(0);
         Ok(Self {
             id: uuid(row, "id")?,
-            url: row.try_get("url")?,
-            events: EventKind::of_words(&row.try_get::<String, _>("events")?),
+            url: row.get("url")?,
+            events: EventKind::of_words(&row.get::<String>("events")?),
             created_at: instant(row, "created_at")?,
             disabled_at: optional_instant(row, "disabled_at")?,
             failures,
             retry_at: optional_instant(row, "retry_at")?.filter(|_| failures > 0),
-            problem: row.try_get("problem")?,
+            problem: row.get("problem")?,
         })
     }
 }
@@ -100,9 +99,9 @@ from_row! {
 /// A webhook with its secret.
 struct Whole(Webhook, String);
 
-from_row! {
-    Whole, |row| {
-        Ok(Self(sqlx::FromRow::from_row(row)?, row.try_get("secret")?))
+impl Record for Whole {
+    fn read(row: &Row) -> Result<Self, sqlx::Error> {
+        Ok(Self(Record::read(row)?, row.get("secret")?))
     }
 }
 
@@ -157,18 +156,18 @@ pub struct Delivery {
     pub problem: Option<String>,
 }
 
-from_row! {
-    Delivery, |row| {
+impl Record for Delivery {
+    fn read(row: &Row) -> Result<Self, sqlx::Error> {
         Ok(Self {
             id: uuid(row, "id")?,
-            kind: row.try_get("kind")?,
+            kind: row.get("kind")?,
             subject: optional_uuid(row, "subject")?,
             created_at: instant(row, "created_at")?,
             attempts: small(row, "attempts")?.unwrap_or(0),
             attempted_at: optional_instant(row, "attempted_at")?,
             arrived_at: optional_instant(row, "arrived_at")?,
             answered: small(row, "answered")?,
-            problem: row.try_get("problem")?,
+            problem: row.get("problem")?,
         })
     }
 }
