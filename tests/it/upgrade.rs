@@ -1,5 +1,6 @@
 //! An upgrade while the service works: this program and one of a later version, with a migration and a field of the submission more
 //! (`tests/upgrade/run` builds it), in turn and at once on one PostgreSQL, forwards and back.
+//! And a file of an earlier version, which every later one opens.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -183,4 +184,77 @@ async fn versions_follow_each_other_forwards_and_back_under_load_and_nothing_fai
     println!(
         "{all} jobs while versions changed three times: none lost, none failed; {left} waited for the later version when it went"
     );
+}
+
+/// A database that version 0.4.0 wrote and was killed over: a job, a study of two designs, a search, and a job that was being computed. It was made
+/// by posting them to the last commit of that version.
+const WRITTEN_BY_0_4: &[u8] = include_bytes!("fixtures/version-0.4.0.db.gz");
+/// The key that it made, of the client `ann`.
+const KEY_OF_0_4: &str =
+    "mw_dae6cac1c69b56b8_8d1b7c5eab964199bf4667956ae5af78355b8abfd6ca14bf95f7e61db2c3ba56";
+
+#[tokio::test]
+async fn a_file_of_version_0_4_is_opened_and_nothing_in_it_is_lost() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("jobs.db");
+    let mut file = std::fs::File::create(&path).unwrap();
+    std::io::copy(&mut flate2::read::GzDecoder::new(WRITTEN_BY_0_4), &mut file).unwrap();
+    let process = Process::start_with(&DatabaseAddress::File(path), &["--keep-results", "0"]);
+    let mut headers = reqwest::header::HeaderMap::new();
+    let bearer = format!("Bearer {KEY_OF_0_4}").parse().unwrap();
+    headers.insert(reqwest::header::AUTHORIZATION, bearer);
+    let client = meshwright::client().default_headers(headers);
+    let client = client.build().unwrap();
+
+    // Results are served as they were written.
+    let done = "/v1/jobs/01a21946-7aac-7220-be14-8c682aec1aa5";
+    assert_eq!(process.get(&client, done).await["status"], "successful");
+    let results = process.get(&client, &format!("{done}/results")).await;
+    assert_eq!(results["evidence"]["solver_version"], "meshwright 0.4.0");
+    let mean = &results["curves"][0]["statistics"]["transmission_error_um"]["mean"];
+    assert_eq!(mean.as_f64(), Some(10.56295802));
+
+    let studies = process.get(&client, "/v1/studies").await;
+    let of = |name: &str| {
+        let items = studies["items"].as_array().unwrap();
+        items.iter().find(|study| study["name"] == name).unwrap()
+    };
+    assert_eq!(of("kept")["successful"], 2);
+    assert_eq!(of("kept")["tags"], json!(["fixture"]));
+    assert_eq!(
+        of("found")["search"]["best"]["goals"],
+        json!([0.9437638018])
+    );
+    let table = of("kept")["links"]["results"].as_str().unwrap();
+    let table = process.get(&client, table).await;
+    let bores: Vec<&Value> = table["rows"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|row| &row["changes"])
+        .collect();
+    assert_eq!(
+        bores,
+        [14, 16]
+            .map(|bore| json!({ "/pair/driven/blank/bore_radius_mm": bore }))
+            .iter()
+            .collect::<Vec<_>>()
+    );
+
+    // What was being computed is computed again.
+    let killed = "/v1/jobs/01a21947-394b-763c-987a-7b7b5f2dc10a";
+    loop {
+        let job = process.get(&client, killed).await;
+        if job["status"] == "successful" {
+            break;
+        }
+        assert!(
+            ["accepted", "running"]
+                .iter()
+                .any(|state| job["status"] == **state),
+            "{job}"
+        );
+        tokio::time::sleep(Duration::from_millis(20)).await;
+    }
+    process.terminate();
 }

@@ -89,15 +89,20 @@ pub(super) fn search_table(
         }
     }
     if let Some(confirmed) = confirmed {
-        let goals = numbers(&confirmed.goals);
+        // Percentiles are not computed again: none of these may have a value.
+        let has_values = |values: &[Option<f64>]| values.iter().any(Option::is_some);
+        let goals = match &confirmed.goals {
+            goals if has_values(goals) => format!("{}; ", numbers(goals)),
+            _ => String::new(),
+        };
         match &confirmed.error_estimate {
             Some(estimate) => say(format!(
-                "once more on the fine grid: {goals}; another grid level changes the peak-to-peak value by {:.4} um, the mean by {:.4} um",
+                "once more on the fine grid: {goals}another grid level changes the peak-to-peak value by {:.4} um, the mean by {:.4} um",
                 estimate.transmission_error_peak_to_peak_um, estimate.transmission_error_mean_um
             )),
             None => say("once more on the fine grid: no results".to_owned()),
         }
-        if !conditions.is_empty() {
+        if has_values(&confirmed.conditions) {
             say(format!(
                 "  {conditions}: {}",
                 numbers(&confirmed.conditions)

@@ -160,7 +160,7 @@ fn one_family(computed: &Computed) -> anyhow::Result<Claim> {
         words: "case 1: eight holes in both gears make no lines besides those of one",
         verdict: Verdict::of(&[one && share < 1e-9]),
         numbers: format!(
-            "all lines stand on multiples of gcd(50, 8) = 2; off them nothing above {} of the mean",
+            "all lines are at multiples of gcd(50, 8) = 2; elsewhere nothing is above {} of the mean",
             if share < 1e-9 {
                 "1e-9".to_owned()
             } else {

@@ -20,8 +20,8 @@ pub(super) fn text(computed: &Computed, figures: &[Illustration]) -> anyhow::Res
         section(
             "Table 1: the test cases",
             &[
-                "The paper's values stand in parentheses; bores and hole circles are ours, since it gives none. Mass removed is \
-             of the ring between the bore and the mean of tip and root circle.",
+                "The paper's values are in parentheses. Bores and hole circles are ours, because the paper gives none. The \
+             removed share is that of the ring between the bore and the mean of tip and root circle.",
                 &tables::table_1(computed),
                 &tables::table_1_pairs(computed),
                 &figure("fig-05")?,
@@ -47,8 +47,8 @@ pub(super) fn text(computed: &Computed, figures: &[Illustration]) -> anyhow::Res
             "Torque of least peak-to-peak",
             &[
                 "The paper says that the relief minimizes the fluctuation at 115 N m for 50/50 teeth and at 160 N m for 29/85. It \
-             does, closely. With the holes of test case 2 the least peak-to-peak comes at a lower torque, where the line H_N, which \
-             grows with the torque, is smaller.",
+             does, closely. With the holes of test case 2 the minimum is at a lower torque, because the line H_N grows \
+             with the torque.",
                 &tables::sweeps(computed),
                 &figure("sweep")?,
             ],
@@ -56,8 +56,8 @@ pub(super) fn text(computed: &Computed, figures: &[Illustration]) -> anyhow::Res
         section(
             "Claims",
             &[
-                "What the paper says in words, held to the numbers above. Unless said otherwise a claim is held to the flexible \
-             method.",
+                "The table compares statements of the paper with the numbers above, by the flexible method unless stated \
+             otherwise.",
                 &claims::as_table(&claims),
             ],
         ),
@@ -101,13 +101,13 @@ fn opening(computed: &Computed, refuted: &str) -> String {
     let projected = |case: &TestCase| statistics(case.projected());
     format!(
         "# The paper, recomputed\n\n\
-         Every table, figure and claim of Benaicha et al., \"A decomposition method for the fast computation of the transmission \
-         error of gears with holes\" (2021, hal-03230238), computed anew by `meshwright-paper reproduce`, which writes this file and \
-         the figures beside it. Numbers are at 40 positions a mesh period on the standard grid; only the table of times depends \
-         on the machine. Figs. 1 and 4 of the paper are flow charts and hold no numbers.\n\n\
+         This page recomputes every table, figure and claim of Benaicha et al., \"A decomposition method for the fast \
+         computation of the transmission error of gears with holes\" (2021, hal-03230238). `meshwright-paper reproduce` writes \
+         this file and the figures beside it. Numbers are at 40 positions a mesh period on the standard grid; only the table \
+         of times depends on the machine. Figs. 1 and 4 of the paper are flow charts and hold no numbers.\n\n\
          In short:\n\n\
-         - Table 2: the mean STE of our flexible method differs from the paper's by {} in cases 1 to 3; bores and hole circles are fitted to these means, so \
-         that rms, peak-to-peak and stiffness are the test (columns \"to the paper\").\n\
+         - Table 2: the mean STE of our flexible method differs from the paper's by {} in cases 1 to 3; bores and hole \
+         circles are fitted to these means, so only rms, peak-to-peak and stiffness are a test (columns \"to the paper\").\n\
          - The decomposition, against the flexible method: mean within {:.1} %, rms within {:.1} %, peak-to-peak within {:.1} %, \
          mean stiffness within {:.1} %; the paper's own: 0.5, 12, 8.4 and 5 %.\n\
          - The projected decomposition, which is ours: {:.2}, {:.2}, {:.2} and {:.2} %.\n\
@@ -139,8 +139,8 @@ fn means(computed: &Computed) -> String {
 
 fn table_2(computed: &Computed) -> anyhow::Result<String> {
     let mut paragraphs = vec![
-        "Errors are against the flexible method of the same row: the paper's as it prints them, ours with their sign. Our \
-         flexible stiffness is the exact derivative with the active contacts known; that of the decomposition is a central \
+        "Errors are relative to the flexible method of the same row: the paper's as printed, ours with their sign. The \
+         stiffness of our flexible method is the exact derivative for the active contacts. That of the decomposition is a central \
          difference over 1 % of the torque, as in the paper."
             .to_owned(),
     ];
@@ -153,19 +153,20 @@ fn table_2(computed: &Computed) -> anyhow::Result<String> {
         paragraphs.push(table(&TABLE_2_HEADER, &tables::table_2(case)));
         if case.number == 3 {
             paragraphs.push(
-                "The paper's stiffness of this case is divided by 85/29: it fits the case only with the load taken as T/R_b1, and \
-                 divided so it agrees with the paper's own mean STE. Its STE rms is read as 0.468 (printed 10.468). Of its two \
-                 stiffness rms values one is misprinted: 3.456e7 and 4.345e7 before the division are not 1.5 % apart."
+                "The paper's stiffness of this case is divided by 85/29. It fits the case only if the load is T/R_b1; \
+                 divided, it agrees with the paper's own mean STE. Its STE rms is read as 0.468 (printed 10.468). One of \
+                 its two stiffness rms values is misprinted: before the division they are 3.456e7 and 4.345e7, which are \
+                 not 1.5 % apart."
                     .to_owned(),
             );
         }
     }
     paragraphs.push("### Interface radius".to_owned());
     paragraphs.push(
-        "The paper does not say where its interface R_w lies. Test case 2 by decomposition, against the flexible method, from \
-         just above the holes (41.5 mm) to just below the roots (47.5 mm); 45.5 mm is the default. The closer to the holes, \
-         the more of the rim stays elastic in the rigid-blank part and the less H_Z2 and the stiffness lose; the peak-to-peak \
-         has no such order. No radius gives all of the paper's errors at once."
+        "The paper does not give the radius of its interface R_w. The table compares test case 2 by decomposition with the \
+         flexible method, from just above the holes (41.5 mm) to just below the roots (47.5 mm); 45.5 mm is the default. \
+         Closer to the holes, more of the rim stays elastic in the rigid-blank part, and the errors of H_Z2 and of the \
+         stiffness are smaller. The peak-to-peak has no such trend. No radius gives all of the paper's errors at once."
             .to_owned(),
     );
     paragraphs.push(tables::interfaces(computed)?);
@@ -180,11 +181,11 @@ fn times(computed: &Computed) -> String {
     section(
         "Times",
         &[
-            "On the machine that wrote this file, two cores, to one digit, nothing computed before; *teeth known*: with the same \
-         pair without holes computed before, so that a new hole pattern costs its blanks. The paper's are of section 4.2. Its \
-         decomposition is 30 to 60 times as fast as its flexible method. Here the flexible method is condensed, exactly, and a \
-         decomposition gains what the contact solutions over the longer period cost: much where the true period is long (case \
-         3, 85 mesh periods), little where it is short (case 2, 5).",
+            "Times are from the machine that wrote this file, with two cores, to one digit. Nothing was computed before. \
+         *Teeth known*: the same pair without holes was computed before, so a new hole pattern costs only its blanks. The \
+         paper's times are from section 4.2. Its decomposition is 30 to 60 times as fast as its flexible method. Here the \
+         flexible method is condensed exactly. A decomposition saves only the contact solutions over the longer period: \
+         many if the true period is long (case 3, 85 mesh periods), few if it is short (case 2, 5).",
             &tables::times(computed),
         ],
     )
@@ -195,17 +196,17 @@ fn section_5(computed: &Computed, figures: &[Illustration]) -> anyhow::Result<St
         "Section 5: number and radial position of holes",
         &[
             "### Table 3",
-            "All nine combinations, each with a quarter of the blank removed (bore 15 mm). The paper drops four \"to preserve the \
-         structural integrity\" without saying by which rule. All nine can be made by ours (0.5 mm around a hole; below one \
-         module, 2 mm, it warns). The least ligament alone does not part them: 8R27 is kept with less than 6R34 has. By place \
-         it does:",
+            "The table has all nine combinations, each with a quarter of the blank removed (bore 15 mm). The paper drops four \"to preserve the \
+         structural integrity\" without giving the rule. All nine satisfy ours (0.5 mm around a hole; below one module, 2 \
+         mm, a warning appears). The least ligament alone does not explain the choice: the paper keeps 8R27, which has \
+         less than 6R34. The ligament by place does:",
             &tables::dropped(computed),
             &tables::table_3(computed)?,
             &shown(figures, "fig-09")?,
             "### STE and stiffness",
-            "Flexible method, with the decomposition (the paper's method in this section) in the last column. A quarter less blank \
-         costs peak-to-peak at 115 N m in every design, most where holes are few and far out; at 20 N m the relief hides the \
-         holes. With holes the decomposition has a larger rms and peak-to-peak than the flexible method at 20 N m, and smaller \
+            "Values are by the flexible method. The last column has the decomposition, the paper's method in this section. \
+         Without a quarter of the blank the peak-to-peak at 115 N m is larger in every design, most with few holes far \
+         from the axis. At 20 N m the relief hides the effect of the holes. With holes the decomposition has a larger rms and peak-to-peak than the flexible method at 20 N m, and smaller \
          ones at 115 N m.",
             &tables::section_5(computed)?,
             &shown(figures, "fig-10")?,
@@ -257,13 +258,14 @@ fn open(computed: &Computed) -> anyhow::Result<String> {
             "bore, hole circle",
             "not given",
             "case 1: bore radius 16, R 31.5; case 2: 16 and 34; case 3: bores 10 and 12, R 56 mm; all phases 0. Fitted to the means \
-             of Table 2, so that only rms, peak-to-peak and stiffness test anything. Section 5: bore 15 mm"
+             of Table 2, so only rms, peak-to-peak and stiffness are a test. Section 5: bore 15 mm"
                 .to_owned(),
         ),
         (
             "interface R_w",
             "not given",
-            "one module below the root circle, or halfway to the holes where they come closer; its effect is tabled above".to_owned(),
+            "one module below the root circle, or halfway to the holes where they come closer; the table above shows its \
+             effect".to_owned(),
         ),
         (
             "case 3, torque",
@@ -296,15 +298,15 @@ fn open(computed: &Computed) -> anyhow::Result<String> {
         (
             "eqs. 11, 12",
             "only the tangential displacement is extracted; all interface unknowns appear as imposed",
-            "the whole interface displacement is imposed. With the tangential part alone and the radial direction free the blank \
-             is softer than in its gear, and the rms of case 1 falls 43 % short, where the paper has 8.5 %"
+            "the whole interface displacement is imposed. If only the tangential part is imposed and the radial direction \
+             is free, the blank is softer than in its gear. The rms of case 1 is then 43 % too small; the paper has 8.5 %"
                 .to_owned(),
         ),
         (
             "eq. 13",
-            "A + B cos(2 pi theta N)",
-            "with theta in radians a period of 2 pi/N is cos(N theta); a phase is needed, since the largest rotation need not \
-             stand at theta = 0 (Fig. 3)"
+            "A + B cos(2 pi theta/N)",
+            "with theta in radians a period of 2 pi/N is cos(N theta); a phase is needed, because the largest rotation \
+             need not be at theta = 0 (Fig. 3)"
                 .to_owned(),
         ),
         (

@@ -43,10 +43,10 @@ pub(super) fn rotations(computed: &Computed) -> anyhow::Result<Illustration> {
     }
     let caption = format!(
         "δ_gb = R_b θ_gb of eqs. 13 and 14 at the 16 positions of one hole period, and A + B cos(Nθ + phase) through them. A, B \
-         and the largest residual in µm: {}. The paper's Fig. 3 has no numbers to hold them to. The \
-         scatter is mostly the mesh's own: a sample stands where one pair or where two pairs carry the load, and the blank \
-         gives way differently under them. The fit averages this away, which is what H_Z2 lacks in Figs. 6 and 7; the next \
-         harmonics of the hole pattern go with it.",
+         and the largest residual in µm: {}. The paper's Fig. 3 has no numbers to compare with. The scatter comes mostly \
+         from the mesh: at a sample one pair or two pairs carry the load, and the blank deforms differently under them. \
+         The fit averages this away; it is the part of H_Z2 that the decomposition lacks in Figs. 6 and 7. The fit also \
+         removes the next harmonics of the hole pattern.",
         residuals.join("; ")
     );
     Illustration::new("fig-03-blank-rotation.svg", caption, &figure)

@@ -291,9 +291,9 @@ fn caption(test_case: &TestCase) -> anyhow::Result<String> {
         "STE and tangent stiffness over a revolution (a, b), over two hole periods (c, d), and their amplitudes (e, f); \
          axes as in the paper where the curves fit them. Dots, rings and crosses of the spectra are the flexible method, \
          the decomposition and the projected decomposition. H_N is {} by these three, H_Z2 {}. At no position is the \
-         decomposition more than {:.2} µm from the flexible method, the projected one {:.3} µm. Of the mean square of \
-         what the decomposition differs by, {:.0} % stands on H_Z2 and its multiples: its mesh lines are those of a pair on \
-         a rigid blank. The rest are the multiples of H_N and the sidebands, which one cosine does not have.{only}",
+         decomposition more than {:.2} µm from the flexible method, the projected one {:.3} µm. Of the mean square of the \
+         decomposition's error, {:.0} % is at H_Z2 and its multiples: its mesh lines are those of a pair on a rigid blank. \
+         The rest are the multiples of H_N and the sidebands, which one cosine does not contain.{only}",
         lines("H_N")?,
         lines("H_Z2")?,
         farthest(test_case.decomposition()),

@@ -62,10 +62,10 @@ fn caption(computed: &Computed, torque: usize) -> anyhow::Result<String> {
     let standard = computed.design("standard")?.flexible[torque].transmission_error_statistics;
     let paper = super::super::paper::STANDARD_PEAK_TO_PEAK[torque];
     Ok(format!(
-        "STE and tangent stiffness over a revolution by the flexible method (the paper uses the decomposition; both stand \
-         in the table of section 5), axes as in the paper where the curves fit them. The holes add a wave of N to a \
-         revolution; its amplitude H_N in µm: {}. The peak-to-peak of the standard pair is {:.2} µm, where the paper says \
-         {paper} µm.",
+        "STE and tangent stiffness over a revolution by the flexible method (the paper uses the decomposition; both are in \
+         the table of section 5), axes as in the paper where the curves fit them. The holes add a wave of N to a \
+         revolution; its amplitude H_N in µm: {}. The peak-to-peak of the standard pair is {:.2} µm; the paper has {paper} \
+         µm.",
         lines.join(", "),
         standard.peak_to_peak * 1e6
     ))

@@ -125,8 +125,8 @@ pub(super) fn pairs(computed: &Computed) -> anyhow::Result<Illustration> {
         panels,
     };
     let caption = "Involutes, trochoid fillets, bores and holes as computed, gear 1 on the left, tooth 0 of both in contact at \
-                   the pitch point. Bores and hole circles are ours (the paper gives neither); test case 3 stands at 114.5 mm, \
-                   since at the printed 118.5 mm its teeth do not reach each other. Each panel has its own scale."
+                   the pitch point. Bores and hole circles are ours (the paper gives neither); test case 3 is at 114.5 mm, \
+                   because at the printed 118.5 mm its teeth do not reach each other. Each panel has its own scale."
         .to_owned();
     Illustration::new("fig-05-test-cases.svg", caption, &figure)
 }

@@ -101,10 +101,10 @@ fn caption(computed: &Computed) -> String {
         })
         .collect();
     format!(
-        "Peak-to-peak of three pairs (a) and the mesh harmonics of each (b to d), by the flexible method where nothing else is \
-         said. Least peak-to-peak: {}. H_Z2 is least near the torque of least peak-to-peak and grows to both sides; H_N \
-         grows with the torque. The lines at 115 and 160 N m are the torques for which the paper says that \
-         the relief minimizes the fluctuation, of 50/50 and 29/85 teeth.",
+        "Peak-to-peak of three pairs (a) and the mesh harmonics of each (b to d), by the flexible method unless stated \
+         otherwise. Minimum peak-to-peak: {}. H_Z2 has its minimum near the same torque and grows to both sides; H_N grows \
+         with the torque. The lines are at 115 and 160 N m. At these torques, by the paper, the relief minimizes the \
+         fluctuation of 50/50 and 29/85 teeth.",
         best.join("; ")
     )
 }
