@@ -1,5 +1,4 @@
 //! Packs the files that are part of the program, once: those of the page, those of the documentation, and the guides, which it makes of their text.
-//! And lists the migrations of the database.
 
 mod guides;
 
@@ -24,7 +23,7 @@ const DOCS: [&str; 7] = [
 ];
 
 fn main() -> Result<(), Box<dyn Error>> {
-    for input in ["build", "migrations", "web", "src/http/docs.js"] {
+    for input in ["build", "web", "src/http/docs.js"] {
         println!("cargo:rerun-if-changed={input}");
     }
     let out = PathBuf::from(std::env::var("OUT_DIR")?);
@@ -33,36 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         list("DOCS", &docs()?, &out.join("docs"))?,
         list("GUIDES", &guides::files()?, &out.join("guides"))?,
     ];
-    fs::write(out.join("files.rs"), list.concat())?;
-    let migrations = [
-        migrations("SQLITE", Path::new("migrations"))?,
-        migrations("POSTGRES", Path::new("migrations/postgres"))?,
-    ];
-    Ok(fs::write(out.join("migrations.rs"), migrations.concat())?)
-}
-
-/// The files of `folder` in the order of their numbers, in the words in Rust by which the program has them.
-fn migrations(constant: &str, folder: &Path) -> Result<String, Box<dyn Error>> {
-    let mut files = Vec::new();
-    for entry in fs::read_dir(folder)? {
-        let path = entry?.path();
-        if path.extension().is_some_and(|end| end == "sql") {
-            let stem = path.file_stem().and_then(|stem| stem.to_str());
-            let (version, name) = stem
-                .and_then(|stem| stem.split_once('_'))
-                .ok_or_else(|| format!("{} has no number and name", path.display()))?;
-            let version: i64 = version.parse()?;
-            files.push((version, name.replace('_', " "), fs::canonicalize(&path)?));
-        }
-    }
-    files.sort();
-    let items: String = files
-        .iter()
-        .map(|(version, name, path)| format!("({version}, {name:?}, include_str!({path:?})), "))
-        .collect();
-    Ok(format!(
-        "pub(super) const {constant}: &[(i64, &str, &str)] = &[{items}];\n"
-    ))
+    Ok(fs::write(out.join("files.rs"), list.concat())?)
 }
 
 /// A file by its name.

@@ -5,6 +5,7 @@ use std::num::NonZeroUsize;
 use std::time::Duration;
 
 use axum::http::{HeaderValue, Uri};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use jiff::SignedDuration;
 use jsonwebtoken::Algorithm;
 use meshwright_connections::Bounds;
@@ -39,7 +40,7 @@ pub struct Config {
     pub database: DatabaseAddress,
 
     /// Who brings the tables of the database up to date: this process when it starts, or `meshwright migrate` only.
-    #[arg(long, env = "MESHWRIGHT_MIGRATE", value_enum, default_value = "auto")]
+    #[arg(long, env = "MESHWRIGHT_MIGRATE", value_parser = migrate(), default_value = "auto")]
     pub migrate: Migrate,
 
     /// What this process does. Several on one PostgreSQL may divide the work.
@@ -454,6 +455,20 @@ const LEAST_STALL: Duration = Duration::from_secs(120);
 
 /// Descriptors that the process needs for itself: the database, its log, files, requests of its own, and the reserve of connections.
 const OWN_DESCRIPTORS: u64 = 128;
+
+/// Who may bring the tables of the database up to date, by its words.
+fn migrate() -> impl TypedValueParser<Value = Migrate> {
+    let words = [
+        PossibleValue::new("auto")
+            .help("Every process that starts, where there is something to do"),
+        PossibleValue::new("never")
+            .help("`meshwright migrate` only, with the rights that it takes"),
+    ];
+    PossibleValuesParser::new(words).map(|word| match word.as_str() {
+        "never" => Migrate::Never,
+        _ => Migrate::Auto,
+    })
+}
 
 /// So many connections have descriptors, of those that the system grants the process.
 fn descriptors_for_connections() -> usize {

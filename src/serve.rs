@@ -8,6 +8,7 @@ use anyhow::{Context, bail};
 use meshwright_connections::Server;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
+use meshwright_store::{DatabaseLock, LockError};
 use meshwright_wire::{Problem, Results, Submission};
 use tokio::net::TcpListener;
 use tokio_util::sync::CancellationToken;
@@ -18,7 +19,6 @@ use crate::config::{Config, Part};
 use crate::http::{
     Access, App, BodyMemory, Edge, KeysRule, Outlines, Readings, router, router_of_metrics,
 };
-use crate::jobs::store::lock::{DatabaseLock, LockError};
 use crate::jobs::{Clock, DatabaseAddress, Jobs, Keeper, Migrate, OpenError, Store, Workers};
 use crate::tokens::Tokens;
 use crate::webhooks::{Deliveries, HookRules, Webhooks};

@@ -4,6 +4,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use anyhow::{Context, bail};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use jiff::Timestamp;
 
 use crate::config::lasting;
@@ -50,7 +51,7 @@ struct Create {
     #[arg(long, value_name = "NAME")]
     client: Option<String>,
     /// What its bearer may do.
-    #[arg(long, value_enum, default_value = "client")]
+    #[arg(long, value_parser = role(), default_value = "client")]
     role: Role,
     /// How long it is accepted, such as 90d or 12h [default: until it is revoked].
     #[arg(long, value_parser = lasting, value_name = "TIME")]
@@ -61,6 +62,23 @@ struct Create {
     /// Jobs that may wait, not counting designs of studies [default: that of the service].
     #[arg(long, value_name = "NUMBER")]
     queue_limit: Option<u32>,
+}
+
+/// The roles by their words.
+fn role() -> impl TypedValueParser<Value = Role> {
+    let roles = [
+        (Role::Client, "Everything with the jobs of its client"),
+        (
+            Role::Reader,
+            "Look at the jobs of its client, and change nothing",
+        ),
+        (
+            Role::Operator,
+            "As client, and read the numbers of the whole service",
+        ),
+    ];
+    let words = roles.map(|(role, help)| PossibleValue::new(role.word()).help(help));
+    PossibleValuesParser::new(words).map(|word| Role::of_word(&word))
 }
 
 impl Keys {

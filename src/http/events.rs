@@ -8,7 +8,7 @@ use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
 use futures_util::stream;
 use meshwright_connections::Part;
-use meshwright_wire::{Code, Problem, Status};
+use meshwright_wire::{Code, Problem};
 use serde::Serialize;
 use utoipa::ToSchema;
 use uuid::Uuid;
@@ -18,7 +18,7 @@ use super::client::{Client, Pass};
 use super::parameters::JobId;
 use super::problem::Refusal;
 use super::view::JobView;
-use crate::jobs::{News, Progress};
+use crate::jobs::{News, Progress, Status};
 
 /// While nothing happens, it is looked so often whether who watches may still do so.
 const LOOK_AT_KEYS: Duration = Duration::from_secs(1);

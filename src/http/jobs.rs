@@ -5,7 +5,7 @@ use axum::http::StatusCode;
 use axum::http::header::HeaderMap;
 use axum::response::{IntoResponse, Response};
 use meshwright_connections::Keep;
-use meshwright_wire::{Problem, Status};
+use meshwright_wire::Problem;
 use serde::Deserialize;
 use utoipa::IntoParams;
 use uuid::Uuid;
@@ -18,7 +18,7 @@ use super::parameters::{IfNoneMatch, JobId, Parameters, invalid};
 use super::prefer::Wait;
 use super::problem::Refusal;
 use super::view::JobView;
-use crate::jobs::{Filter, Membership};
+use crate::jobs::{Filter, Membership, Status};
 
 /// What to list.
 #[derive(Deserialize, IntoParams)]

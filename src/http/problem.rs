@@ -12,12 +12,12 @@ use axum::http::{HeaderMap, StatusCode};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use meshwright_connections::Overloaded;
-use meshwright_wire::{Code, Problem, Status, too_much_memory};
+use meshwright_wire::{Code, Problem, too_much_memory};
 use tracing::error;
 
 use super::edge::Edge;
 use crate::compute::PreviewError;
-use crate::jobs::JobError;
+use crate::jobs::{JobError, Status, damage_problem};
 use crate::webhooks::WebhookError;
 
 const PROBLEM_JSON: HeaderValue = HeaderValue::from_static("application/problem+json");
@@ -178,7 +178,7 @@ impl From<JobError> for Problem {
                 error!(error = cause, "the database failed");
                 internal()
             }
-            JobError::Damaged(damage) => damage.problem(),
+            JobError::Damaged(damage) => damage_problem(&damage),
         }
     }
 }

@@ -8,14 +8,14 @@ use serde_json::value::RawValue;
 use uuid::Uuid;
 
 use super::edge::Edge;
-use crate::jobs::Job;
+use crate::jobs::{Job, shown_kept, shown_status};
 
 view! {
     /// A job: one submission, where it stands, and where to find what belongs to it.
     pub(super) struct JobView<'a> as Job of (job: &'a Job, edge: &Edge) {
         /// The id of the job.
         id: Uuid = job.id,
-        status: Status = job.status,
+        status: Status = shown_status(job.status),
         /// Mesh positions solved, in whole percent of those to solve. 100 means all.
         #[schema(minimum = 0, maximum = 100)]
         progress_percent: u8 = job.progress.percent(),
@@ -42,7 +42,7 @@ view! {
         /// `statistics` where the study of the job keeps no more of its results; absent where they are kept whole. They can be
         /// had by submitting the design alone.
         #[schema(example = "statistics")]
-        keep?: Kept = Some(job.keep).filter(|keep| *keep != Kept::Results),
+        keep?: Kept = Some(shown_kept(job.keep)).filter(|keep| *keep != Kept::Results),
         /// Of a failed job: why.
         #[schema(value_type = Option<meshwright_wire::Problem>)]
         problem?: Value = job.problem.clone().map(|problem| with_public_type(problem, &edge.public_url)),

@@ -4,6 +4,7 @@ use axum::Json;
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use jiff::Timestamp;
+use meshwright_store::webhooks::{Delivery, Webhook};
 use meshwright_wire::{Code, Problem, view};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -13,8 +14,36 @@ use super::client::Client;
 use super::document::Document;
 use super::parameters::{IdempotencyKey, WebhookId};
 use super::problem::Refusal;
-use crate::jobs::EventKind;
-use crate::webhooks::{Delivery, Webhook};
+use crate::jobs::EventKind as Kind;
+
+/// What can be told.
+#[derive(Clone, Copy, PartialEq, Serialize, Deserialize, ToSchema)]
+enum EventKind {
+    /// A job that stands alone has ended.
+    #[serde(rename = "job.ended")]
+    JobEnded,
+    /// A study has ended.
+    #[serde(rename = "study.ended")]
+    StudyEnded,
+}
+
+impl From<Kind> for EventKind {
+    fn from(kind: Kind) -> Self {
+        match kind {
+            Kind::JobEnded => Self::JobEnded,
+            Kind::StudyEnded => Self::StudyEnded,
+        }
+    }
+}
+
+impl From<EventKind> for Kind {
+    fn from(kind: EventKind) -> Self {
+        match kind {
+            EventKind::JobEnded => Self::JobEnded,
+            EventKind::StudyEnded => Self::StudyEnded,
+        }
+    }
+}
 
 /// A webhook to be made.
 #[derive(Deserialize, ToSchema)]
@@ -31,7 +60,7 @@ pub(super) struct NewWebhookDocument {
 }
 
 fn all_events() -> Vec<EventKind> {
-    EventKind::ALL.to_vec()
+    Kind::ALL.map(EventKind::from).to_vec()
 }
 
 view! {
@@ -42,7 +71,7 @@ view! {
         /// Where messages are sent.
         url: String = webhook.url,
         /// What is told.
-        events: Vec<EventKind> = webhook.events,
+        events: Vec<EventKind> = webhook.events.into_iter().map(EventKind::from).collect(),
         /// When it was made (UTC).
         created_at: Timestamp = webhook.created_at,
         /// When it was given up because nobody took its messages (UTC), from when on nothing is sent to it; null while it works.
@@ -136,14 +165,14 @@ pub(super) async fn make(
     document: Document,
 ) -> Result<Response, Refusal> {
     let new: NewWebhookDocument = document.parse("webhook")?;
-    let mut events: Vec<EventKind> = Vec::new();
-    for event in new.events {
+    let mut events: Vec<Kind> = Vec::new();
+    for event in new.events.into_iter().map(Kind::from) {
         if !events.contains(&event) {
             events.push(event);
         }
     }
     if events.is_empty() {
-        let words = EventKind::ALL.map(EventKind::word).join(", ");
+        let words = Kind::ALL.map(Kind::word).join(", ");
         let detail = format!("/events is empty; give one or more of {words}, or leave it out.");
         return Err(Problem::new(Code::OutOfRange, detail).into());
     }

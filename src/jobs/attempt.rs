@@ -10,7 +10,10 @@ use std::time::Duration;
 use jiff::{SignedDuration, Timestamp};
 use meshwright_connections::Budget;
 use meshwright_engine::run::Run;
-use meshwright_wire::{Code, Kept, Problem, SOLVER_VERSION, Submission, Summary, memory_of};
+use meshwright_store::{
+    Came, Claim, Damaged, End, Ended, Job, Kept, Packed, Progress, Started, StoreError,
+};
+use meshwright_wire::{Code, Problem, SOLVER_VERSION, Submission, Summary, memory_of};
 use opentelemetry::KeyValue;
 use opentelemetry::trace::SpanId;
 use tokio::sync::mpsc;
@@ -18,9 +21,8 @@ use tokio::time::{Instant, MissedTickBehavior, interval_at, sleep};
 use tracing::{error, info, warn};
 use uuid::Uuid;
 
-use super::job::{Job, Progress};
+use super::error::damage_problem;
 use super::live::Entered;
-use super::store::{Came, Claim, Damaged, End, Ended, Packed, Started, StoreError};
 use super::worker_context::{Threads, WorkerContext};
 use crate::compute::{Solve, message_of};
 use crate::spans::{self, Span};
@@ -218,7 +220,7 @@ impl WorkerContext {
                 while let Some((place, (id, client, keep, submission, run))) = next() {
                     let begin = clock.steady();
                     let work = || {
-                        let submission = submission.as_ref().map_err(Damaged::problem)?;
+                        let submission = submission.as_ref().map_err(damage_problem)?;
                         solved(&solve, (&memory, client.as_str()), submission, keep, &run)
                     };
                     let result = catch_unwind(AssertUnwindSafe(work));
@@ -394,7 +396,7 @@ impl WorkerContext {
             return answer.await;
         }
         let answer = tokio::time::timeout(patience, answer).await;
-        answer.unwrap_or_else(|_| Err(sqlx::Error::PoolTimedOut.into()))
+        answer.unwrap_or_else(|_| Err(StoreError::timed_out()))
     }
 }
 

@@ -1,12 +1,13 @@
 //! The designs of a study: the jobs that they become, and the rows in which they stand with what has come of them.
 
 use jiff::Timestamp;
-use meshwright_wire::{Design, Kept, RowState, Status, Study, memory_above, too_much_memory};
+use meshwright_store::{Damaged, DocumentLine, Kept, NewJob, NewRow, StoredRow};
+use meshwright_wire::{Design, RowState, Status, Study, memory_above, too_much_memory};
 use uuid::Uuid;
 
 use super::error::JobError;
-use super::queue::{Jobs, rough_cost};
-use super::store::{Damaged, DocumentLine, NewJob, NewRow, StoredRow};
+use super::queue::{Jobs, new_job, rough_cost};
+use super::shown::kept_by;
 
 /// So many designs are expanded and written in one transaction. Others write in between.
 pub(super) const CHUNK: usize = 500;
@@ -38,7 +39,7 @@ impl Owner {
                 study: Some(self.study),
                 keep: self.keep,
                 cost: rough_cost(&submission, is_known_as_drawn),
-                ..NewJob::of(&submission, &self.client, self.submitted_at)
+                ..new_job(&submission, &self.client, self.submitted_at)
             }),
             Err(problem) => Err(problem.to_json()),
         };
@@ -64,7 +65,7 @@ impl Jobs {
             client,
             submitted_at,
             memory_mb: self.rules.job_memory_mb,
-            keep: study.keep(),
+            keep: kept_by(study),
             is_population: study.is_population(),
         }
     }

@@ -1,9 +1,9 @@
 //! Why something cannot be done with a job or a study.
 
-use meshwright_wire::Status;
+use meshwright_store::{Damaged, Status, StoreError};
+use meshwright_wire::{Code, Problem};
+use tracing::error;
 use uuid::Uuid;
-
-use super::store::{Damaged, StoreError};
 
 /// Why something cannot be done with a job or a study.
 #[derive(Debug, Clone, thiserror::Error)]
@@ -79,4 +79,11 @@ impl From<StoreError> for JobError {
             Self::Database(error)
         }
     }
+}
+
+/// What clients are told of a document that is damaged. The cause stands in the log.
+pub fn damage_problem(error: &Damaged) -> Problem {
+    error!(%error, "the database is damaged");
+    let detail = "A document that is needed was changed since it was stored, by a fault of the disk or by other means. The failure has been logged.";
+    Problem::new(Code::DocumentDamaged, detail)
 }

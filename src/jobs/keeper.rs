@@ -3,12 +3,12 @@
 use std::time::Duration;
 
 use jiff::{SignedDuration, Timestamp};
+use meshwright_store::{Removed, StoreError};
 use tokio::task::JoinHandle;
 use tokio::time::{Instant, interval_at, sleep};
 use tracing::{info, warn};
 
 use super::queue::Jobs;
-use super::store::{Removed, StoreError};
 
 /// The journal is emptied when it has grown beyond this.
 const LONG_JOURNAL: u64 = 64 << 20;

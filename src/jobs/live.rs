@@ -5,10 +5,9 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use meshwright_engine::run::Run;
+use meshwright_store::{Job, Progress};
 use tokio::sync::{Notify, broadcast, watch};
 use uuid::Uuid;
-
-use super::job::{Job, Progress};
 
 /// Stands for every job and study.
 const ANYTHING: Uuid = Uuid::nil();

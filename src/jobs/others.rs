@@ -3,13 +3,12 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use meshwright_wire::Status;
+use meshwright_store::{Listener, Notice, Status, Store, StoreError};
 use tokio::time::{interval, sleep};
 use tokio_util::sync::CancellationToken;
 use tracing::warn;
 
 use super::live::Live;
-use super::store::{Listener, Notice, Store, StoreError};
 
 /// So often everybody looks, also without news: what is told may be lost, and progress is not told at all.
 const LOOK: Duration = Duration::from_secs(2);

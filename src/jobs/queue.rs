@@ -6,18 +6,19 @@ use std::time::Duration;
 use jiff::Timestamp;
 use meshwright_connections::Budget;
 use meshwright_engine::analysis::Method;
-use meshwright_wire::{DOCUMENT_VERSION, Kept, SOLVER_VERSION, Status, Submission};
+use meshwright_store::{
+    Depth, Document, Filter, Job, Kept, NewJob, Outcome, QueueBounds, Status, Store, StoreError,
+};
+use meshwright_wire::{DOCUMENT_VERSION, SOLVER_VERSION, Submission};
 use tokio::sync::{Notify, mpsc, oneshot};
 use tokio_util::sync::CancellationToken;
 use uuid::Uuid;
 
 use super::clock::Clock;
 use super::error::JobError;
-use super::job::Job;
 use super::live::{Changes, Live, News};
 use super::others;
 use super::resource::{Listed, Submitted};
-use super::store::{Depth, Document, Filter, NewJob, Outcome, QueueBounds, Store, StoreError};
 use crate::machine;
 
 /// So long a repeated request is recognized by its key.
@@ -148,7 +149,7 @@ impl Jobs {
         let job = NewJob {
             idempotency_key,
             client_limit,
-            ..NewJob::of(submission, &member.client, self.clock.now())
+            ..new_job(submission, &member.client, self.clock.now())
         };
         let (answer, outcome) = oneshot::channel();
         self.submissions
@@ -177,10 +178,7 @@ impl Jobs {
     pub(crate) fn refuse_if_failing(&self) -> Result<(), JobError> {
         match self.store.fault() {
             None => Ok(()),
-            Some(cause) => {
-                let cause = sqlx::Error::Io(std::io::Error::other(cause));
-                Err(JobError::Unavailable(StoreError::from(cause)))
-            }
+            Some(cause) => Err(JobError::Unavailable(StoreError::unavailable(cause))),
         }
     }
 
@@ -473,25 +471,23 @@ impl Jobs {
     }
 }
 
-impl NewJob {
-    /// A job that stands alone, with the usual bounds.
-    pub(super) fn of(submission: &Submission, client: &str, now: Timestamp) -> Self {
-        Self {
-            id: Uuid::now_v7(),
-            client: client.to_owned(),
-            method: submission.method().to_owned(),
-            tags: submission.tags().to_vec(),
-            submission: submission.canonical_json(),
-            document_version: DOCUMENT_VERSION,
-            input_hash: submission.input_hash(),
-            cost: rough_cost(submission, false),
-            positions_total: submission.positions_total(),
-            submitted_at: now,
-            idempotency_key: None,
-            study: None,
-            keep: Kept::Results,
-            client_limit: u32::MAX,
-        }
+/// A job that stands alone, with the usual bounds.
+pub(super) fn new_job(submission: &Submission, client: &str, now: Timestamp) -> NewJob {
+    NewJob {
+        id: Uuid::now_v7(),
+        client: client.to_owned(),
+        method: submission.method().to_owned(),
+        tags: submission.tags().to_vec(),
+        submission: submission.canonical_json(),
+        document_version: DOCUMENT_VERSION,
+        input_hash: submission.input_hash(),
+        cost: rough_cost(submission, false),
+        positions_total: submission.positions_total(),
+        submitted_at: now,
+        idempotency_key: None,
+        study: None,
+        keep: Kept::Results,
+        client_limit: u32::MAX,
     }
 }
 

@@ -1,6 +1,6 @@
 //! What jobs and studies have in common as things that a client submits and lists.
 
-use super::store::Cursor;
+use meshwright_store::Cursor;
 
 /// A job or a study that answers a submission.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,13 +6,12 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use meshwright_store::{NewRow, SearchStep, StudyRecord};
 use meshwright_wire::{Design, RowState, Searching, Study};
 
 use super::designs::{CHUNK, Owner, blocking};
 use super::error::JobError;
 use super::queue::Jobs;
-use super::store::{NewRow, SearchStep};
-use super::study::StudyRecord;
 
 /// Between two looks at rows of which nothing is heard.
 const PATIENCE: Duration = Duration::from_secs(5);

@@ -3,20 +3,18 @@
 
 use std::time::Duration;
 
-use tracing::{error, info};
-use uuid::Uuid;
-
 use meshwright_engine::run::Run;
+use meshwright_store::{NewRow, NewStudy, StoreError, StudyFilter, StudyOutcome, StudyRecord};
 use meshwright_wire::hash::sha256_hex;
 use meshwright_wire::{DOCUMENT_VERSION, Study};
+use tracing::{error, info};
+use uuid::Uuid;
 
 use super::designs::{Owner, blocking, expand};
 use super::error::JobError;
 use super::queue::{Jobs, Member};
 use super::resource::{Listed, Submitted};
 use super::searches;
-use super::store::{NewRow, NewStudy, StoreError, StudyFilter, StudyOutcome};
-use super::study::StudyRecord;
 
 impl Jobs {
     /// Takes a study: it and its first designs are on the disk when this comes back.
@@ -48,7 +46,7 @@ impl Jobs {
             body_hash: sha256_hex(study.document()),
             document: study.document().to_owned(),
             document_version: DOCUMENT_VERSION,
-            gear: study.gear(),
+            gear: study.gear().word().to_owned(),
             total: study.total() as u64,
             search,
             submitted_at: now,

@@ -1,169 +1,30 @@
-//! A study: how far its jobs have come.
+//! What the record of a study says in the words of documents.
 
-use jiff::Timestamp;
-use uuid::Uuid;
-
+use meshwright_store::{Status, StudyRecord};
 use meshwright_wire::warning::GearName;
-use meshwright_wire::{Code, Problem, SearchState, Status};
+use meshwright_wire::{Code, Problem, SearchState};
 
-/// A study and how far it has come. Where it stands follows from where its jobs stand.
-#[derive(Debug, Clone, PartialEq)]
-pub struct StudyRecord {
-    /// The id on the wire, a UUID of version 7.
-    pub id: Uuid,
-    /// Its place in the order of arrival.
-    pub sequence: i64,
-    /// What the client calls it.
-    pub name: Option<String>,
-    /// Short words of the client.
-    pub tags: Vec<String>,
-    /// The gear whose mass and holes the table tells.
-    pub gear: GearName,
-    /// Number of designs; of a search that has not ended, the most that it may come to.
-    pub total: u64,
-    /// Designs that have their row.
-    pub(super) expanded: u64,
-    /// Designs that could not be built.
-    pub unbuildable: u64,
-    /// Designs that wait.
-    pub accepted: u64,
-    /// Designs that are being computed.
-    pub running: u64,
-    /// Designs that have results.
-    pub successful: u64,
-    /// Designs whose computation failed.
-    pub failed: u64,
-    /// Designs whose job was cancelled or deleted.
-    pub dismissed: u64,
-    /// Grows with every change of the study, its rows or its jobs.
-    pub version: i64,
-    /// When it was submitted.
-    pub submitted_at: Timestamp,
-    /// When it was cancelled.
-    pub cancelled_at: Option<Timestamp>,
-    /// When the last of its jobs ended, of those that have.
-    pub(super) last_end: Option<Timestamp>,
-    /// How far a search has come, JSON; none for other studies.
-    pub search: Option<String>,
+/// The gear whose mass and holes the table of a study tells.
+pub fn gear_of(study: &StudyRecord) -> GearName {
+    GearName::of_word(&study.gear).unwrap_or(GearName::Driven)
 }
 
-impl StudyRecord {
-    /// Designs that have come to an end, whichever.
-    pub fn done(&self) -> u64 {
-        self.unbuildable + self.successful + self.failed + self.dismissed
-    }
-
-    /// Where it stands.
-    pub fn status(&self) -> Status {
-        if self.cancelled_at.is_some() {
-            Status::Dismissed
-        } else if self.done() < self.total {
-            let begun = self.running + self.successful + self.failed > 0;
-            if begun {
-                Status::Running
-            } else {
-                Status::Accepted
-            }
-        } else if self.successful > 0 {
-            Status::Successful
-        } else if self.dismissed > 0 {
-            Status::Dismissed
-        } else {
-            Status::Failed
-        }
-    }
-
-    /// How far a search has come; none for other studies.
-    pub fn search_state(&self) -> Option<SearchState> {
-        serde_json::from_str(self.search.as_ref()?).ok()
-    }
-
-    /// Why it came to nothing, if it did.
-    pub fn why_failed(&self) -> Option<Problem> {
-        if self.status() != Status::Failed {
-            return None;
-        }
-        let searched = self.search_state().and_then(|state| state.why_nothing());
-        let detail = searched.unwrap_or_else(|| {
-            format!(
-                "None of the {} designs has results: {} could not be built, {} could not be computed. Each row of the table has its problem.",
-                self.total, self.unbuildable, self.failed
-            )
-        });
-        Some(Problem::new(Code::NoDesignComputed, detail))
-    }
-
-    /// When it ended.
-    pub fn finished_at(&self) -> Option<Timestamp> {
-        if self.status().has_ended() {
-            // Where no design could be built, the end was the beginning.
-            self.cancelled_at
-                .or(self.last_end)
-                .or(Some(self.submitted_at))
-        } else {
-            None
-        }
-    }
+/// How far a search has come; none for other studies.
+pub fn search_state(study: &StudyRecord) -> Option<SearchState> {
+    serde_json::from_str(study.search.as_ref()?).ok()
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn where_a_study_stands_follows_from_its_jobs() {
-        let study = StudyRecord {
-            id: Uuid::nil(),
-            sequence: 1,
-            name: None,
-            tags: Vec::new(),
-            gear: GearName::Driven,
-            total: 4,
-            expanded: 4,
-            unbuildable: 1,
-            accepted: 3,
-            running: 0,
-            successful: 0,
-            failed: 0,
-            dismissed: 0,
-            version: 0,
-            submitted_at: Timestamp::UNIX_EPOCH,
-            cancelled_at: None,
-            last_end: None,
-            search: None,
-        };
-        let status = |accepted, running, successful, failed, dismissed| {
-            StudyRecord {
-                accepted,
-                running,
-                successful,
-                failed,
-                dismissed,
-                ..study.clone()
-            }
-            .status()
-        };
-        assert_eq!(status(3, 0, 0, 0, 0), Status::Accepted);
-        assert_eq!(status(2, 1, 0, 0, 0), Status::Running);
-        assert_eq!(status(2, 0, 1, 0, 0), Status::Running);
-        assert_eq!(status(0, 0, 1, 2, 0), Status::Successful);
-        assert_eq!(status(0, 0, 0, 3, 0), Status::Failed);
-        assert_eq!(status(0, 0, 0, 0, 3), Status::Dismissed);
-        let cancelled = StudyRecord {
-            cancelled_at: Some(Timestamp::UNIX_EPOCH),
-            expanded: 2,
-            ..study.clone()
-        };
-        assert_eq!(cancelled.status(), Status::Dismissed);
-        assert_eq!(cancelled.finished_at(), Some(Timestamp::UNIX_EPOCH));
-        let impossible = StudyRecord {
-            unbuildable: 4,
-            accepted: 0,
-            ..study
-        };
-        assert_eq!(
-            (impossible.status(), impossible.finished_at()),
-            (Status::Failed, Some(Timestamp::UNIX_EPOCH))
-        );
+/// Why a study came to nothing, if it did.
+pub fn why_failed(study: &StudyRecord) -> Option<Problem> {
+    if study.status() != Status::Failed {
+        return None;
     }
+    let searched = search_state(study).and_then(|state| state.why_nothing());
+    let detail = searched.unwrap_or_else(|| {
+        format!(
+            "None of the {} designs has results: {} could not be built, {} could not be computed. Each row of the table has its problem.",
+            study.total, study.unbuildable, study.failed
+        )
+    });
+    Some(Problem::new(Code::NoDesignComputed, detail))
 }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
+use meshwright_store::{Claimed, Lease, Lost, Reader, Started, StoreError};
 use meshwright_wire::{Code, DOCUMENT_VERSION, Problem, SOLVER_VERSION};
 use tokio::task::JoinSet;
 use tokio::time::{Instant, MissedTickBehavior, interval, interval_at, sleep};
@@ -11,7 +12,6 @@ use tracing::{error, info, warn};
 use uuid::Uuid;
 
 use super::queue::Jobs;
-use super::store::{Claimed, Lease, Lost, Reader, Started, StoreError};
 use super::worker_context::{Pace, Threads, WorkerContext};
 use crate::compute::{Cores, NoThreads, Solve};
 
@@ -279,18 +279,17 @@ impl WorkerContext {
 mod tests {
     use std::sync::mpsc;
 
-    use meshwright_wire::{Results, Status, Submission};
+    use meshwright_wire::{Results, Submission};
     use metrics::LocalRecorderGuard;
     use metrics_exporter_prometheus::{PrometheusBuilder, PrometheusHandle};
     use serde_json::json;
     use tokio_util::sync::CancellationToken;
 
     use super::super::clock::Clock;
-    use super::super::job::Job;
     use super::super::queue::{Member, Rules};
-    use super::super::store::{DatabaseAddress, Store};
     use super::*;
     use crate::testing::RESULTS;
+    use meshwright_store::{DatabaseAddress, Job, Status, Store};
 
     const RULES: Rules = Rules {
         queue_limit: 100,
@@ -461,7 +460,7 @@ mod tests {
         desk.runs(id).await;
         let job = desk.jobs.find("portal", id).await.unwrap();
         // From here on whoever looked would find nothing.
-        desk.jobs.store.readers.close().await;
+        desk.jobs.store.close_readers().await;
         go.send(()).unwrap();
         let ended = desk.jobs.until_ended(changes, job, Duration::from_secs(60));
         let ended = ended.await.unwrap();

@@ -3,10 +3,10 @@
 use std::time::Duration;
 
 use jiff::SignedDuration;
+use meshwright_store::Lease;
 use rayon::ThreadPool;
 
 use super::queue::Jobs;
-use super::store::Lease;
 use crate::compute::{NoThreads, Solve, Work, engine_threads};
 
 /// How the workers keep time.

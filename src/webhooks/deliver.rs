@@ -13,6 +13,7 @@ use base64::engine::general_purpose::STANDARD as BASE64;
 use hmac::{Hmac, KeyInit, Mac};
 use hyper::{Request, StatusCode};
 use meshwright_connections::{Budget, Part};
+use meshwright_store::webhooks::{Attempt, Message, Refusal, Waiting};
 use reqwest::Body;
 use reqwest::Url;
 use sha2::Sha256;
@@ -21,8 +22,8 @@ use tokio::time::sleep;
 use tracing::{info, warn};
 use uuid::Uuid;
 
+use super::hooks::Webhooks;
 use super::send::Sender;
-use super::store::{Attempt, Message, Refusal, Waiting, Webhooks};
 use crate::jobs::StoreError;
 
 /// So many messages are on their way at the same time, so many of them of one client, and so many to one webhook.
@@ -156,7 +157,7 @@ impl Courier {
         let mut changes = jobs.changes();
         let mut places = Places::new();
         let mut attempts = JoinSet::new();
-        if let Err(error) = self.webhooks.give_back_all().await {
+        if let Err(error) = jobs.store().give_back_messages().await {
             warn!(%error, "messages that were under way wait for a while");
         }
         while !stop.is_cancelled() {
@@ -191,11 +192,14 @@ impl Courier {
         places: &Places,
         attempts: &mut JoinSet<(Uuid, bool)>,
     ) -> Result<Duration, StoreError> {
+        let (store, clock) = (self.webhooks.jobs.store(), self.webhooks.jobs.clock());
         loop {
-            let waiting = self.webhooks.waiting().await?;
+            let waiting = store.waiting_webhooks(clock.steady()).await?;
             let mut begun = false;
             for (webhook, held) in places.shares(&waiting) {
-                let messages = self.webhooks.take(webhook.webhook, held.len()).await?;
+                let messages = store
+                    .take_messages(webhook.webhook, held.len(), clock.steady())
+                    .await?;
                 begun |= !messages.is_empty();
                 for (message, held) in messages.into_iter().zip(held) {
                     let courier = Arc::clone(self);
@@ -229,7 +233,9 @@ impl Courier {
             Some(Refusal::Never(_)) => "given_up",
         };
         metrics::counter!("meshwright_webhook_attempts_total", "result" => result).increment(1);
-        match self.webhooks.attempted(message, &attempt).await {
+        let (store, clock) = (self.webhooks.jobs.store(), self.webhooks.jobs.clock());
+        let noted = store.attempted(message, &attempt, clock.steady(), clock.now());
+        match noted.await {
             Ok(true) => info!(webhook = %message.webhook, "a webhook is given up"),
             Ok(false) => {}
             Err(error) => {
@@ -243,12 +249,12 @@ impl Courier {
     async fn send(&self, message: &Message) -> Attempt {
         // The list may be another one than when the webhook was made.
         if let Err(why) = self.webhooks.rules.check(&message.url) {
-            return Attempt::not(Refusal::Again(why));
+            return unanswered(Refusal::Again(why));
         }
         let timestamp = self.webhooks.jobs.clock().now().as_second();
         let id = message.id.to_string();
         let Some(signature) = signatures(&message.secrets, &id, timestamp, &message.body) else {
-            return Attempt::not(Refusal::Never("its secret is damaged".to_owned()));
+            return unanswered(Refusal::Never("its secret is damaged".to_owned()));
         };
         // As the list has read it, and without the part that is the client's own.
         let address = Url::parse(&message.url).map(|mut url| {
@@ -265,36 +271,34 @@ impl Courier {
         });
         let Some(request) = request else {
             let why = "its address is not one that can be sent to";
-            return Attempt::not(Refusal::Again(why.to_owned()));
+            return unanswered(Refusal::Again(why.to_owned()));
         };
         match self.sender.send(request).await {
-            Ok(status) => Attempt::answered(status),
-            Err(why) => Attempt::not(Refusal::Again(why)),
+            Ok(status) => answered(status),
+            Err(why) => unanswered(Refusal::Again(why)),
         }
     }
 }
 
-impl Attempt {
-    /// There was no answer.
-    fn not(refusal: Refusal) -> Self {
-        Self {
-            answered: None,
-            refusal: Some(refusal),
-        }
+/// There was no answer.
+fn unanswered(refusal: Refusal) -> Attempt {
+    Attempt {
+        answered: None,
+        refusal: Some(refusal),
     }
+}
 
-    fn answered(status: StatusCode) -> Self {
-        let code = status.as_u16();
-        let refusal = match status {
-            status if status.is_success() => None,
-            // Standard Webhooks: the receiver wants no more.
-            StatusCode::GONE => Some(Refusal::Never("it answered 410".to_owned())),
-            _ => Some(Refusal::Again(format!("it answered {code}"))),
-        };
-        Self {
-            answered: Some(code),
-            refusal,
-        }
+fn answered(status: StatusCode) -> Attempt {
+    let code = status.as_u16();
+    let refusal = match status {
+        status if status.is_success() => None,
+        // Standard Webhooks: the receiver wants no more.
+        StatusCode::GONE => Some(Refusal::Never("it answered 410".to_owned())),
+        _ => Some(Refusal::Again(format!("it answered {code}"))),
+    };
+    Attempt {
+        answered: Some(code),
+        refusal,
     }
 }
 

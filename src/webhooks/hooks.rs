@@ -3,11 +3,12 @@
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
+use meshwright_store::webhooks::{Delivery, NewWebhook, Outcome, Webhook};
 use meshwright_wire::hash::sha256_hex_of;
 use uuid::Uuid;
 
-use super::store::{Delivery, NewWebhook, Outcome, Webhook, Webhooks};
-use crate::jobs::{EventKind, JobError, StoreError};
+use super::addresses::HookRules;
+use crate::jobs::{EventKind, JobError, Jobs, KEY_LIFETIME, StoreError};
 
 /// So many webhooks may a client have.
 const MOST: i64 = 16;
@@ -57,7 +58,19 @@ pub struct Made {
     pub repeated: bool,
 }
 
+/// The webhooks of all clients.
+#[derive(Clone)]
+pub struct Webhooks {
+    pub(super) jobs: Jobs,
+    pub(super) rules: HookRules,
+}
+
 impl Webhooks {
+    /// Webhooks that are told of `jobs`, by these rules.
+    pub fn new(jobs: Jobs, rules: HookRules) -> Self {
+        Self { jobs, rules }
+    }
+
     /// Makes a webhook.
     ///
     /// # Errors
@@ -83,7 +96,13 @@ impl Webhooks {
             body_hash,
             most: MOST,
         };
-        let (webhook, secret, repeated) = match self.store_new(&new).await? {
+        let steady = self.jobs.clock().steady();
+        let (webhook, secret, repeated) = match self
+            .jobs
+            .store()
+            .add_webhook(&new, steady, KEY_LIFETIME)
+            .await?
+        {
             Outcome::Made => (new.webhook, new.secret, false),
             Outcome::Repeated(webhook, secret) => (webhook, secret, true),
             Outcome::KeyConflict => return Err(JobError::KeyConflict.into()),
@@ -102,7 +121,7 @@ impl Webhooks {
     ///
     /// [`JobError::Unavailable`], [`JobError::Database`].
     pub async fn list(&self, client: &str) -> Result<Vec<Webhook>, WebhookError> {
-        Ok(self.stored(client, None).await?)
+        Ok(self.jobs.store().webhooks(client, None).await?)
     }
 
     /// A webhook of a client.
@@ -111,7 +130,7 @@ impl Webhooks {
     ///
     /// [`WebhookError::NotFound`], [`JobError::Unavailable`], [`JobError::Database`].
     pub async fn find(&self, client: &str, id: Uuid) -> Result<Webhook, WebhookError> {
-        let found = self.stored(client, Some(id)).await?;
+        let found = self.jobs.store().webhooks(client, Some(id)).await?;
         found.into_iter().next().ok_or(WebhookError::NotFound(id))
     }
 
@@ -121,7 +140,7 @@ impl Webhooks {
     ///
     /// [`WebhookError::NotFound`], [`JobError::Unavailable`], [`JobError::Database`].
     pub async fn delete(&self, client: &str, id: Uuid) -> Result<(), WebhookError> {
-        if self.remove(client, id).await? {
+        if self.jobs.store().remove_webhook(client, id).await? {
             Ok(())
         } else {
             Err(WebhookError::NotFound(id))
@@ -138,9 +157,13 @@ impl Webhooks {
         if webhook.disabled_at.is_some() {
             return Err(WebhookError::Disabled);
         }
-        let message = self.store_ping(id).await?;
+        let message = self
+            .jobs
+            .store()
+            .ping_webhook(id, self.jobs.clock().now())
+            .await?;
         self.jobs.mail().notify_one();
-        let deliveries = self.stored_deliveries(id, Some(message)).await?;
+        let deliveries = self.jobs.store().deliveries(id, Some(message)).await?;
         let delivery = deliveries.into_iter().next();
         delivery.ok_or(WebhookError::NotFound(id))
     }
@@ -152,7 +175,7 @@ impl Webhooks {
     /// [`WebhookError::NotFound`], [`JobError::Unavailable`], [`JobError::Database`].
     pub async fn deliveries(&self, client: &str, id: Uuid) -> Result<Vec<Delivery>, WebhookError> {
         self.find(client, id).await?;
-        Ok(self.stored_deliveries(id, None).await?)
+        Ok(self.jobs.store().deliveries(id, None).await?)
     }
 
     /// Takes up a webhook again that was given up, or that is to be tried before its time: what waits is sent at once.
@@ -166,7 +189,7 @@ impl Webhooks {
         self.rules
             .check(&webhook.url)
             .map_err(WebhookError::Refused)?;
-        self.store_enabled(id).await?;
+        self.jobs.store().enable_webhook(id).await?;
         self.jobs.mail().notify_one();
         self.find(client, id).await
     }
@@ -179,7 +202,8 @@ impl Webhooks {
     pub async fn rotate(&self, client: &str, id: Uuid) -> Result<Made, WebhookError> {
         let webhook = self.find(client, id).await?;
         let secret = new_secret()?;
-        self.store_secret(id, &secret).await?;
+        let steady = self.jobs.clock().steady();
+        self.jobs.store().rotate_secret(id, &secret, steady).await?;
         Ok(Made {
             webhook,
             secret: shown(&secret),

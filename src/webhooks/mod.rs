@@ -1,16 +1,14 @@
 //! Webhooks: where a client is told that its jobs and studies have ended.
 //!
-//! In reading order: where messages may go ([`addresses`](HookRules)); what is kept of [`Webhooks`] and their messages
-//! (`store`); what handlers do with them (`hooks`); how one is sent (`send`); and the task that delivers them (`deliver`). The messages themselves are written with the change that
-//! they tell, by the store of jobs.
+//! In reading order: where messages may go ([`addresses`](HookRules)); what handlers do with
+//! [`Webhooks`] (`hooks`); how one is sent (`send`); and the task that delivers them (`deliver`). What is kept of them, and the messages, which are written
+//! with the change that they tell, are the store's.
 
 mod addresses;
 mod deliver;
 mod hooks;
 mod send;
-mod store;
 
 pub use addresses::{HookRules, HookTarget};
 pub use deliver::Deliveries;
-pub use hooks::{Made, WebhookError, most_webhooks};
-pub use store::{Delivery, Webhook, Webhooks};
+pub use hooks::{Made, WebhookError, Webhooks, most_webhooks};

@@ -1,4 +1,4 @@
-//! Studies and single jobs, and two clients, all at once: each gets its part. (`jobs::store::tests::turns` holds the rule turn
+//! Studies and single jobs, and two clients, all at once: each gets its part. (`crates/store/src/tests/turns.rs` holds the rule turn
 //! by turn; this is what comes of it in the program.)
 
 use std::sync::Arc;

@@ -7,9 +7,9 @@ use std::time::Duration;
 use jiff::Timestamp;
 use meshwright::compute::Solve;
 use meshwright::jobs::{
-    Clock, DatabaseAddress, Filter, Job, Jobs, Member, Pace, Rules, Store, Workers,
+    Clock, DatabaseAddress, Filter, Job, Jobs, Member, Pace, Rules, Status, Store, Workers,
 };
-use meshwright_wire::{Code, Problem, Results, Status, Submission};
+use meshwright_wire::{Code, Problem, Results, Submission};
 use tempfile::TempDir;
 use tokio_util::sync::CancellationToken;
 

@@ -1,6 +1,7 @@
 //! A PostgreSQL for the tests: one server a process, or the one that `MESHWRIGHT_TEST_POSTGRES` names, and a database for each
 //! test.
 
+use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -25,7 +26,11 @@ pub(crate) fn start() -> (String, String) {
 
 /// The same with settings of `tests/postgres/start`.
 pub(crate) fn start_with(settings: &[(&str, &str)]) -> (String, String) {
-    let started = Command::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/postgres/start"))
+    // The suites of the service have it beside them, those of the store two folders above.
+    let folders = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors();
+    let mut scripts = folders.map(|folder| folder.join("tests/postgres/start"));
+    let script = scripts.find(|script| script.exists());
+    let started = Command::new(script.expect("the workspace has tests/postgres/start"))
         .arg(std::process::id().to_string())
         .envs(settings.iter().copied())
         .stderr(Stdio::inherit())

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::declare::{Choice, words};
+use super::declare::words;
 
 /// How much of what was computed is kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
@@ -19,17 +19,5 @@ words! {
     Kept {
         Results = "results": "the whole results of each design, with every curve",
         Statistics = "statistics": "the numbers of the table only; a design has its curves when it is submitted alone",
-    }
-}
-
-impl Kept {
-    /// The word on the wire and in the database.
-    pub fn as_str(self) -> &'static str {
-        self.word()
-    }
-
-    /// What a word of the database stands for.
-    pub fn named(word: &str) -> Option<Self> {
-        Self::of_word(word)
     }
 }

@@ -15,7 +15,7 @@ use super::tables::numbers;
 use crate::commands::serve::signal;
 use crate::compute::Cores;
 use crate::jobs::{
-    Clock, DatabaseAddress, Jobs, Member, Migrate, Pace, Rules, StudyRecord, Workers,
+    Clock, DatabaseAddress, Jobs, Member, Migrate, Pace, Rules, StudyRecord, Workers, search_state,
 };
 use crate::serve::open;
 
@@ -107,7 +107,7 @@ async fn follow(
             written = write_results(jobs, id, written, rows.len(), folder).await?;
         }
         bar.set_position(record.done());
-        if let Some(best) = record.search_state().and_then(|search| search.best) {
+        if let Some(best) = search_state(&record).and_then(|search| search.best) {
             bar.set_message(format!("best {}", numbers(&best.goals)));
         }
         if record.status().has_ended() {

@@ -18,6 +18,7 @@ use self::folder::ResultFolder;
 use self::picture::picture;
 use self::tables::{search_table, short_table, spread_table};
 use super::document::{EXIT_PROBLEM, read, text_of};
+use crate::jobs::{search_state, shown_status, why_failed};
 
 /// Compute a study: many variants of one submission, and their table.
 #[derive(Debug, clap::Args)]
@@ -53,7 +54,7 @@ impl Study {
         let computed = compute(&study, folder.as_ref())?;
         let elapsed = started.elapsed();
 
-        let search = computed.record.search_state();
+        let search = search_state(&computed.record);
         let best = search.as_ref().and_then(|search| {
             let row = usize::try_from(search.best.as_ref()?.row).ok()?;
             let row = computed.rows.get(row)?;
@@ -99,15 +100,15 @@ fn population(study: &StudyDocument, computed: &Computed) -> Option<PopulationRe
     for (member, row) in (0..).zip(&computed.rows) {
         sample.add(member, row);
     }
-    Some(sample.results(None, computed.record.status()))
+    Some(sample.results(None, shown_status(computed.record.status())))
 }
 
 fn results(study: &StudyDocument, computed: Computed) -> StudyResults {
     let Computed { record, rows } = computed;
-    let problem = record.why_failed();
+    let problem = why_failed(&record);
     StudyResults {
         id: None,
-        status: record.status(),
+        status: shown_status(record.status()),
         done: record.done(),
         total: record.total,
         gear: study.gear(),

@@ -3,7 +3,6 @@
 use std::time::Duration;
 
 use axum::response::Response;
-use meshwright_wire::Status;
 use serde::Serialize;
 use utoipa::ToSchema;
 use uuid::Uuid;
@@ -14,7 +13,7 @@ use crate::http::client::Client;
 use crate::http::events::{self, EventName, NamedData, WatchEvent, Watching, event};
 use crate::http::parameters::StudyId;
 use crate::http::problem::Refusal;
-use crate::jobs::News;
+use crate::jobs::{News, Status};
 
 /// The progress of a study is told so often at most.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(250);

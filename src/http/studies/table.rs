@@ -31,7 +31,7 @@ use crate::http::client::Client;
 use crate::http::parameters::{IfNoneMatch, StudyId};
 use crate::http::problem::Refusal;
 use crate::http::view::with_public_type;
-use crate::jobs::{DocumentLine, JobError, StudyRecord};
+use crate::jobs::{DocumentLine, JobError, StudyRecord, gear_of, shown_status};
 
 /// Get the table of a study
 ///
@@ -350,10 +350,10 @@ pub(super) async fn over_rows<T: Send + 'static>(
 fn head_of_json(study: &StudyRecord, app: &App) -> String {
     let empty = StudyResults {
         id: Some(study.id),
-        status: study.status(),
+        status: shown_status(study.status()),
         done: study.done(),
         total: study.total,
-        gear: study.gear,
+        gear: gear_of(study),
         problem: why_failed(study, &app.edge),
         rows: Vec::new(),
     };
@@ -390,7 +390,8 @@ impl RowWriter {
         let front = self.outline.get().map_or(&[][..], |front| &front.best);
         for (i, state) in (read..).zip(states) {
             let best = usize::try_from(i).ok().and_then(|i| front.get(i));
-            let mut row = TableRow::new(self.study.gear, state, best.copied().unwrap_or(false));
+            let mut row =
+                TableRow::new(gear_of(&self.study), state, best.copied().unwrap_or(false));
             row.problem = row.problem.map(|problem| self.with_address(problem));
             match &self.layout {
                 Layout::Csv(csv) => text.push_str(&csv.lines([&row])),

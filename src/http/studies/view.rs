@@ -9,7 +9,7 @@ use uuid::Uuid;
 
 use crate::http::edge::Edge;
 use crate::http::view::with_public_type;
-use crate::jobs::StudyRecord;
+use crate::jobs::{self, StudyRecord, shown_status};
 
 view! {
     /// A study: how far it has come, and where to find its table.
@@ -17,7 +17,7 @@ view! {
         /// The id of the study.
         id: Uuid = study.id,
         /// `successful` when at least one design has results, `failed` when none has and all have ended.
-        status: Status = study.status(),
+        status: Status = shown_status(study.status()),
         /// Designs that have come to an end, whichever.
         done: u64 = study.done(),
         /// Designs in all; of a search that has not ended, the most that it may come to.
@@ -103,6 +103,6 @@ impl Edge {
 
 /// A study that came to nothing says so.
 pub(super) fn why_failed(study: &StudyRecord, edge: &Edge) -> Option<Value> {
-    let problem = serde_json::to_value(study.why_failed()?).expect("a problem is plain data");
+    let problem = serde_json::to_value(jobs::why_failed(study)?).expect("a problem is plain data");
     Some(with_public_type(problem, &edge.public_url))
 }

@@ -1,0 +1,137 @@
+//! The messages to webhooks, as they come to be: each is written in the transaction of the change that it tells, so that none is lost
+//! and none tells what did not happen. How they leave is the business of `webhooks`.
+
+use jiff::Timestamp;
+use serde::Serialize;
+use uuid::Uuid;
+
+use super::statement::{Connection, query, query_as};
+use super::{Status, Store, StoreError};
+
+/// What can be told.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EventKind {
+    /// A job that stands alone has ended.
+    JobEnded,
+    /// A study has ended.
+    StudyEnded,
+}
+
+impl EventKind {
+    /// All kinds.
+    pub const ALL: [Self; 2] = [Self::JobEnded, Self::StudyEnded];
+
+    /// Its word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::JobEnded => "job.ended",
+            Self::StudyEnded => "study.ended",
+        }
+    }
+
+    /// The kinds of a list of words as it is kept. Words of a later version are told by later versions.
+    pub(crate) fn of_words(words: &str) -> Vec<Self> {
+        let words: Vec<String> = serde_json::from_str(words).unwrap_or_default();
+        let known = |word: &String| Self::ALL.into_iter().find(|kind| kind.word() == word);
+        words.iter().filter_map(known).collect()
+    }
+}
+
+/// A message to a webhook.
+pub(crate) struct NewMessage<'a> {
+    /// The webhook.
+    pub(crate) webhook: &'a str,
+    /// What it tells, in a word.
+    pub(crate) kind: &'static str,
+    /// Whose end it tells, or the webhook itself.
+    pub(crate) subject: Uuid,
+    /// Where that stands.
+    pub(crate) status: Option<Status>,
+}
+
+/// The body of a message: small, because who wants more asks for it.
+#[derive(Serialize)]
+struct Body {
+    #[serde(rename = "type")]
+    kind: &'static str,
+    timestamp: Timestamp,
+    data: BodyData,
+}
+
+#[derive(Serialize)]
+struct BodyData {
+    id: Uuid,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    status: Option<&'static str>,
+}
+
+impl NewMessage<'_> {
+    /// Puts it with those that wait. Gives back its id.
+    pub(crate) async fn insert(
+        &self,
+        connection: &mut Connection,
+        now: Timestamp,
+    ) -> Result<Uuid, sqlx::Error> {
+        let id = Uuid::now_v7();
+        let body = Body {
+            kind: self.kind,
+            timestamp: now,
+            data: BodyData {
+                id: self.subject,
+                status: self.status.map(Status::as_str),
+            },
+        };
+        let insert = query(
+            "insert into messages (id, webhook, kind, subject, body, next_at, created_at) values ($1, $2, $3, $4, $5, 0, $6)",
+        )
+        .bind(id.to_string())
+        .bind(self.webhook)
+        .bind(self.kind)
+        .bind(self.subject.to_string())
+        .bind(serde_json::to_string(&body).expect("a message is plain data"))
+        .bind(now.as_microsecond());
+        connection.later(insert).await?;
+        Ok(id)
+    }
+}
+
+/// Writes a message for each webhook of `client` that wants to be told.
+pub(super) async fn tell(
+    connection: &mut Connection,
+    client: &str,
+    kind: EventKind,
+    subject: Uuid,
+    status: Status,
+    now: Timestamp,
+) -> Result<(), sqlx::Error> {
+    let webhooks: Vec<(String, String)> =
+        query_as("select id, events from webhooks where client = $1 and disabled_at is null")
+            .bind(client)
+            .fetch_all(&mut *connection)
+            .await?;
+    let wanting = webhooks
+        .iter()
+        .filter(|(_, events)| EventKind::of_words(events).contains(&kind));
+    for (webhook, _) in wanting {
+        let message = NewMessage {
+            webhook,
+            kind: kind.word(),
+            subject,
+            status: Some(status),
+        };
+        message.insert(connection, now).await?;
+    }
+    Ok(())
+}
+
+impl Store {
+    /// Removes the messages that were written before, whether they have arrived or nobody has taken them.
+    pub async fn forget_messages(&self, before: Timestamp) -> Result<(), StoreError> {
+        let mut write = self.begin().await?;
+        query("delete from messages where created_at < $1")
+            .bind(before.as_microsecond())
+            .execute(&mut *write)
+            .await?;
+        write.commit().await
+    }
+}

@@ -1,0 +1,352 @@
+//! Nothing -> accepted, or -> successful at once where the same has been computed before.
+
+use std::collections::{BTreeSet, HashMap};
+
+use jiff::Timestamp;
+use serde_json::json;
+use uuid::Uuid;
+
+use super::documents::checksum;
+use super::endings::tell_end;
+use super::hash::sha256_hex;
+use super::rows::job_columns;
+use super::statement::{Connection, list, query, query_as};
+use super::{Job, Kept, Store, StoreError, column, dialect, shares};
+
+/// A job to be queued.
+#[derive(Debug, Clone)]
+pub struct NewJob {
+    /// Its id, a UUID of version 7.
+    pub id: Uuid,
+    /// Who submits it.
+    pub client: String,
+    /// The method of the submission.
+    pub method: String,
+    /// Short words of the client.
+    pub tags: Vec<String>,
+    /// The submission with every default filled in, JSON.
+    pub submission: String,
+    /// The version of the submission's document: who reads only earlier ones leaves the job to others.
+    pub document_version: i64,
+    /// What equal work has in common.
+    pub input_hash: String,
+    /// What it will take of a core, in microseconds.
+    pub cost: u64,
+    /// Mesh positions to solve.
+    pub positions_total: u64,
+    /// The time of day.
+    pub submitted_at: Timestamp,
+    /// The word under which the client may ask again and get this job.
+    pub idempotency_key: Option<String>,
+    /// The study that it computes a design of.
+    pub study: Option<Uuid>,
+    /// How much of its results is kept.
+    pub keep: Kept,
+    /// So many jobs of the client may wait, those of studies aside.
+    pub client_limit: u32,
+}
+
+/// What came of a submission.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Outcome {
+    /// A job waits in the queue.
+    Queued(Job),
+    /// A job that had its results at once, those of an equal one.
+    Known(Job),
+    /// The job that the same key and submission got before.
+    Repeated(Job),
+    /// The key was used for another submission.
+    KeyConflict,
+    /// So many jobs wait already.
+    QueueFull {
+        /// They.
+        waiting: i64,
+    },
+    /// So many jobs of this client wait already.
+    ClientQueueFull {
+        /// They.
+        waiting: i64,
+    },
+}
+
+/// What a submission is measured against.
+#[derive(Debug, Clone, Copy)]
+pub struct QueueBounds<'a> {
+    /// So many jobs may wait, those of studies aside.
+    pub queue_limit: u32,
+    /// Keys that are older than this are forgotten.
+    pub forget_keys_before: Timestamp,
+    /// Now, by the steady clock: the age of keys.
+    pub steady: Timestamp,
+    /// Only results of this version are given again.
+    pub solver_version: &'a str,
+}
+
+impl Store {
+    /// Nothing -> accepted, for several submissions in one commit. (A commit waits for the disk; submissions that
+    /// arrive together share the wait.)
+    pub async fn submit(
+        &self,
+        batch: &[NewJob],
+        bounds: QueueBounds<'_>,
+    ) -> Result<Vec<Outcome>, StoreError> {
+        let mut write = self.begin().await?;
+        query(dialect::lock_queue()).execute(&mut *write).await?;
+        if batch.iter().any(|job| job.idempotency_key.is_some()) {
+            let forget = query("delete from idempotency_keys where created_at < $1")
+                .bind(bounds.forget_keys_before.as_microsecond());
+            write.later(forget).await?;
+        }
+        let mut room = Room::new(bounds.queue_limit);
+        let mut outcomes = Vec::with_capacity(batch.len());
+        let mut lanes = BTreeSet::new();
+        for job in batch {
+            let outcome = submit_one(&mut write, job, &mut room, bounds).await?;
+            if matches!(outcome, Outcome::Queued(_)) {
+                lanes.insert((job.client.clone(), job.study));
+            }
+            outcomes.push(outcome);
+        }
+        shares::activate_all(&mut write, &lanes).await?;
+        write.commit().await?;
+        Ok(outcomes)
+    }
+}
+
+/// The room in the queue, within one transaction: nobody else queues a job meanwhile, so that one count serves all of it.
+struct Room {
+    limit: i64,
+    /// How many jobs of each client wait, those of studies aside.
+    waiting: Option<HashMap<String, i64>>,
+}
+
+/// Only lanes in which a job waits are counted, so that designs of studies are not even passed over.
+pub(super) const WAITING_ALONE: &str = "select client, count(*) from jobs
+     where client in (select client from shares where lane = '' and active = 1)
+       and status = 'accepted' and coalesce(study, '') = ''
+     group by client";
+
+impl Room {
+    fn new(limit: u32) -> Self {
+        Self {
+            limit: i64::from(limit),
+            waiting: None,
+        }
+    }
+
+    /// Takes a place for `client`, of which `client_limit` jobs may wait, or tells who has none left.
+    async fn take(
+        &mut self,
+        connection: &mut Connection,
+        client: &str,
+        client_limit: u32,
+    ) -> Result<Result<(), Outcome>, sqlx::Error> {
+        let waiting = match &mut self.waiting {
+            Some(waiting) => waiting,
+            none => {
+                let counts: Vec<(String, i64)> =
+                    query_as(WAITING_ALONE).fetch_all(connection).await?;
+                none.insert(counts.into_iter().collect())
+            }
+        };
+        let all: i64 = waiting.values().sum();
+        if all >= self.limit {
+            return Ok(Err(Outcome::QueueFull { waiting: all }));
+        }
+        let own = waiting.entry(client.to_owned()).or_default();
+        if *own >= i64::from(client_limit) {
+            return Ok(Err(Outcome::ClientQueueFull { waiting: *own }));
+        }
+        *own += 1;
+        Ok(Ok(()))
+    }
+}
+
+async fn submit_one(
+    connection: &mut Connection,
+    new: &NewJob,
+    room: &mut Room,
+    bounds: QueueBounds<'_>,
+) -> Result<Outcome, sqlx::Error> {
+    let body_hash = sha256_hex(&new.submission);
+    if let Some(key) = &new.idempotency_key
+        && let Some(outcome) = earlier_answer(connection, new, key, &body_hash).await?
+    {
+        return Ok(outcome);
+    }
+
+    let (client, input) = (&new.client, &new.input_hash);
+    let known = find_known(connection, client, input, new.keep, bounds.solver_version).await?;
+    let is_known = known.is_some();
+    if !is_known {
+        let taken = room.take(connection, client, new.client_limit);
+        if let Err(full) = taken.await? {
+            return Ok(full);
+        }
+    }
+    let made = insert_jobs(connection, &[(new, known)], bounds.solver_version).await?;
+    let job = made.into_iter().next().ok_or(sqlx::Error::RowNotFound)?;
+    let outcome = if is_known {
+        tell_end(connection, &job, new.submitted_at).await?;
+        Outcome::Known(job)
+    } else {
+        Outcome::Queued(job)
+    };
+
+    insert_submissions(connection, &[new]).await?;
+    if let Some(key) = &new.idempotency_key {
+        let remember = query("insert into idempotency_keys (client, key, body_hash, job, created_at) values ($1, $2, $3, $4, $5)")
+            .bind(&new.client)
+            .bind(key)
+            .bind(&body_hash)
+            .bind(new.id.to_string())
+            .bind(bounds.steady.as_microsecond());
+        connection.later(remember).await?;
+    }
+    Ok(outcome)
+}
+
+/// What the key was answered with before.
+async fn earlier_answer(
+    connection: &mut Connection,
+    new: &NewJob,
+    key: &str,
+    body_hash: &str,
+) -> Result<Option<Outcome>, sqlx::Error> {
+    let earlier: Option<(String, String, i64)> = query_as(
+        "select k.body_hash, k.job, j.document_version from idempotency_keys k join jobs j on j.id = k.job
+         where k.client = $1 and k.key = $2",
+    )
+    .bind(&new.client)
+    .bind(key)
+    .fetch_optional(&mut *connection)
+    .await?;
+    let Some((earlier_hash, job, document_version)) = earlier else {
+        return Ok(None);
+    };
+    // Versions that fill in other defaults write the same submission in other words; between them the key has to do.
+    let comparable = document_version == new.document_version;
+    if comparable && earlier_hash != body_hash {
+        return Ok(Some(Outcome::KeyConflict));
+    }
+    let job = query_as(concat!(
+        "select ",
+        job_columns!(),
+        " from jobs where id = $1"
+    ))
+    .bind(job)
+    .fetch_one(connection)
+    .await?;
+    Ok(Some(Outcome::Repeated(job)))
+}
+
+/// Finished work that an equal submission can be answered with.
+pub(super) struct Known {
+    pub(super) job: String,
+    pub(super) document: String,
+    pub(super) positions: i64,
+}
+
+/// What the client has had computed of the same input by this version, and of which enough was kept.
+pub(super) async fn find_known(
+    connection: &mut Connection,
+    client: &str,
+    input_hash: &str,
+    keep: Kept,
+    solver_version: &str,
+) -> Result<Option<Known>, sqlx::Error> {
+    let earlier: Option<(String, String, i64)> = query_as(dialect::known())
+        .bind(client)
+        .bind(input_hash)
+        .bind(solver_version)
+        .bind(i64::from(keep == Kept::Results))
+        .fetch_optional(connection)
+        .await?;
+    Ok(earlier.map(|(job, document, positions)| Known {
+        job,
+        document,
+        positions,
+    }))
+}
+
+/// New jobs without their submissions, in their order: those of which something is known are successful at once, the others wait. Lanes in
+/// which one waits are to be activated behind it.
+pub(super) async fn insert_jobs(
+    connection: &mut Connection,
+    jobs: &[(&NewJob, Option<Known>)],
+    solver_version: &str,
+) -> Result<Vec<Job>, sqlx::Error> {
+    let rows: Vec<_> = jobs
+        .iter()
+        .map(|(new, known)| {
+            let known = known.as_ref();
+            json!({
+                "job": new.id,
+                "owner": new.client,
+                "method": new.method,
+                "tags": words(&new.tags),
+                "input": new.input_hash,
+                "cost": column(new.cost),
+                "positions": known.map_or(column(new.positions_total), |known| known.positions),
+                "at": new.submitted_at.as_microsecond(),
+                "results": known.map(|known| &known.document),
+                "equal": known.map(|known| &known.job),
+                "study": new.study,
+                "keep": new.keep.as_str(),
+                "version": new.document_version,
+            })
+        })
+        .collect();
+    let mut made: Vec<Job> = query_as(dialect::insert_jobs())
+        .bind(list(&rows))
+        .bind(solver_version)
+        .fetch_all(&mut *connection)
+        .await?;
+    made.sort_by_key(|job| job.sequence);
+    for ((new, _), job) in jobs.iter().zip(&made) {
+        insert_tags(connection, new, job.sequence).await?;
+    }
+    Ok(made)
+}
+
+/// The submissions of new jobs.
+pub(super) async fn insert_submissions(
+    connection: &mut Connection,
+    jobs: &[&NewJob],
+) -> Result<(), sqlx::Error> {
+    let rows: Vec<_> = jobs
+        .iter()
+        .map(|new| {
+            let checksum = checksum(new.submission.as_bytes());
+            json!({ "job": new.id, "body": new.submission, "checksum": checksum })
+        })
+        .collect();
+    let insert = query(dialect::insert_submissions()).bind(list(&rows));
+    connection.later(insert).await
+}
+
+/// The tags of a new job.
+async fn insert_tags(
+    connection: &mut Connection,
+    new: &NewJob,
+    sequence: i64,
+) -> Result<(), sqlx::Error> {
+    let id = new.id.to_string();
+    for tag in &new.tags {
+        // A tag may stand twice in a submission.
+        let insert = query(
+            "insert into job_tags (client, tag, sequence, job) values ($1, $2, $3, $4) on conflict do nothing",
+        )
+        .bind(&new.client)
+        .bind(tag)
+        .bind(sequence)
+        .bind(&id);
+        connection.later(insert).await?;
+    }
+    Ok(())
+}
+
+/// A list of words as a column.
+pub(super) fn words(words: &[String]) -> String {
+    serde_json::to_string(words).expect("a list of strings is JSON")
+}
