@@ -10,16 +10,18 @@ ENV CARGO_PROFILE_RELEASE_STRIP=debuginfo
 # First the dependencies, in a layer that stays as long as the manifests do: the sources are empty, so that nothing else is built.
 COPY Cargo.toml Cargo.lock build.rs ./
 COPY crates/engine/Cargo.toml crates/engine/
+COPY crates/engine/benches/Cargo.toml crates/engine/benches/
 COPY crates/exchange/Cargo.toml crates/exchange/build.rs crates/exchange/
+COPY crates/fuzz-check/Cargo.toml crates/fuzz-check/
 COPY crates/paper/Cargo.toml crates/paper/build.rs crates/paper/
 COPY crates/plot/Cargo.toml crates/plot/
-COPY crates/sample/Cargo.toml crates/sample/
-COPY crates/search/Cargo.toml crates/search/
+COPY crates/studies/Cargo.toml crates/studies/
+COPY crates/wire/Cargo.toml crates/wire/
 COPY migrations migrations
-RUN mkdir -p web src/http benches/load crates/engine/benches && touch src/http/docs.js src/lib.rs \
-    && for name in engine exchange paper plot sample search; do mkdir -p crates/$name/src && touch crates/$name/src/lib.rs; done \
+RUN mkdir -p web src/http benches/load && touch src/http/docs.js src/lib.rs crates/engine/benches/lib.rs \
+    && for name in engine exchange fuzz-check plot studies wire; do mkdir -p crates/$name/src && touch crates/$name/src/lib.rs; done \
     && for file in src/main benches/load/main crates/engine/benches/jobs crates/engine/benches/parts crates/paper/src/main; do \
-         echo 'fn main() {}' > "$file.rs"; done \
+         mkdir -p "$(dirname "$file")" && echo 'fn main() {}' > "$file.rs"; done \
     && cargo build --release --locked --bin meshwright
 COPY . .
 # The empty sources were newer than these.

@@ -4,7 +4,8 @@ use axum::Json;
 use axum::response::Response;
 use meshwright_engine::run::Run;
 use meshwright_exchange::rexs::{Choices, Fault, Import, NotRead, Refused, import, stages};
-use meshwright_wire::{Code, FieldError, Problem, Submission, model_of, view};
+use meshwright_wire::declare::document;
+use meshwright_wire::{Code, FieldError, Problem, Submission, model_of};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use utoipa::{IntoParams, ToSchema};
@@ -54,9 +55,9 @@ pub(super) struct ModelView {
     refused: Vec<RefusedView>,
 }
 
-view! {
+document! {
     /// An attribute of a model that was not read.
-    pub(super) struct NotReadView as NotRead, "NotRead" of (not_read: NotRead) {
+    pub(super) struct NotReadView as NotRead, "NotRead" view of (not_read: NotRead) {
         /// The component.
         component: String = not_read.component,
         /// Its attribute; null where nothing of the component was read.
@@ -64,9 +65,9 @@ view! {
     }
 }
 
-view! {
+document! {
     /// Why a stage of a model cannot be taken.
-    pub(super) struct RefusedView as RefusedPlace, "RefusedPlace" of (fault: Fault) {
+    pub(super) struct RefusedView as RefusedPlace, "RefusedPlace" view of (fault: Fault) {
         /// The component and its attribute, or the line, or the file.
         place: String = fault.place,
         /// What is wrong there, and what would do.

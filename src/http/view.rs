@@ -2,7 +2,8 @@
 
 use axum::body::Bytes;
 use jiff::Timestamp;
-use meshwright_wire::{Kept, Status, method_schema, view};
+use meshwright_wire::declare::document;
+use meshwright_wire::{Kept, Status, method_schema};
 use serde_json::Value;
 use serde_json::value::RawValue;
 use uuid::Uuid;
@@ -10,9 +11,9 @@ use uuid::Uuid;
 use super::edge::Edge;
 use crate::jobs::Job;
 
-view! {
+document! {
     /// A job: one submission, where it stands, and where to find what belongs to it.
-    pub(super) struct JobView<'a> as Job of (job: &'a Job, edge: &Edge) {
+    pub(super) struct JobView<'a> as Job view of (job: &'a Job, edge: &Edge) {
         /// The id of the job.
         id: Uuid = job.id,
         status: Status = job.status,
@@ -57,9 +58,9 @@ view! {
     }
 }
 
-view! {
+document! {
     /// Where to find what belongs to a job.
-    pub(super) struct Links as Links of (job: &Job, edge: &Edge) with {
+    pub(super) struct Links as Links view of (job: &Job, edge: &Edge) with {
         let address = edge.job(job.id);
     } {
         /// The job.

@@ -4,7 +4,8 @@ use axum::Json;
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use jiff::Timestamp;
-use meshwright_wire::{Code, Problem, view};
+use meshwright_wire::declare::document;
+use meshwright_wire::{Code, Problem};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 use uuid::Uuid;
@@ -34,9 +35,9 @@ fn all_events() -> Vec<EventKind> {
     EventKind::ALL.to_vec()
 }
 
-view! {
+document! {
     /// A webhook.
-    pub(super) struct WebhookView as Webhook, "Webhook" of (webhook: Webhook, secret: Option<String>) {
+    pub(super) struct WebhookView as Webhook, "Webhook" view of (webhook: Webhook, secret: Option<String>) {
         /// The id of the webhook.
         id: Uuid = webhook.id,
         /// Where messages are sent.
@@ -66,9 +67,9 @@ pub(super) struct WebhookListView {
     items: Vec<WebhookView>,
 }
 
-view! {
+document! {
     /// A message to a webhook, and what has come of it so far.
-    pub(super) struct DeliveryView as Delivery, "Delivery" of (delivery: Delivery) {
+    pub(super) struct DeliveryView as Delivery, "Delivery" view of (delivery: Delivery) {
         /// The id of the message, which its header `webhook-id` bears at every attempt.
         id: Uuid = delivery.id,
         /// What it tells: `job.ended`, `study.ended`, or `webhook.ping`, which tells nothing.

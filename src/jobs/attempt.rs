@@ -9,7 +9,8 @@ use std::time::Duration;
 
 use jiff::{SignedDuration, Timestamp};
 use meshwright_engine::run::Run;
-use meshwright_wire::{Code, Kept, Problem, SOLVER_VERSION, Submission, Summary, memory_of};
+use meshwright_studies::Summary;
+use meshwright_wire::{Code, Kept, Problem, SOLVER_VERSION, Submission, memory_of};
 use opentelemetry::KeyValue;
 use opentelemetry::trace::SpanId;
 use tokio::sync::mpsc;

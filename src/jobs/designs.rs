@@ -1,7 +1,8 @@
 //! The designs of a study: the jobs that they become, and the rows in which they stand with what has come of them.
 
 use jiff::Timestamp;
-use meshwright_wire::{Design, Kept, RowState, Status, Study, memory_above, too_much_memory};
+use meshwright_studies::{Design, RowState, Study};
+use meshwright_wire::{Kept, Status, memory_above, too_much_memory};
 use uuid::Uuid;
 
 use super::error::JobError;

@@ -3,12 +3,12 @@
 
 use std::time::Duration;
 
+use meshwright_engine::run::Run;
+use meshwright_studies::Study;
+use meshwright_wire::DOCUMENT_VERSION;
+use meshwright_wire::hash::sha256_hex;
 use tracing::{error, info};
 use uuid::Uuid;
-
-use meshwright_engine::run::Run;
-use meshwright_wire::hash::sha256_hex;
-use meshwright_wire::{DOCUMENT_VERSION, Study};
 
 use super::designs::{Owner, blocking, expand};
 use super::error::JobError;

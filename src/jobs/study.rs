@@ -1,10 +1,10 @@
 //! A study: how far its jobs have come.
 
 use jiff::Timestamp;
-use uuid::Uuid;
-
+use meshwright_studies::SearchState;
 use meshwright_wire::warning::GearName;
-use meshwright_wire::{Code, Problem, SearchState, Status};
+use meshwright_wire::{Code, Problem, Status};
+use uuid::Uuid;
 
 /// A study and how far it has come. Where it stands follows from where its jobs stand.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use meshwright_engine::analysis::fields::{Fields, GearField};
 
-use super::declare::answer;
+use super::declare::document;
 use super::units::{rounded_json, significant, to_mm, to_mpa, to_um};
 
 /// Digits of a place, and of what happens there: more than a drawing shows at any scale.
@@ -13,11 +13,11 @@ const DIGITS: (usize, usize) = (6, 4);
 /// A point or a displacement.
 type Plane = [f64; 2];
 
-answer! {
+document! {
     /// Where both gears end, how far their edges move under load and how stressed they are. The driving axis is the origin, the driven one
     /// lies on the x axis, and both gears stand as at this mesh position without load.
     pub struct LoadedEdges as LoadedEdges, "Edges under load"
-    of (fields: &Fields, output_torque_n_m: f64, mesh_position: f64) with {
+    answer of (fields: &Fields, output_torque_n_m: f64, mesh_position: f64) with {
         let [driving, driven] = &fields.gears;
     } {
         /// The mesh position in mesh periods.
@@ -33,9 +33,9 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// The edges of one gear.
-    pub struct GearEdges as GearEdges, "Edges of a gear" of (field: &GearField) with {
+    pub struct GearEdges as GearEdges, "Edges of a gear" answer of (field: &GearField) with {
         let (closed, open): (Vec<_>, Vec<_>) =
             chains(&field.edges).into_iter().partition(|chain| chain.first() == chain.last());
     } {
@@ -47,9 +47,9 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// An edge, node by node with the material on its left.
-    pub struct Edge as Edge, "Edge" of (field: &GearField, nodes: Vec<u32>) with {
+    pub struct Edge as Edge, "Edge" answer of (field: &GearField, nodes: Vec<u32>) with {
         let nodes = || nodes.iter().map(|node| *node as usize);
         let rounded = |value: f64| significant(value, DIGITS.1);
         let placed = |value: f64| significant(to_mm(value), DIGITS.0);

@@ -4,12 +4,12 @@ use meshwright_engine::analysis::Case;
 use meshwright_engine::analysis::RotationSpeed;
 use meshwright_engine::gear::{GearPair, Member, SolidGear, SolidPair};
 
-use super::declare::answer;
+use super::declare::document;
 use super::units::{to_mm, untold};
 
-answer! {
+document! {
     /// The derived geometry of a pair.
-    pub struct PairGeometry as PairGeometry, "Pair geometry" of (case: &Case) with {
+    pub struct PairGeometry as PairGeometry, "Pair geometry" answer of (case: &Case) with {
         let pair = &case.pair;
         let faces = case.faces().map(|faces| &faces.pair);
         let rack = &pair.driving().data().rack;
@@ -59,9 +59,9 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// The path of contact along the theoretical line of action, from the first touch of a pair of teeth to the last.
-    pub struct PathOfContact as PathOfContact, "Path of contact" of (pair: &GearPair) with {
+    pub struct PathOfContact as PathOfContact, "Path of contact" answer of (pair: &GearPair) with {
         let (s_a, s_e) = pair.path_of_contact();
         let p_b = pair.base_pitch();
         let point = |s| PathPoint::of(pair, s);
@@ -86,9 +86,9 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// A point of the path of contact.
-    pub struct PathPoint as PathPoint, "Point of the path of contact" of (pair: &GearPair, s: f64) {
+    pub struct PathPoint as PathPoint, "Point of the path of contact" answer of (pair: &GearPair, s: f64) {
         /// The mesh position of the reference pair there, in mesh periods; zero at the pitch point.
         mesh_position: f64 = (s - pair.pitch_roll_length()) / pair.base_pitch(),
         /// The roll length on the driving flank, in mm.
@@ -98,9 +98,9 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// The derived geometry of a gear.
-    pub struct GearGeometry as GearGeometry, "Gear geometry" of (case: &Case, member: Member) with {
+    pub struct GearGeometry as GearGeometry, "Gear geometry" answer of (case: &Case, member: Member) with {
         let (pair, gear) = (&case.pair, case.pair.gear(member));
         let solid = case.faces().map(|faces| faces.pair.gear(member));
         // What rounding leaves of holes that balance each other has no direction.
@@ -172,9 +172,9 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// The frequencies of eq. 2 at the speed given.
-    pub struct Frequencies as Frequencies, "Frequencies" of (pair: &GearPair, speed: RotationSpeed) with {
+    pub struct Frequencies as Frequencies, "Frequencies" answer of (pair: &GearPair, speed: RotationSpeed) with {
         let teeth = |member| f64::from(pair.gear(member).tooth_count());
         let mesh_hz = speed.0 * teeth(Member::Driving);
     } {

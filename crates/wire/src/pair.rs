@@ -28,9 +28,9 @@ document! {
         /// How the axes stand askew over the common face. It needs three dimensions.
         misalignment_um: Option<MisalignmentDocument> = absent(nested("Misalignment"), "none"),
         /// Gear 1, which drives.
-        pub(super) driving: GearDocument = nested(""),
+        pub driving: GearDocument = nested(""),
         /// Gear 2, which is driven.
-        pub(super) driven: GearDocument = nested(""),
+        pub driven: GearDocument = nested(""),
     }
 }
 
@@ -55,7 +55,7 @@ impl PairDocument {
     }
 
     /// The helix of the gear `member`.
-    pub(super) fn helix(&self, member: Member) -> Helix {
+    pub fn helix(&self, member: Member) -> Helix {
         let beta = self.helix_angle_deg.to_radians();
         Helix::right(match member {
             Member::Driving => beta,

@@ -23,7 +23,7 @@ pub fn methods() -> impl Iterator<Item = &'static str> {
 }
 
 /// Whether the method of this name sees the faces.
-pub(crate) fn sees_faces(name: &Node) -> bool {
+pub fn sees_faces(name: &Node) -> bool {
     let mut methods = Method::OPTIONS.iter();
     methods.any(|(word, method, _)| {
         matches!(name, Node::Text(name) if name == word) && method.sees_faces()

@@ -6,7 +6,8 @@ use std::time::Duration;
 use anyhow::{Context, anyhow};
 use indicatif::{ProgressBar, ProgressStyle};
 use meshwright_engine::library::Library;
-use meshwright_wire::{Kept, RowState, Study as StudyDocument, solve};
+use meshwright_studies::{RowState, Study as StudyDocument};
+use meshwright_wire::{Kept, solve};
 use tokio_util::sync::CancellationToken;
 use uuid::Uuid;
 

@@ -10,7 +10,7 @@ use axum::http::StatusCode;
 use axum::http::header::HeaderMap;
 use axum::response::{IntoResponse, Response};
 use meshwright_engine::run::Run;
-use meshwright_wire::Study;
+use meshwright_studies::Study;
 use serde::Deserialize;
 use utoipa::IntoParams;
 

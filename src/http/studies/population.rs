@@ -6,9 +6,8 @@ use axum::extract::Path;
 use axum::http::HeaderMap;
 use axum::response::{IntoResponse, Response};
 use meshwright_engine::run::Run;
-use meshwright_wire::{
-    Code, PopulationResults, PopulationSample, Problem, RowState, SearchState, Study, Submission,
-};
+use meshwright_studies::{PopulationResults, PopulationSample, RowState, SearchState, Study};
+use meshwright_wire::{Code, Problem, Submission};
 
 use super::{MIB, over_rows, tag_of};
 use crate::compute::Part;

@@ -5,7 +5,7 @@
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-use crate::chance::Chance;
+use crate::optimum::chance::Chance;
 
 /// One descent.
 pub(crate) struct Cmaes {

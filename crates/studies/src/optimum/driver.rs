@@ -4,14 +4,13 @@
 //! them and learns in which directions goals fall; once it has settled, another one begins elsewhere with twice as many points, as long as there are
 //! evaluations left. Where every variable has steps, the last designs are those one step beside the best one: no law of CMA-ES promises that it looked there.
 
-use meshwright_sample::REPLICATES;
-use meshwright_sample::points::{Points, Sampling};
-
-use crate::chance::Chance;
-use crate::cmaes::Cmaes;
-use crate::evolution::Evolution;
-use crate::outcome::{Outcome, best};
-use crate::space::{Axis, Known, count};
+use crate::optimum::chance::Chance;
+use crate::optimum::cmaes::Cmaes;
+use crate::optimum::evolution::Evolution;
+use crate::optimum::outcome::{Outcome, best};
+use crate::optimum::space::{Axis, Known, count};
+use crate::sample::REPLICATES;
+use crate::sample::points::{Points, Sampling};
 
 /// How widely CMA-ES looks around the point that it goes on from, as a part of each axis.
 const FIRST_STEP: f64 = 0.2;
@@ -365,7 +364,7 @@ fn first_weights(outcomes: &[Outcome], conditions: usize) -> Vec<f64> {
             .map(|(_, violations)| violations[j])
             .filter(|v| *v > 0.0)
             .collect();
-        let usual = meshwright_sample::mean(&positive).unwrap_or(1.0);
+        let usual = crate::sample::mean(&positive).unwrap_or(1.0);
         (0.5 * range / usual).min(HEAVIEST)
     };
     (0..conditions).map(of_condition).collect()

@@ -6,8 +6,8 @@
 
 use std::cmp::Ordering;
 
-use crate::chance::Chance;
-use crate::outcome::{Outcome, beats};
+use crate::optimum::chance::Chance;
+use crate::optimum::outcome::{Outcome, beats};
 
 /// The least and the largest part of a difference by which a child is moved.
 const REACH: [f64; 2] = [0.2, 0.9];

@@ -1,7 +1,7 @@
 //! Searches of functions whose optimum is known.
-use crate::driver::{Driver, Problem};
-use crate::outcome::{Outcome, best, front};
-use crate::space::Axis;
+use crate::optimum::driver::{Driver, Problem};
+use crate::optimum::outcome::{Outcome, best, front};
+use crate::optimum::space::Axis;
 
 type Function = fn(&[f64]) -> Outcome;
 
@@ -204,7 +204,7 @@ fn a_search_that_has_settled_begins_elsewhere_and_comes_to_its_end() {
                 ..problem(1, 0, 3000, seed)
             };
             let all = searched(&sloping, |u| computed(vec![-u.iter().sum::<f64>()], &[]));
-            let possible = crate::space::count(&sloping.axes)
+            let possible = crate::optimum::space::count(&sloping.axes)
                 .unwrap_or(u64::MAX)
                 .min(3000);
             assert_eq!(all.len() as u64, possible);
@@ -281,7 +281,7 @@ fn bowls(u: &[f64]) -> Outcome {
 
 /// The first problem of Zitzler, Deb and Thiele with five variables: the front is y = 1 − √x, at zeros of all variables but the first.
 fn zdt1(u: &[f64]) -> Outcome {
-    let g = 1.0 + 9.0 * meshwright_sample::mean(&u[1..]).expect("variables");
+    let g = 1.0 + 9.0 * crate::sample::mean(&u[1..]).expect("variables");
     computed(vec![u[0], g * (1.0 - (u[0] / g).sqrt())], &[])
 }
 
@@ -328,7 +328,7 @@ fn the_front_of_two_goals_is_far_nearer_than_that_of_designs_at_random() {
                 ..problem(axes, 0, 500, seed)
             };
             found.push(missing(&searched(&two, function)));
-            let mut chance = crate::chance::Chance::new(seed);
+            let mut chance = crate::optimum::chance::Chance::new(seed);
             let drawn = (0..500).map(|_| {
                 let u: Vec<f64> = (0..axes).map(|_| chance.even()).collect();
                 let outcome = function(&u);

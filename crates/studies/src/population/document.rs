@@ -1,17 +1,17 @@
 //! The document of a population.
 
-use meshwright_sample::points::Sampling;
-
-use crate::declare::{
+use meshwright_wire::declare::{
     EACH, Number, Text, absent, document, list, nested, number, tagged, text, word, words,
 };
-use crate::draw::{CAPABILITY, CLASS, INSPECTED, SEED};
+use meshwright_wire::draw::{CAPABILITY, CLASS, INSPECTED, SEED};
+
+use crate::sample::points::Sampling;
 
 /// The most varied fields. With two numbers for each gear's eccentricity behind them they are fewer than the axes of the points.
 const MOST_VARIED: usize = 100;
 
 /// The most members.
-const MOST_MEMBERS: f64 = crate::study::MOST_DESIGNS as f64;
+const MOST_MEMBERS: f64 = crate::MOST_DESIGNS as f64;
 
 /// A field of the submission.
 const PATH: Text = text("Path", 300);
@@ -27,15 +27,15 @@ document! {
     /// The design as it is made: members that are drawn from laws, each computed by itself. The same seed gives the same members on every machine.
     pub(crate) struct PopulationDocument as "Population", "Population" {
         /// The number of members.
-        pub(super) size: u32 = number("Size", "1", 2.0, MOST_MEMBERS),
+        pub(crate) size: u32 = number("Size", "1", 2.0, MOST_MEMBERS),
         /// What the members are drawn from.
-        pub(super) seed: u32 = SEED,
+        pub(crate) seed: u32 = SEED,
         /// How the members are spread. Single teeth are random in either way.
-        pub(super) sampling: Sampling = word("Sampling").or(Sampling::Sobol),
+        pub(crate) sampling: Sampling = word("Sampling").or(Sampling::Sobol),
         /// The fields that vary, independently of each other. Default: none.
-        pub(super) vary: Vec<VariedDocument> = list("Varied fields", EACH, MOST_VARIED).or_empty(),
+        pub(crate) vary: Vec<VariedDocument> = list("Varied fields", EACH, MOST_VARIED).or_empty(),
         /// How accurately teeth are made.
-        pub(super) accuracy: Option<AccuracyDocument> = absent(nested("Accuracy"), "the teeth of the base"),
+        pub(crate) accuracy: Option<AccuracyDocument> = absent(nested("Accuracy"), "the teeth of the base"),
     }
 }
 
@@ -43,9 +43,9 @@ document! {
     /// How accurately the teeth of both gears are made; of a gear that is not named they are those of the base.
     pub(crate) struct AccuracyDocument as "Accuracy", "Accuracy" {
         /// Of the driving gear.
-        pub(super) driving: Option<GearAccuracy> = absent(nested("Driving gear"), "the teeth of the base"),
+        pub(crate) driving: Option<GearAccuracy> = absent(nested("Driving gear"), "the teeth of the base"),
         /// Of the driven gear.
-        pub(super) driven: Option<GearAccuracy> = absent(nested("Driven gear"), "the teeth of the base"),
+        pub(crate) driven: Option<GearAccuracy> = absent(nested("Driven gear"), "the teeth of the base"),
     }
 }
 
@@ -53,12 +53,12 @@ document! {
     /// How accurately the teeth of a gear are made: each member has its own, as POST /v1/draw-deviations draws them.
     pub(crate) struct GearAccuracy as "GearAccuracy", "Accuracy of a gear" {
         /// The accuracy class A of ISO 1328-1:2013.
-        pub(super) iso_1328_class: u32 = CLASS,
+        pub(crate) iso_1328_class: u32 = CLASS,
         /// How many times three standard deviations of a deviation fit into its tolerance.
-        pub(super) capability: f64 = CAPABILITY,
+        pub(crate) capability: f64 = CAPABILITY,
         /// Whether gears that are not of their class are rejected and drawn again, as an inspector does: those beyond f_pT, beyond F_pT measured from
         /// the bore, beyond F_rT or beyond the tolerances of slopes.
-        pub(super) inspected: bool = INSPECTED,
+        pub(crate) inspected: bool = INSPECTED,
     }
 }
 
@@ -78,15 +78,15 @@ document! {
     /// The normal law, cut off.
     pub(crate) struct NormalDocument as "NormalLawFields", "Normal law" {
         /// A JSON pointer to a number of the submission, such as /pair/center_distance_mm.
-        pub(super) path: String = PATH,
+        pub(crate) path: String = PATH,
         /// The mean, in the unit of the field, before the law is cut off.
-        pub(super) mean: f64 = value("Mean"),
+        pub(crate) mean: f64 = value("Mean"),
         /// The standard deviation, in the unit of the field, before the law is cut off.
-        pub(super) standard_deviation: f64 = number("Standard deviation", "", 1e-12, 1e9),
+        pub(crate) standard_deviation: f64 = number("Standard deviation", "", 1e-12, 1e9),
         /// The smallest value that is made; not above the mean.
-        pub(super) low: Option<f64> = absent(value("Smallest value"), "no limit"),
+        pub(crate) low: Option<f64> = absent(value("Smallest value"), "no limit"),
         /// The largest value that is made; not below the mean.
-        pub(super) high: Option<f64> = absent(value("Largest value"), "no limit"),
+        pub(crate) high: Option<f64> = absent(value("Largest value"), "no limit"),
     }
 }
 
@@ -94,11 +94,11 @@ document! {
     /// The uniform law.
     pub(crate) struct UniformDocument as "UniformLawFields", "Uniform law" {
         /// A JSON pointer to a number of the submission.
-        pub(super) path: String = PATH,
+        pub(crate) path: String = PATH,
         /// The smallest value.
-        pub(super) low: f64 = value("Smallest value"),
+        pub(crate) low: f64 = value("Smallest value"),
         /// The largest value.
-        pub(super) high: f64 = value("Largest value"),
+        pub(crate) high: f64 = value("Largest value"),
     }
 }
 
@@ -106,13 +106,13 @@ document! {
     /// The triangular law.
     pub(crate) struct TriangularDocument as "TriangularLawFields", "Triangular law" {
         /// A JSON pointer to a number of the submission.
-        pub(super) path: String = PATH,
+        pub(crate) path: String = PATH,
         /// The smallest value.
-        pub(super) low: f64 = value("Smallest value"),
+        pub(crate) low: f64 = value("Smallest value"),
         /// The likeliest value.
-        pub(super) mode: f64 = value("Likeliest value"),
+        pub(crate) mode: f64 = value("Likeliest value"),
         /// The largest value.
-        pub(super) high: f64 = value("Largest value"),
+        pub(crate) high: f64 = value("Largest value"),
     }
 }
 

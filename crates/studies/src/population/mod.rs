@@ -1,48 +1,47 @@
 //! A population: members of a design as they are made, each drawn from laws.
 //!
-//! A member is known by its number alone: `document` says what is drawn, and `reading` what is wrong with it; `Population` draws it, and `results` is what the results of
-//! the members tell of all.
+//! A member is known by its number alone: `document` says what is drawn, and `reading` what is wrong with it; `Population` draws it, and
+//! [`population_results`](crate::population_results) is what the results of the members come to.
 
-mod document;
+pub(crate) mod document;
 mod reading;
-mod results;
 #[cfg(test)]
 mod tests;
 
 use meshwright_engine::analysis::Method;
 use meshwright_engine::gear::{Helix, Inspection, Member, Normals, Passed, SpurGear};
-use meshwright_sample::law::Law;
-use meshwright_sample::normal;
-use meshwright_sample::points::Points;
+use meshwright_wire::declare::{Choice as _, Errors, Node};
+use meshwright_wire::draw::Accuracy;
+use meshwright_wire::gear::{DeviationsDocument, GearDocument};
+use meshwright_wire::pair::PairDocument;
+use meshwright_wire::pointer::Pointer;
+use meshwright_wire::resolution::sees_faces;
+use meshwright_wire::units::significant;
 use serde_json::{Value, json};
 
-use super::declare::{Choice as _, Errors, Node};
-use super::draw::Accuracy;
-use super::gear::{DeviationsDocument, GearDocument};
-use super::pair::PairDocument;
-use super::pointer::Pointer;
-use super::resolution::sees_faces;
-use super::units::significant;
+use crate::sample::law::Law;
+use crate::sample::normal;
+use crate::sample::points::Points;
 use document::GearAccuracy;
-pub(super) use document::PopulationDocument;
-pub(super) use reading::{number_at, rises};
-pub use results::*;
+
+pub(crate) use document::PopulationDocument;
+pub(crate) use reading::{number_at, rises};
 
 /// Members drawn from laws. What exists has laws that can be drawn from, of fields that take a number.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Population {
+pub(crate) struct Population {
     size: u32,
-    points: Points,
+    pub(crate) points: Points,
     varied: Vec<Varied>,
     /// Of each gear, driving and driven: how accurately it is made.
-    accuracy: [Option<GearAccuracy>; 2],
+    pub(crate) accuracy: [Option<GearAccuracy>; 2],
 }
 
 /// A field and its law.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Varied {
-    pub(super) path: Pointer,
-    pub(super) law: Law,
+pub(crate) struct Varied {
+    pub(crate) path: Pointer,
+    pub(crate) law: Law,
     /// Whether the field takes whole numbers, to which what is drawn is rounded.
     whole: bool,
 }
@@ -60,7 +59,7 @@ impl Varied {
     }
 
     /// A value of the field as JSON has it.
-    pub(super) fn json_of(&self, value: f64) -> Value {
+    pub(crate) fn json_of(&self, value: f64) -> Value {
         if self.whole {
             json!(value as i64)
         } else {
@@ -69,50 +68,50 @@ impl Varied {
     }
 
     /// The value in the middle of its law.
-    pub(super) fn median(&self) -> f64 {
+    pub(crate) fn median(&self) -> f64 {
         self.at(0.5)
     }
 }
 
 /// A part of what differs between members, of which it is told how much of the variance it makes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Source<'a> {
+pub(crate) enum Source<'a> {
     /// A field.
     Field(&'a Pointer),
     /// All teeth of a gear together.
     Teeth(Member),
 }
 
-const GEARS: [Member; 2] = [Member::Driving, Member::Driven];
+pub(crate) const GEARS: [Member; 2] = [Member::Driving, Member::Driven];
 
 /// The gear's number among two.
 const _: () = assert!(Member::Driving as usize == 0 && Member::Driven as usize == 1);
 
 impl Population {
     /// The number of members.
-    pub(super) fn size(&self) -> usize {
+    pub(crate) fn size(&self) -> usize {
         self.size as usize
     }
 
     /// The fields that are varied.
-    pub(super) fn varied(&self) -> &[Varied] {
+    pub(crate) fn varied(&self) -> &[Varied] {
         &self.varied
     }
 
     /// Whether the teeth of `gear` are drawn.
-    pub(super) fn draws_teeth_of(&self, gear: Member) -> bool {
+    pub(crate) fn draws_teeth_of(&self, gear: Member) -> bool {
         self.accuracy[gear as usize].is_some()
     }
 
     /// What a member has in its varied fields, in their order.
-    pub(super) fn values(&self, member: u32) -> Vec<f64> {
+    pub(crate) fn values(&self, member: u32) -> Vec<f64> {
         let axes = self.varied.iter().zip(0..);
         axes.map(|(varied, axis)| varied.at(self.points.at(member, axis)))
             .collect()
     }
 
     /// Gives the gears of a member their teeth, with slopes of their leads for a `method` that sees the faces; what prevents a gear is reported to `errors`.
-    pub(super) fn give_teeth(
+    pub(crate) fn give_teeth(
         &self,
         member: u32,
         pair: &mut PairDocument,
@@ -154,7 +153,7 @@ impl Population {
     ///
     /// The eccentricity, two numbers that act on the whole, stands on axes of the points behind those of the fields; the teeth, hundreds
     /// of numbers of which none matters by itself, are random, and so is all of a gear that is drawn again.
-    fn teeth(&self, member: u32, gear: Member, accuracy: &Accuracy) -> Option<Passed> {
+    pub(crate) fn teeth(&self, member: u32, gear: Member, accuracy: &Accuracy) -> Option<Passed> {
         let drawn = self.drawn_for(member, gear);
         let first = self.varied.len() as u32 + 2 * gear as u32;
         let teeth = 2 * accuracy.inspection.tooth_count() as usize;
@@ -171,7 +170,12 @@ impl Population {
     }
 
     /// How the leads of that gear slope, by numbers of their own: the same teeth have them and have them not.
-    fn lead_slopes(&self, member: u32, gear: Member, accuracy: &Accuracy) -> Option<Passed> {
+    pub(crate) fn lead_slopes(
+        &self,
+        member: u32,
+        gear: Member,
+        accuracy: &Accuracy,
+    ) -> Option<Passed> {
         let drawn = self.drawn_for(member, gear);
         accuracy.lead_slopes(|attempt| self.normals(3, drawn, gear, attempt))
     }
@@ -186,28 +190,28 @@ impl Population {
     /// of one gear have in common tells what the gear makes of the variance.
     fn drawn_for(&self, member: u32, gear: Member) -> u32 {
         if self.is_shared(member, gear) {
-            member.min(meshwright_sample::partner(member))
+            member.min(crate::sample::partner(member))
         } else {
             member
         }
     }
 
     /// Whether the partner of `member` has the same `gear`. Where both gears are drawn they take turns, batch by batch.
-    fn is_shared(&self, member: u32, gear: Member) -> bool {
+    pub(crate) fn is_shared(&self, member: u32, gear: Member) -> bool {
         let drawn: Vec<Member> = GEARS
             .into_iter()
             .filter(|gear| self.draws_teeth_of(*gear))
             .collect();
         // Where nothing else differs the gear makes all of the variance, and two pairs of it would be one.
         let alone = drawn.len() == 1 && self.varied.is_empty();
-        !alone && !drawn.is_empty() && drawn[meshwright_sample::batch(member) % drawn.len()] == gear
+        !alone && !drawn.is_empty() && drawn[crate::sample::batch(member) % drawn.len()] == gear
     }
 
     /// Everything that differs between members and of which it is known how much of the variance it makes.
     ///
     /// Gears that an inspector passes are of one law, and two pairs of one gear tell what it makes of the variance. Where its tolerances
     /// differ between members, two of them may not get the same gear.
-    fn sources(&self) -> Vec<Source<'_>> {
+    pub(crate) fn sources(&self) -> Vec<Source<'_>> {
         let fields = self.varied.iter().map(|varied| Source::Field(&varied.path));
         let is_of_one_law = |gear: &Member| {
             let accuracy = self.accuracy[*gear as usize].as_ref();
@@ -218,7 +222,7 @@ impl Population {
     }
 
     /// How accurately the gears of a base are made; none where they are not drawn, or a gear cannot be made.
-    fn accuracies(&self, base: &Node) -> [Option<Accuracy>; 2] {
+    pub(crate) fn accuracies(&self, base: &Node) -> [Option<Accuracy>; 2] {
         GEARS.map(|gear| {
             let accuracy = self.accuracy[gear as usize].as_ref()?;
             let document = GearDocument::at(base.at(&["pair", gear.word()])?)?;
@@ -234,7 +238,7 @@ impl Population {
 
     /// Refuses gears of a base, which has the middle of each law, of which fewer than one in a hundred would pass the inspection, at the place `at` of the
     /// population.
-    pub(super) fn refuse_hopeless(&self, base: &Node, at: &str, errors: &Errors) {
+    pub(crate) fn refuse_hopeless(&self, base: &Node, at: &str, errors: &Errors) {
         let sees_faces = base.at(&["method"]).is_some_and(sees_faces);
         for (gear, accuracy) in GEARS.into_iter().zip(self.accuracies(base)) {
             if let Some(accuracy) = accuracy {
@@ -245,7 +249,7 @@ impl Population {
     }
 
     /// Whether a field of `gear` is varied, which what its teeth are measured by may depend on.
-    fn varies(&self, gear: Member) -> bool {
+    pub(crate) fn varies(&self, gear: Member) -> bool {
         let mut paths = self.varied.iter().map(|varied| &varied.path);
         paths.any(|path| path.starts_with(&["pair", gear.word()]))
     }

@@ -1,14 +1,14 @@
 //! From the document of a population to its laws, and what is wrong with one.
 
-use meshwright_sample::law::Law;
-use meshwright_sample::points::Points;
+use meshwright_wire::declare::{Choice as _, EACH, Errors, Kind as _, Node, Place};
+use meshwright_wire::pointer::{NumberKind, Pointer};
+use meshwright_wire::problem::Code;
+use meshwright_wire::units::plain;
 
 use super::document::{AccuracyDocument, PopulationDocument, VariedDocument};
 use super::{GEARS, Population, Varied};
-use crate::declare::{Choice as _, EACH, Errors, Kind as _, Node, Place};
-use crate::pointer::{NumberKind, Pointer};
-use crate::problem::Code;
-use crate::units::plain;
+use crate::sample::law::Law;
+use crate::sample::points::Points;
 
 impl Population {
     /// Reads the population that stands at `place` over `base`. What is wrong is reported there.

@@ -2,13 +2,16 @@
 
 use meshwright_engine::gear::{SpurGear, ToothDeviations};
 use meshwright_engine::run::Run;
+use meshwright_wire::declare::Choice as _;
+use meshwright_wire::testing::{and, refused, told as faults};
+use meshwright_wire::{Code, Problem, Results, Status};
 use serde_json::{Value, json};
 
 use super::*;
-use crate::results::STUB;
-use crate::study_table::{RowState, Summary};
-use crate::testing::{self, and, refused};
-use crate::{Code, Design, Problem, Results, Status, Study};
+use crate::population_results::*;
+use crate::table::{RowState, Summary};
+use crate::testing::{self, STUB};
+use crate::{Design, Study};
 
 fn base() -> Value {
     let gear = json!({
@@ -30,7 +33,7 @@ fn study(population: Value) -> Study {
 }
 
 fn refusal(document: &Value) -> Vec<(String, Code, Option<f64>)> {
-    testing::told(testing::study(document).expect_err("refused"))
+    faults(testing::study(document).expect_err("refused"))
 }
 
 fn distance() -> Value {
@@ -492,9 +495,7 @@ fn shares_of_inspected_gears_are_those_that_the_result_was_made_of() {
     let all: Vec<[f64; 3]> = designs.iter().map(parts).collect();
     let variance = |part: usize| {
         let values: Vec<f64> = all.iter().map(|parts| parts[part]).collect();
-        meshwright_sample::standard_deviation(&values)
-            .unwrap()
-            .powi(2)
+        crate::sample::standard_deviation(&values).unwrap().powi(2)
     };
     let variances = [0, 1, 2].map(variance);
     let sum: f64 = variances.iter().sum();

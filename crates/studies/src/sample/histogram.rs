@@ -1,6 +1,6 @@
 //! How often which values occur.
 
-use crate::percentile::percentile;
+use crate::sample::percentile::percentile;
 
 /// So many bars a histogram has at most.
 const MOST_BARS: f64 = 64.0;

@@ -3,7 +3,7 @@
 //! The share of x is Var(E[y | x])/Var(y): what would vanish on average if x were known. Both estimators use the members as they are and cost no
 //! further one.
 
-use crate::{BATCHES, Estimate, REPLICATES};
+use crate::sample::{BATCHES, Estimate, REPLICATES};
 
 /// So many neighbors to each side are looked at: more settle the average, and lie farther off.
 const MOST_NEIGHBORS: usize = 16;
@@ -41,7 +41,7 @@ impl Ranked {
         let value = share_of(&sorted)?;
         let mut batches: [Vec<(u32, f64)>; BATCHES] = Default::default();
         for one in &sorted {
-            batches[crate::batch(one.0)].push(*one);
+            batches[crate::sample::batch(one.0)].push(*one);
         }
         let parts: Option<Vec<f64>> = batches
             .iter()
@@ -52,7 +52,8 @@ impl Ranked {
         // Fewer members lie farther apart; what that makes of the estimate bounds what is left of it in the whole. A third of the way to each limit is
         // added because shares of batches are not normal.
         let half = limits.high.map_or(0.0, |high| high - value);
-        let apart = half / 3.0 + crate::mean(&parts).map_or(0.0, |mean| (mean - value).abs());
+        let apart =
+            half / 3.0 + crate::sample::mean(&parts).map_or(0.0, |mean| (mean - value).abs());
         Some(bounded(Estimate {
             value,
             low: limits.low.map(|low| low - apart),
@@ -127,7 +128,7 @@ pub fn of_group(pairs: &[[f64; 2]]) -> Option<Estimate> {
             stretched(share(rest, n - 1.0))
         });
         let left_out: Vec<f64> = left_out.collect();
-        let spread = crate::standard_deviation(&left_out).unwrap_or(0.0) * (n - 1.0).sqrt();
+        let spread = crate::sample::standard_deviation(&left_out).unwrap_or(0.0) * (n - 1.0).sqrt();
         // Student's factor for n - 1 degrees of freedom; the room was measured.
         let student = 1.96 + 2.4 / (n - 1.0) + 3.0 / (n - 1.0).powi(2);
         (1.0 + 2.0 / n.sqrt()) * student * spread
@@ -155,7 +156,7 @@ mod tests {
     use std::f64::consts::PI;
 
     use super::*;
-    use crate::points::{Points, Sampling};
+    use crate::sample::points::{Points, Sampling};
 
     /// Ishigami's function with a = 7, b = 0.1, whose shares are 0.3139, 0.4424 and 0 in closed form.
     fn ishigami(x: [f64; 3]) -> f64 {
@@ -252,7 +253,8 @@ mod tests {
                         sampling: Sampling::Random,
                         seed: *seed,
                     };
-                    let normal = |pair, axis| crate::normal::quantile(points.at(pair, axis));
+                    let normal =
+                        |pair, axis| crate::sample::normal::quantile(points.at(pair, axis));
                     let pair = |pair| {
                         let both = common.sqrt() * normal(pair, 0);
                         [1, 2].map(|axis| make(both + own.sqrt() * normal(pair, axis)))

@@ -1,6 +1,6 @@
 //! How a quantity is spread.
 
-use crate::normal;
+use crate::sample::normal;
 
 /// The law of a quantity that varies from member to member.
 #[derive(Debug, Clone, Copy, PartialEq)]

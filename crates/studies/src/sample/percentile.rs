@@ -1,6 +1,6 @@
 //! Percentiles, and how far they are to be trusted.
 
-use crate::{Estimate, REPLICATES};
+use crate::sample::{Estimate, REPLICATES};
 
 /// The value below which `percent` of the sorted values lie, linear between neighbors, as `numpy.percentile` has it.
 ///
@@ -142,8 +142,8 @@ fn binomial(n: u32, p: f64, k: u32) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::normal::quantile;
-    use crate::points::{Points, Sampling};
+    use crate::sample::normal::quantile;
+    use crate::sample::points::{Points, Sampling};
 
     #[test]
     fn percentiles_are_those_of_numpy() {

@@ -4,7 +4,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 use sobol_burley::parts::{hash, owen_scramble_rev, sobol_rev};
 
-use crate::REPLICATES;
+use crate::sample::REPLICATES;
 
 /// So many members of one replicate at most have a point of their own.
 const LONGEST_SEQUENCE: u32 = 1 << 16;

@@ -2,20 +2,20 @@
 
 use std::sync::LazyLock;
 
-use meshwright_search::space::Axis;
-
-use super::{Condition, Goal, MOST_EVALUATIONS, Measure, OF_POPULATION, Search, Variable};
-use crate::declare::{
+use meshwright_wire::declare::{
     EACH, Errors, Kind, Node, Number, Place, Text, absent, document, list, nested, number, or_else,
     text, word, words,
 };
-use crate::draw::SEED;
-use crate::pointer::{NumberKind, Pointer, Schema};
+use meshwright_wire::draw::SEED;
+use meshwright_wire::pointer::{NumberKind, Pointer, Schema};
+use meshwright_wire::problem::Code;
+use meshwright_wire::units::plain;
+
+use super::{Condition, Goal, MOST_EVALUATIONS, Measure, OF_POPULATION, Search, Variable};
+use crate::MOST_DESIGNS;
+use crate::optimum::space::Axis;
 use crate::population::{Population, PopulationDocument, number_at, rises};
-use crate::problem::Code;
-use crate::study::MOST_DESIGNS;
-use crate::study_table::{QUANTITIES, Quantity};
-use crate::units::plain;
+use crate::table::{QUANTITIES, Quantity};
 
 /// The most variables, conditions, and parts of a cost.
 const MOST: usize = 50;

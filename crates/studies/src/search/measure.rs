@@ -1,13 +1,13 @@
 //! How good a design is.
 
-use meshwright_sample::percentile::percentile;
-use meshwright_search::outcome::Outcome;
+use meshwright_wire::declare::Node;
+use meshwright_wire::problem::{FieldError, Problem};
+use meshwright_wire::warning::GearName;
 
 use super::{Condition, Goal, Measure, Search, Torques};
-use crate::declare::Node;
-use crate::problem::{FieldError, Problem};
-use crate::study_table::{Of, RowState, Summary};
-use crate::warning::GearName;
+use crate::optimum::outcome::Outcome;
+use crate::sample::percentile::percentile;
+use crate::table::{Of, RowState, Summary};
 
 /// No condition fails by more than so many times its limit, as far as a search cares.
 const WORST_VIOLATION: f64 = 10.0;
@@ -63,7 +63,7 @@ impl Measure {
         };
         let values = (0..torques).map(at).collect::<Option<Vec<f64>>>()?;
         match (self.torques, worst) {
-            (Torques::Mean, _) => meshwright_sample::mean(&values),
+            (Torques::Mean, _) => crate::sample::mean(&values),
             (Torques::Largest, Worst::Largest) => values.into_iter().reduce(f64::max),
             (Torques::Largest, Worst::Smallest) => values.into_iter().reduce(f64::min),
         }
@@ -110,18 +110,18 @@ impl Condition {
 }
 
 /// What a design comes to: the search's view of it, and the numbers themselves.
-pub(super) struct Judged {
-    pub(super) outcome: Outcome,
+pub(crate) struct Judged {
+    pub(crate) outcome: Outcome,
     /// Of each goal; none where it is not told.
-    pub(super) goals: Vec<Option<f64>>,
+    pub(crate) goals: Vec<Option<f64>>,
     /// Of each condition.
-    pub(super) conditions: Vec<Option<f64>>,
+    pub(crate) conditions: Vec<Option<f64>>,
 }
 
 impl Search {
     /// Whether `design` keeps every condition that is about designs as they are drawn, and tells every such goal; none where all it could tell holds, and
     /// others are about members.
-    pub(super) fn is_kept_as_drawn(&self, design: &Summary, gear: GearName) -> Option<bool> {
+    pub(crate) fn is_kept_as_drawn(&self, design: &Summary, gear: GearName) -> Option<bool> {
         let drawn = |measure: &Measure| measure.percent.is_none();
         let keeps = |one: &Condition| {
             let told = one.of(design, &[], gear);
@@ -143,7 +143,7 @@ impl Search {
     }
 
     /// What a design comes to, its variables having these values.
-    pub(super) fn judge(
+    pub(crate) fn judge(
         &self,
         values: &[f64],
         design: &Summary,
@@ -194,13 +194,13 @@ impl Search {
 }
 
 /// The share of members that have no results; none without members.
-pub(super) fn failed_share(members: &[Option<Summary>]) -> Option<f64> {
+pub(crate) fn failed_share(members: &[Option<Summary>]) -> Option<f64> {
     let failed = members.iter().filter(|member| member.is_none()).count();
     (!members.is_empty()).then(|| failed as f64 / members.len() as f64)
 }
 
 /// How far a row without results is from having some: by which share of itself each wrong field would have to change.
-pub(super) fn distance(row: &RowState, submission: Option<&Node>) -> f64 {
+pub(crate) fn distance(row: &RowState, submission: Option<&Node>) -> f64 {
     /// That of what nothing near would mend.
     const FAR: f64 = 1.0;
     let problem: Option<Problem> = row

@@ -1,54 +1,50 @@
 //! A search: which designs of a base to compute, each chosen by what came of those before.
 //!
-//! `document` says what is sought, `Search` what a point of the search means as a design, `measure` how good a design is, `run` leads from one generation to the
-//! next, and `state` is what is told of it. Which points to look at is `meshwright_search`'s business.
+//! `document` says what is sought, `Search` what a point of the search means as a design, `measure` how good a design is. [`searching`](crate::searching) leads
+//! from one generation to the next. Which points to compute is the business of [`optimum`](crate::optimum).
 
 mod document;
-mod measure;
-mod run;
-mod state;
+pub(crate) mod measure;
 #[cfg(test)]
 mod tests;
 
-use meshwright_sample::REPLICATES;
-use meshwright_sample::points::{Points, Sampling};
-use meshwright_search::driver::Problem as Space;
-use meshwright_search::space::Axis;
+use meshwright_wire::declare::{Errors, Node, Place};
+use meshwright_wire::pointer::Pointer;
+use meshwright_wire::problem::{Code, FieldError};
+use meshwright_wire::resolution::sees_faces;
+use meshwright_wire::units::significant;
 use serde_json::{Map, Value, json};
 
-use super::declare::{Errors, Node, Place};
-use super::pointer::Pointer;
-use super::population::Population;
-use super::problem::{Code, FieldError};
-use super::resolution::sees_faces;
-use super::study_table::Quantity;
-use super::units::significant;
+use crate::optimum::driver::Problem as Space;
+use crate::optimum::space::Axis;
+use crate::population::Population;
+use crate::sample::REPLICATES;
+use crate::sample::points::{Points, Sampling};
+use crate::table::Quantity;
+use document::Torques;
 
 pub(crate) use document::SearchDocument;
-use document::Torques;
-pub use run::Searching;
-pub use state::*;
 
 /// The most designs of a search.
 const MOST_EVALUATIONS: f64 = 20_000.0;
 
 /// A search. What exists has variables that the base, or the population, takes numbers for.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Search {
-    variables: Vec<Variable>,
-    goals: Vec<Goal>,
-    conditions: Vec<Condition>,
+pub(crate) struct Search {
+    pub(crate) variables: Vec<Variable>,
+    pub(crate) goals: Vec<Goal>,
+    pub(crate) conditions: Vec<Condition>,
     /// The population over which designs are looked at, as it was written and as it was read.
     population: Option<(Node, Population)>,
-    evaluations: u32,
+    pub(crate) evaluations: u32,
     seconds: Option<f64>,
     seed: u32,
 }
 
 /// A field that may differ between designs.
 #[derive(Debug, Clone, PartialEq)]
-struct Variable {
-    path: Pointer,
+pub(crate) struct Variable {
+    pub(crate) path: Pointer,
     low: f64,
     high: f64,
     axis: Axis,
@@ -57,7 +53,7 @@ struct Variable {
 }
 
 #[derive(Debug, Clone, PartialEq)]
-enum Goal {
+pub(crate) enum Goal {
     Quantity(Measure),
     /// Variables by their numbers, and their weights.
     Cost(Vec<(usize, f64)>),
@@ -65,7 +61,7 @@ enum Goal {
 
 /// A quantity of a design, or of its members, at all torques together.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Measure {
+pub(crate) struct Measure {
     quantity: &'static Quantity,
     torques: Torques,
     percent: Option<f64>,
@@ -81,7 +77,7 @@ impl Measure {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Condition {
+pub(crate) struct Condition {
     measure: Measure,
     at_least: Option<f64>,
     at_most: Option<f64>,
@@ -96,7 +92,7 @@ impl Variable {
     }
 
     /// The value at a point of its axis.
-    fn at(&self, u: f64) -> f64 {
+    pub(crate) fn at(&self, u: f64) -> f64 {
         let value = self.low + u * (self.high - self.low);
         match self.axis {
             // So many digits are the same whichever machine adds them up.
@@ -128,12 +124,12 @@ impl Variable {
 
 impl Search {
     /// Designs of a generation are looked at over so many seconds at most.
-    pub(super) fn seconds(&self) -> Option<f64> {
+    pub(crate) fn seconds(&self) -> Option<f64> {
         self.seconds
     }
 
     /// The most rows that it makes: its designs with their members, and the best one once more.
-    pub(super) fn most_rows(&self) -> usize {
+    pub(crate) fn most_rows(&self) -> usize {
         self.evaluations as usize * self.rows_of_design() + 1
     }
 
@@ -146,13 +142,13 @@ impl Search {
         }
     }
 
-    pub(super) fn members(&self) -> usize {
+    pub(crate) fn members(&self) -> usize {
         self.population
             .as_ref()
             .map_or(0, |(_, population)| population.size())
     }
 
-    pub(super) fn looks_at_members(&self) -> bool {
+    pub(crate) fn looks_at_members(&self) -> bool {
         let of_goals = self.goals.iter().filter_map(|goal| match goal {
             Goal::Quantity(measure) => Some(measure),
             Goal::Cost(_) => None,
@@ -162,7 +158,7 @@ impl Search {
     }
 
     /// The fields of the submission that differ between its rows.
-    pub(super) fn paths(&self) -> impl Iterator<Item = &Pointer> {
+    pub(crate) fn paths(&self) -> impl Iterator<Item = &Pointer> {
         let varied = self
             .population
             .iter()
@@ -172,7 +168,7 @@ impl Search {
     }
 
     /// Those that its variables are.
-    pub(super) fn paths_of_base(&self) -> impl Iterator<Item = &Pointer> {
+    pub(crate) fn paths_of_base(&self) -> impl Iterator<Item = &Pointer> {
         let own = self
             .variables
             .iter()
@@ -181,12 +177,12 @@ impl Search {
     }
 
     /// The paths of its variables, in their order.
-    pub(super) fn paths_of_variables(&self) -> impl Iterator<Item = &Pointer> {
+    pub(crate) fn paths_of_variables(&self) -> impl Iterator<Item = &Pointer> {
         self.variables.iter().map(|variable| &variable.path)
     }
 
     /// What of all that a row tells is its variables; none if one is missing.
-    pub(super) fn changes_among(&self, told: &Map<String, Value>) -> Option<Map<String, Value>> {
+    pub(crate) fn changes_among(&self, told: &Map<String, Value>) -> Option<Map<String, Value>> {
         let paths = self.paths_of_variables().map(Pointer::text);
         paths
             .map(|path| Some((path.to_owned(), told.get(path)?.clone())))
@@ -194,12 +190,12 @@ impl Search {
     }
 
     /// The population as it was sent.
-    pub(super) fn population(&self) -> Option<&Population> {
+    pub(crate) fn population(&self) -> Option<&Population> {
         self.population.as_ref().map(|(_, population)| population)
     }
 
     /// Its goals, as a line of text names them.
-    pub(super) fn goals_in_words(&self) -> Vec<String> {
+    pub(crate) fn goals_in_words(&self) -> Vec<String> {
         let goals = self.goals.iter().map(|goal| match goal {
             Goal::Quantity(measure) => measure.in_words(),
             Goal::Cost(_) => "cost".to_owned(),
@@ -208,13 +204,13 @@ impl Search {
     }
 
     /// What its conditions are about, as a line of text names it.
-    pub(super) fn conditions_in_words(&self) -> Vec<String> {
+    pub(crate) fn conditions_in_words(&self) -> Vec<String> {
         let conditions = self.conditions.iter();
         conditions.map(|one| one.measure.in_words()).collect()
     }
 
     /// What is searched, as numbers.
-    fn space(&self, base: &Node) -> Space {
+    pub(crate) fn space(&self, base: &Node) -> Space {
         Space {
             axes: self
                 .variables
@@ -249,7 +245,7 @@ impl Search {
     }
 
     /// What a point of the search changes: of the variables, in their order.
-    fn changes_at(&self, point: &[f64]) -> Map<String, Value> {
+    pub(crate) fn changes_at(&self, point: &[f64]) -> Map<String, Value> {
         let placed = self.variables.iter().zip(point);
         placed
             .map(|(variable, u)| (variable.path.text().to_owned(), variable.json_at(*u)))
@@ -261,7 +257,7 @@ impl Search {
     /// # Errors
     ///
     /// What is wrong with it, where a law does not go with its variables.
-    pub(super) fn population_with(
+    pub(crate) fn population_with(
         &self,
         base: &Node,
         changes: &Map<String, Value>,
@@ -298,7 +294,7 @@ impl Search {
     }
 
     /// Every variable at an end of its range, the others in the middle of theirs: the variable, the name of the end, and the changes.
-    pub(super) fn ends(&self) -> impl Iterator<Item = (usize, &'static str, Map<String, Value>)> {
+    pub(crate) fn ends(&self) -> impl Iterator<Item = (usize, &'static str, Map<String, Value>)> {
         (0..self.variables.len()).flat_map(move |i| {
             [("low", 0.0), ("high", 1.0)].map(|(name, u)| {
                 let mut point: Vec<f64> = self
@@ -313,7 +309,7 @@ impl Search {
     }
 
     /// Designs that show what may come of the search before anything is computed: the base, the ends of each variable, and some spread evenly.
-    pub(super) fn trials(&self, base: &Node) -> impl Iterator<Item = Map<String, Value>> {
+    pub(crate) fn trials(&self, base: &Node) -> impl Iterator<Item = Map<String, Value>> {
         const SPREAD: u32 = 32;
         let points = Points {
             sampling: Sampling::Sobol,
@@ -332,7 +328,7 @@ impl Search {
     }
 
     /// The quantities that it goes by, of designs as they are drawn or as a `percent` of their members: where each is asked for.
-    pub(super) fn asked(&self, percent: bool) -> Vec<(String, &'static Quantity, Option<String>)> {
+    pub(crate) fn asked(&self, percent: bool) -> Vec<(String, &'static Quantity, Option<String>)> {
         let goals = (0..).zip(&self.goals).filter_map(|(i, goal)| match goal {
             Goal::Quantity(measure) => Some(("minimize", i, measure)),
             Goal::Cost(_) => None,
@@ -350,14 +346,14 @@ impl Search {
     }
 
     /// The path of a variable.
-    pub(super) fn path_of(&self, variable: usize) -> &Pointer {
+    pub(crate) fn path_of(&self, variable: usize) -> &Pointer {
         &self.variables[variable].path
     }
 }
 
 /// What a row of a search is, as its label says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Role {
+pub(crate) enum Role {
     /// A design as it is drawn, by its number, from 1.
     Design(usize),
     /// A member of its population, from 0.
@@ -378,7 +374,7 @@ impl std::fmt::Display for Role {
 
 impl Role {
     /// Of a member its number.
-    pub(super) fn member(self) -> Option<u32> {
+    pub(crate) fn member(self) -> Option<u32> {
         match self {
             Self::Member(_, member) => Some(member),
             Self::Design(_) | Self::Confirmed => None,
@@ -386,7 +382,7 @@ impl Role {
     }
 
     /// What the row of this label is.
-    pub(super) fn of_label(label: &str) -> Option<Self> {
+    pub(crate) fn of_label(label: &str) -> Option<Self> {
         if label == Self::Confirmed.to_string() {
             return Some(Self::Confirmed);
         }
@@ -401,7 +397,7 @@ impl Role {
 }
 
 /// What the best design is changed by to be confirmed: to the method that sees most of what its own sees, and to the finest grid.
-pub(super) fn confirming(method: Option<&Node>) -> Vec<(Pointer, Value)> {
+pub(crate) fn confirming(method: Option<&Node>) -> Vec<(Pointer, Value)> {
     let method = if method.is_some_and(sees_faces) {
         "three_dimensional"
     } else {

@@ -2,12 +2,15 @@
 
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
+use meshwright_wire::solve;
+use meshwright_wire::testing::{and, echo, example, refused, told};
+use meshwright_wire::warning::GearName;
 
 use super::*;
-use crate::study_table::{Of, RowState, Summary};
-use crate::testing::{self, and, echo, example, refused, study, told};
-use crate::warning::GearName;
-use crate::{Design, Study, solve};
+use crate::searching::*;
+use crate::table::{Of, RowState, Summary};
+use crate::testing::{self, STUB, study};
+use crate::{Design, Study};
 
 fn base() -> Value {
     let gear = json!({
@@ -123,7 +126,7 @@ fn a_search_begins_with_its_base_and_ends_with_what_is_better() {
 
 /// The peak-to-peak value of a row at the torque of this number.
 fn range_at(row: &RowState, torque: usize) -> f64 {
-    let mut quantities = crate::study_table::QUANTITIES.iter();
+    let mut quantities = crate::table::QUANTITIES.iter();
     let quantity = quantities.find(|quantity| quantity.name == RANGE);
     let curves = row.summary.as_ref().expect("it is computed").curves();
     match quantity.expect("it is known").of {
@@ -247,7 +250,7 @@ fn percentiles_conditions_and_costs_decide_what_is_best() {
             .filter(|row| row.changes[CLASS] == class && row.label.contains("member"));
         let mut values: Vec<f64> = members.map(|row| range_at(row, torque)).collect();
         values.sort_by(f64::total_cmp);
-        meshwright_sample::percentile::percentile(&values, 90.0)
+        crate::sample::percentile::percentile(&values, 90.0)
     };
     let percentile = |class: i64| at_torque(class, 0).max(at_torque(class, 1));
     let bound = (percentile(6) + percentile(7)) / 2.0;
@@ -524,8 +527,8 @@ fn every_quantity_is_told_by_its_methods_where_its_needs_are_given_and_else_refu
         "/pair/driving/tooth_deviations" => Value::Null,
         _ => panic!("{pointer} is new here"),
     };
-    for quantity in crate::study_table::quantities() {
-        for method in crate::methods() {
+    for quantity in crate::table::quantities() {
+        for method in meshwright_wire::methods() {
             for (list, place) in place_of {
                 let about = json!({ "quantity": quantity.name, "at_least": 0.1 });
                 let mut study = circles(&json!({ "method": method }), about);
@@ -601,9 +604,9 @@ fn a_design_without_holes_has_no_hole_order_and_one_that_does_not_tell_it_has_no
 
 /// A row of `design` in which the peak-to-peak value is this, or which has failed.
 fn told_row(design: &Design, range: Option<f64>) -> RowState {
-    use crate::results::{Results, STUB};
+    use meshwright_wire::results::Results;
     let outcome = range
-        .ok_or_else(|| crate::Problem::new(Code::NotConverged, "No contact."))
+        .ok_or_else(|| meshwright_wire::Problem::new(Code::NotConverged, "No contact."))
         .and_then(|range| {
             let mut results = Results::read(STUB).expect("a results document");
             results.curves.truncate(1);

@@ -3,18 +3,10 @@
 use std::f64::consts::PI;
 
 use meshwright_engine::gear::Member;
+use meshwright_wire::declare::{Choice, Declared, Node, Number, document, number, word};
+use meshwright_wire::gear::{BlankDocument, GearDocument, PatternDocument, SlotDocument};
+use meshwright_wire::units::significant;
 use serde_json::{Map, Value, json};
-
-use crate::declare::{Choice, Declared, Node, Number, document, number, word, words};
-use crate::gear::{BlankDocument, GearDocument, PatternDocument, SlotDocument};
-use crate::units::significant;
-
-words! {
-    Member {
-        Driving = "driving": "gear 1, which drives",
-        Driven = "driven": "gear 2, which is driven",
-    }
-}
 
 document! {
     /// Sets the holes of each design so that they remove the same share of the blank: round ones get a radius, slots a width of twice that radius, alike in

@@ -2,24 +2,25 @@
 
 use std::collections::HashSet;
 
+use meshwright_wire::declare::{
+    Declared, Errors, Node, ObjectReader, OneWord, Optional, Place, Text, absent, escaped, nested,
+    text, word,
+};
+use meshwright_wire::Kept;
+use meshwright_wire::pointer::Pointer;
+use meshwright_wire::problem::{Code, FieldError};
+use meshwright_wire::submission::TAGS;
 use serde::Deserialize;
 use serde_json::Value;
 use serde_json::value::RawValue;
 
 use super::constant_mass::ConstantMass;
 use super::labels::name_values;
-use super::size::{MOST_DESIGNS, too_many};
+use super::size::too_many;
 use super::{Axis, Listed, Plan, Study};
-use crate::declare::{
-    Declared, Errors, Node, ObjectReader, OneWord, Optional, Place, Text, absent, escaped, nested,
-    text, word,
-};
-use crate::kept::Kept;
-use crate::pointer::Pointer;
+use crate::MOST_DESIGNS;
 use crate::population::Population;
-use crate::problem::{Code, FieldError};
 use crate::search::Search;
-use crate::submission::TAGS;
 
 /// The most axes, and the most changes of one design: the submission has fewer fields.
 pub(super) const MOST_CHANGES: usize = 100;

@@ -4,16 +4,16 @@
 use std::collections::HashSet;
 
 use meshwright_engine::run::Run;
+use meshwright_wire::declare::{Errors, Node, escaped};
+use meshwright_wire::pointer::Pointer;
+use meshwright_wire::problem::{Code, FieldError, Problem};
+use meshwright_wire::submission::Submission;
 use serde_json::Value;
 
 use super::constant_mass::ConstantMass;
 use super::{Plan, Study};
-use crate::declare::{Errors, Node, escaped};
-use crate::pointer::Pointer;
 use crate::population::Population;
-use crate::problem::{Code, FieldError, Problem};
 use crate::search::Search;
-use crate::submission::Submission;
 
 /// Between so many designs it is asked whether anybody still waits.
 const BETWEEN_LOOKS: usize = 64;

@@ -2,10 +2,10 @@
 
 use std::collections::HashSet;
 
+use meshwright_wire::declare::is_short_text;
 use serde_json::Value;
 
 use super::Axis;
-use crate::declare::is_short_text;
 
 /// The most characters of an object or list that stands in a label; a longer one is told by its number.
 const LONGEST_VALUE: usize = 32;

@@ -22,19 +22,17 @@ use std::borrow::Cow;
 
 use meshwright_engine::gear::Member;
 use meshwright_engine::run::Run;
+use meshwright_wire::declare::{Choice as _, Errors, Node};
+use meshwright_wire::Kept;
+use meshwright_wire::pointer::Pointer;
+use meshwright_wire::problem::{Code, FieldError, Problem};
+use meshwright_wire::submission::{MOST_TORQUES, Submission};
+use meshwright_wire::warning::GearName;
 use serde_json::{Map, Value};
 
-use super::declare::{Choice as _, Errors, Node};
-use super::kept::Kept;
-use super::pointer::Pointer;
-use super::population::{Population, Varied};
-use super::problem::{Code, FieldError, Problem};
-use super::search::{Role, Search, confirming};
-use super::submission::{MOST_TORQUES, Submission};
-use super::warning::GearName;
+use crate::population::{Population, Varied};
+use crate::search::{Role, Search, confirming};
 use constant_mass::ConstantMass;
-
-pub use size::MOST_DESIGNS;
 
 /// One submission in many variants. What exists names fields that there are, and has no more designs than the limit.
 #[derive(Debug, Clone, PartialEq)]
@@ -165,7 +163,7 @@ impl Study {
     }
 
     /// The population that its designs are, if they are one.
-    pub(super) fn population(&self) -> Option<&Population> {
+    pub(crate) fn population(&self) -> Option<&Population> {
         match &self.plan {
             Plan::Population(population) => Some(population),
             Plan::Axes(_) | Plan::Designs(_) | Plan::Search(_) => None,
@@ -173,7 +171,7 @@ impl Study {
     }
 
     /// The search that chooses its designs, if one does.
-    pub(super) fn search(&self) -> Option<&Search> {
+    pub(crate) fn search(&self) -> Option<&Search> {
         match &self.plan {
             Plan::Search(search) => Some(search),
             Plan::Axes(_) | Plan::Designs(_) | Plan::Population(_) => None,
@@ -207,7 +205,7 @@ impl Study {
     }
 
     /// The submission that designs are variants of.
-    pub(super) fn base(&self) -> &Node {
+    pub(crate) fn base(&self) -> &Node {
         &self.base
     }
 
@@ -305,13 +303,13 @@ impl Study {
     }
 
     /// A design of a search, its variables having these values.
-    pub(super) fn searched(&self, role: Role, changes: &Map<String, Value>) -> Design {
+    pub(crate) fn searched(&self, role: Role, changes: &Map<String, Value>) -> Design {
         let (composed, population) = self.composed_of_search(role, changes);
         composed.design(population.as_ref().zip(role.member()))
     }
 
     /// The same before it is looked at as a whole; none if its changes lead nowhere.
-    pub(super) fn node_searched(&self, changes: &Map<String, Value>) -> Option<Node> {
+    pub(crate) fn node_searched(&self, changes: &Map<String, Value>) -> Option<Node> {
         let (composed, _) = self.composed_of_search(Role::Design(1), changes);
         composed.submission.ok()
     }

@@ -1,16 +1,16 @@
 //! What becomes of some designs, looked at before any is computed: whether any can be had at all, and whether they tell what a search goes by.
 
 use meshwright_engine::run::Run;
+use meshwright_wire::declare::{Errors, Node};
+use meshwright_wire::pointer::Pointer;
+use meshwright_wire::problem::{Code, FieldError, Problem};
+use meshwright_wire::submission::Submission;
 
 use super::faults::look_around;
 use super::{Plan, Study};
-use crate::declare::{Errors, Node};
-use crate::pointer::Pointer;
 use crate::population::Population;
-use crate::problem::{Code, FieldError, Problem};
 use crate::search::{Role, Search};
-use crate::study_table::Quantity;
-use crate::submission::Submission;
+use crate::table::Quantity;
 
 /// So many members of a population are tried at most.
 const MEMBERS: usize = 256;

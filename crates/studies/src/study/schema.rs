@@ -1,16 +1,18 @@
 //! What the OpenAPI document says of a study.
 
+use meshwright_wire::declare::{
+    Document, Kind, Property, exclusive, nested, object, or_null, utoipa_schema,
+};
+use meshwright_wire::Kept;
+use meshwright_wire::submission::TAGS;
 use serde_json::{Value, json};
 
 use super::Study;
 use super::constant_mass::ConstantMass;
 use super::document::{KEEP, LONGEST_LABEL, MOST_CHANGES, NAME, PLANS};
-use super::size::MOST_DESIGNS;
-use crate::declare::{Document, Kind, Property, exclusive, nested, object, or_null, utoipa_schema};
-use crate::kept::Kept;
+use crate::MOST_DESIGNS;
 use crate::population::PopulationDocument;
 use crate::search::SearchDocument;
-use crate::submission::TAGS;
 
 impl utoipa::PartialSchema for Study {
     fn schema() -> utoipa::openapi::RefOr<utoipa::openapi::Schema> {

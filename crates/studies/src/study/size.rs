@@ -1,13 +1,11 @@
 //! How large a study may be, found before anything of it is kept or expanded.
 
+use meshwright_wire::problem::{Code, FieldError, Problem};
+use meshwright_wire::size::{MOST_VALUES, Values, refuse_many_values};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
-use crate::problem::{Code, FieldError, Problem};
-use crate::size::{MOST_VALUES, Values, refuse_many_values};
-
-/// The most designs of one study.
-pub const MOST_DESIGNS: usize = 100_000;
+use crate::MOST_DESIGNS;
 
 /// The most values of the whole document: a hundred thousand designs with seven changes each.
 const MOST_VALUES_OF_ALL: u64 = 1_000_000;

@@ -1,9 +1,9 @@
 //! What a study is expanded to, and refused for.
 
+use meshwright_wire::examples::STUDY_SECTION_5;
 use serde_json::json;
 
 use super::*;
-use crate::examples::STUDY_SECTION_5;
 use crate::testing::study as parse;
 
 #[test]

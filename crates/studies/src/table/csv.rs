@@ -1,11 +1,12 @@
 //! The table as CSV: one line for each row and torque, a row without curves having one line.
 
+use meshwright_wire::csv::CsvWriter;
+use meshwright_wire::warning::GearName;
+
 use super::pareto::KnownQuantities;
 use super::quantity::{Of, QUANTITIES, Quantity};
 use super::row::TableRow;
 use super::summary::CurveSummary;
-use crate::csv::CsvWriter;
-use crate::warning::GearName;
 
 /// The columns of a table, whose lines can be written some at a time. Columns bear the names of the JSON, joined by dots;
 /// `changes.` is followed by the pointer.

@@ -8,14 +8,13 @@ mod summary;
 #[cfg(test)]
 mod tests;
 
+use meshwright_wire::problem::Problem;
+use meshwright_wire::status::Status;
+use meshwright_wire::warning::GearName;
 use serde::Serialize;
 use serde_json::Value;
 use utoipa::ToSchema;
 use uuid::Uuid;
-
-use super::problem::Problem;
-use super::status::Status;
-use super::warning::GearName;
 
 pub use self::csv::CsvTable;
 pub use pareto::{KnownQuantities, Outline};

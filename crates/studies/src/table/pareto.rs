@@ -3,10 +3,11 @@
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, HashSet};
 
+use meshwright_wire::warning::GearName;
+
 use super::quantity::{Of, QUANTITIES, Quantity};
 use super::row::RowState;
 use super::summary::{Conditions, Summary};
-use crate::warning::GearName;
 
 /// What has to be known of all rows before one of them can be shown: which are best, and what they change. It keeps three
 /// numbers of each row, so that a table of any length is made row by row.

@@ -1,15 +1,15 @@
 //! The numbers of a design by name: what tables have columns of, populations tell and searches go by.
 
 use meshwright_engine::analysis::Method;
+use meshwright_wire::declare::{Choice as _, document};
+use meshwright_wire::resolution::methods;
+use meshwright_wire::results::{GearPeakStress, StatisticsValues, TransmissionErrorStatistics};
+use meshwright_wire::submission::Submission;
+use meshwright_wire::warning::GearName;
 use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::summary::{CurveSummary, Summary};
-use crate::declare::{Choice as _, view};
-use crate::resolution::methods;
-use crate::results::{GearPeakStress, StatisticsValues, TransmissionErrorStatistics};
-use crate::submission::Submission;
-use crate::warning::GearName;
 
 /// A number of a design.
 #[derive(Debug, Clone, Copy)]
@@ -55,9 +55,9 @@ pub enum QuantityOf {
     Curve,
 }
 
-view! {
+document! {
     /// A number of a design: columns of tables, goals and bounds of searches and what populations tell have its name.
-    pub struct QuantityEntry as Quantity, "Quantity" of (quantity: &Quantity) {
+    pub struct QuantityEntry as Quantity, "Quantity" view of (quantity: &Quantity) {
         /// Its name in goals, bounds and populations.
         name: &'static str = quantity.name,
         /// What it is called.

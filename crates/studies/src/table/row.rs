@@ -1,6 +1,11 @@
 //! A row of the table: a design, what has come of it, and the numbers that designs are compared by.
 
 use meshwright_engine::analysis::Method;
+use meshwright_wire::declare::{Kind as _, utoipa_schema, word};
+use meshwright_wire::problem::Problem;
+use meshwright_wire::results::StatisticsDocument;
+use meshwright_wire::status::Status;
+use meshwright_wire::warning::GearName;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use utoipa::ToSchema;
@@ -8,11 +13,6 @@ use uuid::Uuid;
 
 use super::quantity::{Of, Quantity};
 use super::summary::{CurveSummary, Summary};
-use crate::declare::{Kind as _, utoipa_schema, word};
-use crate::problem::Problem;
-use crate::results::StatisticsDocument;
-use crate::status::Status;
-use crate::warning::GearName;
 
 /// A design and what has come of it so far.
 #[derive(Debug, Clone, PartialEq)]

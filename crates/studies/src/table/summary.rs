@@ -2,14 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use meshwright_wire::geometry::GearGeometry;
+use meshwright_wire::problem::{Code, Problem};
+use meshwright_wire::results::{CurveDocument, ErrorEstimateDocument, Results, StatisticsDocument};
+use meshwright_wire::units::{rounded, significant};
+use meshwright_wire::warning::GearName;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
-
-use crate::geometry::GearGeometry;
-use crate::problem::{Code, Problem};
-use crate::results::{CurveDocument, ErrorEstimateDocument, Results, StatisticsDocument};
-use crate::units::{rounded, significant};
-use crate::warning::GearName;
 
 /// What of a results document a table shows. It is kept beside the document, so that a table of thousands of rows reads
 /// kilobytes where the documents have hundreds of megabytes.

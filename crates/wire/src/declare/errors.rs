@@ -9,40 +9,37 @@ const MOST_ERRORS: usize = 50;
 
 /// The errors found so far, with a bound on their number.
 #[derive(Debug, Default)]
-pub(crate) struct Errors(RefCell<Vec<FieldError>>);
+pub struct Errors(RefCell<Vec<FieldError>>);
 
 impl Errors {
-    pub(crate) fn push(&self, error: FieldError) {
+    pub fn push(&self, error: FieldError) {
         let mut errors = self.0.borrow_mut();
         if errors.len() < MOST_ERRORS {
             errors.push(error);
         }
     }
 
-    pub(crate) fn count(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.0.borrow().len()
     }
 
     /// Whether no more are told.
-    pub(super) fn is_full(&self) -> bool {
+    pub fn is_full(&self) -> bool {
         self.count() >= MOST_ERRORS
     }
 
-    pub(crate) fn into_errors(self) -> Vec<FieldError> {
+    pub fn into_errors(self) -> Vec<FieldError> {
         self.0.into_inner()
     }
 
     /// The value of `made`, if it could be made; else its faults are told.
-    pub(crate) fn report<T>(
-        &self,
-        made: Result<T, impl IntoIterator<Item = FieldError>>,
-    ) -> Option<T> {
+    pub fn report<T>(&self, made: Result<T, impl IntoIterator<Item = FieldError>>) -> Option<T> {
         made.map_err(|faults| faults.into_iter().for_each(|fault| self.push(fault)))
             .ok()
     }
 
     /// What was read, if nothing is wrong.
-    pub(crate) fn settle<T>(self, read: Option<T>) -> Result<T, Problem> {
+    pub fn settle<T>(self, read: Option<T>) -> Result<T, Problem> {
         match read {
             Some(read) if self.count() == 0 => Ok(read),
             _ => Err(Problem::of_fields(self.into_errors())),

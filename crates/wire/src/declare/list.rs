@@ -9,7 +9,7 @@ use crate::problem::Code;
 
 /// What a declaration says of a list.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct List<S> {
+pub struct List<S> {
     title: &'static str,
     each: S,
     most: usize,
@@ -28,7 +28,7 @@ pub(crate) struct List<S> {
 }
 
 /// A list of at most so many values, that has to be given.
-pub(crate) const fn list<S>(title: &'static str, each: S, most: usize) -> List<S> {
+pub const fn list<S>(title: &'static str, each: S, most: usize) -> List<S> {
     List {
         title,
         each,
@@ -44,7 +44,7 @@ pub(crate) const fn list<S>(title: &'static str, each: S, most: usize) -> List<S
 
 impl<S: Copy> List<S> {
     /// What its items are called, as they are expected and as they are counted, and what becomes of those that fit.
-    pub(crate) const fn of(
+    pub const fn of(
         self,
         expected: &'static str,
         counted: &'static str,
@@ -55,30 +55,30 @@ impl<S: Copy> List<S> {
     }
 
     /// Too many items are refused with this code.
-    pub(crate) const fn too_many_is(self, too_many: Code) -> Self {
+    pub const fn too_many_is(self, too_many: Code) -> Self {
         Self { too_many, ..self }
     }
 
     /// It has at least one item.
-    pub(crate) const fn not_empty(self, code: Code, advice: &'static str) -> Self {
+    pub const fn not_empty(self, code: Code, advice: &'static str) -> Self {
         let empty = Some((code, advice));
         Self { empty, ..self }
     }
 
     /// Each item stands there once.
-    pub(crate) const fn unique(self, said: &'static str) -> Self {
+    pub const fn unique(self, said: &'static str) -> Self {
         let repeated = Some(said);
         Self { repeated, ..self }
     }
 
     /// Absent, it is empty.
-    pub(crate) const fn or_empty(self) -> Self {
+    pub const fn or_empty(self) -> Self {
         let or_empty = true;
         Self { or_empty, ..self }
     }
 
     /// Null is as good as absent.
-    pub(crate) const fn or_null(self) -> Self {
+    pub const fn or_null(self) -> Self {
         let or_null = true;
         Self { or_null, ..self }
     }

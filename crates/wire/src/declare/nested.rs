@@ -9,16 +9,16 @@ use utoipa::openapi::schema::{ObjectBuilder, Schema};
 use super::{Kind, Named, Node, ObjectReader, Place};
 
 /// A property of an object.
-pub(crate) struct Property {
-    pub(crate) name: &'static str,
-    pub(crate) schema: Value,
-    pub(crate) is_needed: bool,
-    pub(crate) exclusion: Option<Exclusion>,
+pub struct Property {
+    pub name: &'static str,
+    pub schema: Value,
+    pub is_needed: bool,
+    pub exclusion: Option<Exclusion>,
 }
 
 impl Property {
     /// One that excludes no other.
-    pub(crate) const fn new(name: &'static str, schema: Value, is_needed: bool) -> Self {
+    pub const fn new(name: &'static str, schema: Value, is_needed: bool) -> Self {
         Self {
             name,
             schema,
@@ -30,14 +30,14 @@ impl Property {
 
 /// That a field cannot be given together with some others.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Exclusion {
-    pub(crate) others: &'static [&'static str],
+pub struct Exclusion {
+    pub others: &'static [&'static str],
     /// Whether one of them has to be given.
-    pub(crate) is_one_needed: bool,
+    pub is_one_needed: bool,
 }
 
 /// An object of the wire; [`document!`] and [`tagged!`] implement it.
-pub(crate) trait Document: Sized {
+pub trait Document: Sized {
     /// Its name in the contract.
     const NAME: &'static str;
 
@@ -66,24 +66,24 @@ pub(crate) trait Document: Sized {
 
 /// What a declaration says of an object within another one.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Nested {
+pub struct Nested {
     title: &'static str,
     /// Whether it is made of its fields' defaults where it is absent or null.
     or_defaults: bool,
 }
 
 /// An object that has to be given.
-pub(crate) const fn nested(title: &'static str) -> Nested {
+pub const fn nested(title: &'static str) -> Nested {
     let or_defaults = false;
     Nested { title, or_defaults }
 }
 
 /// An object that has to be given, of which there is nothing to say beside what it says itself.
-pub(crate) const EACH: Nested = nested("");
+pub const EACH: Nested = nested("");
 
 impl Nested {
     /// Absent or null, it has the default of every field.
-    pub(crate) const fn or_defaults(self) -> Self {
+    pub const fn or_defaults(self) -> Self {
         let or_defaults = true;
         Self {
             or_defaults,
@@ -138,7 +138,7 @@ impl<D: Document> Kind for D {
 }
 
 /// The schema of an object that has these properties and no others.
-pub(crate) fn object(title: &str, about: &str, properties: Vec<Property>) -> Value {
+pub fn object(title: &str, about: &str, properties: Vec<Property>) -> Value {
     let needed: Vec<_> = properties
         .iter()
         .filter(|property| property.is_needed)
@@ -182,7 +182,7 @@ pub(crate) fn object(title: &str, about: &str, properties: Vec<Property>) -> Val
 /// as good as absent.
 ///
 /// It stands in an `allOf` beside the properties, and says nothing but what is not: generators of clients make no types of such alternatives.
-pub(crate) fn exclusive(names: &[&str], is_one_needed: bool) -> Value {
+pub fn exclusive(names: &[&str], is_one_needed: bool) -> Value {
     let given = |name: &&str| json!({ "not": { "properties": { *name: { "type": "null" } } } });
     let mut alternatives: Vec<Value> = names.iter().map(given).collect();
     if !is_one_needed {
@@ -193,12 +193,19 @@ pub(crate) fn exclusive(names: &[&str], is_one_needed: bool) -> Value {
 
 /// `schema` in a form that utoipa carries to the finished document, which has it instead. What utoipa knows of schemas is less than
 /// what ours say, and it drops the rest.
-pub(crate) fn utoipa_schema(schema: Value) -> RefOr<Schema> {
+pub fn utoipa_schema(schema: Value) -> RefOr<Schema> {
     let declared = ExtensionsBuilder::new().add("x-declared", schema).build();
     ObjectBuilder::new().extensions(Some(declared)).into()
 }
 
-/// Declares an object of the wire.
+/// Declares an object of the interface.
+///
+/// Of one that is sent each field has its type, a sentence and a specification: `field: f64 = number("Title", "mm", 0.1, 50.0),`. From it come reader,
+/// writer and schema.
+///
+/// Of one that is answered (`answer of (what: &There, is: f64)`) each field has its type, a sentence and what it is filled from; a field with a question
+/// mark is absent where its source is `None`. It can be read back. One that is only written is a `view of (…)`.
+#[macro_export]
 macro_rules! document {
     (
         $(#[doc = $about:literal])*
@@ -215,7 +222,8 @@ macro_rules! document {
         #[expect(non_upper_case_globals, reason = "a declaration is named as its field")]
         impl $Document {
             $(
-                pub(crate) const $field:
+                $(#[doc = $sentence])*
+                pub const $field:
                     $crate::declare::Declared<<$kind as $crate::declare::Kind>::Spec> =
                     $crate::declare::Declared::new(
                         stringify!($field),
@@ -252,7 +260,7 @@ macro_rules! document {
             }
         }
 
-        $crate::declare::document!(@known $Document);
+        $crate::document!(@known $Document);
     };
 
     // What others than this module ask of an object.
@@ -286,11 +294,103 @@ macro_rules! document {
             }
         }
     };
+
+    (
+        $(#[$about:meta])*
+        $visibility:vis struct $Document:ident $(<$lifetime:lifetime>)? as $name:ident $(, $title:literal)?
+        answer of $($rest:tt)*
+    ) => {
+        $crate::document! {
+            @derive [Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema]
+            $(#[$about])*
+            $visibility struct $Document $(<$lifetime>)? as $name $(, $title)? of $($rest)*
+        }
+    };
+
+    (
+        $(#[$about:meta])*
+        $visibility:vis struct $Document:ident $(<$lifetime:lifetime>)? as $name:ident $(, $title:literal)?
+        view of $($rest:tt)*
+    ) => {
+        $crate::document! {
+            @derive [serde::Serialize, utoipa::ToSchema]
+            $(#[$about])*
+            $visibility struct $Document $(<$lifetime>)? as $name $(, $title)? of $($rest)*
+        }
+    };
+
+    (
+        @next [$($derive:path),*] $head:tt [$($known:tt)*]
+        $(#[$about:meta])* $field:ident?: $kind:ty = $source:expr, $($rest:tt)*
+    ) => {
+        $crate::document! {
+            @next [$($derive),*] $head
+            [
+                $($known)*
+                $(#[$about])*
+                #[serde(default, skip_serializing_if = "Option::is_none")]
+                $field: Option<$kind> = $source,
+            ]
+            $($rest)*
+        }
+    };
+
+    (
+        @next [$($derive:path),*] $head:tt [$($known:tt)*]
+        $(#[$about:meta])* $field:ident: $kind:ty = $source:expr, $($rest:tt)*
+    ) => {
+        $crate::document! {
+            @next [$($derive),*] $head [$($known)* $(#[$about])* $field: $kind = $source,] $($rest)*
+        }
+    };
+
+    (
+        @next [$($derive:path),*]
+        [
+            $(#[$about:meta])*
+            $visibility:vis struct $Document:ident $(<$lifetime:lifetime>)? as $name:ident $(, $title:literal)?
+            of $given:tt { $($before:tt)* }
+        ]
+        [$($(#[$sentence:meta])* $field:ident: $kind:ty = $source:expr,)*]
+    ) => {
+        $(#[$about])*
+        #[derive($($derive),*)]
+        #[schema(as = $name $(, title = $title)?)]
+        $visibility struct $Document $(<$lifetime>)? {
+            $($(#[$sentence])* $visibility $field: $kind,)*
+        }
+
+        impl $(<$lifetime>)? $Document $(<$lifetime>)? {
+            /// Tells what there is.
+            $visibility fn of $given -> Self {
+                $($before)*
+                Self { $($field: $source,)* }
+            }
+        }
+    };
+
+    (
+        @derive [$($derive:path),*]
+        $(#[$about:meta])*
+        $visibility:vis struct $Document:ident $(<$lifetime:lifetime>)? as $name:ident $(, $title:literal)?
+        of $given:tt $(with { $($before:tt)* })? { $($fields:tt)* }
+    ) => {
+        $crate::document! {
+            @next [$($derive),*]
+            [
+                $(#[$about])*
+                $visibility struct $Document $(<$lifetime>)? as $name $(, $title)?
+                of $given { $($($before)*)? }
+            ]
+            [] $($fields)*
+        }
+    };
 }
 
-pub(crate) use document;
+pub use document;
 
-/// Declares an object that is of one of several kinds, told by the word of its field `kind`.
+/// Declares an object that is of one of several kinds, named by the word of its field `kind`.
+#[macro_export]
 macro_rules! tagged {
     (
         $(#[doc = $about:literal])*
@@ -365,8 +465,8 @@ macro_rules! tagged {
             }
         }
 
-        $crate::declare::document!(@known $Document);
+        $crate::document!(@known $Document);
     };
 }
 
-pub(crate) use tagged;
+pub use tagged;

@@ -18,8 +18,8 @@ enum Absent {
 
 /// What a declaration says of a value that may be absent.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Optional<S> {
-    pub(crate) spec: S,
+pub struct Optional<S> {
+    pub spec: S,
     absent: Absent,
     /// The fields that cannot be given together with it.
     others: &'static [&'static str],
@@ -37,28 +37,28 @@ const fn optional<S>(spec: S, absent: Absent, others: &'static [&'static str]) -
 }
 
 /// Absent, it means `meaning`.
-pub(crate) const fn absent<S>(spec: S, meaning: &'static str) -> Optional<S> {
+pub const fn absent<S>(spec: S, meaning: &'static str) -> Optional<S> {
     optional(spec, Absent::Means(meaning), &[])
 }
 
 /// Read and filled in by itself, unless one of the fields `others` is given.
-pub(crate) const fn unless<S>(others: &'static [&'static str], spec: S) -> Optional<S> {
+pub const fn unless<S>(others: &'static [&'static str], spec: S) -> Optional<S> {
     optional(spec, Absent::Unless, others)
 }
 
 /// Either this or one of the fields `others`.
-pub(crate) const fn or_else<S>(others: &'static [&'static str], spec: S) -> Optional<S> {
+pub const fn or_else<S>(others: &'static [&'static str], spec: S) -> Optional<S> {
     optional(spec, Absent::OneOf, others)
 }
 
 impl<S: Copy> Optional<S> {
     /// Refused together with the fields `others`.
-    pub(crate) const fn not_beside(self, others: &'static [&'static str]) -> Self {
+    pub const fn not_beside(self, others: &'static [&'static str]) -> Self {
         Self { others, ..self }
     }
 
     /// Not written where it is absent.
-    pub(crate) const fn left_out(self) -> Self {
+    pub const fn left_out(self) -> Self {
         let left_out = true;
         Self { left_out, ..self }
     }
@@ -66,7 +66,7 @@ impl<S: Copy> Optional<S> {
 
 impl<S> Declared<Optional<S>> {
     /// The declaration of the value that is given.
-    pub(crate) fn given(self) -> Declared<S> {
+    pub fn given(self) -> Declared<S> {
         Declared::new(self.name, self.about, self.spec.spec)
     }
 }
@@ -154,7 +154,7 @@ impl<T: Kind> Kind for Option<T> {
 }
 
 /// The schema of what may be null as well, which is as good as absent.
-pub(crate) fn or_null(mut schema: Value) -> Value {
+pub fn or_null(mut schema: Value) -> Value {
     let nothing = json!({ "type": "null" });
     if schema.get("type").is_some() {
         schema["type"] = json!([schema["type"], "null"]);

@@ -7,7 +7,7 @@ use super::{Kind, Node, ObjectReader, Place};
 use crate::problem::Code;
 
 /// Words that a field may take, each standing for a value.
-pub(crate) trait Choice: Copy + PartialEq + 'static {
+pub trait Choice: Copy + PartialEq + 'static {
     /// Word, value, and what it means.
     const OPTIONS: &'static [(&'static str, Self, &'static str)];
 
@@ -36,25 +36,25 @@ pub(crate) trait Choice: Copy + PartialEq + 'static {
 
 /// What a declaration says of one of several words.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct OneWord<C> {
+pub struct OneWord<C> {
     title: &'static str,
-    pub(crate) preset: Option<C>,
+    pub preset: Option<C>,
 }
 
 /// One of several words, that has to be given.
-pub(crate) const fn word<C>(title: &'static str) -> OneWord<C> {
+pub const fn word<C>(title: &'static str) -> OneWord<C> {
     let preset = None;
     OneWord { title, preset }
 }
 
 impl<C: Copy> OneWord<C> {
     /// Not given, it is this.
-    pub(crate) const fn or(self, preset: C) -> Self {
+    pub const fn or(self, preset: C) -> Self {
         let preset = Some(preset);
         Self { preset, ..self }
     }
 
-    pub(crate) fn read(&self, node: &Node, place: &Place<'_>) -> Option<C>
+    pub fn read(&self, node: &Node, place: &Place<'_>) -> Option<C>
     where
         C: Choice,
     {
@@ -65,7 +65,7 @@ impl<C: Copy> OneWord<C> {
         word.or_else(|| place.wrong_kind(node, &format!("one of {}", C::words())))
     }
 
-    pub(crate) fn absent(&self, reader: &mut ObjectReader<'_>, name: &'static str) -> Option<C>
+    pub fn absent(&self, reader: &mut ObjectReader<'_>, name: &'static str) -> Option<C>
     where
         C: Choice,
     {
@@ -76,7 +76,7 @@ impl<C: Copy> OneWord<C> {
         })
     }
 
-    pub(crate) fn describe(&self, about: &str) -> Value
+    pub fn describe(&self, about: &str) -> Value
     where
         C: Choice,
     {
@@ -99,6 +99,7 @@ impl<C: Copy> OneWord<C> {
 }
 
 /// Declares the words of a type, each with what it means; the type itself, too, where it is none of the engine.
+#[macro_export]
 macro_rules! words {
     (
         $(#[doc = $about:literal])*
@@ -112,7 +113,7 @@ macro_rules! words {
             $(#[doc = $meaning] $value,)*
         }
 
-        $crate::declare::words! { $choice { $($value = $word: $meaning),* } }
+        $crate::words! { $choice { $($value = $word: $meaning),* } }
     };
 
     ($($choice:ty { $($value:ident = $word:literal: $meaning:literal),* $(,)? })*) => {$(
@@ -155,17 +156,17 @@ macro_rules! words {
     )*};
 }
 
-pub(crate) use words;
+pub use words;
 
 /// What a declaration says of what is true or false.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Flag {
+pub struct Flag {
     title: &'static str,
     preset: bool,
 }
 
 /// True or false; not given, `preset`.
-pub(crate) const fn flag(title: &'static str, preset: bool) -> Flag {
+pub const fn flag(title: &'static str, preset: bool) -> Flag {
     Flag { title, preset }
 }
 
@@ -194,13 +195,13 @@ impl Kind for bool {
 
 /// What a declaration says of a short text.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Text {
+pub struct Text {
     title: &'static str,
     longest: usize,
 }
 
 /// A text of 1 to `longest` characters, none of them a control character.
-pub(crate) const fn text(title: &'static str, longest: usize) -> Text {
+pub const fn text(title: &'static str, longest: usize) -> Text {
     Text { title, longest }
 }
 
@@ -238,6 +239,6 @@ impl Kind for String {
 }
 
 /// Whether a text has 1 to `longest` characters, none of them a control character.
-pub(crate) fn is_short_text(text: &str, longest: usize) -> bool {
+pub fn is_short_text(text: &str, longest: usize) -> bool {
     (1..=longest).contains(&text.chars().count()) && !text.chars().any(char::is_control)
 }

@@ -59,7 +59,7 @@ const fn each_tooth(title: &'static str) -> List<Number> {
 
 impl DeviationsDocument {
     /// How a reader is told `deviations`: to a tenth of a nanometer, single pitches that close.
-    pub(crate) fn of(deviations: &ToothDeviations) -> Self {
+    pub fn of(deviations: &ToothDeviations) -> Self {
         let told = |value: f64| (to_um(value) * 1e4).round() / 1e4 + 0.0;
         let sums = deviations.cumulative_pitch.iter().copied().map(told);
         let single = sums.scan(0.0, |before, sum| {

@@ -22,7 +22,7 @@ mod solid;
 mod tests;
 mod thickness;
 
-use meshwright_engine::gear::{GearData, Helix, Rack, TipEdge, ToothDeviations};
+use meshwright_engine::gear::{GearData, Helix, Member, Rack, TipEdge, ToothDeviations};
 
 pub use blank::{BlankDocument, HubDocument, ShaftDocument, WebDocument};
 pub use deviation::{DeviationsDocument, EccentricityDocument};
@@ -42,12 +42,19 @@ pub use thickness::{BallsDocument, SpanDocument};
 
 use super::declare::{
     EACH, Errors, Kind as _, Node, ObjectReader, Place, absent, document, list, nested, number,
-    unless,
+    unless, words,
 };
 use super::units::{Side, from_mm, rounded_inward};
 
 /// The most profile modifications of one gear, beside its tip relief.
 pub(super) const MOST_MODIFICATIONS: usize = 16;
+
+words! {
+    Member {
+        Driving = "driving": "gear 1, which drives",
+        Driven = "driven": "gear 2, which is driven",
+    }
+}
 
 document! {
     /// A spur or helical gear as its drawing describes it.
@@ -170,7 +177,7 @@ fn usual_tip_radius(usual: f64, gear: &ObjectReader<'_>) -> f64 {
 
 impl GearDocument {
     /// The same gear with teeth that do not deviate.
-    pub(super) fn without_deviations(self) -> Self {
+    pub fn without_deviations(self) -> Self {
         Self {
             tooth_deviations: None,
             ..self
@@ -178,12 +185,12 @@ impl GearDocument {
     }
 
     /// Gives it other teeth.
-    pub(super) fn set_deviations(&mut self, deviations: DeviationsDocument) {
+    pub fn set_deviations(&mut self, deviations: DeviationsDocument) {
         self.tooth_deviations = Some(deviations);
     }
 
     /// The gear that `node` is, if it can be read.
-    pub(super) fn at(node: &Node) -> Option<Self> {
+    pub fn at(node: &Node) -> Option<Self> {
         let errors = Errors::default();
         let read = Self::read(node, &Place::root(&errors), &EACH);
         errors.settle(read).ok()

@@ -14,7 +14,7 @@ impl GearDocument {
     ///
     /// Every field that has to change, each with a value such that all these values together make a gear, where there
     /// are such values.
-    pub(crate) fn to_gear(&self, pointer: &str, helix: Helix) -> Result<SpurGear, Vec<FieldError>> {
+    pub fn to_gear(&self, pointer: &str, helix: Helix) -> Result<SpurGear, Vec<FieldError>> {
         let lists = self.list_faults(pointer);
         if lists.is_empty() {
             return self.with_numbers(pointer, helix);

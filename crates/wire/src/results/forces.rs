@@ -6,12 +6,12 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::{all, each};
-use crate::declare::answer;
+use crate::declare::document;
 use crate::units::to_um;
 
-answer! {
+document! {
     /// The force between the gears over mesh position and approach: under which approach each load acts at each position, over the true period.
-    pub struct ForceTableDocument as ForceTable, "Force table" of (table: &ForceTable) with {
+    pub struct ForceTableDocument as ForceTable, "Force table" answer of (table: &ForceTable) with {
         let in_um = |row: &Vec<f64>| each(row, to_um);
         let stiffness = |row: &Vec<f64>| each(row, |compliance| if compliance > 0.0 { 1.0 / compliance } else { 0.0 });
         let stiffnesses = |flank: &FlankRows| all(flank.compliance.as_deref().unwrap_or_default(), stiffness);
@@ -40,9 +40,9 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// The motion of the gears over speed under one torque. All lists run over the same speeds.
-    pub struct CurveDynamicsDocument as Dynamics, "Dynamics" of (dynamics: &CurveDynamics) with {
+    pub struct CurveDynamicsDocument as Dynamics, "Dynamics" answer of (dynamics: &CurveDynamics) with {
         let CurveDynamics { run_up, labels, .. } = dynamics;
         let branch = |branch: &Branch| BranchDocument::of(branch, labels);
     } {
@@ -61,9 +61,9 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// The motion over speed, run through one way.
-    pub struct BranchDocument as RunUpBranch, "Branch of a run-up" of (branch: &Branch, labels: &[String]) {
+    pub struct BranchDocument as RunUpBranch, "Branch of a run-up" answer of (branch: &Branch, labels: &[String]) {
         /// The dynamic transmission error, in um.
         dynamic_transmission_error_um: DynamicErrorDocument = DynamicErrorDocument::of(branch),
         /// The largest force between the gears over the static load.
@@ -79,9 +79,9 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// The dynamic transmission error over speed, in um.
-    pub struct DynamicErrorDocument as DynamicTransmissionError, "Dynamic transmission error" of (branch: &Branch) {
+    pub struct DynamicErrorDocument as DynamicTransmissionError, "Dynamic transmission error" answer of (branch: &Branch) {
         /// The root mean square of the fluctuation, the mean removed.
         rms: Vec<f64> = each(&branch.rms, to_um),
         /// The largest less the smallest value.
@@ -89,9 +89,9 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// The amplitude at one order over speed.
-    pub struct OrderAmplitudesDocument as OrderAmplitudes, "Amplitudes of an order" of (label: &str, amplitudes: &[f64]) {
+    pub struct OrderAmplitudesDocument as OrderAmplitudes, "Amplitudes of an order" answer of (label: &str, amplitudes: &[f64]) {
         /// Its name, as in the spectrum.
         #[schema(example = "H_Z2")]
         label: String = label.to_owned(),
@@ -100,9 +100,9 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// A speed at which an order resonates.
-    pub struct ResonanceDocument as Resonance, "Resonance" of (resonance: &Resonance, labels: &[String]) {
+    pub struct ResonanceDocument as Resonance, "Resonance" answer of (resonance: &Resonance, labels: &[String]) {
         /// The speed of the driving gear, in 1/min.
         driving_speed_rpm: f64 = to_rpm(resonance.speed),
         /// The name of the order.

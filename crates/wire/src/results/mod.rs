@@ -36,17 +36,17 @@ pub use stress::{
     GearPeakStress, GearStressDocument, GearStressWhere, PeakStressDocument, StressDocument,
 };
 
-use super::declare::answer;
+use super::declare::document;
 use super::geometry::{Frequencies, PairGeometry};
 use super::problem::{Code, Problem};
 use super::submission::Submission;
 use super::units::{known, rounded_json};
 use super::warning::WarningDocument;
 
-answer! {
+document! {
     /// What a submission comes to. It is bit-identical for the same input and version.
     pub struct Results as Results, "Results"
-    of (submission: &Submission, analysis: &Analysis, forces: Option<&Forces>) with {
+    answer of (submission: &Submission, analysis: &Analysis, forces: Option<&Forces>) with {
         let case = submission.case();
         let dynamics = |i: usize| forces.and_then(|forces| forces.dynamics.get(i));
     } {
@@ -89,10 +89,6 @@ impl Results {
         rounded_json(self).map_err(|error| Problem::new(Code::InternalError, error.to_string()))
     }
 }
-
-/// A small results document.
-#[cfg(test)]
-pub(crate) const STUB: &str = include_str!("../../../../tests/it/results.json");
 
 fn each(values: &[f64], convert: impl Fn(f64) -> f64) -> Vec<f64> {
     values.iter().copied().map(convert).collect()

@@ -7,14 +7,14 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::{all, each};
-use crate::declare::answer;
+use crate::declare::document;
 use crate::geometry::Frequencies;
 use crate::units::{known, to_um};
 use crate::warning::GearName;
 
-answer! {
+document! {
     /// Single-sided amplitudes and phases: y = sum of A cos(2 pi k j/n + phase), no window; the mean is left out.
-    pub struct SpectrumDocument as Spectrum, "Spectrum" of (case: &Case, spectrum: &Spectrum) with {
+    pub struct SpectrumDocument as Spectrum, "Spectrum" answer of (case: &Case, spectrum: &Spectrum) with {
         // An order counts per revolution of the driven gear, so that gear's speed turns it into a frequency.
         let driven_hz = Frequencies::of_case(case).map(|frequencies| frequencies.driven_hz);
         let [z_1, z_2] = Member::BOTH.map(|member| f64::from(case.pair.gear(member).tooth_count()));
@@ -39,9 +39,9 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// A line of the spectrum that has a name.
-    pub struct NamedOrderDocument as NamedOrder, "Named order" of (line: &NamedOrder, driven_hz: Option<f64>) with {
+    pub struct NamedOrderDocument as NamedOrder, "Named order" answer of (line: &NamedOrder, driven_hz: Option<f64>) with {
         let (kind, cause, mesh_harmonic, multiple) = parts_of(&line.kind);
     } {
         /// The order per revolution of the driven gear.

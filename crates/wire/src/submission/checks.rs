@@ -12,10 +12,10 @@ use crate::resolution::{ContactSolverDocument, ResolutionDocument};
 use crate::units::{Side, plain, rounded_inward};
 
 /// The most positions times torques of one submission.
-pub(crate) const MOST_POSITIONS: u64 = 20_000;
+pub const MOST_POSITIONS: u64 = 20_000;
 
 /// The same of the projected methods on teeth that do not deviate: they solve one mesh period, and add what holes do to it at each position.
-pub(crate) const MOST_PROJECTED_POSITIONS: u64 = 200_000;
+pub const MOST_PROJECTED_POSITIONS: u64 = 200_000;
 
 /// The most mesh periods of a run-up: of its true period, at all speeds, under all torques.
 const MOST_PERIODS_RUN: u64 = 200_000;

@@ -11,7 +11,7 @@ use crate::problem::Code;
 use crate::resolution::ResolutionDocument;
 
 /// The most output torques of one submission.
-pub(crate) const MOST_TORQUES: usize = 60;
+pub const MOST_TORQUES: usize = 60;
 
 /// The most tags of a job or a study, and the most characters of one.
 pub(crate) const MOST_TAGS: (usize, usize) = (16, 64);
@@ -67,7 +67,7 @@ pub(crate) const OUTPUT_TORQUE: Number = number("Output torque", "N m", 1e-6, 1e
     .negative_is(Code::TorqueNotPositive);
 
 /// Short strings to find jobs and studies by.
-pub(crate) const TAGS: List<Text> = list("Tags", text("Tag", MOST_TAGS.1), MOST_TAGS.0)
+pub const TAGS: List<Text> = list("Tags", text("Tag", MOST_TAGS.1), MOST_TAGS.0)
     .of("short strings", "tags", "are kept")
     .too_many_is(Code::OutOfRange)
     .or_empty();

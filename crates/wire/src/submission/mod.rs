@@ -9,10 +9,11 @@ use meshwright_engine::assembly::FaceResolution;
 mod checks;
 mod document;
 
-pub(super) use checks::{MOST_POSITIONS, MOST_PROJECTED_POSITIONS};
+pub use checks::{MOST_POSITIONS, MOST_PROJECTED_POSITIONS};
+pub(super) use document::MOST_TAGS;
 #[cfg(test)]
 pub(super) use document::OUTPUT_TORQUE;
-pub(super) use document::{MOST_TAGS, MOST_TORQUES, TAGS};
+pub use document::{MOST_TORQUES, TAGS};
 
 pub(super) use document::Document;
 use document::FaceRows;
@@ -169,12 +170,12 @@ impl Submission {
     }
 
     /// Reads and checks a submission that is taken apart already.
-    pub(super) fn of_node(node: &Node) -> Result<Self, Problem> {
+    pub fn of_node(node: &Node) -> Result<Self, Problem> {
         Self::of_node_with(node, |_, _, _| Some(()))
     }
 
     /// The same, once `finish` has made of the pair what cannot be written down beforehand. What prevents that it reports.
-    pub(super) fn of_node_with(
+    pub fn of_node_with(
         node: &Node,
         finish: impl FnOnce(&mut PairDocument, Method, &Errors) -> Option<()>,
     ) -> Result<Self, Problem> {
@@ -198,7 +199,7 @@ impl Submission {
     }
 
     /// What is wrong with the fields of a submission, each by itself. Whether they go together is not looked at.
-    pub(super) fn wrong_fields(node: &Node) -> Vec<FieldError> {
+    pub fn wrong_fields(node: &Node) -> Vec<FieldError> {
         let errors = Errors::default();
         Document::read(node, &Place::root(&errors), &EACH);
         errors.into_errors()

@@ -1,19 +1,23 @@
-//! A search under way: which rows come next, and what came of those that are there.
+//! A search under way: which rows come next, and what came of those that are there; `state` is what its study shows of it.
 
-use meshwright_search::driver::Driver;
-use meshwright_search::outcome::{Outcome, best, front};
+mod state;
+
 use serde_json::{Map, Value};
 
-use super::measure::{Judged, distance, failed_share};
-use super::{ConfirmedDesign, FoundDesign, GenerationState, Role, Search, SearchEnd, SearchState};
+use crate::optimum::driver::Driver;
+use crate::optimum::outcome::{Outcome, best, front};
 use crate::refusals::Refusals;
+use crate::search::measure::{Judged, distance, failed_share};
+use crate::search::{Role, Search};
 use crate::study::{Design, Study};
-use crate::study_table::{RowState, Summary};
+use crate::table::{RowState, Summary};
+
+pub use state::*;
 
 /// A search and what came of its rows so far. It is a function of the study and of its rows, so that nothing else has to be kept: who tells a
 /// new one the same rows again goes on where the first one stopped.
 pub struct Searching {
-    pub(super) study: Study,
+    pub(crate) study: Study,
     driver: Driver,
     /// Designs that have been looked at.
     candidates: Vec<Candidate>,

@@ -1,12 +1,12 @@
 //! What is told of a search.
 
+use meshwright_wire::problem::Problem;
+use meshwright_wire::results::ErrorEstimateDocument;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
 
-use crate::problem::Problem;
 use crate::refusals::RefusalState;
-use crate::results::ErrorEstimateDocument;
 
 /// How far a search has come, as of its last generation that has ended.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ToSchema)]

@@ -1,26 +1,26 @@
-//! What the results of members tell of a population.
+//! What the results of members come to: how each quantity is spread over a population.
 
 use std::ops::Range;
 
 use meshwright_engine::gear::Member;
-use meshwright_sample::histogram::histogram;
-use meshwright_sample::influence::{Ranked, of_group};
-use meshwright_sample::points::Sampling;
-use meshwright_sample::{Estimate, mean, percentile, standard_deviation};
+use meshwright_wire::declare::Node;
+use meshwright_wire::draw::Accuracy;
+use meshwright_wire::resolution::sees_faces;
+use meshwright_wire::status::Status;
+use meshwright_wire::warning::GearName;
 use serde::Serialize;
 use utoipa::ToSchema;
 use uuid::Uuid;
 
-use super::document::GearAccuracy;
-use super::{GEARS, Population, Source};
-use crate::declare::Node;
-use crate::draw::Accuracy;
+use crate::population::document::GearAccuracy;
+use crate::population::{GEARS, Population, Source};
 use crate::refusals::{RefusalState, Refusals};
-use crate::resolution::sees_faces;
-use crate::status::Status;
+use crate::sample::histogram::histogram;
+use crate::sample::influence::{Ranked, of_group};
+use crate::sample::points::Sampling;
+use crate::sample::{Estimate, mean, percentile, standard_deviation};
 use crate::study::Study;
-use crate::study_table::{Of, QUANTITIES, RowState, Summary};
-use crate::warning::GearName;
+use crate::table::{Of, QUANTITIES, RowState, Summary};
 
 /// The percentiles that are told.
 const PERCENTS: [f64; 7] = [1.0, 5.0, 25.0, 50.0, 75.0, 95.0, 99.0];
@@ -305,7 +305,7 @@ impl PopulationSample {
             let own = self.population.varies(gear).then(|| {
                 let mut submission = self.sources.base.clone();
                 let values = self.population.values(member);
-                for (varied, value) in self.population.varied.iter().zip(values) {
+                for (varied, value) in self.population.varied().iter().zip(values) {
                     let value = Node::Number(value);
                     submission.put(varied.path.steps(), value);
                 }
@@ -456,7 +456,7 @@ fn pairs_of(
     let found = followed.filter(|(members, values)| {
         let [first, second] = [members[0], members[1]];
         first.is_multiple_of(2)
-            && second == meshwright_sample::partner(first)
+            && second == crate::sample::partner(first)
             && population.is_shared(first, gear)
             && values.iter().all(|value| !value.is_nan())
     });

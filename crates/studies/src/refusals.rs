@@ -2,11 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use meshwright_wire::problem::Code;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use utoipa::ToSchema;
-
-use super::problem::Code;
 
 /// Why some designs could not be had.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
