@@ -17,8 +17,8 @@ use utoipa::ToSchema;
 use super::app::App;
 use super::batch::MOST_IN_BATCH;
 use super::blocking::blocking;
+use super::body::JsonBody;
 use super::client::Onlooker;
-use super::document::Document;
 use super::problem::Refusal;
 use super::static_files::StaticFile;
 use crate::compute::PreviewRules;
@@ -34,14 +34,14 @@ use crate::webhooks::most_webhooks;
     request_body(content = Submission, content_type = "application/json", description = "The submission."),
     responses(
         (status = 200, description = "The submission can be computed.", body = Validation),
-        Document,
+        JsonBody,
         (status = 422, description = "The submission cannot be computed; `errors` says which field is why."),
         (status = 503, description = "Too many submissions are checked at once. Try again after `Retry-After` seconds."),
     ),
 )]
 pub(super) async fn validate(
     onlooker: Onlooker,
-    Document(document, _memory): Document,
+    JsonBody(document, _memory): JsonBody,
 ) -> Result<Json<Validation>, Refusal> {
     // The estimate divides both gears into elements.
     let validation = blocking(onlooker.name(), move |_| {

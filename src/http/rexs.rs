@@ -12,8 +12,8 @@ use utoipa::{IntoParams, ToSchema};
 
 use super::answer::file;
 use super::blocking::blocking;
+use super::body::ModelBody;
 use super::client::{Client, Onlooker};
-use super::document::ModelDocument;
 use super::parameters::{JobId, Parameters};
 use super::problem::{Refusal, internal};
 use crate::jobs::JobError;
@@ -89,14 +89,14 @@ document! {
     responses(
         (status = 200, description = "The submissions.", body = ModelView),
         (status = 400, description = "A parameter is not understood."),
-        ModelDocument,
+        ModelBody,
         (status = 422, description = "It is no model, or none of its stages can be taken; the errors say why of each."),
     ),
 )]
 pub(super) async fn read(
     onlooker: Onlooker,
     Parameters(parameters): Parameters<ModelParameters>,
-    ModelDocument(model, memory): ModelDocument,
+    ModelBody(model, memory): ModelBody,
 ) -> Result<Json<ModelView>, Refusal> {
     let read = move |_: &Run| {
         let view = model_view(&model, &parameters);

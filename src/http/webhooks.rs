@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 use uuid::Uuid;
 
+use super::body::JsonBody;
 use super::client::Client;
-use super::document::Document;
 use super::parameters::{IdempotencyKey, WebhookId};
 use super::problem::Refusal;
 use crate::jobs::EventKind;
@@ -127,14 +127,14 @@ pub(super) struct DeliveryListView {
     responses(
         (status = 200, description = "The webhook that an earlier request with this key has made, with its secret.", body = WebhookView),
         (status = 201, description = "The webhook, with its secret, which is told this once.", body = WebhookView),
-        Document,
+        JsonBody,
         (status = 422, description = "Webhooks are off, the address is not one to send to, or the key was used for another webhook."),
     ),
 )]
 pub(super) async fn make(
     client: Client,
     IdempotencyKey(key): IdempotencyKey,
-    document: Document,
+    document: JsonBody,
 ) -> Result<Response, Refusal> {
     let new: NewWebhookDocument = document.parse("webhook")?;
     let mut events: Vec<EventKind> = Vec::new();

@@ -344,10 +344,10 @@ impl PopulationSample {
         let ranked = Inputs::of(&self.population, &self.members);
         let named = |columns: &[Vec<f64>], torque: Option<f64>| -> Vec<QuantityDocument> {
             let columns = QUANTITIES.iter().zip(columns);
-            let told = columns.filter_map(|(quantity, column)| {
+            let known = columns.filter_map(|(quantity, column)| {
                 self.quantity(quantity.name, torque, column, &ranked)
             });
-            told.collect()
+            known.collect()
         };
         let mut quantities = named(&self.of_pair, None);
         for curve in &self.of_curves {
@@ -432,7 +432,7 @@ impl PopulationSample {
                 Sampling::Random => percentile::of_independent(values, percent, effect),
             }
         };
-        let told = PERCENTS.into_iter().map(|percent| {
+        let percentiles = PERCENTS.into_iter().map(|percent| {
             let Estimate { value, low, high } = estimate(percent);
             PercentileDocument {
                 percent,
@@ -441,7 +441,7 @@ impl PopulationSample {
                 high,
             }
         });
-        told.collect()
+        percentiles.collect()
     }
 }
 

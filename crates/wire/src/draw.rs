@@ -5,7 +5,7 @@ use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::declare::{
-    EACH, Errors, Flag, Kind as _, Node, Number, Place, document, flag, nested, number,
+    EACH, Errors, Flag, Kind as _, Location, Node, Number, document, flag, nested, number,
 };
 use super::gear::{DeviationsDocument, GearDocument};
 use super::problem::{Code, FieldError, Problem};
@@ -216,7 +216,7 @@ impl Draw {
         refuse_many_values(document, MOST_VALUES)?;
         let node = Node::parse(document)?;
         let errors = Errors::default();
-        let asked = DrawDocument::read(&node, &Place::root(&errors), &EACH);
+        let asked = DrawDocument::read(&node, &Location::root(&errors), &EACH);
         let draw = asked.and_then(|asked| asked.made(&errors));
         errors.settle(draw)
     }
@@ -330,12 +330,12 @@ mod tests {
         assert!(parse(&solid).is_ok());
         // The reference diameter of a helical gear is larger, its normal module the same.
         let helical = asked(json!({ "helix_angle_deg": -30 }));
-        let told =
+        let tolerance =
             |answer: &Value, name: &str| answer["tolerances_um"][name].as_f64().expect("a number");
         let d = 100.0 / 30_f64.to_radians().cos();
         let expected = 2_f64.sqrt() * (0.001 * d + 0.8 + 5.0);
-        assert!((told(&helical, "single_pitch") - expected).abs() < 1e-8);
-        assert!(told(&helical, "helix_slope") > told(&without, "helix_slope"));
+        assert!((tolerance(&helical, "single_pitch") - expected).abs() < 1e-8);
+        assert!(tolerance(&helical, "helix_slope") > tolerance(&without, "helix_slope"));
     }
 
     #[test]

@@ -5,7 +5,7 @@ use meshwright_engine::analysis::RotationSpeed;
 use meshwright_engine::gear::{GearPair, Member, SolidGear, SolidPair};
 
 use super::declare::document;
-use super::units::{to_mm, untold};
+use super::units::{not_a_number, to_mm};
 
 document! {
     /// The derived geometry of a pair.
@@ -31,7 +31,7 @@ document! {
         backlash_mm: f64 = to_mm(pair.backlash() * normal),
         /// The transverse backlash along the line of action, in mm, of teeth as drawn: the normal one over the cosine of the helix angle at the base
         /// circles. Force tables have it so.
-        #[serde(default = "untold")]
+        #[serde(default = "not_a_number")]
         #[schema(required)]
         backlash_transverse_mm: f64 = to_mm(pair.backlash()),
         /// The least normal backlash over the true period, in mm: what the pitch deviations of teeth in mesh at the same time, slopes that stand out and
@@ -127,25 +127,25 @@ document! {
         /// The working pitch radius, in mm.
         working_pitch_radius_mm: f64 = to_mm(pair.working_radius(member)),
         /// The form diameter, in mm: where the involute ends and the fillet begins.
-        #[serde(default = "untold")]
+        #[serde(default = "not_a_number")]
         #[schema(required)]
         form_diameter_mm: f64 = to_mm(2.0 * gear.form_radius()),
         /// The diameter at which the active profile begins, in mm: the lowest that the tip of the mate reaches.
-        #[serde(default = "untold")]
+        #[serde(default = "not_a_number")]
         #[schema(required)]
         active_root_diameter_mm: f64 = to_mm(2.0 * pair.active_root_radius(member)),
         /// The working pitch diameter, in mm.
-        #[serde(default = "untold")]
+        #[serde(default = "not_a_number")]
         #[schema(required)]
         working_pitch_diameter_mm: f64 = to_mm(2.0 * pair.working_radius(member)),
         /// The thickness s_an of a tooth on its tip circle in the normal section (ISO 21771), in mm.
         tip_thickness_mm: f64 = to_mm(gear.tip_thickness() * normal),
         /// The same in the transverse section, along the tip circle, in mm.
-        #[serde(default = "untold")]
+        #[serde(default = "not_a_number")]
         #[schema(required)]
         tip_thickness_transverse_mm: f64 = to_mm(gear.tip_thickness()),
         /// The tip clearance, in mm: from the tip circle of this gear to the root circle of the other one.
-        #[serde(default = "untold")]
+        #[serde(default = "not_a_number")]
         #[schema(required)]
         tip_clearance_mm: f64 = to_mm(pair.tip_clearance(member)),
         /// The specific sliding of this flank at A, where a pair of teeth comes into contact: the sliding velocity over the velocity at which the
@@ -238,8 +238,8 @@ mod tests {
             "web",
         ] {
             let driven = geometry(name).driven;
-            let told = (driven.imbalance_kg_mm, driven.imbalance_angle_deg);
-            assert_eq!(told, (0.0, None), "{name}");
+            let imbalance = (driven.imbalance_kg_mm, driven.imbalance_angle_deg);
+            assert_eq!(imbalance, (0.0, None), "{name}");
         }
         let unequal = geometry("unequal-holes").driven;
         assert!(unequal.imbalance_kg_mm > 0.1 && unequal.imbalance_angle_deg.is_some());

@@ -5,7 +5,7 @@ use serde::Serializer;
 use serde_json::{Value, json};
 
 use super::declare::{
-    Choice, EACH, Kind, Named, Node, Number, Optional, Place, absent, document, number,
+    Choice, EACH, Kind, Location, Named, Node, Number, Optional, absent, document, number,
 };
 use super::problem::{Code, FieldError};
 use super::units::{Side, from_mm, plain, rounded_inward, to_mm};
@@ -37,7 +37,7 @@ pub(super) enum InterfaceRadii {
 impl Kind for InterfaceRadii {
     type Spec = ();
 
-    fn read(node: &Node, place: &Place<'_>, _: &()) -> Option<Self> {
+    fn read(node: &Node, place: &Location<'_>, _: &()) -> Option<Self> {
         match node {
             Node::Null => Some(Self::Common(None)),
             Node::Object(_) => EachRadius::read(node, place, &EACH).map(Self::Each),

@@ -108,7 +108,7 @@ impl PairDocument {
             from_mm(self.center_distance_mm),
             alignment,
         );
-        let told = match pair {
+        let found = match pair {
             Ok(pair) => return Some(pair),
             Err(SolidPairError::Section(error)) => {
                 self.field_error([&sections[0], &sections[1]], overlap_ratio, &error)
@@ -156,7 +156,7 @@ impl PairDocument {
             // Both hands come from one angle.
             Err(SolidPairError::HelixMismatch { .. }) => None,
         };
-        errors.report(Err(told))
+        errors.report(Err(found))
     }
 
     /// The pair, if its gears can be made and mesh; what prevents it is reported to `errors`.
@@ -300,7 +300,7 @@ impl PairDocument {
     /// What has to be the same in both gears and is not.
     fn mismatches(&self) -> Vec<FieldError> {
         let different = self.unlike().filter(|unlike| unlike.taken().is_none());
-        let told = different.map(|unlike| {
+        let refusals = different.map(|unlike| {
             let Unlike {
                 what,
                 unit,
@@ -314,7 +314,7 @@ impl PairDocument {
             );
             FieldError::new(format!("/pair/driven/{name}"), code, detail).nearest(driving)
         });
-        told.collect()
+        refusals.collect()
     }
 
     /// The same pair with module and pressure angle as the gear has them that says more of their digits.

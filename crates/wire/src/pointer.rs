@@ -199,11 +199,12 @@ pub struct Schema {
     named: Map<String, Value>,
 }
 
-static SCHEMA: LazyLock<Schema> = LazyLock::new(|| Schema::of::<Document>("a submission"));
+static SCHEMA: LazyLock<Schema> =
+    LazyLock::new(|| Schema::of::<SubmissionDocument>("a submission"));
 
 impl Schema {
     /// That of a document, which is called so.
-    pub fn of<D: declare::Document>(of: &'static str) -> Self {
+    pub fn of<D: declare::Object>(of: &'static str) -> Self {
         let mut named = Vec::new();
         D::name_fields(&mut named);
         let named = named.into_iter();

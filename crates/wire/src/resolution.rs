@@ -10,8 +10,8 @@ use serde::ser::SerializeMap;
 use serde_json::{Value, json};
 
 use super::declare::{
-    Choice, Document, EACH, Kind, Named, Node, ObjectReader, Place, absent, document, flag, nested,
-    number, word, words,
+    Choice, EACH, Kind, Location, Named, Node, Object, ObjectReader, absent, document, flag,
+    nested, number, word, words,
 };
 use super::interface::InterfaceRadii;
 use super::problem::Code;
@@ -219,7 +219,7 @@ impl ResolutionDocument {
 impl Kind for ContactSolverDocument {
     type Spec = ();
 
-    fn read(node: &Node, place: &Place<'_>, _: &()) -> Option<Self> {
+    fn read(node: &Node, place: &Location<'_>, _: &()) -> Option<Self> {
         const EXPECTED: &str = "\"active_set\" or {\"augmented_lagrangian\": {\"penalty_n_per_m\": ..., \"gap_tolerance_um\": ...}}";
         let usual = Node::Object(Vec::new());
         match node {
@@ -280,7 +280,7 @@ impl Kind for ContactSolverDocument {
 impl Kind for StiffnessDocument {
     type Spec = ();
 
-    fn read(node: &Node, place: &Place<'_>, _: &()) -> Option<Self> {
+    fn read(node: &Node, place: &Location<'_>, _: &()) -> Option<Self> {
         match node {
             Node::Text(word) if word == "tangent" => Some(Self::Tangent),
             Node::Object(_) => TorqueStep::read(node, place, &EACH).map(Self::TorqueStep),

@@ -68,7 +68,7 @@ pub fn and(mut object: Value, fields: &Value) -> Value {
 }
 
 /// What is wrong, error by error: its place, its code, and the nearest value that would do.
-pub fn told(problem: Problem) -> Vec<(String, Code, Option<f64>)> {
+pub fn faults(problem: Problem) -> Vec<(String, Code, Option<f64>)> {
     let errors = problem.errors.into_iter();
     errors
         .map(|error| (error.pointer, error.code, error.nearest))

@@ -171,8 +171,8 @@ pub fn one_or_null<S: serde::Serializer>(
     }
 }
 
-/// What a document of an earlier version does not tell: a number that is never written.
-pub fn untold() -> f64 {
+/// What stands for a number that a document of an earlier version lacks. It is never written.
+pub fn not_a_number() -> f64 {
     f64::NAN
 }
 

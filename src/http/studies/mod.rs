@@ -16,9 +16,9 @@ use utoipa::IntoParams;
 
 use super::answer::{self, json, tell_when_to_return};
 use super::blocking::{blocking, turn_to_read};
+use super::body::JsonBody;
 use super::client::Client;
 use super::conditional::{Keep, Tag};
-use super::document::Document;
 use super::edge::Edge;
 use super::page::{self, Page, USUAL_LIMIT};
 use super::parameters::{IdempotencyKey, IfNoneMatch, Parameters, StudyId};
@@ -53,7 +53,7 @@ const LONGEST_IN_VIEW: u64 = 64 << 10;
             ("Retry-After" = u32, description = "Seconds after which it is worth looking."),
         )),
         (status = 200, description = "With a repeated `Idempotency-Key`, the study that has ended meanwhile.", body = StudyView),
-        Document<MIB>,
+        JsonBody<MIB>,
         (status = 422, description = "The study is not understood, or has more than 100,000 designs; `errors` says which field is why. Or the key was used for another study."),
         (status = 429, description = "More designs of this client wait than may."),
         (status = 503, description = "Too many designs wait, nothing can be stored, or the service is shutting down. Try again after `Retry-After` seconds."),
@@ -62,7 +62,7 @@ const LONGEST_IN_VIEW: u64 = 64 << 10;
 pub(super) async fn submit(
     client: Client,
     IdempotencyKey(key): IdempotencyKey,
-    Document(document, memory): Document<MIB>,
+    JsonBody(document, memory): JsonBody<MIB>,
 ) -> Result<Response, Refusal> {
     let read = move |run: &Run| (Study::submitted(&document, run), memory);
     let (study, _memory) = blocking(client.name(), read).await?;

@@ -1,6 +1,6 @@
 //! From the document of a population to its laws, and what is wrong with one.
 
-use meshwright_wire::declare::{Choice as _, EACH, Errors, Kind as _, Node, Place};
+use meshwright_wire::declare::{Choice as _, EACH, Errors, Kind as _, Location, Node};
 use meshwright_wire::pointer::{NumberKind, Pointer};
 use meshwright_wire::problem::Code;
 use meshwright_wire::units::plain;
@@ -15,7 +15,7 @@ impl Population {
     pub(crate) fn read(
         node: &Node,
         base: Option<&Node>,
-        place: &Place<'_>,
+        place: &Location<'_>,
         errors: &Errors,
     ) -> Option<Self> {
         PopulationDocument::read(node, place, &EACH)?.made(base, place, errors)
@@ -27,7 +27,7 @@ impl PopulationDocument {
     pub(crate) fn made(
         self,
         base: Option<&Node>,
-        place: &Place<'_>,
+        place: &Location<'_>,
         errors: &Errors,
     ) -> Option<Population> {
         let before = errors.count();
@@ -100,7 +100,7 @@ impl VariedDocument {
         }
     }
 
-    fn made(&self, place: &Place<'_>) -> Option<Varied> {
+    fn made(&self, place: &Location<'_>) -> Option<Varied> {
         let law = self.law(place);
         let (path, whole) = number_at(self.path(), &place.of("path"), Pointer::number_kind)?;
         Some(Varied {
@@ -111,7 +111,7 @@ impl VariedDocument {
     }
 
     /// The law, if its numbers go together.
-    fn law(&self, place: &Place<'_>) -> Option<Law> {
+    fn law(&self, place: &Location<'_>) -> Option<Law> {
         let holds = |name: &str, value: f64, low: f64, high: f64| {
             if low <= value && value <= high {
                 return Some(());
@@ -154,7 +154,7 @@ impl VariedDocument {
 }
 
 /// Refuses a `high` that stands beside `low` at `place` and is not above it.
-pub(crate) fn rises(place: &Place<'_>, low: f64, high: f64) -> Option<()> {
+pub(crate) fn rises(place: &Location<'_>, low: f64, high: f64) -> Option<()> {
     if low < high {
         return Some(());
     }
@@ -167,7 +167,7 @@ pub(crate) fn rises(place: &Place<'_>, low: f64, high: f64) -> Option<()> {
 /// The field that `path` names, if it takes a number, of which `kind` tells the kind; and whether that is a whole one.
 pub(crate) fn number_at(
     path: &str,
-    place: &Place<'_>,
+    place: &Location<'_>,
     kind: impl FnOnce(&Pointer) -> Result<NumberKind, (Code, String)>,
 ) -> Option<(Pointer, bool)> {
     let named = Pointer::parse(path).and_then(|pointer| {

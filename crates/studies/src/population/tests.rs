@@ -3,7 +3,7 @@
 use meshwright_engine::gear::{SpurGear, ToothDeviations};
 use meshwright_engine::run::Run;
 use meshwright_wire::declare::Choice as _;
-use meshwright_wire::testing::{and, refused, told as faults};
+use meshwright_wire::testing::{and, faults, refused};
 use meshwright_wire::{Code, Problem, Results, Status};
 use serde_json::{Value, json};
 
@@ -238,7 +238,7 @@ fn row(design: &Design, range: Option<f64>) -> RowState {
     RowState::computed(design.label.clone(), design.changes.clone(), outcome)
 }
 
-fn told(study: &Study, range: impl Fn(&Design) -> Option<f64>) -> Value {
+fn results_of(study: &Study, range: impl Fn(&Design) -> Option<f64>) -> Value {
     let mut sample = PopulationSample::new(study, 0..60).expect("a population");
     for member in 0..study.total() {
         let design = study.design(member).unwrap();
@@ -273,7 +273,7 @@ fn numbers_are_those_of_their_definitions() {
         let failed = design.label.ends_with("77");
         (!failed).then(|| 3.0 + moved(design))
     };
-    let results = told(&whole, range);
+    let results = results_of(&whole, range);
     let mut values: Vec<f64> = (0..1003)
         .filter_map(|row| range(&whole.design(row).unwrap()))
         .collect();
@@ -356,7 +356,7 @@ fn influences_are_those_that_the_result_was_made_of() {
                     + stands_out(design, Member::Driven),
             )
         };
-        let results = told(&whole, range);
+        let results = results_of(&whole, range);
         let parts = [4.0 * 0.911_257, 1.0, 4.0];
         let all: f64 = parts.iter().sum();
         let influences = &quantity(&results, RANGE)["influences"];
@@ -392,7 +392,7 @@ fn gears_beyond_the_total_pitch_tolerance_are_counted() {
         // A varied face of the same gear is measured by its own tolerances, and F_pT does not depend on it.
         let face = json!([{ "path": "/pair/driven/face_width_mm", "kind": "uniform", "low": 19, "high": 21 }]);
         let beyond = [json!([]), face].map(|vary| {
-            let results = told(&study(asked(vary)), |_| Some(1.0));
+            let results = results_of(&study(asked(vary)), |_| Some(1.0));
             results["beyond_total_pitch_tolerance"].clone()
         });
         assert_eq!(beyond[0]["driving"], Value::Null);
@@ -409,13 +409,13 @@ fn gears_that_an_inspector_rejects_are_drawn_again_and_told() {
         let gear = json!({ "iso_1328_class": 6, "capability": 0.8, "inspected": inspected });
         study(json!({ "size": 200, "accuracy": { "driven": gear } }))
     };
-    let results = told(&asked(true), |_| Some(1.0));
+    let results = results_of(&asked(true), |_| Some(1.0));
     assert_eq!(results["beyond_total_pitch_tolerance"]["driven"], 0.0);
     assert_eq!(results["rejected_by_inspection"]["driving"], Value::Null);
     let rejected = results["rejected_by_inspection"]["driven"]
         .as_f64()
         .unwrap();
-    let as_made = told(&asked(false), |_| Some(1.0));
+    let as_made = results_of(&asked(false), |_| Some(1.0));
     assert_eq!(as_made["rejected_by_inspection"]["driven"], Value::Null);
     assert!(
         as_made["beyond_total_pitch_tolerance"]["driven"]
@@ -499,7 +499,7 @@ fn shares_of_inspected_gears_are_those_that_the_result_was_made_of() {
     };
     let variances = [0, 1, 2].map(variance);
     let sum: f64 = variances.iter().sum();
-    let results = told(&whole, |design| Some(parts(design).iter().sum()));
+    let results = results_of(&whole, |design| Some(parts(design).iter().sum()));
     assert!(
         results["rejected_by_inspection"]["driven"]
             .as_f64()
@@ -528,7 +528,7 @@ fn shares_of_inspected_gears_are_those_that_the_result_was_made_of() {
         json!([{ "path": "/pair/driven/face_width_mm", "kind": "uniform", "low": 19, "high": 21 }]);
     let mut short = asked(face);
     short["size"] = json!(64);
-    let results = told(&study(short), |design| {
+    let results = results_of(&study(short), |design| {
         Some(stands_out(design, Member::Driving))
     });
     let influences = quantity(&results, RANGE)["influences"].as_array().unwrap();

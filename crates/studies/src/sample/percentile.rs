@@ -268,7 +268,8 @@ mod tests {
             let members = sorted(known, Sampling::Random, *seed, 320);
             let values: Vec<f64> = members.iter().map(|(_, value)| *value).collect();
             let found = of_independent(&values, 75.0, 1.0);
-            found.low.expect("told") <= truth && truth <= found.high.expect("told")
+            found.low.expect("enough members") <= truth
+                && truth <= found.high.expect("enough members")
         });
         let share = holds.count() as f64 / 400.0;
         assert!((0.92..=0.99).contains(&share), "{share}");
@@ -277,7 +278,9 @@ mod tests {
     #[test]
     fn sobol_points_tell_the_middle_of_a_smooth_quantity_nearer_than_independent_ones() {
         // Measured: 0.4 times as wide.
-        let width = |found: Estimate| found.high.expect("told") - found.low.expect("told");
+        let width = |found: Estimate| {
+            found.high.expect("enough members") - found.low.expect("enough members")
+        };
         let (mut own, mut independent) = (0.0, 0.0);
         for seed in 0..50 {
             let members = sorted(&KNOWN[0], Sampling::Sobol, seed, 1024);
@@ -292,12 +295,12 @@ mod tests {
     fn a_limit_that_no_member_carries_is_none() {
         // 0.95^71 = 0.0262 and 0.95^72 = 0.0249; 0.99^366 = 0.0253 and 0.99^367 = 0.0250. Beyond 2.5 % the largest member is no limit.
         for (percent, fewest) in [(95.0, 72), (99.0, 367)] {
-            for (count, is_told) in [(fewest - 1, false), (fewest, true)] {
+            for (count, is_known) in [(fewest - 1, false), (fewest, true)] {
                 let members = sorted(&KNOWN[0], Sampling::Sobol, 1, count);
                 let found = of_replicates(&members, percent, 1.0);
-                assert_eq!(found.high.is_some(), is_told, "{percent} {count}");
+                assert_eq!(found.high.is_some(), is_known, "{percent} {count}");
                 let found = of_replicates(&members, 100.0 - percent, 1.0);
-                assert_eq!(found.low.is_some(), is_told, "{percent} {count}");
+                assert_eq!(found.low.is_some(), is_known, "{percent} {count}");
             }
         }
     }

@@ -3,8 +3,8 @@
 use std::sync::LazyLock;
 
 use meshwright_wire::declare::{
-    EACH, Errors, Kind, Node, Number, Place, Text, absent, document, list, nested, number, or_else,
-    text, word, words,
+    EACH, Errors, Kind, Location, Node, Number, Text, absent, document, list, nested, number,
+    or_else, text, word, words,
 };
 use meshwright_wire::draw::SEED;
 use meshwright_wire::pointer::{NumberKind, Pointer, Schema};
@@ -121,7 +121,7 @@ pub(crate) struct QuantityName(&'static Quantity);
 impl Kind for QuantityName {
     type Spec = ();
 
-    fn read(node: &Node, place: &Place<'_>, (): &()) -> Option<Self> {
+    fn read(node: &Node, place: &Location<'_>, (): &()) -> Option<Self> {
         let found = match node {
             Node::Text(name) => Quantity::of_name(name),
             _ => None,
@@ -147,7 +147,7 @@ impl Search {
     pub(crate) fn read(
         node: &Node,
         base: Option<&Node>,
-        place: &Place<'_>,
+        place: &Location<'_>,
         errors: &Errors,
     ) -> Option<Self> {
         let before = errors.count();
@@ -193,7 +193,7 @@ impl Search {
         (errors.count() == before).then_some(search)
     }
 
-    fn refuse_idle_population(&self, place: &Place<'_>) {
+    fn refuse_idle_population(&self, place: &Location<'_>) {
         if self.population.is_some() && !self.looks_at_members() {
             let place = place.of("population");
             let detail = format!(
@@ -203,7 +203,7 @@ impl Search {
         }
     }
 
-    fn refuse_too_many(&self, place: &Place<'_>) {
+    fn refuse_too_many(&self, place: &Location<'_>) {
         let each = self.rows_of_design();
         let most = MOST_DESIGNS.saturating_sub(1) / each;
         if self.evaluations as usize > most {
@@ -221,7 +221,7 @@ impl Search {
 fn variables(
     documents: &[VariableDocument],
     population: Option<&Population>,
-    place: &Place<'_>,
+    place: &Location<'_>,
 ) -> Vec<Variable> {
     let mut variables: Vec<Variable> = Vec::new();
     for (i, document) in documents.iter().enumerate() {
@@ -275,7 +275,7 @@ fn number_kind(pointer: &Pointer) -> Result<NumberKind, (Code, String)> {
 }
 
 impl VariableDocument {
-    fn made(&self, place: &Place<'_>) -> Option<Variable> {
+    fn made(&self, place: &Location<'_>) -> Option<Variable> {
         let (path, whole) = number_at(&self.path, &place.of("path"), number_kind)?;
         rises(place, self.low, self.high)?;
         if whole {
@@ -310,7 +310,7 @@ impl VariableDocument {
     }
 
     /// How many steps lead from low to high.
-    fn steps(&self, step: f64, place: &Place<'_>) -> Option<u32> {
+    fn steps(&self, step: f64, place: &Location<'_>) -> Option<u32> {
         let steps = (self.high - self.low) / step;
         let nearest = steps.round().max(1.0);
         if (steps - nearest).abs() <= 1e-9 * nearest && nearest <= 1e6 {
@@ -336,7 +336,7 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn goal(&self, document: &GoalDocument, place: &Place<'_>) -> Option<Goal> {
+    fn goal(&self, document: &GoalDocument, place: &Location<'_>) -> Option<Goal> {
         if let Some(quantity) = document.quantity {
             let measure = self.measure(quantity, document.torques, document.percent, place)?;
             return Some(Goal::Quantity(measure));
@@ -369,7 +369,7 @@ impl Reader<'_> {
         Some(Goal::Cost(parts.into_iter().collect::<Option<Vec<_>>>()?))
     }
 
-    fn condition(&self, document: &ConditionDocument, place: &Place<'_>) -> Option<Condition> {
+    fn condition(&self, document: &ConditionDocument, place: &Location<'_>) -> Option<Condition> {
         let measure = self.measure(document.quantity, document.torques, document.percent, place);
         if document.at_least.is_none() && document.at_most.is_none() {
             let detail = format!("{place} needs one of at_least, at_most; it has none.");
@@ -388,7 +388,7 @@ impl Reader<'_> {
         QuantityName(quantity): QuantityName,
         torques: Torques,
         percent: Option<f64>,
-        place: &Place<'_>,
+        place: &Location<'_>,
     ) -> Option<Measure> {
         if percent.is_some() && self.population.is_none() {
             let place = place.of("percent");
@@ -406,7 +406,7 @@ impl Reader<'_> {
 }
 
 /// Refuses bounds of one quantity that no design keeps.
-fn refuse_contradictions(conditions: &[Condition], place: &Place<'_>) {
+fn refuse_contradictions(conditions: &[Condition], place: &Location<'_>) {
     for (i, one) in conditions.iter().enumerate() {
         let same = |other: &&Condition| {
             other.measure.quantity.name == one.measure.quantity.name

@@ -42,11 +42,11 @@ impl Measure {
         let at = |place: usize| match self.percent {
             None => self.at(design, place, gear),
             Some(percent) => {
-                let told = members.iter().map(|member| {
+                let numbers = members.iter().map(|member| {
                     let value = member.as_ref().and_then(|one| self.at(one, place, gear));
                     value.unwrap_or(worst.beyond())
                 });
-                let mut values: Vec<f64> = told.collect();
+                let mut values: Vec<f64> = numbers.collect();
                 values.sort_by(f64::total_cmp);
                 let found = (!values.is_empty()).then(|| percentile(&values, percent))?;
                 // Between a number and what lies beyond all there is nothing but that.
@@ -71,11 +71,11 @@ impl Measure {
 
     /// The quantity at one torque.
     fn at(&self, design: &Summary, torque: usize, gear: GearName) -> Option<f64> {
-        let told = match self.quantity.of {
+        let value = match self.quantity.of {
             Of::Pair(of) => of(design),
             Of::Curve(of) => of(design.curves().get(torque)?, gear),
         };
-        told.or_else(|| (self.quantity.absent)(design))
+        value.or_else(|| (self.quantity.absent)(design))
     }
 }
 
@@ -87,7 +87,7 @@ impl Condition {
         members: &[Option<Summary>],
         gear: GearName,
     ) -> Option<(f64, f64)> {
-        let mut told = 0.0;
+        let mut value = 0.0;
         let mut violation: f64 = 0.0;
         let share = |beyond: f64, limit: f64| {
             let share = beyond / if limit == 0.0 { 1.0 } else { limit.abs() };
@@ -98,14 +98,14 @@ impl Condition {
             }
         };
         if let Some(least) = self.at_least {
-            told = self.measure.of(design, members, gear, Worst::Smallest)?;
-            violation = violation.max(share(least - told, least));
+            value = self.measure.of(design, members, gear, Worst::Smallest)?;
+            violation = violation.max(share(least - value, least));
         }
         if let Some(most) = self.at_most {
-            told = self.measure.of(design, members, gear, Worst::Largest)?;
-            violation = violation.max(share(told - most, most));
+            value = self.measure.of(design, members, gear, Worst::Largest)?;
+            violation = violation.max(share(value - most, most));
         }
-        Some((told, violation))
+        Some((value, violation))
     }
 }
 
@@ -124,13 +124,13 @@ impl Search {
     pub(crate) fn is_kept_as_drawn(&self, design: &Summary, gear: GearName) -> Option<bool> {
         let drawn = |measure: &Measure| measure.percent.is_none();
         let keeps = |one: &Condition| {
-            let told = one.of(design, &[], gear);
-            told.is_some_and(|(_, violation)| violation == 0.0)
+            let found = one.of(design, &[], gear);
+            found.is_some_and(|(_, violation)| violation == 0.0)
         };
         let tells = |goal: &Goal| match goal {
             Goal::Quantity(measure) if drawn(measure) => {
-                let told = measure.of(design, &[], gear, Worst::Largest);
-                told.is_some_and(f64::is_finite)
+                let found = measure.of(design, &[], gear, Worst::Largest);
+                found.is_some_and(f64::is_finite)
             }
             Goal::Quantity(_) | Goal::Cost(_) => true,
         };
@@ -172,7 +172,7 @@ impl Search {
             .collect();
         let violations: Option<Vec<f64>> = conditions
             .iter()
-            .map(|told| told.map(|(_, violation)| violation))
+            .map(|found| found.map(|(_, violation)| violation))
             .collect();
         let known: Option<Vec<f64>> = goals.iter().copied().collect();
         let outcome = match (known, violations) {
@@ -181,12 +181,12 @@ impl Search {
             // have no results.
             _ => Outcome::Refused(failed_share(members).unwrap_or(0.0)),
         };
-        let told = |(value, _): (f64, f64)| Some(value).filter(|value| value.is_finite());
+        let finite = |(value, _): (f64, f64)| Some(value).filter(|value| value.is_finite());
         Judged {
             outcome,
             conditions: conditions
                 .into_iter()
-                .map(|condition| condition.and_then(told))
+                .map(|condition| condition.and_then(finite))
                 .collect(),
             goals,
         }

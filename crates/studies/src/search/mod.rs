@@ -8,7 +8,7 @@ pub(crate) mod measure;
 #[cfg(test)]
 mod tests;
 
-use meshwright_wire::declare::{Errors, Node, Place};
+use meshwright_wire::declare::{Errors, Location, Node};
 use meshwright_wire::pointer::Pointer;
 use meshwright_wire::problem::{Code, FieldError};
 use meshwright_wire::resolution::sees_faces;
@@ -181,11 +181,11 @@ impl Search {
         self.variables.iter().map(|variable| &variable.path)
     }
 
-    /// What of all that a row tells is its variables; none if one is missing.
-    pub(crate) fn changes_among(&self, told: &Map<String, Value>) -> Option<Map<String, Value>> {
+    /// What of the changes of a row are its variables; none if one is missing.
+    pub(crate) fn changes_among(&self, row: &Map<String, Value>) -> Option<Map<String, Value>> {
         let paths = self.paths_of_variables().map(Pointer::text);
         paths
-            .map(|path| Some((path.to_owned(), told.get(path)?.clone())))
+            .map(|path| Some((path.to_owned(), row.get(path)?.clone())))
             .collect()
     }
 
@@ -287,7 +287,7 @@ impl Search {
                 ));
             }
         }
-        let place = Place::root(&errors).of(OF_POPULATION);
+        let place = Location::root(&errors).of(OF_POPULATION);
         let population = Population::read(&node, Some(base), &place, &errors);
         let population = errors.settle(population);
         population.map(Some).map_err(|problem| problem.errors)

@@ -3,7 +3,7 @@
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use meshwright_wire::solve;
-use meshwright_wire::testing::{and, echo, example, refused, told};
+use meshwright_wire::testing::{and, echo, example, faults, refused};
 use meshwright_wire::warning::GearName;
 
 use super::*;
@@ -423,7 +423,7 @@ fn what_is_wrong_with_a_search_is_refused_with_its_place() {
     for (study, pointer, code, nearest) in cases {
         let problem = testing::study(&study).expect_err("it is refused");
         assert_eq!(
-            told(problem),
+            faults(problem),
             [(pointer.to_owned(), code, nearest)],
             "{study}"
         );

@@ -2,11 +2,11 @@
 
 use std::collections::HashSet;
 
-use meshwright_wire::declare::{
-    Declared, Errors, Node, ObjectReader, OneWord, Optional, Place, Text, absent, escaped, nested,
-    text, word,
-};
 use meshwright_wire::Kept;
+use meshwright_wire::declare::{
+    Declared, Errors, Location, Node, ObjectReader, OneWord, Optional, Text, absent, escaped,
+    nested, text, word,
+};
 use meshwright_wire::pointer::Pointer;
 use meshwright_wire::problem::{Code, FieldError};
 use meshwright_wire::submission::TAGS;
@@ -70,7 +70,7 @@ fn value_at(written: Option<&[&RawValue]>, i: usize) -> Value {
 /// Reads the study that `node` is; `document` is the text of it. `None` if something is wrong, which `errors` has.
 pub(super) fn read(node: Node, document: String, errors: &Errors) -> Option<Study> {
     let written = serde_json::from_str(&document).unwrap_or_default();
-    let mut reader = ObjectReader::new(&node, Place::root(errors))?;
+    let mut reader = ObjectReader::new(&node, Location::root(errors))?;
     let name = NAME.read::<Option<String>>(&mut reader);
     let tags = Declared::new("tags", "", TAGS).read::<Vec<String>>(&mut reader);
     let keep = KEEP.read::<Kept>(&mut reader);
@@ -134,7 +134,7 @@ fn read_plan(
 }
 
 /// The items of a list, which has to have some.
-fn items<'a>(place: &Place<'_>, node: &'a Node) -> Option<&'a [Node]> {
+fn items<'a>(place: &Location<'_>, node: &'a Node) -> Option<&'a [Node]> {
     match node {
         Node::List(items) if items.is_empty() => {
             let detail = format!("{place} is empty; give at least one.");

@@ -22,8 +22,8 @@ use std::borrow::Cow;
 
 use meshwright_engine::gear::Member;
 use meshwright_engine::run::Run;
-use meshwright_wire::declare::{Choice as _, Errors, Node};
 use meshwright_wire::Kept;
+use meshwright_wire::declare::{Choice as _, Errors, Node};
 use meshwright_wire::pointer::Pointer;
 use meshwright_wire::problem::{Code, FieldError, Problem};
 use meshwright_wire::submission::{MOST_TORQUES, Submission};
@@ -278,10 +278,10 @@ impl Study {
         Some(self.written(design.submission, || self.composed(row)))
     }
 
-    /// The submission of a row of a search, of which this is told; none if it is no row of one.
-    pub fn submission_searched(&self, label: &str, told: &Map<String, Value>) -> Option<String> {
+    /// The submission of a row of a search, which has these changes; none if it is no row of one.
+    pub fn submission_searched(&self, label: &str, changes: &Map<String, Value>) -> Option<String> {
         let (role, search) = (Role::of_label(label)?, self.search()?);
-        let changes = search.changes_among(told)?;
+        let changes = search.changes_among(changes)?;
         let design = self.searched(role, &changes);
         Some(self.written(design.submission, || {
             Some(self.composed_of_search(role, &changes).0)
@@ -318,10 +318,10 @@ impl Study {
     fn composed_of_search(
         &self,
         role: Role,
-        told: &Map<String, Value>,
+        variables: &Map<String, Value>,
     ) -> (Composed, Option<Population>) {
         let population = match self.search() {
-            Some(search) => search.population_with(&self.base, told),
+            Some(search) => search.population_with(&self.base, variables),
             None => Ok(None),
         };
         let population = match population {
@@ -329,7 +329,7 @@ impl Study {
             Err(errors) => {
                 let unmade = Composed {
                     label: role.to_string(),
-                    changes: told.clone(),
+                    changes: variables.clone(),
                     submission: Err(Problem::of_fields(errors)),
                 };
                 return (unmade, None);
@@ -347,11 +347,11 @@ impl Study {
         };
         let drawn = drawn(varied, values);
         let own = self.search().into_iter().flat_map(Search::paths_of_base);
-        let own = own.filter_map(|path| Some((path, Cow::Borrowed(told.get(path.text())?))));
+        let own = own.filter_map(|path| Some((path, Cow::Borrowed(variables.get(path.text())?))));
         let fixed = confirming.iter();
         let fixed = fixed.map(|(path, value)| (path, Cow::Borrowed(value)));
         let changes: Changes<'_> = own.chain(drawn).chain(fixed).collect();
-        let composed = self.put_together(role.to_string(), told.clone(), changes);
+        let composed = self.put_together(role.to_string(), variables.clone(), changes);
         (composed, population)
     }
 
@@ -361,17 +361,17 @@ impl Study {
         Some(self.put_together(label, Map::new(), changes))
     }
 
-    /// The base with these changes, which are told beside what is told already.
+    /// The base with these changes; the row gets them in addition to those that it has.
     fn put_together(
         &self,
         label: String,
-        mut told: Map<String, Value>,
+        mut row: Map<String, Value>,
         changes: Changes<'_>,
     ) -> Composed {
         let mut submission = self.base.clone();
         for (path, value) in changes {
             let put = submission.put(path.steps(), Node::of(&value));
-            told.insert(path.text().to_owned(), value.into_owned());
+            row.insert(path.text().to_owned(), value.into_owned());
             if put.is_none() {
                 let detail = format!(
                     "{} names nothing in this design: what stands above it is no object, or a list without this place.",
@@ -380,17 +380,17 @@ impl Study {
                 let error = FieldError::new(path.text(), Code::UnknownField, detail);
                 return Composed {
                     label,
-                    changes: told,
+                    changes: row,
                     submission: Err(Problem::of_fields(vec![error])),
                 };
             }
         }
         if let Some(rule) = &self.constant_mass {
-            rule.apply(&mut submission, &mut told);
+            rule.apply(&mut submission, &mut row);
         }
         Composed {
             label,
-            changes: told,
+            changes: row,
             submission: Ok(submission),
         }
     }

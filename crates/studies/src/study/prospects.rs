@@ -94,23 +94,23 @@ impl Study {
     fn try_designs(&self, search: &Search, errors: &Errors, run: &Run) -> Result<(), Problem> {
         let (most, members) = OF_SEARCH;
         let [mut of_designs, mut of_members] = [false, true].map(|percent| Asked {
-            untold: search.asked(percent),
-            is_told_by_any: false,
+            missing: search.asked(percent),
+            any_built: false,
             failures: Failures::default(),
         });
         let looks_at_members = search.looks_at_members();
         let mut looked = 0;
         for (i, changes) in search.trials(self.base()).enumerate() {
             look_around(i, run)?;
-            of_designs.tell(self.searched(Role::Design(1), &changes).submission);
-            if of_designs.is_told_by_any && looks_at_members && looked < most {
+            of_designs.add(self.searched(Role::Design(1), &changes).submission);
+            if of_designs.any_built && looks_at_members && looked < most {
                 looked += 1;
                 for member in 0..members.min(search.members() as u32) {
                     if of_members.is_settled() {
                         break;
                     }
                     let role = Role::Member(1, member);
-                    of_members.tell(self.searched(role, &changes).submission);
+                    of_members.add(self.searched(role, &changes).submission);
                 }
             }
             let members_settled = !looks_at_members || looked == most || of_members.is_settled();
@@ -129,21 +129,21 @@ impl Study {
     }
 }
 
-/// What a search goes by that no design, or no member, has told so far: where it is asked for, and of the first one that was built why it does not tell it.
+/// What a search goes by that no design, or no member, comes to so far: where it is asked for, and why the first one that was built does not come to it.
 struct Asked {
-    untold: Vec<(String, &'static Quantity, Option<String>)>,
-    is_told_by_any: bool,
+    missing: Vec<(String, &'static Quantity, Option<String>)>,
+    any_built: bool,
     failures: Failures,
 }
 
 impl Asked {
-    fn tell(&mut self, submission: Result<Submission, Problem>) {
+    fn add(&mut self, submission: Result<Submission, Problem>) {
         match submission {
             Err(problem) => self.failures.add(problem),
             Ok(submission) => {
-                self.is_told_by_any = true;
-                self.untold.retain_mut(|(_, quantity, why)| {
-                    let own = quantity.not_told(&submission);
+                self.any_built = true;
+                self.missing.retain_mut(|(_, quantity, why)| {
+                    let own = quantity.why_absent(&submission);
                     let stays = own.is_some();
                     *why = why.take().or(own);
                     stays
@@ -153,11 +153,11 @@ impl Asked {
     }
 
     fn is_settled(&self) -> bool {
-        self.is_told_by_any && self.untold.is_empty()
+        self.any_built && self.missing.is_empty()
     }
 
     fn report(self, what: &str, mends: impl Fn(&str) -> bool, errors: &Errors) {
-        if !self.is_told_by_any {
+        if !self.any_built {
             self.report_stresses(errors);
             if self.failures.are_alike && !self.failures.could_be_mended(mends) {
                 self.failures
@@ -165,7 +165,7 @@ impl Asked {
             }
             return;
         }
-        for (pointer, quantity, why) in self.untold {
+        for (pointer, quantity, why) in self.missing {
             let why = why.unwrap_or_default();
             let detail = format!("{} is not told: {why}.", quantity.name);
             errors.push(FieldError::new(pointer, Code::QuantityNotTold, detail));
@@ -181,7 +181,7 @@ impl Asked {
             .flat_map(|problem| &problem.errors);
         let failed = failed.filter(|_| self.failures.are_alike);
         for error in failed.filter(|error| error.code == Code::QuantityNotTold) {
-            for (pointer, quantity, _) in &self.untold {
+            for (pointer, quantity, _) in &self.missing {
                 if quantity.is_stress() {
                     let detail = format!("{} is not told: {}", quantity.name, error.detail);
                     errors.push(FieldError::new(pointer, Code::QuantityNotTold, detail));

@@ -1,9 +1,9 @@
 //! What the OpenAPI document says of a study.
 
-use meshwright_wire::declare::{
-    Document, Kind, Property, exclusive, nested, object, or_null, utoipa_schema,
-};
 use meshwright_wire::Kept;
+use meshwright_wire::declare::{
+    Kind, Object, Property, exclusive, nested, object, or_null, utoipa_schema,
+};
 use meshwright_wire::submission::TAGS;
 use serde_json::{Value, json};
 

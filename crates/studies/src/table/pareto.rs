@@ -33,20 +33,20 @@ impl KnownQuantities {
             let Of::Curve(of) = quantity.of else { continue };
             // What one gear has of it, both have.
             let mut curves = summary.curves().iter();
-            let is_told = curves.any(|curve| of(curve, GearName::Driven).is_some());
-            self.0 |= u64::from(is_told) << i;
+            let is_known = curves.any(|curve| of(curve, GearName::Driven).is_some());
+            self.0 |= u64::from(is_known) << i;
         }
     }
 
     /// The quantities of curves that a table has columns of.
     pub(super) fn columns(self) -> impl Iterator<Item = &'static Quantity> {
         let all = QUANTITIES.iter().enumerate();
-        let is_told = move |i: usize| self.0 & (1 << i) != 0;
+        let is_known = move |i: usize| self.0 & (1 << i) != 0;
         // Stresses stand together.
-        let mut told = all.clone().filter(|(i, _)| is_told(*i));
-        let stressed = told.any(|(_, quantity)| quantity.is_stress());
+        let mut known = all.clone().filter(|(i, _)| is_known(*i));
+        let stressed = known.any(|(_, quantity)| quantity.is_stress());
         let shown = all.filter(move |(i, quantity)| {
-            let is_shown = quantity.in_every_table || is_told(*i);
+            let is_shown = quantity.in_every_table || is_known(*i);
             matches!(quantity.of, Of::Curve(_)) && (is_shown || stressed && quantity.is_stress())
         });
         shown.map(|(_, quantity)| quantity)

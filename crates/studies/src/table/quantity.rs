@@ -77,7 +77,7 @@ document! {
         /// Fields of a submission without which it is not told: JSON pointers. Where they are of both gears, one of them will do.
         needs: Vec<&'static str> = quantity.needs.iter().flat_map(|needs| needs.pointers()).copied().collect(),
         /// The methods that tell it.
-        methods: Vec<&'static str> = methods().filter(|method| quantity.is_told_by(method)).collect(),
+        methods: Vec<&'static str> = methods().filter(|method| quantity.is_known_to(method)).collect(),
     }
 }
 
@@ -113,7 +113,7 @@ impl Quantity {
         Self { within, ..self }
     }
 
-    const fn where_told(self) -> Self {
+    const fn where_known(self) -> Self {
         let in_every_table = false;
         Self {
             in_every_table,
@@ -169,8 +169,8 @@ impl Quantity {
         matches!(self.of, Of::Curve(_)) || self.gear.is_none_or(|own| own == gear)
     }
 
-    /// Whether the method of this name tells it.
-    fn is_told_by(&self, method: &str) -> bool {
+    /// Whether the method of this name computes it.
+    fn is_known_to(&self, method: &str) -> bool {
         let method = Method::of_word(method);
         self.needs.iter().all(|needs| match needs {
             Needs::Method(tells) => method.is_some_and(tells),
@@ -185,8 +185,8 @@ impl Quantity {
             .any(|needs| matches!(needs, Needs::Stress))
     }
 
-    /// What of `submission` stands against telling it, and what would tell it; none where it is told.
-    pub(crate) fn not_told(&self, submission: &Submission) -> Option<String> {
+    /// Why a computation of `submission` does not come to it, and what would; none where it does.
+    pub(crate) fn why_absent(&self, submission: &Submission) -> Option<String> {
         let mut needs = self.needs.iter();
         needs.find_map(|needs| needs.unmet(submission))
     }
@@ -234,12 +234,12 @@ impl Needs {
                 .is_none_or(|forces| forces.dynamics.is_none())
                 .then(|| "the submission has to ask for it by /base/dynamics".to_owned()),
             Self::Method(tells) => (!tells(case.method())).then(|| {
-                let told = Method::OPTIONS.iter().filter(|(_, method, _)| tells(*method));
-                let told: Vec<&str> = told.map(|(word, ..)| *word).collect();
+                let methods = Method::OPTIONS.iter().filter(|(_, method, _)| tells(*method));
+                let methods: Vec<&str> = methods.map(|(word, ..)| *word).collect();
                 format!(
                     "the method {} does not tell it; {} would",
                     case.method().word(),
-                    told.join(", ")
+                    methods.join(", ")
                 )
             }),
             Self::WholePeriods => (!case.covers_whole_periods()).then(|| {
@@ -330,7 +330,7 @@ macro_rules! stresses {
         )
         .gear(GearName::$Gear)
         .in_statistics()
-        .where_told()
+        .where_known()
         .needs(STRESS)
     };
 }
@@ -481,7 +481,7 @@ pub(crate) const QUANTITIES: &[Quantity] = &[
         |curve, _| curve.face_load_factor,
     )
     .smaller()
-    .where_told()
+    .where_known()
     .needs(&[Needs::Method(Method::sees_faces), Needs::Load]),
     curve(
         [
@@ -493,7 +493,7 @@ pub(crate) const QUANTITIES: &[Quantity] = &[
         CurveSummary::hole_order_of_holes,
     )
     .smaller()
-    .where_told()
+    .where_known()
     .needs(&[
         Needs::Method(Method::sees_holes),
         Needs::WholePeriods,
@@ -530,7 +530,7 @@ pub(crate) const QUANTITIES: &[Quantity] = &[
         |curve, _| curve.peak_contact_pressure_mpa,
     )
     .smaller()
-    .where_told()
+    .where_known()
     .or(|_| Some(f64::INFINITY)),
     curve(
         [
@@ -542,7 +542,7 @@ pub(crate) const QUANTITIES: &[Quantity] = &[
         |curve, _| curve.dynamic_peak_to_peak_um,
     )
     .smaller()
-    .where_told()
+    .where_known()
     .needs(&[Needs::Dynamics]),
     curve(
         [
@@ -555,7 +555,7 @@ pub(crate) const QUANTITIES: &[Quantity] = &[
     )
     .in_statistics()
     .smaller()
-    .where_told(),
+    .where_known(),
     curve(
         [
             "transmission_error_um.long_wave",
@@ -567,7 +567,7 @@ pub(crate) const QUANTITIES: &[Quantity] = &[
     )
     .in_statistics()
     .smaller()
-    .where_told()
+    .where_known()
     .needs(&[Needs::WholePeriods]),
     curve(
         [
@@ -580,7 +580,7 @@ pub(crate) const QUANTITIES: &[Quantity] = &[
     )
     .in_statistics()
     .smaller()
-    .where_told()
+    .where_known()
     .needs(&[Needs::WholePeriods]),
     curve(
         [
@@ -593,7 +593,7 @@ pub(crate) const QUANTITIES: &[Quantity] = &[
     )
     .in_statistics()
     .smaller()
-    .where_told()
+    .where_known()
     .needs(&[Needs::WholePeriods]),
 ];
 

@@ -4,7 +4,7 @@ use serde::Serializer;
 use serde::ser::SerializeSeq;
 use serde_json::{Value, json};
 
-use super::{Kind, Named, Node, Place, Written};
+use super::{Kind, Location, Named, Node, Written};
 use crate::problem::Code;
 
 /// What a declaration says of a list.
@@ -87,7 +87,7 @@ impl<S: Copy> List<S> {
 impl<T: Kind + PartialEq> Kind for Vec<T> {
     type Spec = List<T::Spec>;
 
-    fn read(node: &Node, place: &Place<'_>, spec: &Self::Spec) -> Option<Self> {
+    fn read(node: &Node, place: &Location<'_>, spec: &Self::Spec) -> Option<Self> {
         let [expected, counted] = T::MANY;
         let [expected, counted, fit] = spec.said.unwrap_or([expected, counted, "fit"]);
         let Node::List(nodes) = node else {

@@ -20,13 +20,13 @@ use serde_json::Value;
 pub use errors::Errors;
 pub use list::{List, list};
 pub use nested::{
-    Document, EACH, Exclusion, Nested, Property, document, exclusive, nested, object, tagged,
+    EACH, Exclusion, Nested, Object, Property, document, exclusive, nested, object, tagged,
     utoipa_schema,
 };
 pub use node::{Node, escaped};
 pub use number::{Number, number};
 pub use optional::{Optional, absent, or_else, or_null, unless};
-pub use reader::{ObjectReader, Place};
+pub use reader::{Location, ObjectReader};
 pub use words::{Choice, Flag, OneWord, Text, flag, is_short_text, text, word, words};
 
 /// The named schemas that others refer to.
@@ -41,7 +41,7 @@ pub trait Kind: Sized {
     const MANY: [&'static str; 2] = ["objects", "items"];
 
     /// Reads the value that stands at `place`. What is wrong is reported there.
-    fn read(node: &Node, place: &Place<'_>, spec: &Self::Spec) -> Option<Self>;
+    fn read(node: &Node, place: &Location<'_>, spec: &Self::Spec) -> Option<Self>;
 
     /// Reads the field `name`.
     fn read_field(

@@ -6,7 +6,7 @@ use utoipa::openapi::RefOr;
 use utoipa::openapi::extensions::ExtensionsBuilder;
 use utoipa::openapi::schema::{ObjectBuilder, Schema};
 
-use super::{Kind, Named, Node, ObjectReader, Place};
+use super::{Kind, Location, Named, Node, ObjectReader};
 
 /// A property of an object.
 pub struct Property {
@@ -37,7 +37,7 @@ pub struct Exclusion {
 }
 
 /// An object of the wire; [`document!`] and [`tagged!`] implement it.
-pub trait Document: Sized {
+pub trait Object: Sized {
     /// Its name in the contract.
     const NAME: &'static str;
 
@@ -92,10 +92,10 @@ impl Nested {
     }
 }
 
-impl<D: Document> Kind for D {
+impl<O: Object> Kind for O {
     type Spec = Nested;
 
-    fn read(node: &Node, place: &Place<'_>, _: &Nested) -> Option<Self> {
+    fn read(node: &Node, place: &Location<'_>, _: &Nested) -> Option<Self> {
         Self::read_whole(ObjectReader::new(node, place.clone())?)
     }
 
@@ -121,7 +121,7 @@ impl<D: Document> Kind for D {
     }
 
     fn describe(about: &str, spec: &Nested) -> Value {
-        let reference = json!({ "$ref": format!("#/components/schemas/{}", D::NAME) });
+        let reference = json!({ "$ref": format!("#/components/schemas/{}", O::NAME) });
         if spec.or_defaults {
             return json!({ "title": spec.title, "description": about, "oneOf": [reference, { "type": "null" }] });
         }
@@ -132,8 +132,8 @@ impl<D: Document> Kind for D {
     }
 
     fn name_parts(named: &mut Named) {
-        named.push((D::NAME, D::json_schema()));
-        D::name_fields(named);
+        named.push((O::NAME, O::json_schema()));
+        O::name_fields(named);
     }
 }
 
@@ -209,18 +209,18 @@ pub fn utoipa_schema(schema: Value) -> RefOr<Schema> {
 macro_rules! document {
     (
         $(#[doc = $about:literal])*
-        $visibility:vis struct $Document:ident as $name:literal, $title:literal {
+        $visibility:vis struct $Object:ident as $name:literal, $title:literal {
             $($(#[doc = $sentence:literal])* $within:vis $field:ident: $kind:ty = $spec:expr,)*
         }
     ) => {
         $(#[doc = $about])*
         #[derive(Debug, Clone, PartialEq)]
-        $visibility struct $Document {
+        $visibility struct $Object {
             $($(#[doc = $sentence])* $within $field: $kind,)*
         }
 
         #[expect(non_upper_case_globals, reason = "a declaration is named as its field")]
-        impl $Document {
+        impl $Object {
             $(
                 $(#[doc = $sentence])*
                 pub const $field:
@@ -233,7 +233,7 @@ macro_rules! document {
             )*
         }
 
-        impl $crate::declare::Document for $Document {
+        impl $crate::declare::Object for $Object {
             const NAME: &'static str = $name;
 
             fn read_fields(reader: &mut $crate::declare::ObjectReader<'_>) -> Option<Self> {
@@ -260,34 +260,34 @@ macro_rules! document {
             }
         }
 
-        $crate::document!(@known $Document);
+        $crate::document!(@known $Object);
     };
 
     // What others than this module ask of an object.
-    (@known $Document:ty) => {
-        impl serde::Serialize for $Document {
+    (@known $Object:ty) => {
+        impl serde::Serialize for $Object {
             fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
                 $crate::declare::Kind::write(self, serializer)
             }
         }
 
-        impl utoipa::PartialSchema for $Document {
+        impl utoipa::PartialSchema for $Object {
             fn schema() -> utoipa::openapi::RefOr<utoipa::openapi::schema::Schema> {
-                use $crate::declare::Document;
+                use $crate::declare::Object;
                 $crate::declare::utoipa_schema(Self::json_schema())
             }
         }
 
-        impl utoipa::ToSchema for $Document {
+        impl utoipa::ToSchema for $Object {
             fn name() -> std::borrow::Cow<'static, str> {
-                <Self as $crate::declare::Document>::NAME.into()
+                <Self as $crate::declare::Object>::NAME.into()
             }
 
             fn schemas(
                 schemas: &mut Vec<(String, utoipa::openapi::RefOr<utoipa::openapi::schema::Schema>)>,
             ) {
                 let mut named = Vec::new();
-                <Self as $crate::declare::Document>::name_fields(&mut named);
+                <Self as $crate::declare::Object>::name_fields(&mut named);
                 schemas.extend(named.into_iter().map(|(name, schema)| {
                     (name.to_owned(), $crate::declare::utoipa_schema(schema))
                 }));
@@ -297,25 +297,25 @@ macro_rules! document {
 
     (
         $(#[$about:meta])*
-        $visibility:vis struct $Document:ident $(<$lifetime:lifetime>)? as $name:ident $(, $title:literal)?
+        $visibility:vis struct $Object:ident $(<$lifetime:lifetime>)? as $name:ident $(, $title:literal)?
         answer of $($rest:tt)*
     ) => {
         $crate::document! {
             @derive [Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema]
             $(#[$about])*
-            $visibility struct $Document $(<$lifetime>)? as $name $(, $title)? of $($rest)*
+            $visibility struct $Object $(<$lifetime>)? as $name $(, $title)? of $($rest)*
         }
     };
 
     (
         $(#[$about:meta])*
-        $visibility:vis struct $Document:ident $(<$lifetime:lifetime>)? as $name:ident $(, $title:literal)?
+        $visibility:vis struct $Object:ident $(<$lifetime:lifetime>)? as $name:ident $(, $title:literal)?
         view of $($rest:tt)*
     ) => {
         $crate::document! {
             @derive [serde::Serialize, utoipa::ToSchema]
             $(#[$about])*
-            $visibility struct $Document $(<$lifetime>)? as $name $(, $title)? of $($rest)*
+            $visibility struct $Object $(<$lifetime>)? as $name $(, $title)? of $($rest)*
         }
     };
 
@@ -348,7 +348,7 @@ macro_rules! document {
         @next [$($derive:path),*]
         [
             $(#[$about:meta])*
-            $visibility:vis struct $Document:ident $(<$lifetime:lifetime>)? as $name:ident $(, $title:literal)?
+            $visibility:vis struct $Object:ident $(<$lifetime:lifetime>)? as $name:ident $(, $title:literal)?
             of $given:tt { $($before:tt)* }
         ]
         [$($(#[$sentence:meta])* $field:ident: $kind:ty = $source:expr,)*]
@@ -356,11 +356,11 @@ macro_rules! document {
         $(#[$about])*
         #[derive($($derive),*)]
         #[schema(as = $name $(, title = $title)?)]
-        $visibility struct $Document $(<$lifetime>)? {
+        $visibility struct $Object $(<$lifetime>)? {
             $($(#[$sentence])* $visibility $field: $kind,)*
         }
 
-        impl $(<$lifetime>)? $Document $(<$lifetime>)? {
+        impl $(<$lifetime>)? $Object $(<$lifetime>)? {
             /// Tells what there is.
             $visibility fn of $given -> Self {
                 $($before)*
@@ -372,14 +372,14 @@ macro_rules! document {
     (
         @derive [$($derive:path),*]
         $(#[$about:meta])*
-        $visibility:vis struct $Document:ident $(<$lifetime:lifetime>)? as $name:ident $(, $title:literal)?
+        $visibility:vis struct $Object:ident $(<$lifetime:lifetime>)? as $name:ident $(, $title:literal)?
         of $given:tt $(with { $($before:tt)* })? { $($fields:tt)* }
     ) => {
         $crate::document! {
             @next [$($derive),*]
             [
                 $(#[$about])*
-                $visibility struct $Document $(<$lifetime>)? as $name $(, $title)?
+                $visibility struct $Object $(<$lifetime>)? as $name $(, $title)?
                 of $given { $($($before)*)? }
             ]
             [] $($fields)*
@@ -394,7 +394,7 @@ pub use document;
 macro_rules! tagged {
     (
         $(#[doc = $about:literal])*
-        $visibility:vis enum $Document:ident as $name:literal, $title:literal {
+        $visibility:vis enum $Object:ident as $name:literal, $title:literal {
             $(
                 $(#[doc = $meaning:literal])*
                 $Variant:ident($part:ty) = $word:literal as $part_name:literal, $part_title:literal,
@@ -403,20 +403,20 @@ macro_rules! tagged {
     ) => {
         $(#[doc = $about])*
         #[derive(Debug, Clone, PartialEq)]
-        $visibility enum $Document {
+        $visibility enum $Object {
             $($(#[doc = $meaning])* $Variant($part),)*
         }
 
-        impl $crate::declare::Document for $Document {
+        impl $crate::declare::Object for $Object {
             const NAME: &'static str = $name;
 
             fn read_fields(reader: &mut $crate::declare::ObjectReader<'_>) -> Option<Self> {
-                use $crate::declare::{Document, Node};
+                use $crate::declare::{Node, Object};
                 const WORDS: &[&str] = &[$($word),*];
                 match reader.get("kind") {
                     $(
                         Some(Node::Text(word)) if word == $word => {
-                            <$part as Document>::read_fields(reader).map(Self::$Variant)
+                            <$part as Object>::read_fields(reader).map(Self::$Variant)
                         }
                     )*
                     other => reader.refuse_kind(other, WORDS),
@@ -428,7 +428,7 @@ macro_rules! tagged {
                     $(
                         Self::$Variant(part) => {
                             map.serialize_entry("kind", $word)?;
-                            $crate::declare::Document::write_fields(part, map)
+                            $crate::declare::Object::write_fields(part, map)
                         }
                     )*
                 }
@@ -447,7 +447,7 @@ macro_rules! tagged {
             }
 
             fn name_fields(named: &mut $crate::declare::Named) {
-                use $crate::declare::{Document, Property};
+                use $crate::declare::{Object, Property};
                 $(
                     let kind = serde_json::json!({
                         "type": "string",
@@ -456,16 +456,16 @@ macro_rules! tagged {
                         "enum": [$word],
                     });
                     let mut properties = vec![Property::new("kind", kind, true)];
-                    properties.extend(<$part as Document>::properties());
+                    properties.extend(<$part as Object>::properties());
                     let schema =
                         $crate::declare::object($part_title, concat!($($meaning),*), properties);
                     named.push(($part_name, schema));
-                    <$part as Document>::name_fields(named);
+                    <$part as Object>::name_fields(named);
                 )*
             }
         }
 
-        $crate::document!(@known $Document);
+        $crate::document!(@known $Object);
     };
 }
 

@@ -3,7 +3,7 @@
 use serde::Serializer;
 use serde_json::{Value, json};
 
-use super::{Kind, Node, ObjectReader, Place};
+use super::{Kind, Location, Node, ObjectReader};
 use crate::problem::Code;
 use crate::units::{plain, significant};
 
@@ -139,7 +139,7 @@ impl Number {
         }
     }
 
-    fn read(&self, node: &Node, place: &Place<'_>, whole: bool) -> Option<f64> {
+    fn read(&self, node: &Node, place: &Location<'_>, whole: bool) -> Option<f64> {
         let Node::Number(value) = node else {
             let detail = format!("{place} is {}; a number is expected.", node.kind());
             return place.wrong(Code::WrongType, detail, None);
@@ -224,7 +224,7 @@ macro_rules! numbers {
             type Spec = Number;
             const MANY: [&'static str; 2] = ["numbers", "numbers"];
 
-            fn read(node: &Node, place: &Place<'_>, spec: &Number) -> Option<Self> {
+            fn read(node: &Node, place: &Location<'_>, spec: &Number) -> Option<Self> {
                 spec.read(node, place, $whole).map(|value| value as Self)
             }
 

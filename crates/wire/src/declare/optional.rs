@@ -3,7 +3,7 @@
 use serde::Serializer;
 use serde_json::{Value, json};
 
-use super::{Declared, Exclusion, Kind, Named, Node, ObjectReader, Place};
+use super::{Declared, Exclusion, Kind, Location, Named, Node, ObjectReader};
 
 /// What it means that a value is absent.
 #[derive(Debug, Clone, Copy)]
@@ -74,7 +74,7 @@ impl<S> Declared<Optional<S>> {
 impl<T: Kind> Kind for Option<T> {
     type Spec = Optional<T::Spec>;
 
-    fn read(node: &Node, place: &Place<'_>, spec: &Self::Spec) -> Option<Self> {
+    fn read(node: &Node, place: &Location<'_>, spec: &Self::Spec) -> Option<Self> {
         T::read(node, place, &spec.spec).map(Some)
     }
 
@@ -172,7 +172,7 @@ pub fn or_null(mut schema: Value) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::declare::{Document as _, EACH, Errors, document, number};
+    use crate::declare::{EACH, Errors, Object as _, document, number};
 
     document! {
         /// Something whose fields exclude each other.
@@ -223,7 +223,7 @@ mod tests {
             let fields = fields.filter_map(|(i, name)| Some(((*name).to_owned(), state(i)?)));
             let document = Value::Object(fields.collect());
             let errors = Errors::default();
-            Thing::read(&Node::of(&document), &Place::root(&errors), &EACH);
+            Thing::read(&Node::of(&document), &Location::root(&errors), &EACH);
             let is_taken = errors.count() == 0;
             assert_eq!(allows(&schema, &document), is_taken, "{document}");
             taken += usize::from(is_taken);

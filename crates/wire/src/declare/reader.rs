@@ -8,12 +8,12 @@ use crate::problem::{Code, FieldError};
 
 /// A place in a document, and where to report what is wrong there.
 #[derive(Debug, Clone)]
-pub struct Place<'a> {
+pub struct Location<'a> {
     pub pointer: String,
     errors: &'a Errors,
 }
 
-impl<'a> Place<'a> {
+impl<'a> Location<'a> {
     /// The whole document.
     pub fn root(errors: &'a Errors) -> Self {
         Self {
@@ -50,7 +50,7 @@ impl<'a> Place<'a> {
 }
 
 /// A place as a sentence names it.
-impl fmt::Display for Place<'_> {
+impl fmt::Display for Location<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(if self.pointer.is_empty() {
             "The document"
@@ -65,7 +65,7 @@ impl fmt::Display for Place<'_> {
 /// Every method reports what is wrong and answers `None` then; reading goes on, so that all errors are told together.
 /// What nobody asked for is refused when the reading is [`finished`](ObjectReader::finish).
 pub struct ObjectReader<'a> {
-    place: Place<'a>,
+    place: Location<'a>,
     fields: &'a [(String, Node)],
     known: Vec<&'static str>,
     /// The numbers that were read so far, those that were filled in among them.
@@ -76,7 +76,7 @@ pub struct ObjectReader<'a> {
 
 impl<'a> ObjectReader<'a> {
     /// Reads `node` as an object.
-    pub fn new(node: &'a Node, place: Place<'a>) -> Option<Self> {
+    pub fn new(node: &'a Node, place: Location<'a>) -> Option<Self> {
         let Node::Object(fields) = node else {
             let detail = format!("{place} is {}; an object is expected.", node.kind());
             return place.wrong(Code::WrongType, detail, None);
@@ -91,7 +91,7 @@ impl<'a> ObjectReader<'a> {
     }
 
     /// Where its field `name` stands.
-    pub fn place_of(&self, name: &str) -> Place<'a> {
+    pub fn place_of(&self, name: &str) -> Location<'a> {
         self.place.of(name)
     }
 

@@ -3,7 +3,7 @@
 use serde::Serializer;
 use serde_json::{Value, json};
 
-use super::{Kind, Node, ObjectReader, Place};
+use super::{Kind, Location, Node, ObjectReader};
 use crate::problem::Code;
 
 /// Words that a field may take, each standing for a value.
@@ -54,7 +54,7 @@ impl<C: Copy> OneWord<C> {
         Self { preset, ..self }
     }
 
-    pub fn read(&self, node: &Node, place: &Place<'_>) -> Option<C>
+    pub fn read(&self, node: &Node, place: &Location<'_>) -> Option<C>
     where
         C: Choice,
     {
@@ -127,7 +127,7 @@ macro_rules! words {
 
             fn read(
                 node: &$crate::declare::Node,
-                place: &$crate::declare::Place<'_>,
+                place: &$crate::declare::Location<'_>,
                 spec: &Self::Spec,
             ) -> Option<Self> {
                 spec.read(node, place)
@@ -173,7 +173,7 @@ pub const fn flag(title: &'static str, preset: bool) -> Flag {
 impl Kind for bool {
     type Spec = Flag;
 
-    fn read(node: &Node, place: &Place<'_>, _: &Flag) -> Option<Self> {
+    fn read(node: &Node, place: &Location<'_>, _: &Flag) -> Option<Self> {
         match node {
             Node::Bool(value) => Some(*value),
             _ => place.wrong_kind(node, "true or false"),
@@ -209,7 +209,7 @@ impl Kind for String {
     type Spec = Text;
     const MANY: [&'static str; 2] = ["short strings", "strings"];
 
-    fn read(node: &Node, place: &Place<'_>, spec: &Text) -> Option<Self> {
+    fn read(node: &Node, place: &Location<'_>, spec: &Text) -> Option<Self> {
         let longest = spec.longest;
         match node {
             Node::Text(text) if is_short_text(text, longest) => Some(text.clone()),

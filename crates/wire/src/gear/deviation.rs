@@ -60,8 +60,8 @@ const fn each_tooth(title: &'static str) -> List<Number> {
 impl DeviationsDocument {
     /// How a reader is told `deviations`: to a tenth of a nanometer, single pitches that close.
     pub fn of(deviations: &ToothDeviations) -> Self {
-        let told = |value: f64| (to_um(value) * 1e4).round() / 1e4 + 0.0;
-        let sums = deviations.cumulative_pitch.iter().copied().map(told);
+        let rounded = |value: f64| (to_um(value) * 1e4).round() / 1e4 + 0.0;
+        let sums = deviations.cumulative_pitch.iter().copied().map(rounded);
         let single = sums.scan(0.0, |before, sum| {
             let step = ((sum - *before) * 1e4).round() / 1e4 + 0.0;
             *before = sum;
@@ -76,17 +76,24 @@ impl DeviationsDocument {
                         .other_cumulative_pitch
                         .iter()
                         .copied()
-                        .map(told)
+                        .map(rounded)
                         .collect()
                 },
             ),
-            profile_slope_um: Some(deviations.profile_slope.iter().copied().map(told).collect()),
+            profile_slope_um: Some(
+                deviations
+                    .profile_slope
+                    .iter()
+                    .copied()
+                    .map(rounded)
+                    .collect(),
+            ),
             lead_slope_um: (!deviations.lead_slope.is_empty())
-                .then(|| deviations.lead_slope.iter().copied().map(told).collect()),
+                .then(|| deviations.lead_slope.iter().copied().map(rounded).collect()),
             eccentricity: deviations
                 .eccentricity
                 .map(|eccentricity| EccentricityDocument {
-                    amount_um: told(eccentricity.amount),
+                    amount_um: rounded(eccentricity.amount),
                     phase_deg: (eccentricity.direction.to_degrees() * 1e4).round() / 1e4 + 0.0,
                 }),
         }

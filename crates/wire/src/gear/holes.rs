@@ -7,8 +7,8 @@ use serde::Serializer;
 use serde_json::{Value, json};
 
 use crate::declare::{
-    Declared, EACH, Kind, List, Named, Nested, Node, Number, Place, absent, document, list, nested,
-    number, unless,
+    Declared, EACH, Kind, List, Location, Named, Nested, Node, Number, absent, document, list,
+    nested, number, unless,
 };
 use crate::problem::Code;
 use crate::units::from_mm;
@@ -74,7 +74,7 @@ const PATTERNS: List<Nested> = list("Several patterns of holes", EACH, MOST_PATT
 impl Kind for HolesDocument {
     type Spec = ();
 
-    fn read(node: &Node, place: &Place<'_>, _: &()) -> Option<Self> {
+    fn read(node: &Node, place: &Location<'_>, _: &()) -> Option<Self> {
         match node {
             Node::Null => Some(Self::None),
             Node::List(_) => Kind::read(node, place, &PATTERNS).map(Self::Several),

@@ -41,7 +41,7 @@ pub use relief::{ReliefEnd, RootReliefDocument, StartDocument, StartWay, TipReli
 pub use thickness::{BallsDocument, SpanDocument};
 
 use super::declare::{
-    EACH, Errors, Kind as _, Node, ObjectReader, Place, absent, document, list, nested, number,
+    EACH, Errors, Kind as _, Location, Node, ObjectReader, absent, document, list, nested, number,
     unless, words,
 };
 use super::units::{Side, from_mm, rounded_inward};
@@ -192,7 +192,7 @@ impl GearDocument {
     /// The gear that `node` is, if it can be read.
     pub fn at(node: &Node) -> Option<Self> {
         let errors = Errors::default();
-        let read = Self::read(node, &Place::root(&errors), &EACH);
+        let read = Self::read(node, &Location::root(&errors), &EACH);
         errors.settle(read).ok()
     }
 

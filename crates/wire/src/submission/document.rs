@@ -26,7 +26,7 @@ words! {
 
 document! {
     /// What is asked: a gear pair, torques, and how to compute. Unknown fields are refused.
-    pub(crate) struct Document as "Submission", "Submission" {
+    pub(crate) struct SubmissionDocument as "Submission", "Submission" {
         /// How the curves are computed.
         pub(super) method: Method = word("Method"),
         /// The gears.

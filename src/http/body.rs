@@ -34,12 +34,12 @@ const PATIENCE: Duration = Duration::from_secs(30);
 /// The bytes of a request's JSON document, so many MiB at most. The largest submission, with every table full, has a few hundred thousand bytes.
 /// And the memory that it and what is made of it take: a document does not come in, and is not read, before there is some, and who
 /// has many read shares it with the others.
-pub(super) struct Document<const MIB: usize = 1>(pub(super) Bytes, pub(super) Memory);
+pub(super) struct JsonBody<const MIB: usize = 1>(pub(super) Bytes, pub(super) Memory);
 
 /// The memory of a document: of its bytes, and of what is made of them.
 pub(super) type Memory = [Option<Part>; 2];
 
-impl<const MIB: usize> FromRequest<App> for Document<MIB> {
+impl<const MIB: usize> FromRequest<App> for JsonBody<MIB> {
     type Rejection = Refusal;
 
     async fn from_request(request: Request, app: &App) -> Result<Self, Refusal> {
@@ -48,7 +48,7 @@ impl<const MIB: usize> FromRequest<App> for Document<MIB> {
     }
 }
 
-impl<const MIB: usize> IntoResponses for Document<MIB> {
+impl<const MIB: usize> IntoResponses for JsonBody<MIB> {
     fn responses() -> BTreeMap<String, RefOr<Response>> {
         let broken = (
             "400",
@@ -107,7 +107,7 @@ async fn taken(
     Ok((body, [bytes, made]))
 }
 
-impl<const MIB: usize> Document<MIB> {
+impl<const MIB: usize> JsonBody<MIB> {
     /// The document as a `T`, of which a problem speaks as `name`.
     pub(super) fn parse<'a, T: Deserialize<'a>>(&'a self, name: &str) -> Result<T, Problem> {
         serde_json::from_slice(&self.0).map_err(|error| {
@@ -128,9 +128,9 @@ const MODEL_MIB: usize = 4;
 pub(super) const MODEL_TYPES: &[&str] = &["xml", "json", "zip"];
 
 /// The bytes of a request's model of a gearbox, unpacked, and the memory that it takes.
-pub(super) struct ModelDocument(pub(super) Bytes, pub(super) Memory);
+pub(super) struct ModelBody(pub(super) Bytes, pub(super) Memory);
 
-impl FromRequest<App> for ModelDocument {
+impl FromRequest<App> for ModelBody {
     type Rejection = Refusal;
 
     async fn from_request(request: Request, app: &App) -> Result<Self, Refusal> {
@@ -152,7 +152,7 @@ impl FromRequest<App> for ModelDocument {
     }
 }
 
-impl IntoResponses for ModelDocument {
+impl IntoResponses for ModelBody {
     fn responses() -> BTreeMap<String, RefOr<Response>> {
         let refusals = refusals(MODEL_MIB, "XML, JSON or a zip archive");
         refusals.into_iter().map(declared).collect()
