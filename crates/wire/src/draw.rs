@@ -82,8 +82,11 @@ impl DrawDocument {
 /// same teeth have them and have them not.
 #[derive(Debug, Clone)]
 pub struct Accuracy {
+    /// Its tolerances, and what an inspection measures.
     pub inspection: Inspection,
+    /// How many times three standard deviations of a deviation fit into its tolerance.
     pub capability: f64,
+    /// Whether gears that do not pass are made again.
     pub is_inspected: bool,
 }
 

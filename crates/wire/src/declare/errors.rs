@@ -12,6 +12,7 @@ const MOST_ERRORS: usize = 50;
 pub struct Errors(RefCell<Vec<FieldError>>);
 
 impl Errors {
+    /// Adds an error, as long as there are not too many.
     pub fn push(&self, error: FieldError) {
         let mut errors = self.0.borrow_mut();
         if errors.len() < MOST_ERRORS {
@@ -19,6 +20,7 @@ impl Errors {
         }
     }
 
+    /// The number of errors so far.
     pub fn count(&self) -> usize {
         self.0.borrow().len()
     }
@@ -28,6 +30,7 @@ impl Errors {
         self.count() >= MOST_ERRORS
     }
 
+    /// The errors, in the order in which they were found.
     pub fn into_errors(self) -> Vec<FieldError> {
         self.0.into_inner()
     }

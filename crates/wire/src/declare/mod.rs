@@ -112,6 +112,7 @@ pub struct Declared<S> {
 }
 
 impl<S> Declared<S> {
+    /// The declaration of the field `name`.
     pub const fn new(name: &'static str, about: &'static str, spec: S) -> Self {
         Self { name, about, spec }
     }

@@ -10,9 +10,13 @@ use super::{Kind, Location, Named, Node, ObjectReader};
 
 /// A property of an object.
 pub struct Property {
+    /// Its name.
     pub name: &'static str,
+    /// What the schema says of it.
     pub schema: Value,
+    /// Whether it has to be given.
     pub is_needed: bool,
+    /// Which others it cannot be given with.
     pub exclusion: Option<Exclusion>,
 }
 
@@ -31,6 +35,7 @@ impl Property {
 /// That a field cannot be given together with some others.
 #[derive(Debug, Clone, Copy)]
 pub struct Exclusion {
+    /// The names of the others.
     pub others: &'static [&'static str],
     /// Whether one of them has to be given.
     pub is_one_needed: bool,

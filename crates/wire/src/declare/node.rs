@@ -11,11 +11,17 @@ use crate::units::plain;
 /// A JSON value. Unlike `serde_json::Value` it keeps keys that stand twice, so that they can be refused.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Node {
+    /// Nothing.
     Null,
+    /// True or false.
     Bool(bool),
+    /// A number.
     Number(f64),
+    /// A text.
     Text(String),
+    /// A list.
     List(Vec<Node>),
+    /// Names and values, in the order in which they were sent.
     Object(Vec<(String, Node)>),
 }
 
@@ -142,6 +148,7 @@ pub fn joined(pointer: &str, key: &str) -> String {
     format!("{pointer}/{}", escaped(key))
 }
 
+/// The first characters of a text, for a message.
 pub fn shortened(text: &str) -> String {
     const MOST: usize = 60;
     match text.char_indices().nth(MOST) {

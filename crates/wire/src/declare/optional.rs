@@ -19,6 +19,7 @@ enum Absent {
 /// What a declaration says of a value that may be absent.
 #[derive(Debug, Clone, Copy)]
 pub struct Optional<S> {
+    /// What is declared of the value that is given.
     pub spec: S,
     absent: Absent,
     /// The fields that cannot be given together with it.

@@ -9,6 +9,7 @@ use crate::problem::{Code, FieldError};
 /// A place in a document, and where to report what is wrong there.
 #[derive(Debug, Clone)]
 pub struct Location<'a> {
+    /// The JSON pointer to it.
     pub pointer: String,
     errors: &'a Errors,
 }

@@ -38,6 +38,7 @@ pub trait Choice: Copy + PartialEq + 'static {
 #[derive(Debug, Clone, Copy)]
 pub struct OneWord<C> {
     title: &'static str,
+    /// What stands for it where it is absent; nothing if it has to be given.
     pub preset: Option<C>,
 }
 
@@ -54,6 +55,7 @@ impl<C: Copy> OneWord<C> {
         Self { preset, ..self }
     }
 
+    /// Reads one of the words.
     pub fn read(&self, node: &Node, place: &Location<'_>) -> Option<C>
     where
         C: Choice,
@@ -65,6 +67,7 @@ impl<C: Copy> OneWord<C> {
         word.or_else(|| place.wrong_kind(node, &format!("one of {}", C::words())))
     }
 
+    /// What stands for the field `name`, which is absent.
     pub fn absent(&self, reader: &mut ObjectReader<'_>, name: &'static str) -> Option<C>
     where
         C: Choice,
@@ -76,6 +79,7 @@ impl<C: Copy> OneWord<C> {
         })
     }
 
+    /// What the schema says of it.
     pub fn describe(&self, about: &str) -> Value
     where
         C: Choice,
