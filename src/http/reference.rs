@@ -147,7 +147,8 @@ document! {
 
 document! {
     /// What previews are allowed.
-    pub(super) struct PreviewLimits as PreviewLimits, "PreviewLimits" view of (rules: PreviewRules) {
+    pub(super) struct PreviewLimits as PreviewLimits, "PreviewLimits"
+    view of (rules: PreviewRules) {
         /// The most positions times torques of one.
         positions: u64 = rules.most_positions,
         /// The most at once.

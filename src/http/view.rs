@@ -46,7 +46,10 @@ document! {
         keep?: Kept = Some(job.keep).filter(|keep| *keep != Kept::Results),
         /// Of a failed job: why.
         #[schema(value_type = Option<meshwright_wire::Problem>)]
-        problem?: Value = job.problem.clone().map(|problem| with_public_type(problem, &edge.public_url)),
+        problem?: Value = job
+            .problem
+            .clone()
+            .map(|problem| with_public_type(problem, &edge.public_url)),
         links: Links = Links::of(job, edge),
         /// The submission with every default filled in. Absent in lists.
         #[schema(value_type = Option<meshwright_wire::Submission>)]

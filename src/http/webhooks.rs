@@ -37,7 +37,8 @@ fn all_events() -> Vec<EventKind> {
 
 document! {
     /// A webhook.
-    pub(super) struct WebhookView as Webhook, "Webhook" view of (webhook: Webhook, secret: Option<String>) {
+    pub(super) struct WebhookView as Webhook, "Webhook"
+    view of (webhook: Webhook, secret: Option<String>) {
         /// The id of the webhook.
         id: Uuid = webhook.id,
         /// Where messages are sent.

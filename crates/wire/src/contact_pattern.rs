@@ -17,7 +17,8 @@ const MOST_POSITIONS: usize = 160;
 document! {
     /// Where the flanks touch over the period, and how they press there. z is that of the common face; +z is the side from which the driving
     /// gear is seen to turn counter-clockwise.
-    pub struct ContactPatternDocument as ContactPattern, "Contact pattern" answer of (pattern: &ContactPattern) with {
+    pub struct ContactPatternDocument as ContactPattern, "Contact pattern"
+    answer of (pattern: &ContactPattern) with {
         let (flanks, torques) = (&pattern.flanks, pattern.curves.len());
         let [driving, driven] = flanks.each_ref().map(PatternFlank::of);
     } {
@@ -30,14 +31,18 @@ document! {
         /// The flank of gear 2.
         driven: PatternFlank = driven,
         /// One entry for each output torque that was asked for, torque 0 aside.
-        curves: Vec<PatternCurveDocument> =
-            pattern.curves.iter().map(|curve| PatternCurveDocument::of(curve, flanks, torques)).collect(),
+        curves: Vec<PatternCurveDocument> = pattern
+            .curves
+            .iter()
+            .map(|curve| PatternCurveDocument::of(curve, flanks, torques))
+            .collect(),
     }
 }
 
 document! {
     /// The height of a flank, in equal bands.
-    pub struct PatternFlank as PatternFlank, "Flank of a contact pattern" answer of (flank: &FlankBands) with {
+    pub struct PatternFlank as PatternFlank, "Flank of a contact pattern"
+    answer of (flank: &FlankBands) with {
         let [form, tip] = flank.ends;
     } {
         /// The diameter of the form circle, at which it begins, in mm.
@@ -75,7 +80,8 @@ document! {
 
 document! {
     /// The pressure on a flank.
-    pub struct PatternPressure as PatternPressure, "Pressure of a contact pattern" answer of (map: &[Vec<Pressure>]) {
+    pub struct PatternPressure as PatternPressure, "Pressure of a contact pattern"
+    answer of (map: &[Vec<Pressure>]) {
         /// The largest pressure over the span, in MPa: a row for each band from the form circle up, with a value for each strip. 0 where nothing
         /// touches; null where a sharp tip edge carries, at which pressure has no limit.
         #[schema(value_type = Vec<Vec<Option<f64>>>)]
@@ -104,7 +110,11 @@ document! {
         /// The mesh position, in mesh periods.
         mesh_position: f64 = significant(position.mesh_position, 10),
         /// One entry for each pair of teeth that carries.
-        lines: Vec<PatternLineDocument> = position.lines.iter().map(|line| PatternLineDocument::of(line, flanks)).collect(),
+        lines: Vec<PatternLineDocument> = position
+            .lines
+            .iter()
+            .map(|line| PatternLineDocument::of(line, flanks))
+            .collect(),
     }
 }
 
@@ -129,11 +139,14 @@ document! {
         /// Where they touch the flank of gear 2: the diameter, in mm.
         driven_diameter_mm: Vec<f64> = diameters(1),
         /// The load on each for its width, along the transverse line of action, in N/mm.
-        load_n_per_mm: Vec<f64> = slices().map(|slice| rounded(to_n_per_mm(slice.force / slice.length))).collect(),
+        load_n_per_mm: Vec<f64> = slices()
+            .map(|slice| rounded(to_n_per_mm(slice.force / slice.length)))
+            .collect(),
         /// The largest pressure on each, in MPa; null at a sharp tip edge, where it has no limit.
         #[serde(serialize_with = "or_null")]
-        pressure_mpa: Vec<Option<f64>> =
-            slices().map(|slice| slice.pressure.map(|pressure| rounded(to_mpa(pressure)))).collect(),
+        pressure_mpa: Vec<Option<f64>> = slices()
+            .map(|slice| slice.pressure.map(|pressure| rounded(to_mpa(pressure))))
+            .collect(),
     }
 }
 

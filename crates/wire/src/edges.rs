@@ -41,7 +41,10 @@ document! {
     } {
         /// The edge around the teeth, counter-clockwise, in a piece for each tooth; only the corners of elements.
         // Flanks are divided so finely that their corners are enough.
-        teeth: Vec<Edge> = open.iter().map(|chain| Edge::of(field, chain.iter().step_by(2).copied().collect())).collect(),
+        teeth: Vec<Edge> = open
+            .iter()
+            .map(|chain| Edge::of(field, chain.iter().step_by(2).copied().collect()))
+            .collect(),
         /// The edges of the holes and of the bore, closed; the bore is missing where the blank has no grid of its own.
         openings: Vec<Edge> = closed.into_iter().map(|chain| Edge::of(field, chain)).collect(),
     }
@@ -56,11 +59,16 @@ document! {
     } {
         /// Where its nodes lie before loading, in mm.
         #[schema(value_type = Vec<Vec<f64>>)]
-        at_mm: Vec<Plane> = nodes().map(|i| field.nodes[i]).map(|at| [at.x, at.y].map(placed)).collect(),
+        at_mm: Vec<Plane> = nodes()
+            .map(|i| field.nodes[i])
+            .map(|at| [at.x, at.y].map(placed))
+            .collect(),
         /// How far each moves against the hub of its gear, in um.
         #[schema(value_type = Vec<Vec<f64>>)]
-        displacement_um: Vec<Plane> =
-            nodes().map(|i| field.displacements[i]).map(|moved| [moved.x, moved.y].map(to_um).map(rounded)).collect(),
+        displacement_um: Vec<Plane> = nodes()
+            .map(|i| field.displacements[i])
+            .map(|moved| [moved.x, moved.y].map(to_um).map(rounded))
+            .collect(),
         /// The von Mises stress at each, in MPa. Near a contact it is that of the grid, which does not resolve the pressure.
         von_mises_mpa: Vec<f64> = nodes().map(|i| rounded(to_mpa(field.von_mises[i]))).collect(),
     }

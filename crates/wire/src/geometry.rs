@@ -88,7 +88,8 @@ document! {
 
 document! {
     /// A point of the path of contact.
-    pub struct PathPoint as PathPoint, "Point of the path of contact" answer of (pair: &GearPair, s: f64) {
+    pub struct PathPoint as PathPoint, "Point of the path of contact"
+    answer of (pair: &GearPair, s: f64) {
         /// The mesh position of the reference pair there, in mesh periods; zero at the pitch point.
         mesh_position: f64 = (s - pair.pitch_roll_length()) / pair.base_pitch(),
         /// The roll length on the driving flank, in mm.
@@ -100,7 +101,8 @@ document! {
 
 document! {
     /// The derived geometry of a gear.
-    pub struct GearGeometry as GearGeometry, "Gear geometry" answer of (case: &Case, member: Member) with {
+    pub struct GearGeometry as GearGeometry, "Gear geometry"
+    answer of (case: &Case, member: Member) with {
         let (pair, gear) = (&case.pair, case.pair.gear(member));
         let solid = case.faces().map(|faces| faces.pair.gear(member));
         // What rounding leaves of holes that balance each other has no direction.
@@ -168,13 +170,15 @@ document! {
         imbalance_kg_mm: f64 = to_mm(imbalance.map_or(0.0, |imbalance| imbalance.norm())),
         /// The direction of the center of mass from the axis of rotation, in degrees from the centerline of tooth 0, positive towards its
         /// loaded flank; absent without imbalance.
-        imbalance_angle_deg?: f64 = imbalance.map(|imbalance| imbalance.y.atan2(imbalance.x).to_degrees()),
+        imbalance_angle_deg?: f64 =
+            imbalance.map(|imbalance| imbalance.y.atan2(imbalance.x).to_degrees()),
     }
 }
 
 document! {
     /// The frequencies of eq. 2 at the speed given.
-    pub struct Frequencies as Frequencies, "Frequencies" answer of (pair: &GearPair, speed: RotationSpeed) with {
+    pub struct Frequencies as Frequencies, "Frequencies"
+    answer of (pair: &GearPair, speed: RotationSpeed) with {
         let teeth = |member| f64::from(pair.gear(member).tooth_count());
         let mesh_hz = speed.0 * teeth(Member::Driving);
     } {

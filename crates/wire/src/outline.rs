@@ -28,7 +28,8 @@ document! {
 document! {
     /// The outline of a gear in its own frame: its center is the origin, the centerline of tooth 0 the x axis, and the loaded flank of
     /// each tooth lies on its counter-clockwise side.
-    pub struct GearOutline as GearOutline, "Gear outline" answer of (pair: &GearPair, member: Member) with {
+    pub struct GearOutline as GearOutline, "Gear outline"
+    answer of (pair: &GearPair, member: Member) with {
         let gear = pair.gear(member);
         // At mesh position 0 the loaded flanks of tooth 0 touch at the pitch point, which lies on the line of centers.
         let half_angle = gear.flank().half_angle(pair.working_radius(member)).to_degrees();
@@ -120,8 +121,21 @@ document! {
         let angle = -pair.working_pressure_angle();
         let foot = pair.driving().base_radius() * radial(angle);
         let at = |s: f64| point(foot + s * tangential(angle));
-        let PathOfContact { point_a, point_b, point_c, point_d, point_e, .. } = PathOfContact::of(pair);
-        let points = [("A", point_a), ("B", point_b), ("C", point_c), ("D", point_d), ("E", point_e)];
+        let PathOfContact {
+            point_a,
+            point_b,
+            point_c,
+            point_d,
+            point_e,
+            ..
+        } = PathOfContact::of(pair);
+        let points = [
+            ("A", point_a),
+            ("B", point_b),
+            ("C", point_c),
+            ("D", point_d),
+            ("E", point_e),
+        ];
     } {
         /// Where it touches the base circle of the driving gear, in mm.
         #[schema(value_type = Vec<f64>, min_items = 2, max_items = 2)]
@@ -130,14 +144,18 @@ document! {
         #[schema(value_type = Vec<f64>, min_items = 2, max_items = 2)]
         to_mm: Point = at(pair.line_of_action()),
         /// A, B, C, D and E, in this order.
-        points: Vec<LinePoint> =
-            points.map(|(name, place)| LinePoint::of(name, at(place.driving_roll_length_mm * 1e-3), &place)).into(),
+        points: Vec<LinePoint> = points
+            .map(|(name, place)| {
+                LinePoint::of(name, at(place.driving_roll_length_mm * 1e-3), &place)
+            })
+            .into(),
     }
 }
 
 document! {
     /// A named point of the line of action.
-    pub struct LinePoint as LinePoint, "Point of the line of action" answer of (name: &str, at_mm: Point, place: &PathPoint) {
+    pub struct LinePoint as LinePoint, "Point of the line of action"
+    answer of (name: &str, at_mm: Point, place: &PathPoint) {
         /// `A` to `E`.
         name: String = name.to_owned(),
         /// Where, in mm.

@@ -39,10 +39,22 @@ document! {
     pub struct MisalignmentDocument as "Misalignment", "Misalignment" {
         /// By how much the axes are farther apart, in their plane; along the line of action it is times the sine of the working pressure
         /// angle.
-        in_plane_um: f64 = number("Misalignment in the plane of the axes", "um", -1_000.0, 1_000.0).or(0.0),
+        in_plane_um: f64 = number(
+            "Misalignment in the plane of the axes",
+            "um",
+            -1_000.0,
+            1_000.0,
+        )
+        .or(0.0),
         /// By how much they pass each other, across their plane, positive where the loaded flanks open; along the line of action it is
         /// times the cosine of the working pressure angle.
-        out_of_plane_um: f64 = number("Misalignment out of the plane of the axes", "um", -1_000.0, 1_000.0).or(0.0),
+        out_of_plane_um: f64 = number(
+            "Misalignment out of the plane of the axes",
+            "um",
+            -1_000.0,
+            1_000.0,
+        )
+        .or(0.0),
     }
 }
 

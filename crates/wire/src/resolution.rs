@@ -33,11 +33,16 @@ pub fn sees_faces(name: &Node) -> bool {
 words! {
     Method {
         Flexible = "flexible": "both whole gears flexible, the reference (section 2 of the paper)",
-        Decomposition = "decomposition": "rigid blanks plus fitted blank rotations (section 3 of the paper)",
-        ProjectedDecomposition = "projected_decomposition": "the contact of blanks that are alike all around, plus the exact first-order term of what the holes change around them",
-        ThreeDimensional = "three_dimensional": "both whole gears flexible along their faces too: helical gears, thin webs, uneven leads, misalignment",
-        ThreeDimensionalProjected = "three_dimensional_projected": "along their faces, the contact of blanks that are alike all around, plus the first-order term of what the holes change around them",
-        LoadDistribution = "load_distribution": "closed-form compliances on the theoretical lines of contact (eqs. 4 and 5); does not see holes",
+        Decomposition = "decomposition":
+            "rigid blanks plus fitted blank rotations (section 3 of the paper)",
+        ProjectedDecomposition = "projected_decomposition":
+            "the contact of blanks that are alike all around, plus the exact first-order term of what the holes change around them",
+        ThreeDimensional = "three_dimensional":
+            "both whole gears flexible along their faces too: helical gears, thin webs, uneven leads, misalignment",
+        ThreeDimensionalProjected = "three_dimensional_projected":
+            "along their faces, the contact of blanks that are alike all around, plus the first-order term of what the holes change around them",
+        LoadDistribution = "load_distribution":
+            "closed-form compliances on the theoretical lines of contact (eqs. 4 and 5); does not see holes",
     }
 
     GridLevel {
@@ -48,7 +53,8 @@ words! {
 
     ToothFormula {
         WeberBanaschek = "weber_banaschek": "bending, shear and compression of the true profile",
-        Iso6336 = "iso_6336": "the theoretical single stiffness of ISO 6336-1 (method B) with its factors for rack and material, without its empirical ones (C_M, low line loads); contains body and local deformation",
+        Iso6336 = "iso_6336":
+            "the theoretical single stiffness of ISO 6336-1 (method B) with its factors for rack and material, without its empirical ones (C_M, low line loads); contains body and local deformation",
     }
 
     BodyFormula {
@@ -123,7 +129,8 @@ document! {
 
 document! {
     /// Its penalty and its tolerance.
-    pub struct AugmentedLagrangian as "AugmentedLagrangianSettings", "Settings of the augmented Lagrangian" {
+    pub struct AugmentedLagrangian
+    as "AugmentedLagrangianSettings", "Settings of the augmented Lagrangian" {
         /// The penalty stiffness of a contact cell, eq. 7 of the paper. It changes the number of iterations, not the result.
         penalty_n_per_m: Option<f64> = absent(
             number("Penalty stiffness", "N/m", 1e5, 1e18),

@@ -15,7 +15,8 @@ use crate::jobs::StudyRecord;
 
 document! {
     /// A study: how far it has come, and where to find its table.
-    pub(in crate::http) struct StudyView as SubmittedStudy view of (study: &StudyRecord, edge: &Edge) {
+    pub(in crate::http) struct StudyView as SubmittedStudy
+    view of (study: &StudyRecord, edge: &Edge) {
         /// The id of the study.
         id: Uuid = study.id,
         /// `successful` when at least one design has results, `failed` when none has and all have ended.
@@ -43,7 +44,10 @@ document! {
         problem?: Value = why_failed(study, edge),
         /// Of a search: how far it has come.
         #[schema(value_type = Option<SearchState>)]
-        search?: Box<RawValue> = study.search.clone().and_then(|text| RawValue::from_string(text).ok()),
+        search?: Box<RawValue> = study
+            .search
+            .clone()
+            .and_then(|text| RawValue::from_string(text).ok()),
         links: StudyLinks = StudyLinks::of(study, edge),
         /// The study as it was sent. Absent in lists, and where it has more than 64 KiB: `links.document` has it whole.
         #[schema(value_type = Option<Study>)]
@@ -53,7 +57,8 @@ document! {
 
 document! {
     /// Where to find what belongs to a study.
-    pub(in crate::http) struct StudyLinks as StudyLinks view of (study: &StudyRecord, edge: &Edge) with {
+    pub(in crate::http) struct StudyLinks as StudyLinks
+    view of (study: &StudyRecord, edge: &Edge) with {
         let address = edge.study(study.id);
     } {
         /// The study.

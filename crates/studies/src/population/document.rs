@@ -18,7 +18,8 @@ const PATH: Text = text("Path", 300);
 
 words! {
     Sampling {
-        Sobol = "sobol": "Sobol' points in 16 independent scramblings, whose means and percentiles settle sooner",
+        Sobol = "sobol":
+            "Sobol' points in 16 independent scramblings, whose means and percentiles settle sooner",
         Random = "random": "independent of each other",
     }
 }
@@ -35,7 +36,8 @@ document! {
         /// The fields that vary, independently of each other. Default: none.
         pub(crate) vary: Vec<VariedDocument> = list("Varied fields", EACH, MOST_VARIED).or_empty(),
         /// How accurately teeth are made.
-        pub(crate) accuracy: Option<AccuracyDocument> = absent(nested("Accuracy"), "the teeth of the base"),
+        pub(crate) accuracy: Option<AccuracyDocument> =
+            absent(nested("Accuracy"), "the teeth of the base"),
     }
 }
 
@@ -43,9 +45,11 @@ document! {
     /// How accurately the teeth of both gears are made; of a gear that is not named they are those of the base.
     pub(crate) struct AccuracyDocument as "Accuracy", "Accuracy" {
         /// Of the driving gear.
-        pub(crate) driving: Option<GearAccuracy> = absent(nested("Driving gear"), "the teeth of the base"),
+        pub(crate) driving: Option<GearAccuracy> =
+            absent(nested("Driving gear"), "the teeth of the base"),
         /// Of the driven gear.
-        pub(crate) driven: Option<GearAccuracy> = absent(nested("Driven gear"), "the teeth of the base"),
+        pub(crate) driven: Option<GearAccuracy> =
+            absent(nested("Driven gear"), "the teeth of the base"),
     }
 }
 

@@ -26,7 +26,8 @@ const PATH: Text = text("Path", 300);
 words! {
     /// What of several torques counts.
     pub(crate) enum Torques {
-        Largest = "largest": "of the torque at which it is worst: the largest value, in at_least the smallest",
+        Largest = "largest":
+            "of the torque at which it is worst: the largest value, in at_least the smallest",
         Mean = "mean": "the mean over the torques",
     }
 }
@@ -35,13 +36,16 @@ document! {
     /// Finds the design that has the least of something: asks for designs generation by generation, each chosen by what came of those before.
     pub(crate) struct SearchDocument as "Search", "Search" {
         /// What may differ between designs.
-        variables: Vec<VariableDocument> = list("Variables", EACH, MOST).not_empty(Code::MissingField, "name what may differ"),
+        variables: Vec<VariableDocument> =
+            list("Variables", EACH, MOST).not_empty(Code::MissingField, "name what may differ"),
         /// What is to be small. Of two goals the front is sought: the designs of which no other one is better in both.
-        minimize: Vec<GoalDocument> = list("Goals", EACH, 2).not_empty(Code::MissingField, "say what is to be small"),
+        minimize: Vec<GoalDocument> =
+            list("Goals", EACH, 2).not_empty(Code::MissingField, "say what is to be small"),
         /// What has to hold. Default: nothing.
         subject_to: Vec<ConditionDocument> = list("Conditions", EACH, MOST).or_empty(),
         /// The design as it is made: a goal or condition with a percent is looked at over its members.
-        population: Option<PopulationDocument> = absent(nested("Population"), "designs as they are drawn"),
+        population: Option<PopulationDocument> =
+            absent(nested("Population"), "designs as they are drawn"),
         /// So many designs are computed at most, each over all members of the population.
         evaluations: u32 = number("Evaluations", "1", 2.0, MOST_EVALUATIONS).or(400.0),
         /// After so much time no further generation is begun.
@@ -62,7 +66,10 @@ document! {
         /// The largest value.
         high: f64 = value("Largest value"),
         /// The step from one value to the next. It has to lead from low to high.
-        step: Option<f64> = absent(number("Step", "", 1e-9, 1e9), "every value between; of a field of whole numbers every whole one"),
+        step: Option<f64> = absent(
+            number("Step", "", 1e-9, 1e9),
+            "every value between; of a field of whole numbers every whole one",
+        ),
     }
 }
 
@@ -72,7 +79,10 @@ document! {
         /// The quantity.
         quantity: Option<QuantityName> = or_else(&["cost"], ()),
         /// The cost: the sum of variables, each times its weight.
-        cost: Option<Vec<CostDocument>> = or_else(&["quantity"], list("Cost", EACH, MOST).not_empty(Code::MissingField, "name what costs")),
+        cost: Option<Vec<CostDocument>> = or_else(
+            &["quantity"],
+            list("Cost", EACH, MOST).not_empty(Code::MissingField, "name what costs"),
+        ),
         /// Which torque it is told of.
         torques: Torques = word("Torques").or(Torques::Largest),
         /// The percentile over the members of the population that is told of it.

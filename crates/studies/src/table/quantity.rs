@@ -67,7 +67,10 @@ document! {
         /// Its unit, written as those of fields are; 1 without one.
         unit: &'static str = quantity.unit,
         /// Whether it is told of the pair or of each curve.
-        of: QuantityOf = match quantity.of { Of::Pair(_) => QuantityOf::Pair, Of::Curve(_) => QuantityOf::Curve },
+        of: QuantityOf = match quantity.of {
+            Of::Pair(_) => QuantityOf::Pair,
+            Of::Curve(_) => QuantityOf::Curve,
+        },
         /// Of which gear it is; null where it is of both.
         #[schema(required)]
         gear: Option<GearName> = quantity.gear,
@@ -75,9 +78,16 @@ document! {
         #[schema(required)]
         better: Option<Better> = quantity.better,
         /// Fields of a submission without which it is not told: JSON pointers. Where they are of both gears, one of them will do.
-        needs: Vec<&'static str> = quantity.needs.iter().flat_map(|needs| needs.pointers()).copied().collect(),
+        needs: Vec<&'static str> = quantity
+            .needs
+            .iter()
+            .flat_map(|needs| needs.pointers())
+            .copied()
+            .collect(),
         /// The methods that tell it.
-        methods: Vec<&'static str> = methods().filter(|method| quantity.is_known_to(method)).collect(),
+        methods: Vec<&'static str> = methods()
+            .filter(|method| quantity.is_known_to(method))
+            .collect(),
     }
 }
 

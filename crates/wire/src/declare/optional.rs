@@ -183,7 +183,8 @@ mod tests {
             /// The other one.
             angle: Option<f64> = or_else(&["length"], number("Angle", "rad", 0.0, 9.0)),
             /// One of the two may be given.
-            chamfer: Option<f64> = absent(number("Chamfer", "m", 0.0, 9.0), "none").not_beside(&["rounding"]),
+            chamfer: Option<f64> =
+                absent(number("Chamfer", "m", 0.0, 9.0), "none").not_beside(&["rounding"]),
             /// The other one.
             rounding: Option<f64> = absent(number("Rounding", "m", 0.0, 9.0), "none"),
             /// One has a default, in whose place the other may stand.

@@ -35,8 +35,11 @@ document! {
         /// The shape of the holes, where they are not round.
         pub(super) slot: Option<SlotDocument> = absent(nested("Slot"), "round holes").left_out(),
         /// The angle of a hole's center from the centerline of tooth 0 of its own gear, positive towards the loaded flank of that tooth.
-        phase_deg: Option<f64> =
-            unless(&["at_deg"], number("Phase of the holes", "deg", -360.0, 360.0).or(0.0)).left_out(),
+        phase_deg: Option<f64> = unless(
+            &["at_deg"],
+            number("Phase of the holes", "deg", -360.0, 360.0).or(0.0),
+        )
+        .left_out(),
         /// The angle of each hole's center from the centerline of tooth 0 of its own gear, positive towards the loaded flank of that
         /// tooth; instead of count and phase_deg. Unequal angles spread the order of the holes over those of a revolution.
         at_deg: Option<Vec<f64>> = absent(

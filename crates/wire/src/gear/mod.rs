@@ -85,8 +85,11 @@ document! {
             .or_modules(0.38)
             .fitted(usual_tip_radius),
         /// The hob that cuts before grinding, where it has a protuberance: the root is as it leaves it.
-        protuberance: Option<ProtuberanceDocument> =
-            absent(nested("Protuberance"), "the rack of the ground flanks cuts the root").left_out(),
+        protuberance: Option<ProtuberanceDocument> = absent(
+            nested("Protuberance"),
+            "the rack of the ground flanks cuts the root",
+        )
+        .left_out(),
         /// How much thicker the teeth are than the rack leaves them, as a transverse arc on the reference circle; negative is thinner and
         /// gives backlash. Half a module to either side, and a space has to be left between fillets. A drawing may say the thickness in another way;
         /// at most one of them is given.
@@ -104,12 +107,20 @@ document! {
         /// W_k: the thickness by a span over several teeth.
         span_measurement: Option<SpanDocument> =
             absent(nested("Span measurement"), "said in another way")
-                .not_beside(&["tooth_thickness_deviation_um", "tooth_thickness_deviation_normal_um", "ball_measurement"])
+                .not_beside(&[
+                    "tooth_thickness_deviation_um",
+                    "tooth_thickness_deviation_normal_um",
+                    "ball_measurement",
+                ])
                 .left_out(),
         /// M_dK: the thickness by a size over two balls.
         ball_measurement: Option<BallsDocument> =
             absent(nested("Ball measurement"), "said in another way")
-                .not_beside(&["tooth_thickness_deviation_um", "tooth_thickness_deviation_normal_um", "span_measurement"])
+                .not_beside(&[
+                    "tooth_thickness_deviation_um",
+                    "tooth_thickness_deviation_normal_um",
+                    "span_measurement",
+                ])
                 .left_out(),
         /// The radius of an arc between flank and tip circle, tangent to both, on both flanks alike: 0, or at least 0.01 modules.
         tip_rounding_mm: Option<f64> = absent(
@@ -133,7 +144,8 @@ document! {
         pub(super) lead_modifications: Vec<LeadModificationDocument> =
             list("Lead modifications", EACH, MOST_MODIFICATIONS).or_empty().or_null(),
         /// What the teeth deviate from each other by. The contact then repeats once a revolution.
-        tooth_deviations: Option<DeviationsDocument> = absent(nested("Tooth deviations"), "nothing"),
+        tooth_deviations: Option<DeviationsDocument> =
+            absent(nested("Tooth deviations"), "nothing"),
         /// What teeth and blank are made of. Default: steel.
         material: MaterialDocument = nested("Material").or_defaults(),
         /// What carries the teeth.

@@ -9,9 +9,11 @@ use crate::warning::GearName;
 
 document! {
     /// What the decomposition adds up, eq. 15.
-    pub struct DecompositionDocument as Decomposition, "Decomposition" answer of (parts: &DecompositionParts) {
+    pub struct DecompositionDocument as Decomposition, "Decomposition"
+    answer of (parts: &DecompositionParts) {
         /// The transmission error with rigid blanks, in um, at each position of the curve.
-        rigid_blank_transmission_error_um: Vec<f64> = each(&parts.rigid_blank_transmission_error, to_um),
+        rigid_blank_transmission_error_um: Vec<f64> =
+            each(&parts.rigid_blank_transmission_error, to_um),
         /// One entry for each holed gear.
         blanks: Vec<BlankFitDocument> = all(&parts.blanks, BlankFitDocument::of),
     }
@@ -32,8 +34,10 @@ document! {
         phase_deg: f64 = fit.phase.to_degrees(),
         /// The harmonics 2, 3 and so on of holes that are not equal or not evenly spaced; absent for a pattern, which has none.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
-        higher: Vec<BlankHarmonicDocument> =
-            (2..).zip(&fit.higher).map(|(harmonic, found)| BlankHarmonicDocument::of(harmonic, found)).collect(),
+        higher: Vec<BlankHarmonicDocument> = (2..)
+            .zip(&fit.higher)
+            .map(|(harmonic, found)| BlankHarmonicDocument::of(harmonic, found))
+            .collect(),
         /// The samples that were fitted.
         samples: Vec<BlankSampleDocument> = all(&fit.samples, BlankSampleDocument::of),
     }

@@ -14,7 +14,8 @@ use crate::units::to_um;
 
 document! {
     /// How well the equations are satisfied, what they are, and what they leave out.
-    pub struct EvidenceDocument as Evidence, "Evidence" answer of (submission: &Submission, analysis: &Analysis) with {
+    pub struct EvidenceDocument as Evidence, "Evidence"
+    answer of (submission: &Submission, analysis: &Analysis) with {
         let evidence = &analysis.evidence;
         let unseen = does_not_see(submission.case(), submission.forces());
     } {
@@ -45,7 +46,10 @@ document! {
         /// What the method leaves out.
         does_not_see: Vec<Cow<'static, str>> = unseen.into_iter().map(Cow::from).collect(),
         /// What a second grid level changes, where it was asked for.
-        error_estimate?: ErrorEstimateDocument = evidence.error_estimate.as_ref().map(ErrorEstimateDocument::of),
+        error_estimate?: ErrorEstimateDocument = evidence
+            .error_estimate
+            .as_ref()
+            .map(ErrorEstimateDocument::of),
     }
 }
 
@@ -67,7 +71,8 @@ fn resolution_of(submission: &Submission) -> Map<String, Value> {
 
 document! {
     /// A term and what it means here.
-    pub struct Definition as Definition, "Definition" answer of ((term, meaning): &(&'static str, &'static str)) {
+    pub struct Definition as Definition, "Definition"
+    answer of ((term, meaning): &(&'static str, &'static str)) {
         /// The term.
         term: Cow<'static, str> = Cow::from(*term),
         /// What it means.
@@ -105,7 +110,8 @@ const DEFINITIONS: [(&str, &str); 7] = [
 
 document! {
     /// What a second grid level changes, the largest over the torques.
-    pub struct ErrorEstimateDocument as ErrorEstimate, "Error estimate" answer of (estimate: &ErrorEstimate) {
+    pub struct ErrorEstimateDocument as ErrorEstimate, "Error estimate"
+    answer of (estimate: &ErrorEstimate) {
         /// In the mean transmission error, in um.
         transmission_error_mean_um: f64 = to_um(estimate.mean),
         /// In the peak-to-peak transmission error, in um.

@@ -61,10 +61,15 @@ document! {
         #[serde(deserialize_with = "known")]
         warnings: Vec<WarningDocument> = submission.warnings(&analysis.warnings),
         /// One curve for each output torque, in the order of the submission.
-        curves: Vec<CurveDocument> =
-            analysis.curves.iter().enumerate().map(|(i, curve)| CurveDocument::of(case, curve, dynamics(i))).collect(),
+        curves: Vec<CurveDocument> = analysis
+            .curves
+            .iter()
+            .enumerate()
+            .map(|(i, curve)| CurveDocument::of(case, curve, dynamics(i)))
+            .collect(),
         /// The force over mesh position and approach; absent unless the submission asks for it.
-        force_table?: ForceTableDocument = forces.map(|forces| ForceTableDocument::of(&forces.table)),
+        force_table?: ForceTableDocument =
+            forces.map(|forces| ForceTableDocument::of(&forces.table)),
         /// How good the numbers are, and what they mean.
         evidence: EvidenceDocument = EvidenceDocument::of(submission, analysis),
     }
