@@ -38,6 +38,7 @@ mod problem;
 mod problem_pages;
 mod readings;
 mod reference;
+mod resource;
 mod results;
 mod rexs;
 mod router;

@@ -16,7 +16,7 @@ use super::body::ModelBody;
 use super::client::{Client, Onlooker};
 use super::parameters::{JobId, Parameters};
 use super::problem::{Refusal, internal};
-use crate::jobs::JobError;
+use crate::jobs::{Job, JobError, Resource as _};
 
 /// Stages beyond this number are not looked at.
 const MOST_STAGES: usize = 20;
@@ -221,7 +221,7 @@ const TIMES_THE_RESULTS: u64 = 8;
     ),
 )]
 pub(super) async fn write(client: Client, JobId(id): JobId) -> Result<Response, Refusal> {
-    let job = client.app.jobs.find(client.name(), id).await?;
+    let job = Job::find(&client.app.jobs, client.name(), id).await?;
     let submission = client.app.jobs.submission(job.id).await?;
     let stored = match &job.document {
         None => None,

@@ -28,7 +28,7 @@ pub use keeper::{Keep, Keeper};
 pub use live::{Changes, News};
 pub(crate) use queue::KEY_LIFETIME;
 pub use queue::{Jobs, Member, Rules};
-pub use resource::{Listed, Submitted};
+pub use resource::{Listed, Resource, Submitted};
 pub use store::{
     BackupError, Cursor, Damaged, DatabaseAddress, Depth, Document, DocumentLine, EventKind,
     Filter, KeyRecord, Membership, Migrate, NoCursor, OpenError, Removed, Role, Space, Span, Store,

@@ -19,7 +19,7 @@ use crate::http::conditional::{Keep, Tag};
 use crate::http::memory::SMALL;
 use crate::http::parameters::{IfNoneMatch, StudyId};
 use crate::http::problem::Refusal;
-use crate::jobs::StudyRecord;
+use crate::jobs::{Resource as _, StudyRecord};
 
 /// Get what a population comes to
 ///
@@ -42,7 +42,7 @@ pub(in crate::http) async fn population(
     StudyId(id): StudyId,
     request: HeaderMap,
 ) -> Result<Response, Refusal> {
-    let study = client.app.jobs.find_study(client.name(), id).await?;
+    let study = StudyRecord::find(&client.app.jobs, client.name(), id).await?;
     let tag = tag_of(&study, "population", &client.app.edge);
     let name = Arc::from(client.name());
     let made = async {
@@ -136,7 +136,7 @@ pub(in crate::http) async fn design(
     request: HeaderMap,
 ) -> Result<Response, Refusal> {
     let StudyId(id) = StudyId::of(&id)?;
-    let record = client.app.jobs.find_study(client.name(), id).await?;
+    let record = StudyRecord::find(&client.app.jobs, client.name(), id).await?;
     let wanted = row.parse::<u32>().ok();
     let text = async {
         let found = match wanted {
@@ -195,7 +195,7 @@ pub(in crate::http) async fn best(
     StudyId(id): StudyId,
     request: HeaderMap,
 ) -> Result<Response, Refusal> {
-    let record = client.app.jobs.find_study(client.name(), id).await?;
+    let record = StudyRecord::find(&client.app.jobs, client.name(), id).await?;
     let Some(state) = &record.search else {
         let detail = "This study is no search; its table is at /results.";
         return Err(Problem::new(Code::NotFound, detail).into());

@@ -32,7 +32,7 @@ use crate::http::conditional::Keep;
 use crate::http::parameters::{IfNoneMatch, StudyId};
 use crate::http::problem::Refusal;
 use crate::http::view::with_public_type;
-use crate::jobs::{DocumentLine, JobError, StudyRecord};
+use crate::jobs::{DocumentLine, JobError, Resource as _, StudyRecord};
 
 /// Get the table of a study
 ///
@@ -194,7 +194,7 @@ async fn send(
     request: &HeaderMap,
     form: StudyFile,
 ) -> Result<Response, Refusal> {
-    let study = client.app.jobs.find_study(client.name(), id).await?;
+    let study = StudyRecord::find(&client.app.jobs, client.name(), id).await?;
     let tag = tag_of(&study, form.word(), &client.app.edge);
     let name = Arc::from(client.name());
     let made = async {
