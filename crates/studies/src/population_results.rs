@@ -479,7 +479,7 @@ impl<'a> Inputs<'a> {
             .iter()
             .map(|member| population.values(*member))
             .collect();
-        let ranked = (0..population.varied.len()).map(|i| {
+        let ranked = (0..population.varied().len()).map(|i| {
             let inputs: Vec<f64> = values.iter().map(|values| values[i]).collect();
             Ranked::new(members, &inputs)
         });

@@ -2,6 +2,7 @@
 
 use meshwright_engine::run::Run;
 use meshwright_wire::Problem;
+pub(crate) use meshwright_wire::testing::*;
 use serde_json::Value;
 
 use crate::Study;

@@ -92,7 +92,7 @@ const fn speed(title: &'static str) -> Number {
 
 /// The speeds of the driving gear.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Speeds {
+pub enum Speeds {
     /// In equal steps.
     Range(SpeedRange),
     /// One, in 1/min.

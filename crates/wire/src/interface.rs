@@ -12,7 +12,7 @@ use super::units::{Side, from_mm, plain, rounded_inward, to_mm};
 
 document! {
     /// One radius for each gear that has holes.
-    pub(super) struct EachRadius as "InterfaceRadii", "Interface radius of each gear" {
+    pub struct EachRadius as "InterfaceRadii", "Interface radius of each gear" {
         /// That of the driving gear.
         driving: Option<f64> = RADIUS,
         /// That of the driven gear.
@@ -27,7 +27,7 @@ const RADIUS: Optional<Number> = absent(
 
 /// The interface radii of both gears, in mm.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum InterfaceRadii {
+pub enum InterfaceRadii {
     /// The same for both; none where each gear has its own default.
     Common(Option<f64>),
     /// One each; none where that gear has its default.

@@ -6,7 +6,7 @@ use serde_json::{Map, Value};
 
 use super::declare;
 use super::problem::Code;
-use super::submission::Document;
+use super::submission::SubmissionDocument;
 
 /// A place in a submission.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -64,11 +64,6 @@ impl Pointer {
     /// Its steps, unescaped.
     pub fn steps(&self) -> &[String] {
         &self.steps
-    }
-
-    /// The number of its steps.
-    pub fn len(&self) -> usize {
-        self.steps.len()
     }
 
     /// Its last steps.

@@ -12,7 +12,7 @@ use super::problem::{Code, FieldError, Problem};
 /// entries each.
 pub const MOST_VALUES: u64 = 80_000;
 
-/// Refuses a document of more than `most` values. What is no JSON is told later, with its place.
+/// Refuses a document of more than `most` values. What is no JSON is reported later, with its place.
 ///
 /// # Errors
 ///

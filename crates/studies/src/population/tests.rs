@@ -2,15 +2,13 @@
 
 use meshwright_engine::gear::{SpurGear, ToothDeviations};
 use meshwright_engine::run::Run;
-use meshwright_wire::declare::Choice as _;
-use meshwright_wire::testing::{and, faults, refused};
 use meshwright_wire::{Code, Problem, Results, Status};
 use serde_json::{Value, json};
 
 use super::*;
 use crate::population_results::*;
 use crate::table::{RowState, Summary};
-use crate::testing::{self, STUB};
+use crate::testing::{self, STUB, and, faults, refused};
 use crate::{Design, Study};
 
 fn base() -> Value {

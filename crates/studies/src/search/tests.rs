@@ -3,13 +3,12 @@
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use meshwright_wire::solve;
-use meshwright_wire::testing::{and, echo, example, faults, refused};
 use meshwright_wire::warning::GearName;
 
 use super::*;
 use crate::searching::*;
 use crate::table::{Of, RowState, Summary};
-use crate::testing::{self, STUB, study};
+use crate::testing::{self, STUB, and, echo, example, faults, refused, study};
 use crate::{Design, Study};
 
 fn base() -> Value {

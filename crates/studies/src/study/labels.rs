@@ -23,7 +23,7 @@ pub(super) fn name_values(axes: &mut [Axis]) {
                         .bytes()
                         .all(|byte| byte.is_ascii_digit())
             };
-            let most = axis.path.len();
+            let most = axis.path.steps().len();
             let parts = (1..most).find(|&parts| !ambiguous(parts)).unwrap_or(most);
             axis.path.last(parts).join(".")
         })

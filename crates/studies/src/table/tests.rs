@@ -1,12 +1,11 @@
 //! What a table shows, and which designs are best.
 
+use meshwright_wire::Code;
 use meshwright_wire::results::Results;
-use meshwright_wire::testing::and;
 use serde_json::{Map, json};
 
 use super::*;
-use crate::Code;
-use crate::testing::STUB;
+use crate::testing::{STUB, and};
 
 /// A results document with two torques, of which the second has no spectrum.
 fn document(mass: f64, ranges: [f64; 2], stiffness: f64) -> Value {

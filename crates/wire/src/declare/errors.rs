@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use crate::problem::{FieldError, Problem};
 
-/// Errors beyond this number are not told; a document with so many is not a slip.
+/// Errors beyond this number are not reported; a document with so many is not a slip.
 const MOST_ERRORS: usize = 50;
 
 /// The errors found so far, with a bound on their number.
@@ -25,7 +25,7 @@ impl Errors {
         self.0.borrow().len()
     }
 
-    /// Whether no more are told.
+    /// Whether no more are reported.
     pub fn is_full(&self) -> bool {
         self.count() >= MOST_ERRORS
     }
@@ -35,7 +35,7 @@ impl Errors {
         self.0.into_inner()
     }
 
-    /// The value of `made`, if it could be made; else its faults are told.
+    /// The value of `made`, if it could be made; else its faults are reported.
     pub fn report<T>(&self, made: Result<T, impl IntoIterator<Item = FieldError>>) -> Option<T> {
         made.map_err(|faults| faults.into_iter().for_each(|fault| self.push(fault)))
             .ok()

@@ -102,7 +102,7 @@ impl<T: Kind + PartialEq> Kind for Vec<T> {
             let detail = format!("{place} has {count} {counted}; at most {most} {fit}.");
             return place.wrong(spec.too_many, detail, Some(most as f64));
         }
-        // All of them are looked at, so that all that are wrong are told.
+        // All of them are looked at, so that all that are wrong are reported.
         let read: Vec<Option<T>> = nodes
             .iter()
             .enumerate()

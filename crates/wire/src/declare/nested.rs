@@ -228,7 +228,7 @@ macro_rules! document {
         impl $Object {
             $(
                 $(#[doc = $sentence])*
-                pub const $field:
+                $visibility const $field:
                     $crate::declare::Declared<<$kind as $crate::declare::Kind>::Spec> =
                     $crate::declare::Declared::new(
                         stringify!($field),
@@ -242,7 +242,7 @@ macro_rules! document {
             const NAME: &'static str = $name;
 
             fn read_fields(reader: &mut $crate::declare::ObjectReader<'_>) -> Option<Self> {
-                // All of them are read, so that all that is wrong is told.
+                // All of them are read, so that all that is wrong is reported.
                 $(let $field = Self::$field.read(reader);)*
                 Some(Self { $($field: $field?),* })
             }

@@ -144,12 +144,12 @@ pub fn escaped(key: &str) -> String {
 }
 
 /// The pointer to `key` in the object at `pointer`.
-pub fn joined(pointer: &str, key: &str) -> String {
+pub(super) fn joined(pointer: &str, key: &str) -> String {
     format!("{pointer}/{}", escaped(key))
 }
 
 /// The first characters of a text, for a message.
-pub fn shortened(text: &str) -> String {
+pub(super) fn shortened(text: &str) -> String {
     const MOST: usize = 60;
     match text.char_indices().nth(MOST) {
         None => text.to_owned(),

@@ -63,7 +63,7 @@ impl fmt::Display for Location<'_> {
 
 /// One object of the document, and which of its fields have been asked for.
 ///
-/// Every method reports what is wrong and answers `None` then; reading goes on, so that all errors are told together.
+/// Every method reports what is wrong and answers `None` then; reading goes on, so that all errors are reported together.
 /// What nobody asked for is refused when the reading is [`finished`](ObjectReader::finish).
 pub struct ObjectReader<'a> {
     place: Location<'a>,
@@ -157,7 +157,7 @@ impl<'a> ObjectReader<'a> {
     /// Reports that the object is of no kind that there is.
     pub fn refuse_kind<T>(&mut self, node: Option<&Node>, kinds: &[&str]) -> Option<T> {
         let (place, kinds) = (self.place_of("kind"), kinds.join(", "));
-        // Which fields belong here is not known, so none is told to be unknown.
+        // Which fields belong here is not known, so none is reported as unknown.
         self.fields = &[];
         match node {
             Some(node) => place.wrong_kind(node, &format!("one of {kinds}")),

@@ -15,8 +15,8 @@ pub(super) use document::MOST_TAGS;
 pub(super) use document::OUTPUT_TORQUE;
 pub use document::{MOST_TORQUES, TAGS};
 
-pub(super) use document::Document;
 use document::FaceRows;
+pub(super) use document::SubmissionDocument;
 
 use super::declare::{
     Choice, EACH, Errors, Kind, Location, Node, Object as _, ObjectReader, utoipa_schema, word,

@@ -3,7 +3,7 @@
 use meshwright_engine::gear::{Core, FaceEnds, Hole, HoleShape};
 use serde_json::{Value, json};
 
-use super::{fault, faults, mended, near, data_of};
+use super::{data_of, fault, faults, mended, near};
 use crate::Code;
 use crate::testing::{and, refused};
 

@@ -3,7 +3,7 @@
 use meshwright_engine::gear::Protuberance;
 use serde_json::{Value, json};
 
-use super::{fault, data_of, with};
+use super::{data_of, fault, with};
 use crate::Code;
 use crate::testing::{echo, parse};
 
@@ -43,7 +43,10 @@ fn a_hob_that_cannot_be_is_answered_with_the_nearest_that_can() {
     ] {
         let found = fault(&fields, &format!("protuberance/{place}"), Code::OutOfRange);
         let nearest_found = found.nearest.expect("one that would do");
-        assert!((nearest_found - nearest).abs() < 1e-4 * nearest, "{found:?}");
+        assert!(
+            (nearest_found - nearest).abs() < 1e-4 * nearest,
+            "{found:?}"
+        );
     }
     let none = json!({ "protuberance": { "height_mm": 1.0 } });
     fault(&none, "protuberance/amount_um", Code::MissingField);

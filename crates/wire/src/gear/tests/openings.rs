@@ -8,7 +8,7 @@ use meshwright_engine::run::Run;
 use meshwright_exchange::dxf::outline;
 use serde_json::{Value, json};
 
-use super::{fault, faults, mended, near, data_of};
+use super::{data_of, fault, faults, mended, near};
 use crate::Code;
 use crate::outline::PairOutline;
 use crate::solve::solve;

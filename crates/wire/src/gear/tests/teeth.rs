@@ -3,7 +3,7 @@
 use meshwright_engine::gear::{ModificationData, TablePlaces, TipEdge};
 use serde_json::{Value, json};
 
-use super::{fault, faults, near, data_of, with};
+use super::{data_of, fault, faults, near, with};
 use crate::Code;
 use crate::testing::{and, parse, refused};
 
