@@ -105,7 +105,7 @@ pub struct Config {
 
     /// Positions times torques of one preview, at most.
     #[arg(long, env = "MESHWRIGHT_PREVIEW_POSITIONS", default_value_t = 4000, value_name = "NUMBER",
-          value_parser = clap::value_parser!(u64).range(1..=meshwright_wire::Limits::of().positions))]
+          value_parser = clap::value_parser!(u64).range(1..=meshwright_wire::submission::MOST_POSITIONS))]
     pub preview_positions: u64,
 
     /// Time for one preview, from its request to its answer.

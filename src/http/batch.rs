@@ -10,8 +10,8 @@ use serde_json::value::RawValue;
 use utoipa::ToSchema;
 
 use super::blocking::blocking;
+use super::body::JsonBody;
 use super::client::Client;
-use super::document::Document;
 use super::headers::Made;
 use super::parameters::IdempotencyKey;
 use super::problem::Refusal;
@@ -67,7 +67,7 @@ pub(super) struct BatchItem<'a> {
     params(IdempotencyKey),
     responses(
         (status = 202, description = "What came of each submission. None may have been taken.", body = BatchAnswer),
-        Document<4>,
+        JsonBody<4>,
         (status = 422, description = "The body is no batch, has more than 100 submissions, or fields that no submission may have; `errors` says which."),
         (status = 503, description = "Too many batches come at once. Try again after `Retry-After` seconds."),
     ),
@@ -75,7 +75,7 @@ pub(super) struct BatchItem<'a> {
 pub(super) async fn submit(
     client: Client,
     IdempotencyKey(key): IdempotencyKey,
-    document: Document<4>,
+    document: JsonBody<4>,
 ) -> Result<Response, Refusal> {
     let read = blocking(client.name(), move |_| read(&document)).await??;
     let jobs = read.into_iter().enumerate().map(|(i, submission)| {
@@ -124,7 +124,7 @@ fn key_within(key: &str, place: usize) -> String {
 }
 
 fn read<const MIB: usize>(
-    document: &Document<MIB>,
+    document: &JsonBody<MIB>,
 ) -> Result<Vec<Result<Submission, Problem>>, Problem> {
     let batch: Batch<'_> = document.parse("batch of submissions")?;
     let count = batch.submissions.len();

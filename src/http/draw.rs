@@ -5,8 +5,8 @@ use meshwright_wire::draw::DrawDocument;
 use meshwright_wire::{Draw, DrawnDeviations};
 
 use super::blocking::blocking;
+use super::body::JsonBody;
 use super::client::Onlooker;
-use super::document::Document;
 use super::problem::Refusal;
 
 /// Draw deviations
@@ -19,13 +19,13 @@ use super::problem::Refusal;
     request_body(content = DrawDocument, content_type = "application/json", description = "The gear, the class, and the seed."),
     responses(
         (status = 200, description = "The teeth.", body = DrawnDeviations),
-        Document,
+        JsonBody,
         (status = 422, description = "The gear cannot be made, there is no such class, or fewer than one gear in a hundred would pass the inspection; `errors` says which field is why."),
     ),
 )]
 pub(super) async fn draw(
     onlooker: Onlooker,
-    Document(document, _memory): Document,
+    JsonBody(document, _memory): JsonBody,
 ) -> Result<Json<DrawnDeviations>, Refusal> {
     let made = blocking(onlooker.name(), move |_| {
         Draw::parse(&document).and_then(|draw| draw.drawn())

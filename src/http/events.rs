@@ -17,8 +17,9 @@ use super::app::App;
 use super::client::{Client, Pass};
 use super::parameters::JobId;
 use super::problem::Refusal;
+use super::resource;
 use super::view::JobView;
-use crate::jobs::{News, Progress, Status};
+use crate::jobs::{Job, News, Progress, Resource as _, Status};
 
 /// While nothing happens, it is looked so often whether who watches may still do so.
 const LOOK_AT_KEYS: Duration = Duration::from_secs(1);
@@ -87,17 +88,7 @@ impl From<WatchEvent> for Event {
     ),
 )]
 pub(super) async fn events(client: Client, JobId(id): JobId) -> Result<Response, Refusal> {
-    client.app.jobs.find(client.name(), id).await?;
-    let place = place(&client.app, client.name())?;
-    let watch = Watch {
-        news: client.app.jobs.news(id),
-        app: client.app.clone(),
-        client: client.member.client,
-        id,
-        status: None,
-        progress: None,
-    };
-    Ok(answer(client.app, watch, client.pass, place))
+    resource::watch::<Job>(client, id).await
 }
 
 /// What an event tells: its name, and its data as JSON.
@@ -165,7 +156,7 @@ async fn next(app: &App, watch: &mut impl Watching, pass: &Pass) -> Option<Named
 }
 
 /// One client that watches one job.
-struct Watch {
+pub(super) struct Watch {
     app: App,
     client: String,
     id: Uuid,
@@ -182,7 +173,9 @@ impl Watching for Watch {
             return None;
         }
         loop {
-            let job = self.app.jobs.find(&self.client, self.id).await.ok()?;
+            let job = Job::find(&self.app.jobs, &self.client, self.id)
+                .await
+                .ok()?;
             if self.status != Some(job.status) {
                 self.status = Some(job.status);
                 return event(EventName::Status, &JobView::of(&job, &self.app.edge));
@@ -206,6 +199,18 @@ impl Watching for Watch {
 }
 
 impl Watch {
+    /// Of one that knows nothing of the job so far.
+    pub(super) fn new(app: App, client: String, id: Uuid) -> Self {
+        Self {
+            news: app.jobs.news(id),
+            app,
+            client,
+            id,
+            status: None,
+            progress: None,
+        }
+    }
+
     /// Leaves time between two reports of progress; none when the service shuts down.
     async fn pause(&self) -> Option<()> {
         if self.progress.is_none() {

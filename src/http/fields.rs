@@ -30,7 +30,7 @@ use super::memory::Held;
 use super::parameters::{IfNoneMatch, JobId, Parameters, invalid};
 use super::problem::{Refusal, internal, of_missing_results};
 use crate::compute::PreviewError;
-use crate::jobs::Job;
+use crate::jobs::{Job, Resource as _};
 
 /// How long it may take, in times of a preview, and at most: nobody drags what is looked at here, and volumes of both gears take seconds.
 const PREVIEWS_LONG: u32 = 4;
@@ -214,7 +214,7 @@ impl Done {
     /// That of an id.
     pub(super) async fn find(client: &Client, id: Uuid) -> Result<Self, Problem> {
         let jobs = &client.app.jobs;
-        let job = jobs.find(client.name(), id).await?;
+        let job = Job::find(jobs, client.name(), id).await?;
         let Some(hash) = job.document.clone() else {
             return Err(of_missing_results(job.status, job.problem.as_ref()));
         };

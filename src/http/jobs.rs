@@ -1,24 +1,27 @@
 //! Looking at jobs, cancelling and deleting them.
 
-use axum::Json;
+use axum::body::Bytes;
 use axum::http::StatusCode;
 use axum::http::header::HeaderMap;
-use axum::response::{IntoResponse, Response};
-use meshwright_connections::Keep;
+use axum::response::Response;
 use meshwright_wire::Problem;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use utoipa::IntoParams;
 use uuid::Uuid;
 
-use super::answer::{json, tag_of_parts, tell_when_to_return};
-use super::blocking::turn_to_read;
+use meshwright_connections::Tag;
+
+use super::app::App;
 use super::client::Client;
+use super::edge::Edge;
+use super::events::Watch;
 use super::page::{self, LARGEST_LIMIT, Page, USUAL_LIMIT};
 use super::parameters::{IfNoneMatch, JobId, Parameters, invalid};
 use super::prefer::Wait;
 use super::problem::Refusal;
+use super::resource::{self, Shown};
 use super::view::JobView;
-use crate::jobs::{Filter, Membership, Status};
+use crate::jobs::{Filter, Job, JobError, Jobs, Membership, Status};
 
 /// What to list.
 #[derive(Deserialize, IntoParams)]
@@ -113,7 +116,7 @@ impl ListParameters {
     }
 
     /// What the address of the next page has in common with this one's.
-    fn pairs<'a>(&'a self, limit: &'a str) -> [(&'static str, Option<&'a str>); 7] {
+    fn pairs(&self) -> [(&'static str, Option<&str>); 6] {
         [
             ("status", self.status.as_deref()),
             ("tag", self.tag.as_deref()),
@@ -121,7 +124,6 @@ impl ListParameters {
             ("study", self.study.as_deref()),
             ("submitted_since", self.submitted_since.as_deref()),
             ("submitted_before", self.submitted_before.as_deref()),
-            ("limit", Some(limit)),
         ]
     }
 }
@@ -158,17 +160,8 @@ pub(super) async fn list(
     client: Client,
     Parameters(parameters): Parameters<ListParameters>,
 ) -> Result<Response, Refusal> {
-    let limit = parameters.limit()?;
-    let app = &client.app;
-    let _turn = turn_to_read(client.name()).await;
-    let found = app
-        .jobs
-        .list(client.name(), &parameters.filter()?, limit)
-        .await?;
-    let limit = limit.to_string();
-    let pairs = parameters.pairs(&limit);
-    let view = |job| JobView::of(job, &app.edge);
-    Ok(page::answer(&app.edge, "/v1/jobs", &pairs, &found, view))
+    let (limit, filter) = (parameters.limit()?, parameters.filter()?);
+    resource::list::<Job>(client, filter, limit, &parameters.pairs()).await
 }
 
 /// Look at a job
@@ -189,28 +182,7 @@ pub(super) async fn show(
     JobId(id): JobId,
     request: HeaderMap,
 ) -> Result<Response, Refusal> {
-    let wait = wait.grant(&client);
-    let job = match wait.patience() {
-        Some(patience) => {
-            let job = client.app.jobs.wait(client.name(), id, patience).await?;
-            client.check_again().await?;
-            job
-        }
-        None => client.app.jobs.find(client.name(), id).await?,
-    };
-
-    // The submission never changes; what has not changed is answered without reading it.
-    let small = JobView::of(&job, &client.app.edge).to_json();
-    let tag = tag_of_parts(&["job", &String::from_utf8_lossy(&small)]);
-    let whole = async {
-        let submission = client.app.jobs.submission(id).await?;
-        let body = JobView::whole(&job, &submission, &client.app.edge).to_json();
-        Ok::<_, Refusal>(json(body))
-    };
-    let mut response = tag.answer(Keep::AskAgain, &request, whole).await?;
-    wait.acknowledge(response.headers_mut());
-    tell_when_to_return(job.status.has_ended(), &mut response);
-    Ok(response)
+    resource::show::<Job>(client, wait, id, request).await
 }
 
 /// Cancel a job
@@ -225,12 +197,7 @@ pub(super) async fn show(
     ),
 )]
 pub(super) async fn cancel(client: Client, JobId(id): JobId) -> Result<Response, Refusal> {
-    let job = client.app.jobs.cancel(client.name(), id).await?;
-    Ok((
-        StatusCode::ACCEPTED,
-        Json(JobView::of(&job, &client.app.edge)),
-    )
-        .into_response())
+    resource::cancel::<Job>(client, id).await
 }
 
 /// Delete a job
@@ -244,6 +211,29 @@ pub(super) async fn cancel(client: Client, JobId(id): JobId) -> Result<Response,
     ),
 )]
 pub(super) async fn delete(client: Client, JobId(id): JobId) -> Result<StatusCode, Refusal> {
-    client.app.jobs.delete(client.name(), id).await?;
-    Ok(StatusCode::NO_CONTENT)
+    resource::delete::<Job>(client, id).await
+}
+
+impl Shown for Job {
+    const PATH: &'static str = "/v1/jobs";
+
+    type Watch = Watch;
+
+    fn view(&self, edge: &Edge) -> impl Serialize {
+        JobView::of(self, edge)
+    }
+
+    async fn whole_view(&self, jobs: &Jobs, edge: &Edge) -> Result<Bytes, JobError> {
+        let submission = jobs.submission(self.id).await?;
+        Ok(JobView::whole(self, &submission, edge).to_json())
+    }
+
+    fn tag(&self, edge: &Edge) -> Tag {
+        let small = JobView::of(self, edge).to_json();
+        Tag::of(&["job", &String::from_utf8_lossy(&small)])
+    }
+
+    fn watch(app: App, client: String, id: Uuid) -> Watch {
+        Watch::new(app, client, id)
+    }
 }

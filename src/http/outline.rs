@@ -7,8 +7,8 @@ use meshwright_wire::{PairOutline, Submission};
 
 use super::answer::json;
 use super::blocking::blocking;
+use super::body::JsonBody;
 use super::client::Onlooker;
-use super::document::Document;
 use super::pictures;
 use super::problem::{Refusal, internal};
 
@@ -22,14 +22,14 @@ use super::problem::{Refusal, internal};
     request_body(content = Submission, content_type = "application/json", description = "The submission."),
     responses(
         (status = 200, description = "The outline.", content((PairOutline = "application/json"), (String = "image/svg+xml"))),
-        Document,
+        JsonBody,
         (status = 422, description = "The pair cannot be made; `errors` says which field is why."),
     ),
 )]
 pub(super) async fn outline(
     onlooker: Onlooker,
     request: HeaderMap,
-    Document(document, _memory): Document,
+    JsonBody(document, _memory): JsonBody,
 ) -> Result<Response, Refusal> {
     let as_picture = wants_picture(&request);
     let made = blocking(onlooker.name(), move |_| {

@@ -4,8 +4,8 @@ use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE, HeaderName};
 use axum::response::{IntoResponse, Response};
 use meshwright_wire::Preview;
 
+use super::body::JsonBody;
 use super::client::Client;
-use super::document::Document;
 use super::problem::Refusal;
 use crate::compute::Previewed;
 
@@ -28,7 +28,7 @@ use crate::compute::Previewed;
             ("Server-Timing" = String, description = "`engine`: time of the computation; `wait`: time until there were threads for it; both in ms."),
             ("Cache-Control" = String, description = "`no-store`."),
         )),
-        Document,
+        JsonBody,
         (status = 409, description = "A newer request with the same `preview_id` took the place of this one."),
         (status = 422, description = "The submission cannot be computed, or is too large or too long for a preview; `errors` says which field is why. `POST /v1/jobs` takes more."),
         (status = 503, description = "As many previews are computed as the service takes at once, or it is shutting down. Try again after `Retry-After` seconds."),
@@ -36,7 +36,7 @@ use crate::compute::Previewed;
 )]
 pub(super) async fn preview(
     client: Client,
-    Document(document, memory): Document,
+    JsonBody(document, memory): JsonBody,
 ) -> Result<Response, Refusal> {
     let preview = Preview::parse(&document, client.app.previews.rules().most_positions)?;
     drop((document, memory));

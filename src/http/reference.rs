@@ -6,7 +6,10 @@ use axum::Json;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
-use meshwright_wire::{Limits, Submission, Validation, view};
+use meshwright_studies::MOST_DESIGNS;
+use meshwright_studies::table::{QuantityEntry, quantities as all_quantities};
+use meshwright_wire::declare::document;
+use meshwright_wire::{Limits, Submission, Validation};
 use serde::Serialize;
 use serde_json::Value;
 use utoipa::ToSchema;
@@ -14,14 +17,13 @@ use utoipa::ToSchema;
 use super::app::App;
 use super::batch::MOST_IN_BATCH;
 use super::blocking::blocking;
+use super::body::JsonBody;
 use super::client::Onlooker;
-use super::document::Document;
 use super::problem::Refusal;
 use super::static_files::StaticFile;
 use crate::compute::PreviewRules;
 use crate::jobs::Rules;
 use crate::webhooks::most_webhooks;
-use meshwright_wire::study_table::{QuantityEntry, quantities as all_quantities};
 
 /// Check a submission
 ///
@@ -32,14 +34,14 @@ use meshwright_wire::study_table::{QuantityEntry, quantities as all_quantities};
     request_body(content = Submission, content_type = "application/json", description = "The submission."),
     responses(
         (status = 200, description = "The submission can be computed.", body = Validation),
-        Document,
+        JsonBody,
         (status = 422, description = "The submission cannot be computed; `errors` says which field is why."),
         (status = 503, description = "Too many submissions are checked at once. Try again after `Retry-After` seconds."),
     ),
 )]
 pub(super) async fn validate(
     onlooker: Onlooker,
-    Document(document, _memory): Document,
+    JsonBody(document, _memory): JsonBody,
 ) -> Result<Json<Validation>, Refusal> {
     // The estimate divides both gears into elements.
     let validation = blocking(onlooker.name(), move |_| {
@@ -48,9 +50,9 @@ pub(super) async fn validate(
     Ok(Json(validation.await??))
 }
 
-view! {
+document! {
     /// A submission to start from.
-    pub(super) struct Example as Example of (example: &meshwright_wire::Example) {
+    pub(super) struct Example as Example view of (example: &meshwright_wire::Example) {
         /// A short name.
         name: &'static str = example.name,
         /// What it shows.
@@ -115,11 +117,11 @@ pub(super) async fn quantities(request: HeaderMap) -> Response {
     QUANTITIES.answer(&request).await
 }
 
-view! {
+document! {
     /// The limits of every submission, and those of this service.
-    pub(super) struct ServiceLimits as ServiceLimits, "Limits" of (app: &App) {
+    pub(super) struct ServiceLimits as ServiceLimits, "Limits" view of (app: &App) {
         #[serde(flatten)]
-        submission: Limits = Limits::of(),
+        submission: Limits = Limits::of(MOST_DESIGNS),
         /// What previews are allowed.
         previews: PreviewLimits = PreviewLimits::of(app.previews.rules()),
         /// What one client is allowed.
@@ -127,9 +129,9 @@ view! {
     }
 }
 
-view! {
+document! {
     /// What one client is allowed, unless its key says otherwise.
-    pub(super) struct ClientLimits as ClientLimits, "ClientLimits" of (rules: &Rules) {
+    pub(super) struct ClientLimits as ClientLimits, "ClientLimits" view of (rules: &Rules) {
         /// The most jobs that may wait, those of studies aside.
         jobs_waiting: u32 = rules.client_queue_limit,
         /// The most designs of studies that may wait.
@@ -143,9 +145,10 @@ view! {
     }
 }
 
-view! {
+document! {
     /// What previews are allowed.
-    pub(super) struct PreviewLimits as PreviewLimits, "PreviewLimits" of (rules: PreviewRules) {
+    pub(super) struct PreviewLimits as PreviewLimits, "PreviewLimits"
+    view of (rules: PreviewRules) {
         /// The most positions times torques of one.
         positions: u64 = rules.most_positions,
         /// The most at once.

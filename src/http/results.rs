@@ -11,7 +11,7 @@ use super::blocking::blocking;
 use super::client::Client;
 use super::parameters::{IfNoneMatch, JobId};
 use super::problem::{Refusal, of_missing_results};
-use crate::jobs::{Document, Job, JobError};
+use crate::jobs::{Document, Job, JobError, Resource as _};
 
 /// Get the results
 ///
@@ -31,7 +31,7 @@ pub(super) async fn results(
     JobId(id): JobId,
     request: HeaderMap,
 ) -> Result<Response, Refusal> {
-    let job = client.app.jobs.find(client.name(), id).await?;
+    let job = Job::find(&client.app.jobs, client.name(), id).await?;
     answer(&client.app, &job, &request).await
 }
 

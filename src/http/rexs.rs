@@ -4,18 +4,19 @@ use axum::Json;
 use axum::response::Response;
 use meshwright_engine::run::Run;
 use meshwright_exchange::rexs::{Choices, Fault, Import, NotRead, Refused, import, stages};
-use meshwright_wire::{Code, FieldError, Problem, Submission, model_of, view};
+use meshwright_wire::declare::document;
+use meshwright_wire::{Code, FieldError, Problem, Submission, model_of};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use utoipa::{IntoParams, ToSchema};
 
 use super::answer::file;
 use super::blocking::blocking;
+use super::body::ModelBody;
 use super::client::{Client, Onlooker};
-use super::document::ModelDocument;
 use super::parameters::{JobId, Parameters};
 use super::problem::{Refusal, internal};
-use crate::jobs::JobError;
+use crate::jobs::{Job, JobError, Resource as _};
 
 /// Stages beyond this number are not looked at.
 const MOST_STAGES: usize = 20;
@@ -54,9 +55,9 @@ pub(super) struct ModelView {
     refused: Vec<RefusedView>,
 }
 
-view! {
+document! {
     /// An attribute of a model that was not read.
-    pub(super) struct NotReadView as NotRead, "NotRead" of (not_read: NotRead) {
+    pub(super) struct NotReadView as NotRead, "NotRead" view of (not_read: NotRead) {
         /// The component.
         component: String = not_read.component,
         /// Its attribute; null where nothing of the component was read.
@@ -64,9 +65,9 @@ view! {
     }
 }
 
-view! {
+document! {
     /// Why a stage of a model cannot be taken.
-    pub(super) struct RefusedView as RefusedPlace, "RefusedPlace" of (fault: Fault) {
+    pub(super) struct RefusedView as RefusedPlace, "RefusedPlace" view of (fault: Fault) {
         /// The component and its attribute, or the line, or the file.
         place: String = fault.place,
         /// What is wrong there, and what would do.
@@ -88,14 +89,14 @@ view! {
     responses(
         (status = 200, description = "The submissions.", body = ModelView),
         (status = 400, description = "A parameter is not understood."),
-        ModelDocument,
+        ModelBody,
         (status = 422, description = "It is no model, or none of its stages can be taken; the errors say why of each."),
     ),
 )]
 pub(super) async fn read(
     onlooker: Onlooker,
     Parameters(parameters): Parameters<ModelParameters>,
-    ModelDocument(model, memory): ModelDocument,
+    ModelBody(model, memory): ModelBody,
 ) -> Result<Json<ModelView>, Refusal> {
     let read = move |_: &Run| {
         let view = model_view(&model, &parameters);
@@ -220,7 +221,7 @@ const TIMES_THE_RESULTS: u64 = 8;
     ),
 )]
 pub(super) async fn write(client: Client, JobId(id): JobId) -> Result<Response, Refusal> {
-    let job = client.app.jobs.find(client.name(), id).await?;
+    let job = Job::find(&client.app.jobs, client.name(), id).await?;
     let submission = client.app.jobs.submission(job.id).await?;
     let stored = match &job.document {
         None => None,

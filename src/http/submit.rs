@@ -6,8 +6,8 @@ use serde_json::value::RawValue;
 
 use super::answer;
 use super::app::App;
+use super::body::JsonBody;
 use super::client::Client;
-use super::document::Document;
 use super::headers::Made;
 use super::memory::{AnswerMemory, SMALL_ANSWER};
 use super::parameters::IdempotencyKey;
@@ -31,7 +31,7 @@ use crate::jobs::Job;
             ("Retry-After" = u32, description = "Seconds after which it is worth looking."),
         )),
         (status = 200, description = "The job has ended: with `Prefer: wait` in time, and its `results` or its `problem` is inside; with a repeated `Idempotency-Key` meanwhile.", body = JobView),
-        Document,
+        JsonBody,
         (status = 422, description = "The submission cannot be computed; `errors` says which field is why. Or the key was used for another submission."),
         (status = 429, description = "More jobs of this client wait than may."),
         (status = 503, description = "The queue is full, nothing can be stored, or the service is shutting down. Try again after `Retry-After` seconds."),
@@ -41,7 +41,7 @@ pub(super) async fn submit(
     client: Client,
     IdempotencyKey(key): IdempotencyKey,
     wait: Wait,
-    Document(document, memory): Document,
+    JsonBody(document, memory): JsonBody,
 ) -> Result<Response, Refusal> {
     let submission = Submission::parse(&document)?;
     // What was read is small now, and its client may wait for long.

@@ -22,7 +22,7 @@ use super::client::Client;
 use super::parameters::{IfNoneMatch, JobId, Parameters};
 use super::pictures::{self, Picture};
 use super::problem::{Refusal, internal, of_missing_results};
-use crate::jobs::{Document, JobError};
+use crate::jobs::{Document, Job, JobError, Resource as _};
 
 /// The text of the results, what is read of it, and the table take so many times its bytes together.
 const TIMES_THE_RESULTS: u64 = 4;
@@ -262,7 +262,7 @@ pub(super) async fn table(
 ) -> Result<Response, Refusal> {
     let wanted = find_file(&file)?;
     let JobId(id) = JobId::of(&id)?;
-    let job = client.app.jobs.find(client.name(), id).await?;
+    let job = Job::find(&client.app.jobs, client.name(), id).await?;
     let Some(hash) = &job.document else {
         return Err(of_missing_results(job.status, job.problem.as_ref()).into());
     };

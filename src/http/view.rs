@@ -2,7 +2,8 @@
 
 use axum::body::Bytes;
 use jiff::Timestamp;
-use meshwright_wire::{Kept, Status, method_schema, view};
+use meshwright_wire::declare::document;
+use meshwright_wire::{Kept, Status, method_schema};
 use serde_json::Value;
 use serde_json::value::RawValue;
 use uuid::Uuid;
@@ -10,9 +11,9 @@ use uuid::Uuid;
 use super::edge::Edge;
 use crate::jobs::{Job, shown_kept, shown_status};
 
-view! {
+document! {
     /// A job: one submission, where it stands, and where to find what belongs to it.
-    pub(super) struct JobView<'a> as Job of (job: &'a Job, edge: &Edge) {
+    pub(super) struct JobView<'a> as Job view of (job: &'a Job, edge: &Edge) {
         /// The id of the job.
         id: Uuid = job.id,
         status: Status = shown_status(job.status),
@@ -45,7 +46,10 @@ view! {
         keep?: Kept = Some(shown_kept(job.keep)).filter(|keep| *keep != Kept::Results),
         /// Of a failed job: why.
         #[schema(value_type = Option<meshwright_wire::Problem>)]
-        problem?: Value = job.problem.clone().map(|problem| with_public_type(problem, &edge.public_url)),
+        problem?: Value = job
+            .problem
+            .clone()
+            .map(|problem| with_public_type(problem, &edge.public_url)),
         links: Links = Links::of(job, edge),
         /// The submission with every default filled in. Absent in lists.
         #[schema(value_type = Option<meshwright_wire::Submission>)]
@@ -57,9 +61,9 @@ view! {
     }
 }
 
-view! {
+document! {
     /// Where to find what belongs to a job.
-    pub(super) struct Links as Links of (job: &Job, edge: &Edge) with {
+    pub(super) struct Links as Links view of (job: &Job, edge: &Edge) with {
         let address = edge.job(job.id);
     } {
         /// The job.

@@ -5,13 +5,14 @@ use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use jiff::Timestamp;
 use meshwright_store::webhooks::{Delivery, Webhook};
-use meshwright_wire::{Code, Problem, view};
+use meshwright_wire::declare::document;
+use meshwright_wire::{Code, Problem};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 use uuid::Uuid;
 
+use super::body::JsonBody;
 use super::client::Client;
-use super::document::Document;
 use super::parameters::{IdempotencyKey, WebhookId};
 use super::problem::Refusal;
 use crate::jobs::EventKind as Kind;
@@ -63,9 +64,10 @@ fn all_events() -> Vec<EventKind> {
     Kind::ALL.map(EventKind::from).to_vec()
 }
 
-view! {
+document! {
     /// A webhook.
-    pub(super) struct WebhookView as Webhook, "Webhook" of (webhook: Webhook, secret: Option<String>) {
+    pub(super) struct WebhookView as Webhook, "Webhook"
+    view of (webhook: Webhook, secret: Option<String>) {
         /// The id of the webhook.
         id: Uuid = webhook.id,
         /// Where messages are sent.
@@ -95,9 +97,9 @@ pub(super) struct WebhookListView {
     items: Vec<WebhookView>,
 }
 
-view! {
+document! {
     /// A message to a webhook, and what has come of it so far.
-    pub(super) struct DeliveryView as Delivery, "Delivery" of (delivery: Delivery) {
+    pub(super) struct DeliveryView as Delivery, "Delivery" view of (delivery: Delivery) {
         /// The id of the message, which its header `webhook-id` bears at every attempt.
         id: Uuid = delivery.id,
         /// What it tells: `job.ended`, `study.ended`, or `webhook.ping`, which tells nothing.
@@ -155,14 +157,14 @@ pub(super) struct DeliveryListView {
     responses(
         (status = 200, description = "The webhook that an earlier request with this key has made, with its secret.", body = WebhookView),
         (status = 201, description = "The webhook, with its secret, which is told this once.", body = WebhookView),
-        Document,
+        JsonBody,
         (status = 422, description = "Webhooks are off, the address is not one to send to, or the key was used for another webhook."),
     ),
 )]
 pub(super) async fn make(
     client: Client,
     IdempotencyKey(key): IdempotencyKey,
-    document: Document,
+    document: JsonBody,
 ) -> Result<Response, Refusal> {
     let new: NewWebhookDocument = document.parse("webhook")?;
     let mut events: Vec<Kind> = Vec::new();

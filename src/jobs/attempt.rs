@@ -13,7 +13,8 @@ use meshwright_engine::run::Run;
 use meshwright_store::{
     Came, Claim, Damaged, End, Ended, Job, Kept, Packed, Progress, Started, StoreError,
 };
-use meshwright_wire::{Code, Problem, SOLVER_VERSION, Submission, Summary, memory_of};
+use meshwright_studies::Summary;
+use meshwright_wire::{Code, Problem, SOLVER_VERSION, Submission, memory_of};
 use opentelemetry::KeyValue;
 use opentelemetry::trace::SpanId;
 use tokio::sync::mpsc;

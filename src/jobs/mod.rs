@@ -32,7 +32,7 @@ pub use keeper::{Keep, Keeper};
 pub use live::{Changes, News};
 pub(crate) use queue::KEY_LIFETIME;
 pub use queue::{Jobs, Member, Rules};
-pub use resource::{Listed, Submitted};
+pub use resource::{Listed, Resource, Submitted};
 pub use shown::{shown_kept, shown_status};
 pub use study::{gear_of, search_state, why_failed};
 pub use worker::{StartError, Workers};

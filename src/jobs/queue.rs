@@ -18,7 +18,7 @@ use super::clock::Clock;
 use super::error::JobError;
 use super::live::{Changes, Live, News};
 use super::others;
-use super::resource::{Listed, Submitted};
+use super::resource::{Listed, Resource, Submitted};
 use crate::machine;
 
 /// So long a repeated request is recognized by its key.
@@ -238,32 +238,8 @@ impl Jobs {
         }
     }
 
-    /// A job as it stands now.
-    ///
-    /// # Errors
-    ///
-    /// [`JobError::NotFound`], [`JobError::Unavailable`], [`JobError::Database`].
-    pub async fn find(&self, client: &str, id: Uuid) -> Result<Job, JobError> {
-        let job = self
-            .store
-            .find(client, id)
-            .await?
-            .ok_or(JobError::NotFound(id))?;
-        Ok(self.with_live_progress(job))
-    }
-
-    /// A job once it has ended, or as it stands after `patience`.
-    ///
-    /// # Errors
-    ///
-    /// [`JobError::NotFound`], [`JobError::Unavailable`], [`JobError::Database`].
-    pub async fn wait(&self, client: &str, id: Uuid, patience: Duration) -> Result<Job, JobError> {
-        let changes = self.changes();
-        let job = self.find(client, id).await?;
-        self.until_ended(changes, job, patience).await
-    }
-
-    /// The same of a job that stood like this when the `changes` had begun: where its end is told nobody looks for it.
+    /// A job that stood like this when the `changes` had begun, once it has ended, or as it stands after `patience`: where its end is among the changes the
+    /// store is not asked.
     ///
     /// # Errors
     ///
@@ -275,7 +251,7 @@ impl Jobs {
         patience: Duration,
     ) -> Result<Job, JobError> {
         let (client, id) = (job.client.clone(), job.id);
-        let look = || self.find(&client, id);
+        let look = || Job::find(self, &client, id);
         let ended = async {
             let mut job = job;
             while !job.status.has_ended() {
@@ -291,22 +267,6 @@ impl Jobs {
             () = tokio::time::sleep(patience) => look().await,
             () = self.stop().cancelled() => look().await,
         }
-    }
-
-    /// At most `limit` jobs, newest first.
-    ///
-    /// # Errors
-    ///
-    /// [`JobError::Database`].
-    pub async fn list(
-        &self,
-        client: &str,
-        filter: &Filter,
-        limit: u32,
-    ) -> Result<Listed<Job>, JobError> {
-        let found = self.store.list(client, filter, limit + 1).await?;
-        let found = found.into_iter().map(|job| self.with_live_progress(job));
-        Ok(Listed::first(found.collect(), limit, |job| job.sequence))
     }
 
     /// The results of a job that was found successful: where they are, and how many bytes their text has.
@@ -356,43 +316,6 @@ impl Jobs {
     pub async fn document_of(&self, job: &Job, stored: &Stored) -> Result<Document, JobError> {
         let document = self.store.document(&stored.hash).await?;
         document.ok_or(JobError::NotFound(job.id))
-    }
-
-    /// Ends a job that waits or runs. A job that was cancelled before stays so.
-    ///
-    /// # Errors
-    ///
-    /// [`JobError::Ended`] if it is successful or failed, [`JobError::NotFound`], [`JobError::Database`].
-    pub async fn cancel(&self, client: &str, id: Uuid) -> Result<Job, JobError> {
-        let running = self.live.running(id);
-        if let Some(job) = self.store.cancel(client, id, self.clock.now()).await? {
-            // If this future is dropped before the stop, the worker's next report finds out.
-            if let Some(running) = running.or_else(|| self.live.running(id)) {
-                running.stop();
-            }
-            self.live.changed_job(&job);
-            return Ok(job);
-        }
-        let job = self.find(client, id).await?;
-        if job.status == Status::Dismissed {
-            Ok(job)
-        } else {
-            Err(JobError::Ended(job.status))
-        }
-    }
-
-    /// Removes a job that does not run, and its results.
-    ///
-    /// # Errors
-    ///
-    /// [`JobError::Running`], [`JobError::NotFound`], [`JobError::Database`].
-    pub async fn delete(&self, client: &str, id: Uuid) -> Result<(), JobError> {
-        if self.store.delete(client, id).await? {
-            self.live.changed(id);
-            return Ok(());
-        }
-        self.find(client, id).await?;
-        Err(JobError::Running)
     }
 
     /// The queue as an operator sees it.
@@ -468,6 +391,69 @@ impl Jobs {
             job.progress = running.progress();
         }
         job
+    }
+}
+
+impl Resource for Job {
+    type Filter = Filter;
+
+    async fn find(jobs: &Jobs, client: &str, id: Uuid) -> Result<Self, JobError> {
+        let found = jobs.store.find(client, id).await?;
+        let job = found.ok_or(JobError::NotFound(id))?;
+        Ok(jobs.with_live_progress(job))
+    }
+
+    async fn wait(
+        jobs: &Jobs,
+        client: &str,
+        id: Uuid,
+        patience: Duration,
+    ) -> Result<Self, JobError> {
+        let changes = jobs.changes();
+        let job = Self::find(jobs, client, id).await?;
+        jobs.until_ended(changes, job, patience).await
+    }
+
+    async fn list(
+        jobs: &Jobs,
+        client: &str,
+        filter: &Filter,
+        limit: u32,
+    ) -> Result<Listed<Self>, JobError> {
+        let found = jobs.store.list(client, filter, limit + 1).await?;
+        let found = found.into_iter().map(|job| jobs.with_live_progress(job));
+        Ok(Listed::first(found.collect(), limit, |job| job.sequence))
+    }
+
+    async fn cancel(jobs: &Jobs, client: &str, id: Uuid) -> Result<Self, JobError> {
+        let running = jobs.live.running(id);
+        if let Some(job) = jobs.store.cancel(client, id, jobs.clock.now()).await? {
+            // If this future is dropped before the stop, the worker's next report finds out.
+            if let Some(running) = running.or_else(|| jobs.live.running(id)) {
+                running.stop();
+            }
+            jobs.live.changed_job(&job);
+            return Ok(job);
+        }
+        let job = Self::find(jobs, client, id).await?;
+        if job.status == Status::Dismissed {
+            Ok(job)
+        } else {
+            Err(JobError::Ended(job.status))
+        }
+    }
+
+    async fn delete(jobs: &Jobs, client: &str, id: Uuid) -> Result<(), JobError> {
+        if jobs.store.delete(client, id).await? {
+            jobs.live.changed(id);
+            return Ok(());
+        }
+        Self::find(jobs, client, id).await?;
+        Err(JobError::Running)
+    }
+
+    fn status(&self) -> Status {
+        self.status
     }
 }
 

@@ -1,6 +1,69 @@
 //! What jobs and studies have in common as things that a client submits and lists.
 
-use meshwright_store::Cursor;
+use std::time::Duration;
+
+use meshwright_store::{Cursor, Status};
+use uuid::Uuid;
+
+use super::error::JobError;
+use super::queue::Jobs;
+
+/// A job or a study of a client.
+///
+/// Each method fails with [`JobError::Unavailable`] or [`JobError::Database`] if the store does, and with [`JobError::NotFound`] or
+/// [`JobError::StudyNotFound`] where the client has none of this id.
+pub trait Resource: Sized + Send + Sync {
+    /// Which of them to list.
+    type Filter: Sync;
+
+    /// It as it stands now.
+    fn find(
+        jobs: &Jobs,
+        client: &str,
+        id: Uuid,
+    ) -> impl Future<Output = Result<Self, JobError>> + Send;
+
+    /// It once it has ended, or as it stands after `patience`.
+    fn wait(
+        jobs: &Jobs,
+        client: &str,
+        id: Uuid,
+        patience: Duration,
+    ) -> impl Future<Output = Result<Self, JobError>> + Send;
+
+    /// At most `limit` of them, newest first.
+    fn list(
+        jobs: &Jobs,
+        client: &str,
+        filter: &Self::Filter,
+        limit: u32,
+    ) -> impl Future<Output = Result<Listed<Self>, JobError>> + Send;
+
+    /// Ends it: what waits or runs of it is dismissed, and what has results keeps them. One that was cancelled before stays so.
+    ///
+    /// # Errors
+    ///
+    /// [`JobError::Ended`] or [`JobError::StudyEnded`] if it has ended otherwise.
+    fn cancel(
+        jobs: &Jobs,
+        client: &str,
+        id: Uuid,
+    ) -> impl Future<Output = Result<Self, JobError>> + Send;
+
+    /// Removes it, with its results.
+    ///
+    /// # Errors
+    ///
+    /// [`JobError::Running`] or [`JobError::StudyRunning`] if it is being computed.
+    fn delete(
+        jobs: &Jobs,
+        client: &str,
+        id: Uuid,
+    ) -> impl Future<Output = Result<(), JobError>> + Send;
+
+    /// Where it stands.
+    fn status(&self) -> Status;
+}
 
 /// A job or a study that answers a submission.
 #[derive(Debug, Clone, PartialEq)]

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use meshwright_store::{NewRow, SearchStep, StudyRecord};
-use meshwright_wire::{Design, RowState, Searching, Study};
+use meshwright_studies::{Design, RowState, Searching, Study};
 
 use super::designs::{CHUNK, Owner, blocking};
 use super::error::JobError;

@@ -4,16 +4,17 @@
 use std::time::Duration;
 
 use meshwright_engine::run::Run;
-use meshwright_store::{NewRow, NewStudy, StoreError, StudyFilter, StudyOutcome, StudyRecord};
+use meshwright_store::{NewRow, NewStudy, Status, StoreError, StudyFilter, StudyOutcome, StudyRecord};
+use meshwright_studies::Study;
+use meshwright_wire::DOCUMENT_VERSION;
 use meshwright_wire::hash::sha256_hex;
-use meshwright_wire::{DOCUMENT_VERSION, Study};
 use tracing::{error, info};
 use uuid::Uuid;
 
 use super::designs::{Owner, blocking, expand};
 use super::error::JobError;
 use super::queue::{Jobs, Member};
-use super::resource::{Listed, Submitted};
+use super::resource::{Listed, Resource, Submitted};
 use super::searches;
 
 impl Jobs {
@@ -75,7 +76,7 @@ impl Jobs {
                 });
             }
         };
-        let record = self.find_study(&member.client, id).await?;
+        let record = StudyRecord::find(self, &member.client, id).await?;
         Ok(Submitted { record, repeated })
     }
 
@@ -180,65 +181,6 @@ impl Jobs {
         Ok(())
     }
 
-    /// A study as it stands now.
-    ///
-    /// # Errors
-    ///
-    /// [`JobError::StudyNotFound`], [`JobError::Unavailable`], [`JobError::Database`].
-    pub async fn find_study(&self, client: &str, id: Uuid) -> Result<StudyRecord, JobError> {
-        self.store
-            .find_study(client, id)
-            .await?
-            .ok_or(JobError::StudyNotFound(id))
-    }
-
-    /// A study once it has ended, or as it stands after `patience`.
-    ///
-    /// # Errors
-    ///
-    /// [`JobError::StudyNotFound`], [`JobError::Unavailable`], [`JobError::Database`].
-    pub async fn wait_for_study(
-        &self,
-        client: &str,
-        id: Uuid,
-        patience: Duration,
-    ) -> Result<StudyRecord, JobError> {
-        /// Between two looks: the jobs of a study end much faster than anybody wants to know.
-        const PAUSE: Duration = Duration::from_millis(50);
-        let look = || self.find_study(client, id);
-        let ended = async {
-            let mut news = self.news(id);
-            loop {
-                let study = look().await?;
-                if study.status().has_ended() {
-                    return Ok(study);
-                }
-                news.changed_state().await;
-                tokio::time::sleep(PAUSE).await;
-            }
-        };
-        tokio::select! {
-            study = ended => study,
-            () = tokio::time::sleep(patience) => look().await,
-            () = self.stop().cancelled() => look().await,
-        }
-    }
-
-    /// At most `limit` studies, newest first.
-    ///
-    /// # Errors
-    ///
-    /// [`JobError::Unavailable`], [`JobError::Database`].
-    pub async fn list_studies(
-        &self,
-        client: &str,
-        filter: &StudyFilter,
-        limit: u32,
-    ) -> Result<Listed<StudyRecord>, JobError> {
-        let found = self.store.list_studies(client, filter, limit + 1).await?;
-        Ok(Listed::first(found, limit, |study| study.sequence))
-    }
-
     /// The study that was found, as it was sent, JSON.
     ///
     /// # Errors
@@ -269,29 +211,6 @@ impl Jobs {
         Ok(self.store.study_text(id, most).await?.transpose()?)
     }
 
-    /// Ends a study: what waits or runs of it is dismissed, what has results keeps them. A study that was cancelled
-    /// before stays so.
-    ///
-    /// # Errors
-    ///
-    /// [`JobError::StudyEnded`], [`JobError::StudyNotFound`], [`JobError::ShuttingDown`], [`JobError::Unavailable`],
-    /// [`JobError::Database`].
-    pub async fn cancel_study(&self, client: &str, id: Uuid) -> Result<StudyRecord, JobError> {
-        let cancelled = self
-            .store
-            .cancel_study(client, id, self.clock.now())
-            .await?;
-        let study = self.find_study(client, id).await?;
-        if !cancelled && study.cancelled_at.is_none() {
-            return Err(JobError::StudyEnded(study.status()));
-        }
-        let jobs = self.clone();
-        // A hundred thousand jobs take some seconds, and the client may go away meanwhile.
-        let dismissed = tokio::spawn(async move { jobs.dismiss_designs(id).await });
-        dismissed.await.map_err(|_| JobError::ShuttingDown)??;
-        self.find_study(client, id).await
-    }
-
     /// Dismisses what waits or runs of a study that was cancelled, some jobs at a time. What a process leaves of it the next
     /// one does.
     async fn dismiss_designs(&self, id: Uuid) -> Result<(), StoreError> {
@@ -310,19 +229,78 @@ impl Jobs {
             }
         }
     }
+}
 
-    /// Removes a study that has ended, with its jobs and their results.
-    ///
-    /// # Errors
-    ///
-    /// [`JobError::StudyRunning`], [`JobError::StudyNotFound`], [`JobError::Unavailable`], [`JobError::Database`].
-    pub async fn delete_study(&self, client: &str, id: Uuid) -> Result<(), JobError> {
-        if self.store.delete_study(client, id).await? {
-            self.live.changed(id);
+impl Resource for StudyRecord {
+    type Filter = StudyFilter;
+
+    async fn find(jobs: &Jobs, client: &str, id: Uuid) -> Result<Self, JobError> {
+        let found = jobs.store.find_study(client, id).await?;
+        found.ok_or(JobError::StudyNotFound(id))
+    }
+
+    async fn wait(
+        jobs: &Jobs,
+        client: &str,
+        id: Uuid,
+        patience: Duration,
+    ) -> Result<Self, JobError> {
+        /// Between two looks: the jobs of a study end much faster than anybody wants to know.
+        const PAUSE: Duration = Duration::from_millis(50);
+        let look = || Self::find(jobs, client, id);
+        let ended = async {
+            let mut news = jobs.news(id);
+            loop {
+                let study = look().await?;
+                if study.status().has_ended() {
+                    return Ok(study);
+                }
+                news.changed_state().await;
+                tokio::time::sleep(PAUSE).await;
+            }
+        };
+        tokio::select! {
+            study = ended => study,
+            () = tokio::time::sleep(patience) => look().await,
+            () = jobs.stop().cancelled() => look().await,
+        }
+    }
+
+    async fn list(
+        jobs: &Jobs,
+        client: &str,
+        filter: &StudyFilter,
+        limit: u32,
+    ) -> Result<Listed<Self>, JobError> {
+        let found = jobs.store.list_studies(client, filter, limit + 1).await?;
+        Ok(Listed::first(found, limit, |study| study.sequence))
+    }
+
+    async fn cancel(jobs: &Jobs, client: &str, id: Uuid) -> Result<Self, JobError> {
+        let now = jobs.clock.now();
+        let cancelled = jobs.store.cancel_study(client, id, now).await?;
+        let study = Self::find(jobs, client, id).await?;
+        if !cancelled && study.cancelled_at.is_none() {
+            return Err(JobError::StudyEnded(study.status()));
+        }
+        let own = jobs.clone();
+        // A hundred thousand jobs take some seconds, and the client may go away meanwhile.
+        let dismissed = tokio::spawn(async move { own.dismiss_designs(id).await });
+        dismissed.await.map_err(|_| JobError::ShuttingDown)??;
+        Self::find(jobs, client, id).await
+    }
+
+    async fn delete(jobs: &Jobs, client: &str, id: Uuid) -> Result<(), JobError> {
+        if jobs.store.delete_study(client, id).await? {
+            jobs.live.changed(id);
             return Ok(());
         }
-        self.find_study(client, id).await?;
+        Self::find(jobs, client, id).await?;
         Err(JobError::StudyRunning)
+    }
+
+    fn status(&self) -> Status {
+        self.status()
     }
 }
 

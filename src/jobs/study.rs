@@ -1,8 +1,9 @@
 //! What the record of a study says in the words of documents.
 
 use meshwright_store::{Status, StudyRecord};
+use meshwright_studies::SearchState;
 use meshwright_wire::warning::GearName;
-use meshwright_wire::{Code, Problem, SearchState};
+use meshwright_wire::{Code, Problem};
 
 /// The gear whose mass and holes the table of a study tells.
 pub fn gear_of(study: &StudyRecord) -> GearName {

@@ -287,6 +287,7 @@ mod tests {
 
     use super::super::clock::Clock;
     use super::super::queue::{Member, Rules};
+    use super::super::resource::Resource as _;
     use super::*;
     use crate::testing::RESULTS;
     use meshwright_store::{DatabaseAddress, Job, Status, Store};
@@ -369,13 +370,13 @@ mod tests {
         /// Comes when a job runs.
         async fn runs(&self, id: Uuid) {
             let mut news = self.jobs.news(id);
-            while self.jobs.find("portal", id).await.unwrap().status != Status::Running {
+            while Job::find(&self.jobs, "portal", id).await.unwrap().status != Status::Running {
                 news.changed_state().await;
             }
         }
 
         async fn ended(&self, id: Uuid) -> Job {
-            let ended = self.jobs.wait("portal", id, Duration::from_secs(60));
+            let ended = Job::wait(&self.jobs, "portal", id, Duration::from_secs(60));
             ended.await.unwrap()
         }
     }
@@ -410,7 +411,7 @@ mod tests {
         let workers = Workers::beside(desk.jobs.clone(), solve, 1, pace).await;
         let mut workers = workers.unwrap();
         desk.runs(ids[11]).await;
-        desk.jobs.cancel("portal", ids[7]).await.unwrap();
+        Job::cancel(&desk.jobs, "portal", ids[7]).await.unwrap();
         let before = desk.commits("yes");
         go.send(()).unwrap();
         for id in &ids {
@@ -458,7 +459,7 @@ mod tests {
         let changes = desk.jobs.changes();
         let id = desk.submit(1.0).await;
         desk.runs(id).await;
-        let job = desk.jobs.find("portal", id).await.unwrap();
+        let job = Job::find(&desk.jobs, "portal", id).await.unwrap();
         // From here on whoever looked would find nothing.
         desk.jobs.store.close_readers().await;
         go.send(()).unwrap();
@@ -488,7 +489,7 @@ mod tests {
             tokio::time::sleep(Duration::from_millis(1)).await;
         }
         if is_cancelled {
-            desk.jobs.cancel("portal", first).await.unwrap();
+            Job::cancel(&desk.jobs, "portal", first).await.unwrap();
             go.send(()).unwrap();
         }
         go.send(()).unwrap();

@@ -7,7 +7,7 @@ use std::time::Duration;
 use jiff::Timestamp;
 use meshwright::compute::Solve;
 use meshwright::jobs::{
-    Clock, DatabaseAddress, Filter, Job, Jobs, Member, Pace, Rules, Status, Store, Workers,
+    Clock, DatabaseAddress, Filter, Job, Jobs, Member, Pace, Resource as _, Rules, Status, Store, Workers,
 };
 use meshwright_wire::{Code, Problem, Results, Submission};
 use tempfile::TempDir;
@@ -95,7 +95,7 @@ fn case(torque: f64) -> Submission {
 }
 
 async fn ended(jobs: &Jobs, job: &Job) -> Job {
-    let job = jobs.wait(CLIENT, job.id, PATIENCE).await.unwrap();
+    let job = Job::wait(jobs, CLIENT, job.id, PATIENCE).await.unwrap();
     assert!(job.status.has_ended());
     job
 }
@@ -184,7 +184,7 @@ async fn a_job_whose_lease_ran_out_runs_again_elsewhere_and_the_late_results_are
         .unwrap();
     hands.advance(1);
     let second = begin().await;
-    assert_eq!(jobs.find(CLIENT, job.id).await.unwrap().attempt, 2);
+    assert_eq!(Job::find(&jobs, CLIENT, job.id).await.unwrap().attempt, 2);
     let late = Results {
         method: "late".into(),
         ..results()
@@ -223,7 +223,7 @@ async fn a_clock_that_is_set_forward_takes_no_job_from_its_worker_nor_a_key_from
     // While the only worker computes, nobody looks at the clock but the watch over leases. A look follows the end of the one
     // before: of three the second was at all leases.
     hands.looked_at(3).await;
-    let running = jobs.find(CLIENT, job.id).await.unwrap();
+    let running = Job::find(&jobs, CLIENT, job.id).await.unwrap();
     assert_eq!((running.status, running.attempt), (Status::Running, 1));
     let again = jobs.submit(&member(), &case(1.0), key()).await.unwrap();
     assert!(again.repeated, "the key is a moment old");
@@ -265,7 +265,9 @@ async fn a_clock_that_is_set_back_gives_no_negative_times_and_lists_new_jobs_fir
         "as the clock says"
     );
     let order = begin().await;
-    let page = jobs.list(CLIENT, &Filter::default(), 9).await.unwrap();
+    let page = Job::list(&jobs, CLIENT, &Filter::default(), 9)
+        .await
+        .unwrap();
     let ids: Vec<_> = page.items.iter().map(|job| job.id).collect();
     assert_eq!(
         ids,

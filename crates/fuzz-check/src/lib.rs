@@ -4,7 +4,8 @@
 use meshwright_engine::run::Run;
 use meshwright_exchange::dxf::outline;
 use meshwright_exchange::rexs::{Choices, import, is_model};
-use meshwright_wire::{Preview, Problem, Searching, Study, Submission, model_of};
+use meshwright_studies::{Searching, Study};
+use meshwright_wire::{Preview, Problem, Submission, model_of};
 
 /// So many designs of a study are expanded.
 const DESIGNS: usize = 8;

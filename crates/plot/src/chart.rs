@@ -1,7 +1,7 @@
 //! Curves and stems over a pair of axes.
 
 use super::simplify::simplified;
-use super::svg::{Anchor, Paint, Place, Svg};
+use super::svg::{Anchor, Paint, Point, Svg};
 use super::{Axis, Color, GRID, INK};
 
 /// How far a drawn curve may pass its points, in pixels.
@@ -108,7 +108,7 @@ impl<'a> Frame<'a> {
     }
 
     /// The place of a point; what lies beyond an end of an axis is put there.
-    pub(crate) fn at(&self, (x, y): (f64, f64)) -> Place {
+    pub(crate) fn at(&self, (x, y): (f64, f64)) -> Point {
         (self.across(x), self.up(y))
     }
 
@@ -201,12 +201,12 @@ fn draw_series(svg: &mut Svg, frame: &Frame<'_>, series: &Series) {
         }
         return;
     };
-    let places: Vec<Place> = finite.map(|point| frame.at(point)).collect();
+    let places: Vec<Point> = finite.map(|point| frame.at(point)).collect();
     svg.path(simplified(&places, TOLERANCE), series.color, width);
 }
 
 /// What stands at a point, where it is drawn by lines of a `width`.
-fn draw_point(svg: &mut Svg, place: Place, color: Color, (look, width): (Look, f64)) {
+fn draw_point(svg: &mut Svg, place: Point, color: Color, (look, width): (Look, f64)) {
     match look {
         Look::Crosses => svg.cross(place, 3.0, color, width),
         Look::Rings => svg.circle(place, 3.0, Paint::Line(color, width)),
@@ -225,7 +225,7 @@ fn line_width(look: Look) -> Option<f64> {
 }
 
 /// A sample of `look` for a legend, with its middle 12 pixels right of `place`.
-pub(crate) fn draw_sample(svg: &mut Svg, (x, y): Place, color: Color, look: Look) {
+pub(crate) fn draw_sample(svg: &mut Svg, (x, y): Point, color: Color, look: Look) {
     match (look, line_width(look)) {
         (_, Some(width)) => svg.path([(x, y), (x + 24.0, y)], color, width),
         (Look::Patch, None) => {

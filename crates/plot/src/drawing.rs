@@ -6,7 +6,7 @@ use meshwright_engine::gear::{
     GearPair, Hole, HoleShape, Member, SpurGear, Vector, radial, tangential,
 };
 
-use super::svg::{Paint, Place, Svg};
+use super::svg::{Paint, Point, Svg};
 use super::{Color, INK, Look, WHITE};
 
 /// The points of one flank and of one fillet.
@@ -48,7 +48,7 @@ impl Drawing {
         let (low, high) = self.window;
         let scale = (width / (high.x - low.x)).min(height / (high.y - low.y));
         let middle = (low + high) / 2.0;
-        let place = |p: Vector| -> Place {
+        let place = |p: Vector| -> Point {
             (
                 width / 2.0 + (p.x - middle.x) * scale,
                 TITLE + height / 2.0 - (p.y - middle.y) * scale,

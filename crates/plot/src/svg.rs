@@ -10,7 +10,7 @@ pub struct Color(pub u8, pub u8, pub u8);
 pub const WHITE: Color = Color(255, 255, 255);
 
 /// A place: to the right, and down.
-pub(crate) type Place = (f64, f64);
+pub(crate) type Point = (f64, f64);
 
 /// How a shape is painted.
 #[derive(Debug, Clone, Copy)]
@@ -59,7 +59,7 @@ impl Svg {
     }
 
     /// What `draw` draws, with its upper left corner at `corner`.
-    pub(crate) fn group(&mut self, corner: Place, draw: impl FnOnce(&mut Self)) {
+    pub(crate) fn group(&mut self, corner: Point, draw: impl FnOnce(&mut Self)) {
         let [x, y] = [corner.0, corner.1].map(number);
         self.line(format_args!("<g transform=\"translate({x} {y})\">"));
         draw(self);
@@ -69,7 +69,7 @@ impl Svg {
     /// A line through `points`.
     pub(crate) fn path(
         &mut self,
-        points: impl IntoIterator<Item = Place>,
+        points: impl IntoIterator<Item = Point>,
         color: Color,
         width: f64,
     ) {
@@ -77,11 +77,11 @@ impl Svg {
     }
 
     /// A region with the corners `points`.
-    pub(crate) fn region(&mut self, points: impl IntoIterator<Item = Place>, paint: Paint) {
+    pub(crate) fn region(&mut self, points: impl IntoIterator<Item = Point>, paint: Paint) {
         self.points("polygon", points, paint);
     }
 
-    fn points(&mut self, name: &str, points: impl IntoIterator<Item = Place>, paint: Paint) {
+    fn points(&mut self, name: &str, points: impl IntoIterator<Item = Point>, paint: Paint) {
         let points: Vec<String> = points
             .into_iter()
             .map(|(x, y)| format!("{},{}", number(x), number(y)))
@@ -94,7 +94,7 @@ impl Svg {
     }
 
     /// A rectangle between two opposite `corners`, whose sides are sharp, so that nothing shines through between two that touch.
-    pub(crate) fn rectangle(&mut self, corners: [Place; 2], paint: Paint) {
+    pub(crate) fn rectangle(&mut self, corners: [Point; 2], paint: Paint) {
         let [(a, b), (c, d)] = corners;
         let [x, y] = [a.min(c), b.min(d)].map(number);
         let [width, height] = [(c - a).abs(), (d - b).abs()].map(number);
@@ -105,7 +105,7 @@ impl Svg {
     }
 
     /// A circle.
-    pub(crate) fn circle(&mut self, center: Place, radius: f64, paint: Paint) {
+    pub(crate) fn circle(&mut self, center: Point, radius: f64, paint: Paint) {
         let [x, y, r] = [center.0, center.1, radius].map(number);
         self.line(format_args!(
             "<circle{} cx=\"{x}\" cy=\"{y}\" r=\"{r}\"/>",
@@ -114,7 +114,7 @@ impl Svg {
     }
 
     /// A cross whose arms reach so far from its `center` to the right and down.
-    pub(crate) fn cross(&mut self, center: Place, reach: f64, color: Color, width: f64) {
+    pub(crate) fn cross(&mut self, center: Point, reach: f64, color: Color, width: f64) {
         for way in [1.0, -1.0] {
             let ends = [-reach, reach].map(|arm| (center.0 + arm, center.1 + way * arm));
             self.path(ends, color, width);
@@ -122,23 +122,23 @@ impl Svg {
     }
 
     /// A text of a `size` with its middle line at `place`.
-    pub(crate) fn text(&mut self, text: &str, place: Place, size: f64, anchor: Anchor) {
+    pub(crate) fn text(&mut self, text: &str, place: Point, size: f64, anchor: Anchor) {
         self.write(text, place, size, anchor, "");
     }
 
     /// A heading, which is bold and begins at `place`.
-    pub(crate) fn heading(&mut self, text: &str, place: Place, size: f64) {
+    pub(crate) fn heading(&mut self, text: &str, place: Point, size: f64) {
         self.write(text, place, size, Anchor::Start, " font-weight=\"bold\"");
     }
 
     /// A text that is read upward, with its middle at `place`.
-    pub(crate) fn upward(&mut self, text: &str, place: Place, size: f64) {
+    pub(crate) fn upward(&mut self, text: &str, place: Point, size: f64) {
         let [x, y] = [place.0, place.1].map(number);
         let turned = format!(" transform=\"rotate(-90 {x} {y})\"");
         self.write(text, place, size, Anchor::Middle, &turned);
     }
 
-    fn write(&mut self, text: &str, place: Place, size: f64, anchor: Anchor, besides: &str) {
+    fn write(&mut self, text: &str, place: Point, size: f64, anchor: Anchor, besides: &str) {
         let anchor = match anchor {
             Anchor::Start => "",
             Anchor::Middle => " text-anchor=\"middle\"",

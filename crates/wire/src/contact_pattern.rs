@@ -5,7 +5,7 @@ use meshwright_engine::analysis::contact_pattern::{
 };
 use serde::{Deserialize, Serialize};
 
-use super::declare::answer;
+use super::declare::document;
 use super::units::{or_null, rounded_json, significant, to_mm, to_mpa, to_n_per_mm};
 
 /// Digits of a place, and of what acts there.
@@ -14,10 +14,11 @@ const DIGITS: (usize, usize) = (6, 5);
 /// Positions at which lines are told, of all curves together: some 100 places each.
 const MOST_POSITIONS: usize = 160;
 
-answer! {
+document! {
     /// Where the flanks touch over the period, and how they press there. z is that of the common face; +z is the side from which the driving
     /// gear is seen to turn counter-clockwise.
-    pub struct ContactPatternDocument as ContactPattern, "Contact pattern" of (pattern: &ContactPattern) with {
+    pub struct ContactPatternDocument as ContactPattern, "Contact pattern"
+    answer of (pattern: &ContactPattern) with {
         let (flanks, torques) = (&pattern.flanks, pattern.curves.len());
         let [driving, driven] = flanks.each_ref().map(PatternFlank::of);
     } {
@@ -30,14 +31,18 @@ answer! {
         /// The flank of gear 2.
         driven: PatternFlank = driven,
         /// One entry for each output torque that was asked for, torque 0 aside.
-        curves: Vec<PatternCurveDocument> =
-            pattern.curves.iter().map(|curve| PatternCurveDocument::of(curve, flanks, torques)).collect(),
+        curves: Vec<PatternCurveDocument> = pattern
+            .curves
+            .iter()
+            .map(|curve| PatternCurveDocument::of(curve, flanks, torques))
+            .collect(),
     }
 }
 
-answer! {
+document! {
     /// The height of a flank, in equal bands.
-    pub struct PatternFlank as PatternFlank, "Flank of a contact pattern" of (flank: &FlankBands) with {
+    pub struct PatternFlank as PatternFlank, "Flank of a contact pattern"
+    answer of (flank: &FlankBands) with {
         let [form, tip] = flank.ends;
     } {
         /// The diameter of the form circle, at which it begins, in mm.
@@ -49,10 +54,10 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// The pattern at one output torque.
     pub struct PatternCurveDocument as PatternCurve, "Contact pattern at a torque"
-    of (curve: &PatternCurve, flanks: &[FlankBands; 2], torques: usize) with {
+    answer of (curve: &PatternCurve, flanks: &[FlankBands; 2], torques: usize) with {
         let [driving, driven] = curve.largest.each_ref().map(|map| PatternPressure::of(map));
         let pressures = driving.pressure_mpa.iter().chain(&driven.pressure_mpa);
         let pressures = pressures.flat_map(|row| &row.0).flatten();
@@ -73,9 +78,10 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// The pressure on a flank.
-    pub struct PatternPressure as PatternPressure, "Pressure of a contact pattern" of (map: &[Vec<Pressure>]) {
+    pub struct PatternPressure as PatternPressure, "Pressure of a contact pattern"
+    answer of (map: &[Vec<Pressure>]) {
         /// The largest pressure over the span, in MPa: a row for each band from the form circle up, with a value for each strip. 0 where nothing
         /// touches; null where a sharp tip edge carries, at which pressure has no limit.
         #[schema(value_type = Vec<Vec<Option<f64>>>)]
@@ -97,21 +103,25 @@ impl Row {
     }
 }
 
-answer! {
+document! {
     /// The lines of contact at a mesh position.
     pub struct PatternPositionDocument as PatternPosition, "Contact lines at a position"
-    of (position: &PatternPosition, flanks: &[FlankBands; 2]) {
+    answer of (position: &PatternPosition, flanks: &[FlankBands; 2]) {
         /// The mesh position, in mesh periods.
         mesh_position: f64 = significant(position.mesh_position, 10),
         /// One entry for each pair of teeth that carries.
-        lines: Vec<PatternLineDocument> = position.lines.iter().map(|line| PatternLineDocument::of(line, flanks)).collect(),
+        lines: Vec<PatternLineDocument> = position
+            .lines
+            .iter()
+            .map(|line| PatternLineDocument::of(line, flanks))
+            .collect(),
     }
 }
 
-answer! {
+document! {
     /// The line of contact of one pair of teeth, slice by slice along z. All lists have one entry a slice.
     pub struct PatternLineDocument as PatternLine, "Contact line"
-    of (line: &PatternLine, flanks: &[FlankBands; 2]) with {
+    answer of (line: &PatternLine, flanks: &[FlankBands; 2]) with {
         let slices = || line.slices.iter();
         let diameters = |g: usize| {
             let radii = slices().map(|slice| flanks[g].radius(slice.roll_lengths[g]));
@@ -129,11 +139,14 @@ answer! {
         /// Where they touch the flank of gear 2: the diameter, in mm.
         driven_diameter_mm: Vec<f64> = diameters(1),
         /// The load on each for its width, along the transverse line of action, in N/mm.
-        load_n_per_mm: Vec<f64> = slices().map(|slice| rounded(to_n_per_mm(slice.force / slice.length))).collect(),
+        load_n_per_mm: Vec<f64> = slices()
+            .map(|slice| rounded(to_n_per_mm(slice.force / slice.length)))
+            .collect(),
         /// The largest pressure on each, in MPa; null at a sharp tip edge, where it has no limit.
         #[serde(serialize_with = "or_null")]
-        pressure_mpa: Vec<Option<f64>> =
-            slices().map(|slice| slice.pressure.map(|pressure| rounded(to_mpa(pressure)))).collect(),
+        pressure_mpa: Vec<Option<f64>> = slices()
+            .map(|slice| slice.pressure.map(|pressure| rounded(to_mpa(pressure))))
+            .collect(),
     }
 }
 

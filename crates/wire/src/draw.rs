@@ -5,7 +5,7 @@ use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::declare::{
-    EACH, Errors, Flag, Kind as _, Node, Number, Place, answer, document, flag, nested, number,
+    EACH, Errors, Flag, Kind as _, Location, Node, Number, document, flag, nested, number,
 };
 use super::gear::{DeviationsDocument, GearDocument};
 use super::problem::{Code, FieldError, Problem};
@@ -36,16 +36,16 @@ document! {
 }
 
 /// A class of ISO 1328-1:2013.
-pub(super) const CLASS: Number = number("Accuracy class", "1", 1.0, 11.0);
+pub const CLASS: Number = number("Accuracy class", "1", 1.0, 11.0);
 
 /// How well a process keeps its tolerances.
-pub(super) const CAPABILITY: Number = number("Process capability", "1", 0.1, 10.0).or(1.0);
+pub const CAPABILITY: Number = number("Process capability", "1", 0.1, 10.0).or(1.0);
 
 /// Whether gears that are not of their class are rejected and drawn again.
-pub(super) const INSPECTED: Flag = flag("Inspected", true);
+pub const INSPECTED: Flag = flag("Inspected", true);
 
 /// What random numbers are drawn from.
-pub(super) const SEED: Number = number("Seed", "1", 0.0, 4_294_967_295.0).or(1.0);
+pub const SEED: Number = number("Seed", "1", 0.0, 4_294_967_295.0).or(1.0);
 
 /// What is asked: teeth for a gear, of an accuracy, from a seed.
 pub struct Draw {
@@ -81,10 +81,13 @@ impl DrawDocument {
 /// Leads are drawn and inspected by themselves: they are independent of the other deviations, so that the law is that of whole gears that are drawn again, and the
 /// same teeth have them and have them not.
 #[derive(Debug, Clone)]
-pub(super) struct Accuracy {
-    pub(super) inspection: Inspection,
-    pub(super) capability: f64,
-    pub(super) is_inspected: bool,
+pub struct Accuracy {
+    /// Its tolerances, and what an inspection measures.
+    pub inspection: Inspection,
+    /// How many times three standard deviations of a deviation fit into its tolerance.
+    pub capability: f64,
+    /// Whether gears that do not pass are made again.
+    pub is_inspected: bool,
 }
 
 impl Accuracy {
@@ -92,16 +95,13 @@ impl Accuracy {
     const MOST_FOR_ONE: usize = 100;
 
     /// Teeth with their eccentricity, of the standard normal deviates of each attempt.
-    pub(super) fn teeth<N: Iterator<Item = f64>>(
-        &self,
-        normals: impl Fn(u32) -> N,
-    ) -> Option<Passed> {
+    pub fn teeth<N: Iterator<Item = f64>>(&self, normals: impl Fn(u32) -> N) -> Option<Passed> {
         let (tolerances, count) = (&self.inspection.tolerances, self.inspection.tooth_count());
         self.passed(|attempt| tolerances.draw(count, self.capability, normals(attempt)))
     }
 
     /// Slopes of the leads of those teeth.
-    pub(super) fn lead_slopes<N: Iterator<Item = f64>>(
+    pub fn lead_slopes<N: Iterator<Item = f64>>(
         &self,
         normals: impl Fn(u32) -> N,
     ) -> Option<Passed> {
@@ -123,12 +123,7 @@ impl Accuracy {
 
     /// Refuses a capability at which fewer than one gear in a hundred would pass, those with `lead_slopes` by them too, and names the least one at which
     /// so many do.
-    pub(super) fn refuse_hopeless(
-        &self,
-        lead_slopes: bool,
-        pointer: &str,
-        errors: &Errors,
-    ) -> Option<()> {
+    pub fn refuse_hopeless(&self, lead_slopes: bool, pointer: &str, errors: &Errors) -> Option<()> {
         const MADE: usize = 4000;
         if !self.is_inspected {
             return Some(());
@@ -166,7 +161,7 @@ impl Accuracy {
     }
 
     /// That none of very many gears has passed.
-    pub(super) fn none_passed(&self, pointer: &str) -> FieldError {
+    pub fn none_passed(&self, pointer: &str) -> FieldError {
         let detail = format!(
             "None of {} gears with {} teeth passed the inspection of their class at a capability of {}.",
             Inspection::MOST_ATTEMPTS,
@@ -177,9 +172,9 @@ impl Accuracy {
     }
 }
 
-answer! {
+document! {
     /// The tolerances of ISO 1328-1:2013 for a gear and a class, unrounded, in um.
-    pub struct TolerancesDocument as Tolerances, "Tolerances" of (tolerances: &Tolerances) {
+    pub struct TolerancesDocument as Tolerances, "Tolerances" answer of (tolerances: &Tolerances) {
         /// f_pT: of a single pitch.
         single_pitch: f64 = um(tolerances.single_pitch),
         /// F_pT: of the cumulative pitch around the gear.
@@ -224,7 +219,7 @@ impl Draw {
         refuse_many_values(document, MOST_VALUES)?;
         let node = Node::parse(document)?;
         let errors = Errors::default();
-        let asked = DrawDocument::read(&node, &Place::root(&errors), &EACH);
+        let asked = DrawDocument::read(&node, &Location::root(&errors), &EACH);
         let draw = asked.and_then(|asked| asked.made(&errors));
         errors.settle(draw)
     }
@@ -338,12 +333,12 @@ mod tests {
         assert!(parse(&solid).is_ok());
         // The reference diameter of a helical gear is larger, its normal module the same.
         let helical = asked(json!({ "helix_angle_deg": -30 }));
-        let told =
+        let tolerance =
             |answer: &Value, name: &str| answer["tolerances_um"][name].as_f64().expect("a number");
         let d = 100.0 / 30_f64.to_radians().cos();
         let expected = 2_f64.sqrt() * (0.001 * d + 0.8 + 5.0);
-        assert!((told(&helical, "single_pitch") - expected).abs() < 1e-8);
-        assert!(told(&helical, "helix_slope") > told(&without, "helix_slope"));
+        assert!((tolerance(&helical, "single_pitch") - expected).abs() < 1e-8);
+        assert!(tolerance(&helical, "helix_slope") > tolerance(&without, "helix_slope"));
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use meshwright_engine::analysis::fields::{Fields, GearField};
 
-use super::declare::answer;
+use super::declare::document;
 use super::units::{rounded_json, significant, to_mm, to_mpa, to_um};
 
 /// Digits of a place, and of what happens there: more than a drawing shows at any scale.
@@ -13,11 +13,11 @@ const DIGITS: (usize, usize) = (6, 4);
 /// A point or a displacement.
 type Plane = [f64; 2];
 
-answer! {
+document! {
     /// Where both gears end, how far their edges move under load and how stressed they are. The driving axis is the origin, the driven one
     /// lies on the x axis, and both gears stand as at this mesh position without load.
     pub struct LoadedEdges as LoadedEdges, "Edges under load"
-    of (fields: &Fields, output_torque_n_m: f64, mesh_position: f64) with {
+    answer of (fields: &Fields, output_torque_n_m: f64, mesh_position: f64) with {
         let [driving, driven] = &fields.gears;
     } {
         /// The mesh position in mesh periods.
@@ -33,34 +33,42 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// The edges of one gear.
-    pub struct GearEdges as GearEdges, "Edges of a gear" of (field: &GearField) with {
+    pub struct GearEdges as GearEdges, "Edges of a gear" answer of (field: &GearField) with {
         let (closed, open): (Vec<_>, Vec<_>) =
             chains(&field.edges).into_iter().partition(|chain| chain.first() == chain.last());
     } {
         /// The edge around the teeth, counter-clockwise, in a piece for each tooth; only the corners of elements.
         // Flanks are divided so finely that their corners are enough.
-        teeth: Vec<Edge> = open.iter().map(|chain| Edge::of(field, chain.iter().step_by(2).copied().collect())).collect(),
+        teeth: Vec<Edge> = open
+            .iter()
+            .map(|chain| Edge::of(field, chain.iter().step_by(2).copied().collect()))
+            .collect(),
         /// The edges of the holes and of the bore, closed; the bore is missing where the blank has no grid of its own.
         openings: Vec<Edge> = closed.into_iter().map(|chain| Edge::of(field, chain)).collect(),
     }
 }
 
-answer! {
+document! {
     /// An edge, node by node with the material on its left.
-    pub struct Edge as Edge, "Edge" of (field: &GearField, nodes: Vec<u32>) with {
+    pub struct Edge as Edge, "Edge" answer of (field: &GearField, nodes: Vec<u32>) with {
         let nodes = || nodes.iter().map(|node| *node as usize);
         let rounded = |value: f64| significant(value, DIGITS.1);
         let placed = |value: f64| significant(to_mm(value), DIGITS.0);
     } {
         /// Where its nodes lie before loading, in mm.
         #[schema(value_type = Vec<Vec<f64>>)]
-        at_mm: Vec<Plane> = nodes().map(|i| field.nodes[i]).map(|at| [at.x, at.y].map(placed)).collect(),
+        at_mm: Vec<Plane> = nodes()
+            .map(|i| field.nodes[i])
+            .map(|at| [at.x, at.y].map(placed))
+            .collect(),
         /// How far each moves against the hub of its gear, in um.
         #[schema(value_type = Vec<Vec<f64>>)]
-        displacement_um: Vec<Plane> =
-            nodes().map(|i| field.displacements[i]).map(|moved| [moved.x, moved.y].map(to_um).map(rounded)).collect(),
+        displacement_um: Vec<Plane> = nodes()
+            .map(|i| field.displacements[i])
+            .map(|moved| [moved.x, moved.y].map(to_um).map(rounded))
+            .collect(),
         /// The von Mises stress at each, in MPa. Near a contact it is that of the grid, which does not resolve the pressure.
         von_mises_mpa: Vec<f64> = nodes().map(|i| rounded(to_mpa(field.von_mises[i]))).collect(),
     }

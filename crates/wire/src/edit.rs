@@ -4,7 +4,7 @@ use super::declare::Node;
 
 /// What takes a change back.
 #[derive(Debug)]
-pub(super) enum Undo {
+pub enum Undo {
     /// This stood there.
     Restore(Node),
     /// The last field of the object was not there.
@@ -15,7 +15,7 @@ pub(super) enum Undo {
 
 impl Node {
     /// The value behind `steps`, if there is one.
-    pub(super) fn at(&self, steps: &[&str]) -> Option<&Self> {
+    pub fn at(&self, steps: &[&str]) -> Option<&Self> {
         steps.iter().try_fold(self, |here, step| match here {
             Self::Object(fields) => fields
                 .iter()
@@ -27,7 +27,7 @@ impl Node {
     }
 
     /// The number behind `steps`, if there is one.
-    pub(super) fn number_at(&self, steps: &[&str]) -> Option<f64> {
+    pub fn number_at(&self, steps: &[&str]) -> Option<f64> {
         match self.at(steps)? {
             Self::Number(number) => Some(*number),
             _ => None,
@@ -36,7 +36,7 @@ impl Node {
 
     /// Puts `value` behind `steps`. Objects on the way that are absent or null are made, lists are not. `None`, and nothing is
     /// changed, if something on the way is no object, or a list without this place.
-    pub(super) fn put<S: AsRef<str>>(&mut self, steps: &[S], value: Self) -> Option<Undo> {
+    pub fn put<S: AsRef<str>>(&mut self, steps: &[S], value: Self) -> Option<Undo> {
         let Some((step, rest)) = steps.split_first() else {
             return Some(Undo::Restore(std::mem::replace(self, value)));
         };
@@ -64,7 +64,7 @@ impl Node {
     }
 
     /// Takes a change back. Later changes have to be taken back before.
-    pub(super) fn undo(&mut self, undo: Undo) {
+    pub fn undo(&mut self, undo: Undo) {
         match (self, undo) {
             (here, Undo::Restore(value)) => *here = value,
             (Self::Object(fields), Undo::RemoveLast) => {

@@ -7,7 +7,7 @@ use serde::Serializer;
 use serde_json::{Value, json};
 
 use super::declare::{
-    EACH, Kind, Named, Node, Number, Place, absent, document, number, word, words,
+    EACH, Kind, Location, Named, Node, Number, absent, document, number, word, words,
 };
 
 words! {
@@ -92,7 +92,7 @@ const fn speed(title: &'static str) -> Number {
 
 /// The speeds of the driving gear.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Speeds {
+pub enum Speeds {
     /// In equal steps.
     Range(SpeedRange),
     /// One, in 1/min.
@@ -124,7 +124,7 @@ impl Speeds {
 impl Kind for Speeds {
     type Spec = ();
 
-    fn read(node: &Node, place: &Place<'_>, _: &()) -> Option<Self> {
+    fn read(node: &Node, place: &Location<'_>, _: &()) -> Option<Self> {
         match node {
             Node::Object(_) => SpeedRange::read(node, place, &EACH).map(Self::Range),
             Node::Number(_) => f64::read(node, place, &speed("Speed")).map(Self::One),

@@ -4,12 +4,12 @@ use meshwright_engine::analysis::Case;
 use meshwright_engine::analysis::RotationSpeed;
 use meshwright_engine::gear::{GearPair, Member, SolidGear, SolidPair};
 
-use super::declare::answer;
-use super::units::{to_mm, untold};
+use super::declare::document;
+use super::units::{not_a_number, to_mm};
 
-answer! {
+document! {
     /// The derived geometry of a pair.
-    pub struct PairGeometry as PairGeometry, "Pair geometry" of (case: &Case) with {
+    pub struct PairGeometry as PairGeometry, "Pair geometry" answer of (case: &Case) with {
         let pair = &case.pair;
         let faces = case.faces().map(|faces| &faces.pair);
         let rack = &pair.driving().data().rack;
@@ -31,7 +31,7 @@ answer! {
         backlash_mm: f64 = to_mm(pair.backlash() * normal),
         /// The transverse backlash along the line of action, in mm, of teeth as drawn: the normal one over the cosine of the helix angle at the base
         /// circles. Force tables have it so.
-        #[serde(default = "untold")]
+        #[serde(default = "not_a_number")]
         #[schema(required)]
         backlash_transverse_mm: f64 = to_mm(pair.backlash()),
         /// The least normal backlash over the true period, in mm: what the pitch deviations of teeth in mesh at the same time, slopes that stand out and
@@ -59,9 +59,9 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// The path of contact along the theoretical line of action, from the first touch of a pair of teeth to the last.
-    pub struct PathOfContact as PathOfContact, "Path of contact" of (pair: &GearPair) with {
+    pub struct PathOfContact as PathOfContact, "Path of contact" answer of (pair: &GearPair) with {
         let (s_a, s_e) = pair.path_of_contact();
         let p_b = pair.base_pitch();
         let point = |s| PathPoint::of(pair, s);
@@ -86,9 +86,10 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// A point of the path of contact.
-    pub struct PathPoint as PathPoint, "Point of the path of contact" of (pair: &GearPair, s: f64) {
+    pub struct PathPoint as PathPoint, "Point of the path of contact"
+    answer of (pair: &GearPair, s: f64) {
         /// The mesh position of the reference pair there, in mesh periods; zero at the pitch point.
         mesh_position: f64 = (s - pair.pitch_roll_length()) / pair.base_pitch(),
         /// The roll length on the driving flank, in mm.
@@ -98,9 +99,10 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// The derived geometry of a gear.
-    pub struct GearGeometry as GearGeometry, "Gear geometry" of (case: &Case, member: Member) with {
+    pub struct GearGeometry as GearGeometry, "Gear geometry"
+    answer of (case: &Case, member: Member) with {
         let (pair, gear) = (&case.pair, case.pair.gear(member));
         let solid = case.faces().map(|faces| faces.pair.gear(member));
         // What rounding leaves of holes that balance each other has no direction.
@@ -127,25 +129,25 @@ answer! {
         /// The working pitch radius, in mm.
         working_pitch_radius_mm: f64 = to_mm(pair.working_radius(member)),
         /// The form diameter, in mm: where the involute ends and the fillet begins.
-        #[serde(default = "untold")]
+        #[serde(default = "not_a_number")]
         #[schema(required)]
         form_diameter_mm: f64 = to_mm(2.0 * gear.form_radius()),
         /// The diameter at which the active profile begins, in mm: the lowest that the tip of the mate reaches.
-        #[serde(default = "untold")]
+        #[serde(default = "not_a_number")]
         #[schema(required)]
         active_root_diameter_mm: f64 = to_mm(2.0 * pair.active_root_radius(member)),
         /// The working pitch diameter, in mm.
-        #[serde(default = "untold")]
+        #[serde(default = "not_a_number")]
         #[schema(required)]
         working_pitch_diameter_mm: f64 = to_mm(2.0 * pair.working_radius(member)),
         /// The thickness s_an of a tooth on its tip circle in the normal section (ISO 21771), in mm.
         tip_thickness_mm: f64 = to_mm(gear.tip_thickness() * normal),
         /// The same in the transverse section, along the tip circle, in mm.
-        #[serde(default = "untold")]
+        #[serde(default = "not_a_number")]
         #[schema(required)]
         tip_thickness_transverse_mm: f64 = to_mm(gear.tip_thickness()),
         /// The tip clearance, in mm: from the tip circle of this gear to the root circle of the other one.
-        #[serde(default = "untold")]
+        #[serde(default = "not_a_number")]
         #[schema(required)]
         tip_clearance_mm: f64 = to_mm(pair.tip_clearance(member)),
         /// The specific sliding of this flank at A, where a pair of teeth comes into contact: the sliding velocity over the velocity at which the
@@ -168,13 +170,15 @@ answer! {
         imbalance_kg_mm: f64 = to_mm(imbalance.map_or(0.0, |imbalance| imbalance.norm())),
         /// The direction of the center of mass from the axis of rotation, in degrees from the centerline of tooth 0, positive towards its
         /// loaded flank; absent without imbalance.
-        imbalance_angle_deg?: f64 = imbalance.map(|imbalance| imbalance.y.atan2(imbalance.x).to_degrees()),
+        imbalance_angle_deg?: f64 =
+            imbalance.map(|imbalance| imbalance.y.atan2(imbalance.x).to_degrees()),
     }
 }
 
-answer! {
+document! {
     /// The frequencies of eq. 2 at the speed given.
-    pub struct Frequencies as Frequencies, "Frequencies" of (pair: &GearPair, speed: RotationSpeed) with {
+    pub struct Frequencies as Frequencies, "Frequencies"
+    answer of (pair: &GearPair, speed: RotationSpeed) with {
         let teeth = |member| f64::from(pair.gear(member).tooth_count());
         let mesh_hz = speed.0 * teeth(Member::Driving);
     } {
@@ -238,8 +242,8 @@ mod tests {
             "web",
         ] {
             let driven = geometry(name).driven;
-            let told = (driven.imbalance_kg_mm, driven.imbalance_angle_deg);
-            assert_eq!(told, (0.0, None), "{name}");
+            let imbalance = (driven.imbalance_kg_mm, driven.imbalance_angle_deg);
+            assert_eq!(imbalance, (0.0, None), "{name}");
         }
         let unequal = geometry("unequal-holes").driven;
         assert!(unequal.imbalance_kg_mm > 0.1 && unequal.imbalance_angle_deg.is_some());

@@ -5,14 +5,14 @@ use serde::Serializer;
 use serde_json::{Value, json};
 
 use super::declare::{
-    Choice, EACH, Kind, Named, Node, Number, Optional, Place, absent, document, number,
+    Choice, EACH, Kind, Location, Named, Node, Number, Optional, absent, document, number,
 };
 use super::problem::{Code, FieldError};
 use super::units::{Side, from_mm, plain, rounded_inward, to_mm};
 
 document! {
     /// One radius for each gear that has holes.
-    pub(super) struct EachRadius as "InterfaceRadii", "Interface radius of each gear" {
+    pub struct EachRadius as "InterfaceRadii", "Interface radius of each gear" {
         /// That of the driving gear.
         driving: Option<f64> = RADIUS,
         /// That of the driven gear.
@@ -27,7 +27,7 @@ const RADIUS: Optional<Number> = absent(
 
 /// The interface radii of both gears, in mm.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum InterfaceRadii {
+pub enum InterfaceRadii {
     /// The same for both; none where each gear has its own default.
     Common(Option<f64>),
     /// One each; none where that gear has its default.
@@ -37,7 +37,7 @@ pub(super) enum InterfaceRadii {
 impl Kind for InterfaceRadii {
     type Spec = ();
 
-    fn read(node: &Node, place: &Place<'_>, _: &()) -> Option<Self> {
+    fn read(node: &Node, place: &Location<'_>, _: &()) -> Option<Self> {
         match node {
             Node::Null => Some(Self::Common(None)),
             Node::Object(_) => EachRadius::read(node, place, &EACH).map(Self::Each),

@@ -18,6 +18,7 @@ pub enum Kept {
 words! {
     Kept {
         Results = "results": "the whole results of each design, with every curve",
-        Statistics = "statistics": "the numbers of the table only; a design has its curves when it is submitted alone",
+        Statistics = "statistics":
+            "the numbers of the table only; a design has its curves when it is submitted alone",
     }
 }

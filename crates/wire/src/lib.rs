@@ -1,26 +1,24 @@
 //! The JSON documents of the interface as types, in the units of those who read them.
 //!
-//! Read in this order: [`problem`] (what goes wrong), [`refusals`] (how often), [`submission`] with its parts [`pair`], [`gear`] and
+//! Read in this order: [`problem`] (what goes wrong), [`submission`] with its parts [`pair`], [`gear`] and
 //! [`resolution`], [`forces`] (what is asked), [`geometry`], [`outline`], [`edges`], [`contact_pattern`], [`warning`], [`results`] and `rexs` (what is answered), [`solve`](mod@solve)
 //! (what leads from the one to the other) and [`examples`](mod@examples); [`preview`], a submission that is answered at
-//! once; [`draw`], teeth at random; then [`study`] and [`study_table`], many submissions at once, [`population`], a study of what is made, and [`search`], a study that chooses its designs itself. `declare`, `units`, `size`, `edit` and `pointer` carry
-//! them: the one declaration of each object, conversions, how much is read at all, changes in place, and places in a submission.
+//! once; [`draw`], teeth at random. [`declare`], [`units`], [`size`], `edit` and [`pointer`] carry them: the one declaration of each object, conversions, how
+//! much is read at all, changes in place, and places in a submission. Many submissions at once are the crate `studies`, which knows this one.
 //!
 //! This is the only place where domain data meets serde, and where mm, um, degrees, GPa and MPa meet SI.
 
 pub mod csv;
-mod declare;
+pub mod declare;
 mod edit;
 pub mod hash;
-mod pointer;
-mod size;
-#[cfg(test)]
-mod testing;
-mod units;
+pub mod pointer;
+pub mod size;
+pub mod testing;
+pub mod units;
 
 mod kept;
 pub mod problem;
-pub mod refusals;
 pub mod status;
 
 pub mod forces;
@@ -45,11 +43,6 @@ pub mod solve;
 pub mod draw;
 pub mod preview;
 
-pub mod population;
-pub mod search;
-pub mod study;
-pub mod study_table;
-
 pub use contact_pattern::ContactPatternDocument;
 pub use draw::{Draw, DrawnDeviations};
 pub use edges::LoadedEdges;
@@ -57,15 +50,11 @@ pub use examples::{Example, examples};
 pub use kept::Kept;
 pub use memory::{memory_above, memory_of, too_much_memory};
 pub use outline::PairOutline;
-pub use population::{PopulationResults, PopulationSample};
 pub use preview::Preview;
 pub use problem::{Code, FieldError, Problem};
 pub use resolution::methods;
 pub use results::Results;
 pub use rexs::model_of;
-pub use search::{SearchState, Searching};
 pub use solve::{Limits, Validation, solve, validate};
 pub use status::Status;
-pub use study::{Design, Study};
-pub use study_table::{RowState, StudyResults, Summary};
 pub use submission::{DOCUMENT_VERSION, SOLVER_VERSION, Submission, method_schema};

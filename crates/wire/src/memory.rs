@@ -230,14 +230,14 @@ mod tests {
                 assert!(asked.is_none_or(|before| before == own), "{method}");
                 asked = Some(own);
                 let start = std::time::Instant::now();
-                let told = estimated_mb(&submission);
+                let estimate = estimated_mb(&submission);
                 if member > 0 {
                     slowest = slowest.max(start.elapsed());
                 }
                 let start = std::time::Instant::now();
                 let own = analysis::estimate(submission.case(), None).memory;
                 anew = anew.max(start.elapsed());
-                assert_eq!(told, own.div_ceil(1_000_000));
+                assert_eq!(estimate, own.div_ceil(1_000_000));
             }
             println!(
                 "{method}: an estimate that is known takes {slowest:?} at most, one that is not {anew:?}"

@@ -2,7 +2,7 @@
 
 use meshwright_engine::gear::{GearPair, Hole, HoleShape, Member, Vector, Web, radial, tangential};
 
-use super::declare::answer;
+use super::declare::document;
 use super::geometry::{PathOfContact, PathPoint};
 use super::units::{rounded_json, to_mm};
 
@@ -12,10 +12,10 @@ const TOLERANCE: f64 = 0.5e-6;
 /// A point, in mm.
 type Point = [f64; 2];
 
-answer! {
+document! {
     /// The outline of a pair as it is cut. The driving gear has its center at the origin, the driven one at the center distance on the x
     /// axis. A gear at mesh position eta stands at `angle_deg` + eta times `angle_per_mesh_period_deg`, counter-clockwise.
-    pub struct PairOutline as PairOutline, "Pair outline" of (pair: &GearPair) {
+    pub struct PairOutline as PairOutline, "Pair outline" answer of (pair: &GearPair) {
         /// Gear 1, which drives and turns counter-clockwise.
         driving: GearOutline = GearOutline::of(pair, Member::Driving),
         /// Gear 2, which is driven and turns clockwise.
@@ -25,10 +25,11 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// The outline of a gear in its own frame: its center is the origin, the centerline of tooth 0 the x axis, and the loaded flank of
     /// each tooth lies on its counter-clockwise side.
-    pub struct GearOutline as GearOutline, "Gear outline" of (pair: &GearPair, member: Member) with {
+    pub struct GearOutline as GearOutline, "Gear outline"
+    answer of (pair: &GearPair, member: Member) with {
         let gear = pair.gear(member);
         // At mesh position 0 the loaded flanks of tooth 0 touch at the pitch point, which lies on the line of centers.
         let half_angle = gear.flank().half_angle(pair.working_radius(member)).to_degrees();
@@ -63,9 +64,9 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// A hole: round, a slot along its circle with round ends, or an opening drawn by its edge.
-    pub struct HoleOutline as HoleOutline, "Hole outline" of (hole: &Hole) {
+    pub struct HoleOutline as HoleOutline, "Hole outline" answer of (hole: &Hole) {
         /// Its center, in mm: of an opening drawn by its edge, its center of mass.
         #[schema(value_type = Vec<f64>, min_items = 2, max_items = 2)]
         at_mm: Point = point(hole.circle_radius * radial(hole.angle)),
@@ -85,9 +86,9 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// A web: a ring of its own thickness. Its edges are those two circles, less what the holes take of them.
-    pub struct WebOutline as WebOutline, "Web outline" of (web: Web) {
+    pub struct WebOutline as WebOutline, "Web outline" answer of (web: Web) {
         /// The radius at which it begins, in mm.
         inner_radius_mm: f64 = to_mm(web.inner_radius),
         /// The radius at which it ends, in mm.
@@ -95,9 +96,9 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// The circles of a gear, in mm.
-    pub struct Circles as Circles, "Circles" of (pair: &GearPair, member: Member) with {
+    pub struct Circles as Circles, "Circles" answer of (pair: &GearPair, member: Member) with {
         let gear = pair.gear(member);
     } {
         /// The tip circle's radius.
@@ -113,15 +114,28 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// The line of action of the loaded flanks, in the frame of the pair.
-    pub struct LineOfAction as LineOfAction, "Line of action" of (pair: &GearPair) with {
+    pub struct LineOfAction as LineOfAction, "Line of action" answer of (pair: &GearPair) with {
         // The driving gear turns counter-clockwise and pushes upward: the line leaves its base circle below the line of centers.
         let angle = -pair.working_pressure_angle();
         let foot = pair.driving().base_radius() * radial(angle);
         let at = |s: f64| point(foot + s * tangential(angle));
-        let PathOfContact { point_a, point_b, point_c, point_d, point_e, .. } = PathOfContact::of(pair);
-        let points = [("A", point_a), ("B", point_b), ("C", point_c), ("D", point_d), ("E", point_e)];
+        let PathOfContact {
+            point_a,
+            point_b,
+            point_c,
+            point_d,
+            point_e,
+            ..
+        } = PathOfContact::of(pair);
+        let points = [
+            ("A", point_a),
+            ("B", point_b),
+            ("C", point_c),
+            ("D", point_d),
+            ("E", point_e),
+        ];
     } {
         /// Where it touches the base circle of the driving gear, in mm.
         #[schema(value_type = Vec<f64>, min_items = 2, max_items = 2)]
@@ -130,14 +144,18 @@ answer! {
         #[schema(value_type = Vec<f64>, min_items = 2, max_items = 2)]
         to_mm: Point = at(pair.line_of_action()),
         /// A, B, C, D and E, in this order.
-        points: Vec<LinePoint> =
-            points.map(|(name, place)| LinePoint::of(name, at(place.driving_roll_length_mm * 1e-3), &place)).into(),
+        points: Vec<LinePoint> = points
+            .map(|(name, place)| {
+                LinePoint::of(name, at(place.driving_roll_length_mm * 1e-3), &place)
+            })
+            .into(),
     }
 }
 
-answer! {
+document! {
     /// A named point of the line of action.
-    pub struct LinePoint as LinePoint, "Point of the line of action" of (name: &str, at_mm: Point, place: &PathPoint) {
+    pub struct LinePoint as LinePoint, "Point of the line of action"
+    answer of (name: &str, at_mm: Point, place: &PathPoint) {
         /// `A` to `E`.
         name: String = name.to_owned(),
         /// Where, in mm.

@@ -28,9 +28,9 @@ document! {
         /// How the axes stand askew over the common face. It needs three dimensions.
         misalignment_um: Option<MisalignmentDocument> = absent(nested("Misalignment"), "none"),
         /// Gear 1, which drives.
-        pub(super) driving: GearDocument = nested(""),
+        pub driving: GearDocument = nested(""),
         /// Gear 2, which is driven.
-        pub(super) driven: GearDocument = nested(""),
+        pub driven: GearDocument = nested(""),
     }
 }
 
@@ -39,10 +39,22 @@ document! {
     pub struct MisalignmentDocument as "Misalignment", "Misalignment" {
         /// By how much the axes are farther apart, in their plane; along the line of action it is times the sine of the working pressure
         /// angle.
-        in_plane_um: f64 = number("Misalignment in the plane of the axes", "um", -1_000.0, 1_000.0).or(0.0),
+        in_plane_um: f64 = number(
+            "Misalignment in the plane of the axes",
+            "um",
+            -1_000.0,
+            1_000.0,
+        )
+        .or(0.0),
         /// By how much they pass each other, across their plane, positive where the loaded flanks open; along the line of action it is
         /// times the cosine of the working pressure angle.
-        out_of_plane_um: f64 = number("Misalignment out of the plane of the axes", "um", -1_000.0, 1_000.0).or(0.0),
+        out_of_plane_um: f64 = number(
+            "Misalignment out of the plane of the axes",
+            "um",
+            -1_000.0,
+            1_000.0,
+        )
+        .or(0.0),
     }
 }
 
@@ -55,7 +67,7 @@ impl PairDocument {
     }
 
     /// The helix of the gear `member`.
-    pub(super) fn helix(&self, member: Member) -> Helix {
+    pub fn helix(&self, member: Member) -> Helix {
         let beta = self.helix_angle_deg.to_radians();
         Helix::right(match member {
             Member::Driving => beta,
@@ -108,7 +120,7 @@ impl PairDocument {
             from_mm(self.center_distance_mm),
             alignment,
         );
-        let told = match pair {
+        let found = match pair {
             Ok(pair) => return Some(pair),
             Err(SolidPairError::Section(error)) => {
                 self.field_error([&sections[0], &sections[1]], overlap_ratio, &error)
@@ -156,7 +168,7 @@ impl PairDocument {
             // Both hands come from one angle.
             Err(SolidPairError::HelixMismatch { .. }) => None,
         };
-        errors.report(Err(told))
+        errors.report(Err(found))
     }
 
     /// The pair, if its gears can be made and mesh; what prevents it is reported to `errors`.
@@ -300,7 +312,7 @@ impl PairDocument {
     /// What has to be the same in both gears and is not.
     fn mismatches(&self) -> Vec<FieldError> {
         let different = self.unlike().filter(|unlike| unlike.taken().is_none());
-        let told = different.map(|unlike| {
+        let refusals = different.map(|unlike| {
             let Unlike {
                 what,
                 unit,
@@ -314,7 +326,7 @@ impl PairDocument {
             );
             FieldError::new(format!("/pair/driven/{name}"), code, detail).nearest(driving)
         });
-        told.collect()
+        refusals.collect()
     }
 
     /// The same pair with module and pressure angle as the gear has them that says more of their digits.

@@ -6,11 +6,11 @@ use serde_json::{Map, Value};
 
 use super::declare;
 use super::problem::Code;
-use super::submission::Document;
+use super::submission::SubmissionDocument;
 
 /// A place in a submission.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Pointer {
+pub struct Pointer {
     text: String,
     steps: Vec<String>,
 }
@@ -21,7 +21,7 @@ impl Pointer {
     /// # Errors
     ///
     /// The code and a sentence, when the text is no pointer or names the whole document.
-    pub(super) fn parse(text: &str) -> Result<Self, (Code, String)> {
+    pub fn parse(text: &str) -> Result<Self, (Code, String)> {
         const LONGEST: usize = 300;
         let refuse = |what: &str| {
             let detail = format!(
@@ -57,37 +57,32 @@ impl Pointer {
     }
 
     /// The pointer as it was written.
-    pub(super) fn text(&self) -> &str {
+    pub fn text(&self) -> &str {
         &self.text
     }
 
     /// Its steps, unescaped.
-    pub(super) fn steps(&self) -> &[String] {
+    pub fn steps(&self) -> &[String] {
         &self.steps
     }
 
-    /// The number of its steps.
-    pub(super) fn len(&self) -> usize {
-        self.steps.len()
-    }
-
     /// Its last steps.
-    pub(super) fn last(&self, count: usize) -> &[String] {
+    pub fn last(&self, count: usize) -> &[String] {
         &self.steps[self.steps.len().saturating_sub(count)..]
     }
 
     /// Whether its first steps are these.
-    pub(super) fn starts_with(&self, steps: &[&str]) -> bool {
+    pub fn starts_with(&self, steps: &[&str]) -> bool {
         self.steps.len() >= steps.len() && self.steps.iter().zip(steps).all(|(a, b)| a == b)
     }
 
     /// Whether it names what `pointer` names, or something that contains it.
-    pub(super) fn covers(&self, pointer: &str) -> bool {
+    pub fn covers(&self, pointer: &str) -> bool {
         is_within(pointer, &self.text)
     }
 
     /// Whether it names something within what `pointer` names.
-    pub(super) fn is_below(&self, pointer: &str) -> bool {
+    pub fn is_below(&self, pointer: &str) -> bool {
         is_within(&self.text, pointer)
     }
 
@@ -96,7 +91,7 @@ impl Pointer {
     /// # Errors
     ///
     /// The code and a sentence that says which step is unknown and what would be known there.
-    pub(super) fn check_named(&self) -> Result<(), (Code, String)> {
+    pub fn check_named(&self) -> Result<(), (Code, String)> {
         self.named(&SCHEMA, &self.steps).map(|_| ())
     }
 
@@ -105,7 +100,7 @@ impl Pointer {
     /// # Errors
     ///
     /// As [`check_named`](Self::check_named), or that the field takes no number.
-    pub(super) fn number_kind(&self) -> Result<NumberKind, (Code, String)> {
+    pub fn number_kind(&self) -> Result<NumberKind, (Code, String)> {
         self.number_kind_in(&SCHEMA, &self.steps)
     }
 
@@ -114,7 +109,7 @@ impl Pointer {
     /// # Errors
     ///
     /// As [`number_kind`](Self::number_kind).
-    pub(super) fn number_kind_in(
+    pub fn number_kind_in(
         &self,
         schema: &'static Schema,
         steps: &[String],
@@ -178,7 +173,7 @@ impl Pointer {
 
 /// A kind of number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum NumberKind {
+pub enum NumberKind {
     /// Any.
     Real,
     /// Whole ones only.
@@ -192,18 +187,19 @@ fn is_within(inner: &str, outer: &str) -> bool {
 }
 
 /// The schema of a document, with those that it refers to.
-pub(super) struct Schema {
+pub struct Schema {
     /// What it is of.
     of: &'static str,
     root: Value,
     named: Map<String, Value>,
 }
 
-static SCHEMA: LazyLock<Schema> = LazyLock::new(|| Schema::of::<Document>("a submission"));
+static SCHEMA: LazyLock<Schema> =
+    LazyLock::new(|| Schema::of::<SubmissionDocument>("a submission"));
 
 impl Schema {
     /// That of a document, which is called so.
-    pub(super) fn of<D: declare::Document>(of: &'static str) -> Self {
+    pub fn of<D: declare::Object>(of: &'static str) -> Self {
         let mut named = Vec::new();
         D::name_fields(&mut named);
         let named = named.into_iter();

@@ -1,12 +1,12 @@
 //! A preview: a submission whose results are wanted at once and kept by nobody.
 
 use super::declare::{
-    Declared, Document as _, Errors, Node, ObjectReader, Optional, Place, Text, absent, object,
+    Declared, Errors, Location, Node, Object as _, ObjectReader, Optional, Text, absent, object,
     text, utoipa_schema,
 };
 use super::problem::Problem;
 use super::size::{MOST_VALUES, refuse_many_values};
-use super::submission::{Document, Purpose, Submission};
+use super::submission::{Purpose, Submission, SubmissionDocument};
 
 /// The field beside those of the submission.
 const PREVIEW_ID: Declared<Optional<Text>> = Declared::new(
@@ -31,7 +31,7 @@ impl utoipa::PartialSchema for Preview {
     fn schema() -> utoipa::openapi::RefOr<utoipa::openapi::Schema> {
         let about = "What is asked, as for a job, and perhaps which older preview it replaces. Unknown fields are refused.";
         let mut properties = vec![PREVIEW_ID.property::<Option<String>>()];
-        properties.extend(Document::properties());
+        properties.extend(SubmissionDocument::properties());
         utoipa_schema(object("Preview", about, properties))
     }
 }
@@ -53,7 +53,7 @@ impl Preview {
         let node = Node::parse(document)?;
         let errors = Errors::default();
         let read = || {
-            let mut reader = ObjectReader::new(&node, Place::root(&errors))?;
+            let mut reader = ObjectReader::new(&node, Location::root(&errors))?;
             let id = PREVIEW_ID.read::<Option<String>>(&mut reader);
             // The same reader goes on, so that each half knows the fields of the other.
             let submission = Submission::read(reader, Purpose::Preview { most_positions }, &errors);

@@ -10,8 +10,8 @@ use serde::ser::SerializeMap;
 use serde_json::{Value, json};
 
 use super::declare::{
-    Choice, Document, EACH, Kind, Named, Node, ObjectReader, Place, absent, document, flag, nested,
-    number, word, words,
+    Choice, EACH, Kind, Location, Named, Node, Object, ObjectReader, absent, document, flag,
+    nested, number, word, words,
 };
 use super::interface::InterfaceRadii;
 use super::problem::Code;
@@ -23,7 +23,7 @@ pub fn methods() -> impl Iterator<Item = &'static str> {
 }
 
 /// Whether the method of this name sees the faces.
-pub(crate) fn sees_faces(name: &Node) -> bool {
+pub fn sees_faces(name: &Node) -> bool {
     let mut methods = Method::OPTIONS.iter();
     methods.any(|(word, method, _)| {
         matches!(name, Node::Text(name) if name == word) && method.sees_faces()
@@ -33,11 +33,16 @@ pub(crate) fn sees_faces(name: &Node) -> bool {
 words! {
     Method {
         Flexible = "flexible": "both whole gears flexible, the reference (section 2 of the paper)",
-        Decomposition = "decomposition": "rigid blanks plus fitted blank rotations (section 3 of the paper)",
-        ProjectedDecomposition = "projected_decomposition": "the contact of blanks that are alike all around, plus the exact first-order term of what the holes change around them",
-        ThreeDimensional = "three_dimensional": "both whole gears flexible along their faces too: helical gears, thin webs, uneven leads, misalignment",
-        ThreeDimensionalProjected = "three_dimensional_projected": "along their faces, the contact of blanks that are alike all around, plus the first-order term of what the holes change around them",
-        LoadDistribution = "load_distribution": "closed-form compliances on the theoretical lines of contact (eqs. 4 and 5); does not see holes",
+        Decomposition = "decomposition":
+            "rigid blanks plus fitted blank rotations (section 3 of the paper)",
+        ProjectedDecomposition = "projected_decomposition":
+            "the contact of blanks that are alike all around, plus the exact first-order term of what the holes change around them",
+        ThreeDimensional = "three_dimensional":
+            "both whole gears flexible along their faces too: helical gears, thin webs, uneven leads, misalignment",
+        ThreeDimensionalProjected = "three_dimensional_projected":
+            "along their faces, the contact of blanks that are alike all around, plus the first-order term of what the holes change around them",
+        LoadDistribution = "load_distribution":
+            "closed-form compliances on the theoretical lines of contact (eqs. 4 and 5); does not see holes",
     }
 
     GridLevel {
@@ -48,7 +53,8 @@ words! {
 
     ToothFormula {
         WeberBanaschek = "weber_banaschek": "bending, shear and compression of the true profile",
-        Iso6336 = "iso_6336": "the theoretical single stiffness of ISO 6336-1 (method B) with its factors for rack and material, without its empirical ones (C_M, low line loads); contains body and local deformation",
+        Iso6336 = "iso_6336":
+            "the theoretical single stiffness of ISO 6336-1 (method B) with its factors for rack and material, without its empirical ones (C_M, low line loads); contains body and local deformation",
     }
 
     BodyFormula {
@@ -123,7 +129,8 @@ document! {
 
 document! {
     /// Its penalty and its tolerance.
-    pub struct AugmentedLagrangian as "AugmentedLagrangianSettings", "Settings of the augmented Lagrangian" {
+    pub struct AugmentedLagrangian
+    as "AugmentedLagrangianSettings", "Settings of the augmented Lagrangian" {
         /// The penalty stiffness of a contact cell, eq. 7 of the paper. It changes the number of iterations, not the result.
         penalty_n_per_m: Option<f64> = absent(
             number("Penalty stiffness", "N/m", 1e5, 1e18),
@@ -219,7 +226,7 @@ impl ResolutionDocument {
 impl Kind for ContactSolverDocument {
     type Spec = ();
 
-    fn read(node: &Node, place: &Place<'_>, _: &()) -> Option<Self> {
+    fn read(node: &Node, place: &Location<'_>, _: &()) -> Option<Self> {
         const EXPECTED: &str = "\"active_set\" or {\"augmented_lagrangian\": {\"penalty_n_per_m\": ..., \"gap_tolerance_um\": ...}}";
         let usual = Node::Object(Vec::new());
         match node {
@@ -280,7 +287,7 @@ impl Kind for ContactSolverDocument {
 impl Kind for StiffnessDocument {
     type Spec = ();
 
-    fn read(node: &Node, place: &Place<'_>, _: &()) -> Option<Self> {
+    fn read(node: &Node, place: &Location<'_>, _: &()) -> Option<Self> {
         match node {
             Node::Text(word) if word == "tangent" => Some(Self::Tangent),
             Node::Object(_) => TorqueStep::read(node, place, &EACH).map(Self::TorqueStep),

@@ -10,14 +10,14 @@ use super::problem::{Code, FieldError, Problem};
 
 /// The most values of a submission: objects, lists, words and numbers. The richest has two gears with sixteen tables of a thousand
 /// entries each.
-pub(super) const MOST_VALUES: u64 = 80_000;
+pub const MOST_VALUES: u64 = 80_000;
 
-/// Refuses a document of more than `most` values. What is no JSON is told later, with its place.
+/// Refuses a document of more than `most` values. What is no JSON is reported later, with its place.
 ///
 /// # Errors
 ///
 /// `too_large`, with the number.
-pub(super) fn refuse_many_values(document: &[u8], most: u64) -> Result<(), Problem> {
+pub fn refuse_many_values(document: &[u8], most: u64) -> Result<(), Problem> {
     let left = Cell::new(most);
     let mut deserializer = serde_json::Deserializer::from_slice(document);
     let read = Count { left: &left }.deserialize(&mut deserializer);
@@ -34,7 +34,7 @@ pub(super) fn refuse_many_values(document: &[u8], most: u64) -> Result<(), Probl
 
 /// The number of values that stand somewhere, none of which is kept.
 #[derive(Default)]
-pub(super) struct Values(pub(super) u64);
+pub struct Values(pub u64);
 
 impl<'de> Deserialize<'de> for Values {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {

@@ -10,7 +10,7 @@ use meshwright_engine::run::Run;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::declare::{answer, view};
+use super::declare::document;
 use super::gear::{GearDocument, MOST_ENTRIES, MOST_HOLES, MOST_MODIFICATIONS};
 use super::geometry::PairGeometry;
 use super::problem::{Code, FieldError, Problem};
@@ -213,9 +213,9 @@ pub struct Validation {
     pub estimate: EstimateDocument,
 }
 
-answer! {
+document! {
     /// What a computation will cost.
-    pub struct EstimateDocument as Estimate, "Estimate" of (submission: &Submission) with {
+    pub struct EstimateDocument as Estimate, "Estimate" answer of (submission: &Submission) with {
         let estimate = analysis::estimate(submission.case(), submission.forces());
     } {
         /// Unknowns of both gears before condensation.
@@ -242,9 +242,9 @@ pub fn validate(submission: &Submission) -> Validation {
     }
 }
 
-view! {
+document! {
     /// The limits of a submission. Those of the service stand beside them.
-    pub struct Limits as Limits, "Limits of a submission" of () with {
+    pub struct Limits as Limits, "Limits of a submission" view of (designs: usize) with {
         let counts = |(least, most): (f64, f64)| [least as u32, most as u32];
         let positions = ResolutionDocument::positions_per_mesh_period.spec.bounds;
     } {
@@ -273,7 +273,7 @@ view! {
         /// The most characters of a tag.
         tag_length: usize = MOST_TAGS.1,
         /// The most designs of a study.
-        designs: usize = super::study::MOST_DESIGNS,
+        designs: usize = designs,
         /// The least material around a hole, in modules.
         least_ligament_modules: f64 = LEAST_LIGAMENT,
     }

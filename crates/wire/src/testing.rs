@@ -1,44 +1,42 @@
-//! What tests of documents have in common: examples, changes of them, and tables of what is refused.
+//! What tests of documents have in common, here and in the crate `studies`: examples, changes of them, and tables of what is refused.
 
-use meshwright_engine::run::Run;
 use serde_json::Value;
 
 use super::problem::{Code, FieldError, Problem};
-use super::{Study, Submission, examples};
+use super::{Submission, examples};
+
+/// A small results document.
+#[cfg(test)]
+pub(crate) const STUB: &str = include_str!("../../../tests/it/results.json");
 
 /// The example of this name as it ships.
-pub(crate) fn example(name: &str) -> Value {
+pub fn example(name: &str) -> Value {
     let example = examples().iter().find(|example| example.name == name);
     serde_json::from_str(example.expect("ships").json).expect("JSON")
 }
 
 /// The submission that `document` is, or why it is none.
-pub(crate) fn parse(document: &Value) -> Result<Submission, Problem> {
+pub fn parse(document: &Value) -> Result<Submission, Problem> {
     Submission::parse(document.to_string().as_bytes())
 }
 
-/// The study that `document` is, or why it is none.
-pub(crate) fn study(document: &Value) -> Result<Study, Problem> {
-    Study::submitted(document.to_string().as_bytes(), &Run::unattended())
-}
-
 /// The submission that the example of this name is.
-pub(crate) fn submission(name: &str) -> Submission {
+pub fn submission(name: &str) -> Submission {
     parse(&example(name)).expect("valid")
 }
 
 /// The example of this name with everything that is filled in.
-pub(crate) fn filled_in(name: &str) -> Value {
+pub fn filled_in(name: &str) -> Value {
     echo(&submission(name))
 }
 
 /// What a submission is answered with.
-pub(crate) fn echo(submission: &Submission) -> Value {
+pub fn echo(submission: &Submission) -> Value {
     serde_json::from_str(&submission.canonical_json()).expect("JSON")
 }
 
 /// Puts `value` where `pointer` says, in objects that are there.
-pub(crate) fn put(document: &mut Value, pointer: &str, value: Value) {
+pub fn put(document: &mut Value, pointer: &str, value: Value) {
     let (parent, key) = pointer.rsplit_once('/').expect("a pointer");
     match document.pointer_mut(parent) {
         Some(Value::Object(fields)) => {
@@ -54,7 +52,7 @@ pub(crate) fn put(document: &mut Value, pointer: &str, value: Value) {
 }
 
 /// `document` with these values at these places.
-pub(crate) fn with(mut document: Value, changes: &[(&str, Value)]) -> Value {
+pub fn with(mut document: Value, changes: &[(&str, Value)]) -> Value {
     for (pointer, value) in changes {
         put(&mut document, pointer, value.clone());
     }
@@ -62,7 +60,7 @@ pub(crate) fn with(mut document: Value, changes: &[(&str, Value)]) -> Value {
 }
 
 /// `object` with these fields too.
-pub(crate) fn and(mut object: Value, fields: &Value) -> Value {
+pub fn and(mut object: Value, fields: &Value) -> Value {
     for (name, value) in fields.as_object().expect("fields") {
         object[name] = value.clone();
     }
@@ -70,7 +68,7 @@ pub(crate) fn and(mut object: Value, fields: &Value) -> Value {
 }
 
 /// What is wrong, error by error: its place, its code, and the nearest value that would do.
-pub(crate) fn told(problem: Problem) -> Vec<(String, Code, Option<f64>)> {
+pub fn faults(problem: Problem) -> Vec<(String, Code, Option<f64>)> {
     let errors = problem.errors.into_iter();
     errors
         .map(|error| (error.pointer, error.code, error.nearest))
@@ -78,7 +76,7 @@ pub(crate) fn told(problem: Problem) -> Vec<(String, Code, Option<f64>)> {
 }
 
 /// The first thing that is wrong with `document`, which is this at this place.
-pub(crate) fn fault(document: &Value, place: &str, code: Code) -> FieldError {
+pub fn fault(document: &Value, place: &str, code: Code) -> FieldError {
     let problem = parse(document).expect_err(place);
     let fault = &problem.errors[0];
     assert_eq!((&*fault.pointer, fault.code), (place, code), "{problem:?}");
@@ -86,12 +84,13 @@ pub(crate) fn fault(document: &Value, place: &str, code: Code) -> FieldError {
 }
 
 /// A table of what is refused, a line each: what is sent, the place and the code that are told, and the nearest value that would do.
+#[macro_export]
 macro_rules! refused {
     ($($sent:expr => $place:expr, $code:ident $(, $nearest:expr)?;)*) => {
-        [$(($sent, $place, $crate::Code::$code, refused!(@nearest $($nearest)?))),*]
+        [$(($sent, $place, $crate::Code::$code, $crate::refused!(@nearest $($nearest)?))),*]
     };
     (@nearest) => { None::<f64> };
     (@nearest $nearest:expr) => { Some(f64::from($nearest)) };
 }
 
-pub(super) use refused;
+pub use refused;

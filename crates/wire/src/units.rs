@@ -2,7 +2,7 @@
 
 use std::io;
 
-pub(super) use meshwright_exchange::significant;
+pub use meshwright_exchange::significant;
 use serde::de::{DeserializeOwned, IgnoredAny};
 use serde::{Deserialize, Deserializer, Serialize as _};
 use serde_json::Value;
@@ -10,42 +10,42 @@ use serde_json::ser::{CompactFormatter, Formatter};
 use serde_json::value::RawValue;
 
 /// Millimeters to meters. A division by a power of ten rounds once, so that 100.5 mm is the double nearest 0.1005 m.
-pub(super) fn from_mm(value: f64) -> f64 {
+pub fn from_mm(value: f64) -> f64 {
     value / 1e3
 }
 
 /// Micrometers to meters.
-pub(super) fn from_um(value: f64) -> f64 {
+pub fn from_um(value: f64) -> f64 {
     value / 1e6
 }
 
 /// Gigapascals to pascals.
-pub(super) fn from_gpa(value: f64) -> f64 {
+pub fn from_gpa(value: f64) -> f64 {
     value * 1e9
 }
 
 /// Meters to millimeters.
-pub(super) fn to_mm(value: f64) -> f64 {
+pub fn to_mm(value: f64) -> f64 {
     value * 1e3
 }
 
 /// Meters to micrometers.
-pub(super) fn to_um(value: f64) -> f64 {
+pub fn to_um(value: f64) -> f64 {
     value * 1e6
 }
 
 /// Newtons per meter to newtons per millimeter.
-pub(super) fn to_n_per_mm(value: f64) -> f64 {
+pub fn to_n_per_mm(value: f64) -> f64 {
     value / 1e3
 }
 
 /// Pascals to megapascals.
-pub(super) fn to_mpa(value: f64) -> f64 {
+pub fn to_mpa(value: f64) -> f64 {
     value / 1e6
 }
 
 /// A number as people write it in a sentence: at most seven significant digits.
-pub(super) fn plain(value: f64) -> String {
+pub fn plain(value: f64) -> String {
     let value = significant(value, 7);
     if value != 0.0 && !(1e-4..1e9).contains(&value.abs()) {
         format!("{value:e}")
@@ -56,7 +56,7 @@ pub(super) fn plain(value: f64) -> String {
 
 /// The side on which a bound is kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Side {
+pub enum Side {
     /// Values up to the bound work.
     AtMost,
     /// Values from the bound on work.
@@ -65,7 +65,7 @@ pub(super) enum Side {
 
 impl Side {
     /// The other side.
-    pub(super) fn other(self) -> Self {
+    pub fn other(self) -> Self {
         match self {
             Self::AtMost => Self::AtLeast,
             Self::AtLeast => Self::AtMost,
@@ -74,7 +74,7 @@ impl Side {
 }
 
 /// The value of five significant digits next to `bound` on its working side, `steps` units of the last digit further in.
-pub(super) fn rounded_inward(bound: f64, side: Side, steps: u32) -> f64 {
+pub fn rounded_inward(bound: f64, side: Side, steps: u32) -> f64 {
     if bound == 0.0 || !bound.is_finite() {
         return bound;
     }
@@ -83,7 +83,7 @@ pub(super) fn rounded_inward(bound: f64, side: Side, steps: u32) -> f64 {
 }
 
 /// The same of a value that is a whole number of 10 to the power `unit_exponent`.
-pub(super) fn rounded_to_unit(bound: f64, side: Side, steps: u32, unit_exponent: i32) -> f64 {
+pub fn rounded_to_unit(bound: f64, side: Side, steps: u32, unit_exponent: i32) -> f64 {
     let in_units = if unit_exponent < 0 {
         bound * 10_f64.powi(-unit_exponent)
     } else {
@@ -118,7 +118,7 @@ pub(super) fn rounded_to_unit(bound: f64, side: Side, steps: u32, unit_exponent:
 ///
 /// A number that is not finite has no place in JSON and fails; so does an absent value, which has to be left out or
 /// written by [`or_null`].
-pub(super) fn rounded_json(document: &impl serde::Serialize) -> serde_json::Result<String> {
+pub fn rounded_json(document: &impl serde::Serialize) -> serde_json::Result<String> {
     let mut text = Vec::new();
     let mut serializer = serde_json::Serializer::with_formatter(&mut text, RoundingFormatter);
     document.serialize(&mut serializer)?;
@@ -130,7 +130,7 @@ pub(super) fn rounded_json(document: &impl serde::Serialize) -> serde_json::Resu
 /// # Errors
 ///
 /// A number that has to be there and is not finite.
-pub(super) fn rounded<T: serde::Serialize + DeserializeOwned>(exact: &T) -> serde_json::Result<T> {
+pub fn rounded<T: serde::Serialize + DeserializeOwned>(exact: &T) -> serde_json::Result<T> {
     fn round(value: &mut Value) {
         match value {
             Value::Number(number) if number.is_f64() => {
@@ -148,7 +148,7 @@ pub(super) fn rounded<T: serde::Serialize + DeserializeOwned>(exact: &T) -> serd
 }
 
 /// Writes numbers of which some are meant to be absent.
-pub(super) fn or_null<S: serde::Serializer>(
+pub fn or_null<S: serde::Serializer>(
     values: &[Option<f64>],
     serializer: S,
 ) -> Result<S::Ok, S::Error> {
@@ -158,7 +158,7 @@ pub(super) fn or_null<S: serde::Serializer>(
 }
 
 /// Writes a number that may be meant to be absent.
-pub(super) fn one_or_null<S: serde::Serializer>(
+pub fn one_or_null<S: serde::Serializer>(
     value: &Option<f64>,
     serializer: S,
 ) -> Result<S::Ok, S::Error> {
@@ -171,13 +171,13 @@ pub(super) fn one_or_null<S: serde::Serializer>(
     }
 }
 
-/// What a document of an earlier version does not tell: a number that is never written.
-pub(super) fn untold() -> f64 {
+/// What stands for a number that a document of an earlier version lacks. It is never written.
+pub fn not_a_number() -> f64 {
     f64::NAN
 }
 
 /// Reads those of a list that this version knows; a later one may have kinds of them that it does not.
-pub(super) fn known<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
+pub fn known<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
     deserializer: D,
 ) -> Result<Vec<T>, D::Error> {
     #[derive(Deserialize)]

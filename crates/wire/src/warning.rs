@@ -145,7 +145,7 @@ impl WarningDocument {
                 clearance,
                 shortened,
             } => {
-                let (clearance, told) = (to_mm(clearance), small_clearance(member, clearance));
+                let (clearance, sentence) = (to_mm(clearance), small_clearance(member, clearance));
                 let advice = match shortened {
                     None => "The racks leave no more: a larger dedendum of the other gear or a smaller addendum does.".to_owned(),
                     Some((shortening, diameters)) => {
@@ -165,7 +165,7 @@ impl WarningDocument {
                     Code::SmallTipClearance,
                     Some(member),
                     Some((clearance, "mm")),
-                    format!("{told} {advice}"),
+                    format!("{sentence} {advice}"),
                 )
             }
             Warning::UndercutShortensPath {
@@ -208,14 +208,14 @@ impl WarningDocument {
                 largest_output_torque,
             } => {
                 let [low, high] = speeds.map(|speed| plain((60.0 * speed).round()));
-                let [times, told, wanted] = [
+                let [times, largest, wanted] = [
                     ratio,
                     largest_output_torque,
                     1.1 * ratio * largest_output_torque,
                 ]
                 .map(|value| plain(significant(value, 3)));
                 let detail = format!(
-                    "Between {low} and {high} 1/min the force between the gears reaches {times} times the largest load of the force table, that of {told} N m. Beyond it the table goes on straight, so that force and motion are not what they are there. A table for /force_table/largest_output_torque_n_m {wanted} reaches so far."
+                    "Between {low} and {high} 1/min the force between the gears reaches {times} times the largest load of the force table, that of {largest} N m. Beyond it the table goes on straight, so that force and motion are not what they are there. A table for /force_table/largest_output_torque_n_m {wanted} reaches so far."
                 );
                 (Code::LoadBeyondForceTable, None, Some((ratio, "1")), detail)
             }
@@ -223,10 +223,10 @@ impl WarningDocument {
                 natural_frequency,
                 of_rims,
             } => {
-                let [told, estimate] =
+                let [used, estimate] =
                     [natural_frequency, of_rims].map(|hertz| plain(significant(hertz, 4)));
                 let detail = format!(
-                    "The run-up has the inertia of rims and teeth on the hubs, so that its natural frequency is {told} Hz. With the inertia where it is, outside the webs, it is about {estimate} Hz: speeds of resonances are off by as much."
+                    "The run-up has the inertia of rims and teeth on the hubs, so that its natural frequency is {used} Hz. With the inertia where it is, outside the webs, it is about {estimate} Hz: speeds of resonances are off by as much."
                 );
                 (Code::RimInertiaOnHub, None, Some((of_rims, "Hz")), detail)
             }
@@ -386,9 +386,9 @@ fn out_of_range(found: &FormulaRange) -> (f64, &'static str, String) {
         _ => (|value| value, "1"),
     };
     // Four digits are more than a formula's range has.
-    let told =
+    let numbers =
         [found.value, found.least, found.greatest].map(|value| significant(to_unit(value), 4));
-    let [value, least, greatest] = told.map(plain);
+    let [value, least, greatest] = numbers.map(plain);
     let whose = found
         .member
         .map_or("the pair".to_owned(), |member| format!("the {member} gear"));
@@ -417,7 +417,7 @@ fn out_of_range(found: &FormulaRange) -> (f64, &'static str, String) {
     let formula = found.quantity.formula().to_string();
     let (first, rest) = formula.split_at(1);
     let sentence = format!("{}{rest} was published for {range}.", first.to_uppercase());
-    (told[0], unit, sentence)
+    (numbers[0], unit, sentence)
 }
 
 /// How little room the tips of a gear have.

@@ -6,7 +6,8 @@ use std::time::Duration;
 use anyhow::{Context, anyhow};
 use indicatif::{ProgressBar, ProgressStyle};
 use meshwright_engine::library::Library;
-use meshwright_wire::{Kept, RowState, Study as StudyDocument, solve};
+use meshwright_studies::{RowState, Study as StudyDocument};
+use meshwright_wire::{Kept, solve};
 use tokio_util::sync::CancellationToken;
 use uuid::Uuid;
 
@@ -15,7 +16,7 @@ use super::tables::numbers;
 use crate::commands::serve::signal;
 use crate::compute::Cores;
 use crate::jobs::{
-    Clock, DatabaseAddress, Jobs, Member, Migrate, Pace, Rules, StudyRecord, Workers, search_state,
+    Clock, DatabaseAddress, Jobs, Member, Migrate, Pace, Resource as _, Rules, StudyRecord, Workers, search_state,
 };
 use crate::serve::open;
 
@@ -101,7 +102,7 @@ async fn follow(
     let mut rows = Vec::new();
     let mut written = None;
     loop {
-        let record = jobs.wait_for_study(CLIENT, id, BETWEEN_LOOKS).await?;
+        let record = StudyRecord::wait(jobs, CLIENT, id, BETWEEN_LOOKS).await?;
         take_rows(jobs, id, &mut rows).await?;
         if let Some(folder) = folder {
             written = write_results(jobs, id, written, rows.len(), folder).await?;

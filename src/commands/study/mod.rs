@@ -10,8 +10,10 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use meshwright_engine::run::Run;
-use meshwright_wire::study_table::{csv, table};
-use meshwright_wire::{PopulationResults, PopulationSample, Study as StudyDocument, StudyResults};
+use meshwright_studies::table::{csv, table};
+use meshwright_studies::{
+    PopulationResults, PopulationSample, Study as StudyDocument, StudyResults,
+};
 
 use self::compute::{Computed, compute};
 use self::folder::ResultFolder;
@@ -186,11 +188,11 @@ mod tests {
 
     #[test]
     fn a_search_whose_confirmation_fails_says_so_first_and_why_members_failed_last() {
-        use meshwright_wire::refusals::RefusalState;
-        use meshwright_wire::search::{ConfirmedDesign, FoundDesign};
+        use meshwright_studies::refusals::RefusalState;
+        use meshwright_studies::searching::{ConfirmedDesign, FoundDesign};
         let search = include_str!("../../../api/examples/search-holes.json");
         let search = StudyDocument::parse(search.as_bytes(), &Run::unattended()).unwrap();
-        let state = meshwright_wire::SearchState {
+        let state = meshwright_studies::SearchState {
             evaluations: 3,
             best: Some(FoundDesign {
                 row: 1,

@@ -1,9 +1,8 @@
 //! What a study came to, as a picture.
 
 use meshwright_plot::{Axis, Chart, Color, Figure, Look, PALETTE, Panel, Series};
-
-use meshwright_wire::study_table::{Quantity, TableRow};
-use meshwright_wire::{PopulationResults, SearchState, Study as StudyDocument, StudyResults};
+use meshwright_studies::table::{Quantity, TableRow};
+use meshwright_studies::{PopulationResults, SearchState, Study as StudyDocument, StudyResults};
 
 /// The quantity that is shown, and that over which designs are.
 const SHOWN: &str = "transmission_error_um.peak_to_peak";

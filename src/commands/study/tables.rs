@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
-use meshwright_wire::refusals::{RefusalState, Refusals};
-use meshwright_wire::study_table::TableRow;
+use meshwright_studies::refusals::{RefusalState, Refusals};
+use meshwright_studies::table::TableRow;
+use meshwright_studies::{PopulationResults, SearchState, Study as StudyDocument, StudyResults};
 use meshwright_wire::warning::GearName;
-use meshwright_wire::{PopulationResults, SearchState, Study as StudyDocument, StudyResults};
 
 /// A printed table has so many designs at most; of more, only the best are printed.
 const MOST_PRINTED: usize = 40;

@@ -10,10 +10,11 @@ use uuid::Uuid;
 use super::view::StudyView;
 use crate::http::app::App;
 use crate::http::client::Client;
-use crate::http::events::{self, EventName, NamedData, WatchEvent, Watching, event};
+use crate::http::events::{EventName, NamedData, WatchEvent, Watching, event};
 use crate::http::parameters::StudyId;
 use crate::http::problem::Refusal;
-use crate::jobs::{News, Status};
+use crate::http::resource;
+use crate::jobs::{News, Resource as _, Status, StudyRecord};
 
 /// The progress of a study is told so often at most.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(250);
@@ -43,26 +44,30 @@ pub(in crate::http) async fn events(
     client: Client,
     StudyId(id): StudyId,
 ) -> Result<Response, Refusal> {
-    client.app.jobs.find_study(client.name(), id).await?;
-    let place = events::place(&client.app, client.name())?;
-    let watch = Watch {
-        news: client.app.jobs.news(id),
-        app: client.app.clone(),
-        client: client.member.client,
-        id,
-        known: None,
-    };
-    Ok(events::answer(client.app, watch, client.pass, place))
+    resource::watch::<StudyRecord>(client, id).await
 }
 
 /// One client that watches one study.
-struct Watch {
+pub(in crate::http) struct Watch {
     app: App,
     client: String,
     id: Uuid,
     news: News,
     /// What the client knows: the state, and the designs done.
     known: Option<(Status, u64)>,
+}
+
+impl Watch {
+    /// Of one that knows nothing of the study so far.
+    pub(super) fn new(app: App, client: String, id: Uuid) -> Self {
+        Self {
+            news: app.jobs.news(id),
+            app,
+            client,
+            id,
+            known: None,
+        }
+    }
 }
 
 impl Watching for Watch {
@@ -72,7 +77,9 @@ impl Watching for Watch {
             return None;
         }
         loop {
-            let study = self.app.jobs.find_study(&self.client, self.id).await.ok()?;
+            let study = StudyRecord::find(&self.app.jobs, &self.client, self.id)
+                .await
+                .ok()?;
             let now = (study.status(), study.done());
             let before = self.known.replace(now);
             if before.map(|(status, _)| status) != Some(now.0) {

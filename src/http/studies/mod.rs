@@ -5,26 +5,29 @@ mod population;
 mod table;
 mod view;
 
-use axum::Json;
+use axum::body::Bytes;
 use axum::http::StatusCode;
 use axum::http::header::HeaderMap;
-use axum::response::{IntoResponse, Response};
+use axum::response::Response;
 use meshwright_connections::{Keep, Tag};
 use meshwright_engine::run::Run;
-use meshwright_wire::Study;
-use serde::Deserialize;
+use meshwright_studies::Study;
+use serde::{Deserialize, Serialize};
 use utoipa::IntoParams;
+use uuid::Uuid;
 
-use super::answer::{self, json, tag_of_parts, tell_when_to_return};
+use super::answer::{self, json};
+use super::app::App;
 use super::blocking::{blocking, turn_to_read};
+use super::body::JsonBody;
 use super::client::Client;
-use super::document::Document;
 use super::edge::Edge;
 use super::page::{self, Page, USUAL_LIMIT};
 use super::parameters::{IdempotencyKey, IfNoneMatch, Parameters, StudyId};
 use super::prefer::Wait;
-use crate::http::problem::Refusal;
-use crate::jobs::{StudyFilter, StudyRecord};
+use super::problem::Refusal;
+use super::resource::{self, Shown};
+use crate::jobs::{JobError, Jobs, Resource as _, StudyFilter, StudyRecord};
 use view::StudyView;
 
 pub(super) use events::*;
@@ -53,7 +56,7 @@ const LONGEST_IN_VIEW: u64 = 64 << 10;
             ("Retry-After" = u32, description = "Seconds after which it is worth looking."),
         )),
         (status = 200, description = "With a repeated `Idempotency-Key`, the study that has ended meanwhile.", body = StudyView),
-        Document<MIB>,
+        JsonBody<MIB>,
         (status = 422, description = "The study is not understood, or has more than 100,000 designs; `errors` says which field is why. Or the key was used for another study."),
         (status = 429, description = "More designs of this client wait than may."),
         (status = 503, description = "Too many designs wait, nothing can be stored, or the service is shutting down. Try again after `Retry-After` seconds."),
@@ -62,7 +65,7 @@ const LONGEST_IN_VIEW: u64 = 64 << 10;
 pub(super) async fn submit(
     client: Client,
     IdempotencyKey(key): IdempotencyKey,
-    Document(document, memory): Document<MIB>,
+    JsonBody(document, memory): JsonBody<MIB>,
 ) -> Result<Response, Refusal> {
     let read = move |run: &Run| (Study::submitted(&document, run), memory);
     let (study, _memory) = blocking(client.name(), read).await?;
@@ -133,27 +136,13 @@ pub(super) async fn list(
         span: page::span(since.as_deref(), before.as_deref())?,
         after: page::cursor(parameters.cursor.as_deref())?,
     };
-    let _turn = turn_to_read(client.name()).await;
-    let found = client
-        .app
-        .jobs
-        .list_studies(client.name(), &filter, limit)
-        .await?;
     let pairs = [
         ("name", parameters.name.as_deref()),
         ("tag", parameters.tag.as_deref()),
         ("submitted_since", since.as_deref()),
         ("submitted_before", before.as_deref()),
-        ("limit", Some(&*limit.to_string())),
     ];
-    let view = |study| StudyView::of(study, &client.app.edge);
-    Ok(page::answer(
-        &client.app.edge,
-        "/v1/studies",
-        &pairs,
-        &found,
-        view,
-    ))
+    resource::list::<StudyRecord>(client, filter, limit, &pairs).await
 }
 
 /// Look at a study
@@ -174,34 +163,7 @@ pub(super) async fn show(
     StudyId(id): StudyId,
     request: HeaderMap,
 ) -> Result<Response, Refusal> {
-    let wait = wait.grant(&client);
-    let study = match wait.patience() {
-        Some(patience) => {
-            let study = client
-                .app
-                .jobs
-                .wait_for_study(client.name(), id, patience)
-                .await?;
-            client.check_again().await?;
-            study
-        }
-        None => client.app.jobs.find_study(client.name(), id).await?,
-    };
-    // What has not changed is answered without reading the document.
-    let tag = tag_of(&study, "state", &client.app.edge);
-    let whole = async {
-        let document = client
-            .app
-            .jobs
-            .short_study_text(id, LONGEST_IN_VIEW)
-            .await?;
-        let body = StudyView::whole(&study, document, &client.app.edge).to_json();
-        Ok::<_, Refusal>(json(body))
-    };
-    let mut response = tag.answer(Keep::AskAgain, &request, whole).await?;
-    wait.acknowledge(response.headers_mut());
-    tell_when_to_return(study.status().has_ended(), &mut response);
-    Ok(response)
+    resource::show::<StudyRecord>(client, wait, id, request).await
 }
 
 /// The tag of what is told of a study, in one form, as long as the study does not change.
@@ -225,7 +187,7 @@ pub(super) async fn document(
     StudyId(id): StudyId,
     request: HeaderMap,
 ) -> Result<Response, Refusal> {
-    let study = client.app.jobs.find_study(client.name(), id).await?;
+    let study = StudyRecord::find(&client.app.jobs, client.name(), id).await?;
     let text = async {
         let bytes = client.app.jobs.study_text_bytes(study.id).await?;
         let memory = client.app.bodies.for_answer(client.name(), bytes).await?;
@@ -248,9 +210,7 @@ pub(super) async fn document(
     ),
 )]
 pub(super) async fn cancel(client: Client, StudyId(id): StudyId) -> Result<Response, Refusal> {
-    let study = client.app.jobs.cancel_study(client.name(), id).await?;
-    let view = StudyView::of(&study, &client.app.edge);
-    Ok((StatusCode::ACCEPTED, Json(view)).into_response())
+    resource::cancel::<StudyRecord>(client, id).await
 }
 
 /// Delete a study
@@ -264,6 +224,28 @@ pub(super) async fn cancel(client: Client, StudyId(id): StudyId) -> Result<Respo
     ),
 )]
 pub(super) async fn delete(client: Client, StudyId(id): StudyId) -> Result<StatusCode, Refusal> {
-    client.app.jobs.delete_study(client.name(), id).await?;
-    Ok(StatusCode::NO_CONTENT)
+    resource::delete::<StudyRecord>(client, id).await
+}
+
+impl Shown for StudyRecord {
+    const PATH: &'static str = "/v1/studies";
+
+    type Watch = Watch;
+
+    fn view(&self, edge: &Edge) -> impl Serialize {
+        StudyView::of(self, edge)
+    }
+
+    async fn whole_view(&self, jobs: &Jobs, edge: &Edge) -> Result<Bytes, JobError> {
+        let document = jobs.short_study_text(self.id, LONGEST_IN_VIEW).await?;
+        Ok(StudyView::whole(self, document, edge).to_json())
+    }
+
+    fn tag(&self, edge: &Edge) -> Tag {
+        tag_of(self, "state", edge)
+    }
+
+    fn watch(app: App, client: String, id: Uuid) -> Watch {
+        Watch::new(app, client, id)
+    }
 }

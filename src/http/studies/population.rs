@@ -7,9 +7,8 @@ use axum::http::HeaderMap;
 use axum::response::{IntoResponse, Response};
 use meshwright_connections::{Keep, Part};
 use meshwright_engine::run::Run;
-use meshwright_wire::{
-    Code, PopulationResults, PopulationSample, Problem, RowState, SearchState, Study, Submission,
-};
+use meshwright_studies::{PopulationResults, PopulationSample, RowState, SearchState, Study};
+use meshwright_wire::{Code, Problem, Submission};
 
 use super::{MIB, over_rows, tag_of};
 use crate::http::answer::{json, tag_of_parts, tell_when_to_return};
@@ -19,7 +18,7 @@ use crate::http::client::Client;
 use crate::http::memory::SMALL;
 use crate::http::parameters::{IfNoneMatch, StudyId};
 use crate::http::problem::Refusal;
-use crate::jobs::{StudyRecord, shown_status};
+use crate::jobs::{Resource as _, StudyRecord, shown_status};
 
 /// Get what a population comes to
 ///
@@ -42,7 +41,7 @@ pub(in crate::http) async fn population(
     StudyId(id): StudyId,
     request: HeaderMap,
 ) -> Result<Response, Refusal> {
-    let study = client.app.jobs.find_study(client.name(), id).await?;
+    let study = StudyRecord::find(&client.app.jobs, client.name(), id).await?;
     let tag = tag_of(&study, "population", &client.app.edge);
     let name = Arc::from(client.name());
     let made = async {
@@ -136,7 +135,7 @@ pub(in crate::http) async fn design(
     request: HeaderMap,
 ) -> Result<Response, Refusal> {
     let StudyId(id) = StudyId::of(&id)?;
-    let record = client.app.jobs.find_study(client.name(), id).await?;
+    let record = StudyRecord::find(&client.app.jobs, client.name(), id).await?;
     let wanted = row.parse::<u32>().ok();
     let text = async {
         let found = match wanted {
@@ -195,7 +194,7 @@ pub(in crate::http) async fn best(
     StudyId(id): StudyId,
     request: HeaderMap,
 ) -> Result<Response, Refusal> {
-    let record = client.app.jobs.find_study(client.name(), id).await?;
+    let record = StudyRecord::find(&client.app.jobs, client.name(), id).await?;
     let Some(state) = &record.search else {
         let detail = "This study is no search; its table is at /results.";
         return Err(Problem::new(Code::NotFound, detail).into());

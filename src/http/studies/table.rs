@@ -12,8 +12,9 @@ use axum::response::{IntoResponse, Response};
 use futures_util::stream;
 use meshwright_connections::Keep;
 use meshwright_engine::run::Run;
-use meshwright_wire::study_table::{CsvTable, KnownQuantities, Outline, TableRow};
-use meshwright_wire::{Code, Problem, Results, RowState, StudyResults};
+use meshwright_studies::table::{CsvTable, KnownQuantities, Outline, TableRow};
+use meshwright_studies::{RowState, StudyResults};
+use meshwright_wire::{Code, Problem, Results};
 use serde::de::IntoDeserializer;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -31,7 +32,7 @@ use crate::http::client::Client;
 use crate::http::parameters::{IfNoneMatch, StudyId};
 use crate::http::problem::Refusal;
 use crate::http::view::with_public_type;
-use crate::jobs::{DocumentLine, JobError, StudyRecord, gear_of, shown_status};
+use crate::jobs::{DocumentLine, JobError, Resource as _, StudyRecord, gear_of, shown_status};
 
 /// Get the table of a study
 ///
@@ -193,7 +194,7 @@ async fn send(
     request: &HeaderMap,
     form: StudyFile,
 ) -> Result<Response, Refusal> {
-    let study = client.app.jobs.find_study(client.name(), id).await?;
+    let study = StudyRecord::find(&client.app.jobs, client.name(), id).await?;
     let tag = tag_of(&study, form.word(), &client.app.edge);
     let name = Arc::from(client.name());
     let made = async {

@@ -2,7 +2,9 @@
 
 use axum::body::Bytes;
 use jiff::Timestamp;
-use meshwright_wire::{Problem, SearchState, Status, Study, view};
+use meshwright_studies::{SearchState, Study};
+use meshwright_wire::declare::document;
+use meshwright_wire::{Problem, Status};
 use serde_json::Value;
 use serde_json::value::RawValue;
 use uuid::Uuid;
@@ -11,9 +13,10 @@ use crate::http::edge::Edge;
 use crate::http::view::with_public_type;
 use crate::jobs::{self, StudyRecord, shown_status};
 
-view! {
+document! {
     /// A study: how far it has come, and where to find its table.
-    pub(in crate::http) struct StudyView as SubmittedStudy of (study: &StudyRecord, edge: &Edge) {
+    pub(in crate::http) struct StudyView as SubmittedStudy
+    view of (study: &StudyRecord, edge: &Edge) {
         /// The id of the study.
         id: Uuid = study.id,
         /// `successful` when at least one design has results, `failed` when none has and all have ended.
@@ -41,7 +44,10 @@ view! {
         problem?: Value = why_failed(study, edge),
         /// Of a search: how far it has come.
         #[schema(value_type = Option<SearchState>)]
-        search?: Box<RawValue> = study.search.clone().and_then(|text| RawValue::from_string(text).ok()),
+        search?: Box<RawValue> = study
+            .search
+            .clone()
+            .and_then(|text| RawValue::from_string(text).ok()),
         links: StudyLinks = StudyLinks::of(study, edge),
         /// The study as it was sent. Absent in lists, and where it has more than 64 KiB: `links.document` has it whole.
         #[schema(value_type = Option<Study>)]
@@ -49,9 +55,10 @@ view! {
     }
 }
 
-view! {
+document! {
     /// Where to find what belongs to a study.
-    pub(in crate::http) struct StudyLinks as StudyLinks of (study: &StudyRecord, edge: &Edge) with {
+    pub(in crate::http) struct StudyLinks as StudyLinks
+    view of (study: &StudyRecord, edge: &Edge) with {
         let address = edge.study(study.id);
     } {
         /// The study.

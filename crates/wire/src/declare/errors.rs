@@ -4,45 +4,45 @@ use std::cell::RefCell;
 
 use crate::problem::{FieldError, Problem};
 
-/// Errors beyond this number are not told; a document with so many is not a slip.
+/// Errors beyond this number are not reported; a document with so many is not a slip.
 const MOST_ERRORS: usize = 50;
 
 /// The errors found so far, with a bound on their number.
 #[derive(Debug, Default)]
-pub(crate) struct Errors(RefCell<Vec<FieldError>>);
+pub struct Errors(RefCell<Vec<FieldError>>);
 
 impl Errors {
-    pub(crate) fn push(&self, error: FieldError) {
+    /// Adds an error, as long as there are not too many.
+    pub fn push(&self, error: FieldError) {
         let mut errors = self.0.borrow_mut();
         if errors.len() < MOST_ERRORS {
             errors.push(error);
         }
     }
 
-    pub(crate) fn count(&self) -> usize {
+    /// The number of errors so far.
+    pub fn count(&self) -> usize {
         self.0.borrow().len()
     }
 
-    /// Whether no more are told.
-    pub(super) fn is_full(&self) -> bool {
+    /// Whether no more are reported.
+    pub fn is_full(&self) -> bool {
         self.count() >= MOST_ERRORS
     }
 
-    pub(crate) fn into_errors(self) -> Vec<FieldError> {
+    /// The errors, in the order in which they were found.
+    pub fn into_errors(self) -> Vec<FieldError> {
         self.0.into_inner()
     }
 
-    /// The value of `made`, if it could be made; else its faults are told.
-    pub(crate) fn report<T>(
-        &self,
-        made: Result<T, impl IntoIterator<Item = FieldError>>,
-    ) -> Option<T> {
+    /// The value of `made`, if it could be made; else its faults are reported.
+    pub fn report<T>(&self, made: Result<T, impl IntoIterator<Item = FieldError>>) -> Option<T> {
         made.map_err(|faults| faults.into_iter().for_each(|fault| self.push(fault)))
             .ok()
     }
 
     /// What was read, if nothing is wrong.
-    pub(crate) fn settle<T>(self, read: Option<T>) -> Result<T, Problem> {
+    pub fn settle<T>(self, read: Option<T>) -> Result<T, Problem> {
         match read {
             Some(read) if self.count() == 0 => Ok(read),
             _ => Err(Problem::of_fields(self.into_errors())),

@@ -4,12 +4,12 @@ use serde::Serializer;
 use serde::ser::SerializeSeq;
 use serde_json::{Value, json};
 
-use super::{Kind, Named, Node, Place, Written};
+use super::{Kind, Location, Named, Node, Written};
 use crate::problem::Code;
 
 /// What a declaration says of a list.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct List<S> {
+pub struct List<S> {
     title: &'static str,
     each: S,
     most: usize,
@@ -28,7 +28,7 @@ pub(crate) struct List<S> {
 }
 
 /// A list of at most so many values, that has to be given.
-pub(crate) const fn list<S>(title: &'static str, each: S, most: usize) -> List<S> {
+pub const fn list<S>(title: &'static str, each: S, most: usize) -> List<S> {
     List {
         title,
         each,
@@ -44,7 +44,7 @@ pub(crate) const fn list<S>(title: &'static str, each: S, most: usize) -> List<S
 
 impl<S: Copy> List<S> {
     /// What its items are called, as they are expected and as they are counted, and what becomes of those that fit.
-    pub(crate) const fn of(
+    pub const fn of(
         self,
         expected: &'static str,
         counted: &'static str,
@@ -55,30 +55,30 @@ impl<S: Copy> List<S> {
     }
 
     /// Too many items are refused with this code.
-    pub(crate) const fn too_many_is(self, too_many: Code) -> Self {
+    pub const fn too_many_is(self, too_many: Code) -> Self {
         Self { too_many, ..self }
     }
 
     /// It has at least one item.
-    pub(crate) const fn not_empty(self, code: Code, advice: &'static str) -> Self {
+    pub const fn not_empty(self, code: Code, advice: &'static str) -> Self {
         let empty = Some((code, advice));
         Self { empty, ..self }
     }
 
     /// Each item stands there once.
-    pub(crate) const fn unique(self, said: &'static str) -> Self {
+    pub const fn unique(self, said: &'static str) -> Self {
         let repeated = Some(said);
         Self { repeated, ..self }
     }
 
     /// Absent, it is empty.
-    pub(crate) const fn or_empty(self) -> Self {
+    pub const fn or_empty(self) -> Self {
         let or_empty = true;
         Self { or_empty, ..self }
     }
 
     /// Null is as good as absent.
-    pub(crate) const fn or_null(self) -> Self {
+    pub const fn or_null(self) -> Self {
         let or_null = true;
         Self { or_null, ..self }
     }
@@ -87,7 +87,7 @@ impl<S: Copy> List<S> {
 impl<T: Kind + PartialEq> Kind for Vec<T> {
     type Spec = List<T::Spec>;
 
-    fn read(node: &Node, place: &Place<'_>, spec: &Self::Spec) -> Option<Self> {
+    fn read(node: &Node, place: &Location<'_>, spec: &Self::Spec) -> Option<Self> {
         let [expected, counted] = T::MANY;
         let [expected, counted, fit] = spec.said.unwrap_or([expected, counted, "fit"]);
         let Node::List(nodes) = node else {
@@ -102,7 +102,7 @@ impl<T: Kind + PartialEq> Kind for Vec<T> {
             let detail = format!("{place} has {count} {counted}; at most {most} {fit}.");
             return place.wrong(spec.too_many, detail, Some(most as f64));
         }
-        // All of them are looked at, so that all that are wrong are told.
+        // All of them are looked at, so that all that are wrong are reported.
         let read: Vec<Option<T>> = nodes
             .iter()
             .enumerate()

@@ -3,9 +3,8 @@
 //! A [`document!`] says of each field its name, its type, a sentence, and a specification such as `number("Module", "mm", 0.1, 50.0)`:
 //! title, unit, bounds, and what stands for the field where it is absent. What a specification can say depends on the type
 //! of the field, which is a [`Kind`]. The declaration of a field is a constant of its object, named as the field, for
-//! those who look up its unit or its bounds. An [`answer!`] says of each field what it is filled from.
+//! those who look up its unit or its bounds. Of an object that is answered it says what each field is filled from.
 
-mod answer;
 mod errors;
 mod list;
 mod nested;
@@ -18,24 +17,23 @@ mod words;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::Value;
 
-pub(crate) use answer::{answer, view};
-pub(super) use errors::Errors;
-pub(super) use list::{List, list};
-pub(super) use nested::{
-    Document, EACH, Exclusion, Nested, Property, document, exclusive, nested, object, tagged,
+pub use errors::Errors;
+pub use list::{List, list};
+pub use nested::{
+    EACH, Exclusion, Nested, Object, Property, document, exclusive, nested, object, tagged,
     utoipa_schema,
 };
-pub(super) use node::{Node, escaped};
-pub(super) use number::{Number, number};
-pub(super) use optional::{Optional, absent, or_else, or_null, unless};
-pub(super) use reader::{ObjectReader, Place};
-pub(super) use words::{Choice, Flag, OneWord, Text, flag, is_short_text, text, word, words};
+pub use node::{Node, escaped};
+pub use number::{Number, number};
+pub use optional::{Optional, absent, or_else, or_null, unless};
+pub use reader::{Location, ObjectReader};
+pub use words::{Choice, Flag, OneWord, Text, flag, is_short_text, text, word, words};
 
 /// The named schemas that others refer to.
-pub(super) type Named = Vec<(&'static str, Value)>;
+pub type Named = Vec<(&'static str, Value)>;
 
 /// A kind of value: how it is read, written and described, from what a declaration says of it.
-pub(super) trait Kind: Sized {
+pub trait Kind: Sized {
     /// What a declaration says of such a value.
     type Spec;
 
@@ -43,7 +41,7 @@ pub(super) trait Kind: Sized {
     const MANY: [&'static str; 2] = ["objects", "items"];
 
     /// Reads the value that stands at `place`. What is wrong is reported there.
-    fn read(node: &Node, place: &Place<'_>, spec: &Self::Spec) -> Option<Self>;
+    fn read(node: &Node, place: &Location<'_>, spec: &Self::Spec) -> Option<Self>;
 
     /// Reads the field `name`.
     fn read_field(
@@ -104,27 +102,28 @@ pub(super) trait Kind: Sized {
 
 /// The declaration of a field.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Declared<S> {
+pub struct Declared<S> {
     /// Its name.
-    pub(super) name: &'static str,
+    pub name: &'static str,
     /// What it is.
-    pub(super) about: &'static str,
+    pub about: &'static str,
     /// What its kind of value needs to know.
-    pub(super) spec: S,
+    pub spec: S,
 }
 
 impl<S> Declared<S> {
-    pub(super) const fn new(name: &'static str, about: &'static str, spec: S) -> Self {
+    /// The declaration of the field `name`.
+    pub const fn new(name: &'static str, about: &'static str, spec: S) -> Self {
         Self { name, about, spec }
     }
 
     /// Reads the field.
-    pub(super) fn read<K: Kind<Spec = S>>(&self, reader: &mut ObjectReader<'_>) -> Option<K> {
+    pub fn read<K: Kind<Spec = S>>(&self, reader: &mut ObjectReader<'_>) -> Option<K> {
         K::read_field(reader, self.name, &self.spec)
     }
 
     /// Writes the field.
-    pub(super) fn write<K: Kind<Spec = S>, M: SerializeMap>(
+    pub fn write<K: Kind<Spec = S>, M: SerializeMap>(
         &self,
         value: &K,
         map: &mut M,
@@ -136,7 +135,7 @@ impl<S> Declared<S> {
     }
 
     /// What the schema says of the field.
-    pub(super) fn property<K: Kind<Spec = S>>(&self) -> Property {
+    pub fn property<K: Kind<Spec = S>>(&self) -> Property {
         let schema = K::describe(self.about.trim_start(), &self.spec);
         Property {
             exclusion: K::exclusion(&self.spec),
@@ -146,7 +145,7 @@ impl<S> Declared<S> {
 }
 
 /// A value as serde writes it.
-pub(super) struct Written<'a, K>(pub(super) &'a K);
+pub struct Written<'a, K>(pub &'a K);
 
 impl<K: Kind> Serialize for Written<'_, K> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {

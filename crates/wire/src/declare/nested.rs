@@ -6,19 +6,23 @@ use utoipa::openapi::RefOr;
 use utoipa::openapi::extensions::ExtensionsBuilder;
 use utoipa::openapi::schema::{ObjectBuilder, Schema};
 
-use super::{Kind, Named, Node, ObjectReader, Place};
+use super::{Kind, Location, Named, Node, ObjectReader};
 
 /// A property of an object.
-pub(crate) struct Property {
-    pub(crate) name: &'static str,
-    pub(crate) schema: Value,
-    pub(crate) is_needed: bool,
-    pub(crate) exclusion: Option<Exclusion>,
+pub struct Property {
+    /// Its name.
+    pub name: &'static str,
+    /// What the schema says of it.
+    pub schema: Value,
+    /// Whether it has to be given.
+    pub is_needed: bool,
+    /// Which others it cannot be given with.
+    pub exclusion: Option<Exclusion>,
 }
 
 impl Property {
     /// One that excludes no other.
-    pub(crate) const fn new(name: &'static str, schema: Value, is_needed: bool) -> Self {
+    pub const fn new(name: &'static str, schema: Value, is_needed: bool) -> Self {
         Self {
             name,
             schema,
@@ -30,14 +34,15 @@ impl Property {
 
 /// That a field cannot be given together with some others.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Exclusion {
-    pub(crate) others: &'static [&'static str],
+pub struct Exclusion {
+    /// The names of the others.
+    pub others: &'static [&'static str],
     /// Whether one of them has to be given.
-    pub(crate) is_one_needed: bool,
+    pub is_one_needed: bool,
 }
 
 /// An object of the wire; [`document!`] and [`tagged!`] implement it.
-pub(crate) trait Document: Sized {
+pub trait Object: Sized {
     /// Its name in the contract.
     const NAME: &'static str;
 
@@ -66,24 +71,24 @@ pub(crate) trait Document: Sized {
 
 /// What a declaration says of an object within another one.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Nested {
+pub struct Nested {
     title: &'static str,
     /// Whether it is made of its fields' defaults where it is absent or null.
     or_defaults: bool,
 }
 
 /// An object that has to be given.
-pub(crate) const fn nested(title: &'static str) -> Nested {
+pub const fn nested(title: &'static str) -> Nested {
     let or_defaults = false;
     Nested { title, or_defaults }
 }
 
 /// An object that has to be given, of which there is nothing to say beside what it says itself.
-pub(crate) const EACH: Nested = nested("");
+pub const EACH: Nested = nested("");
 
 impl Nested {
     /// Absent or null, it has the default of every field.
-    pub(crate) const fn or_defaults(self) -> Self {
+    pub const fn or_defaults(self) -> Self {
         let or_defaults = true;
         Self {
             or_defaults,
@@ -92,10 +97,10 @@ impl Nested {
     }
 }
 
-impl<D: Document> Kind for D {
+impl<O: Object> Kind for O {
     type Spec = Nested;
 
-    fn read(node: &Node, place: &Place<'_>, _: &Nested) -> Option<Self> {
+    fn read(node: &Node, place: &Location<'_>, _: &Nested) -> Option<Self> {
         Self::read_whole(ObjectReader::new(node, place.clone())?)
     }
 
@@ -121,7 +126,7 @@ impl<D: Document> Kind for D {
     }
 
     fn describe(about: &str, spec: &Nested) -> Value {
-        let reference = json!({ "$ref": format!("#/components/schemas/{}", D::NAME) });
+        let reference = json!({ "$ref": format!("#/components/schemas/{}", O::NAME) });
         if spec.or_defaults {
             return json!({ "title": spec.title, "description": about, "oneOf": [reference, { "type": "null" }] });
         }
@@ -132,13 +137,13 @@ impl<D: Document> Kind for D {
     }
 
     fn name_parts(named: &mut Named) {
-        named.push((D::NAME, D::json_schema()));
-        D::name_fields(named);
+        named.push((O::NAME, O::json_schema()));
+        O::name_fields(named);
     }
 }
 
 /// The schema of an object that has these properties and no others.
-pub(crate) fn object(title: &str, about: &str, properties: Vec<Property>) -> Value {
+pub fn object(title: &str, about: &str, properties: Vec<Property>) -> Value {
     let needed: Vec<_> = properties
         .iter()
         .filter(|property| property.is_needed)
@@ -182,7 +187,7 @@ pub(crate) fn object(title: &str, about: &str, properties: Vec<Property>) -> Val
 /// as good as absent.
 ///
 /// It stands in an `allOf` beside the properties, and says nothing but what is not: generators of clients make no types of such alternatives.
-pub(crate) fn exclusive(names: &[&str], is_one_needed: bool) -> Value {
+pub fn exclusive(names: &[&str], is_one_needed: bool) -> Value {
     let given = |name: &&str| json!({ "not": { "properties": { *name: { "type": "null" } } } });
     let mut alternatives: Vec<Value> = names.iter().map(given).collect();
     if !is_one_needed {
@@ -193,29 +198,37 @@ pub(crate) fn exclusive(names: &[&str], is_one_needed: bool) -> Value {
 
 /// `schema` in a form that utoipa carries to the finished document, which has it instead. What utoipa knows of schemas is less than
 /// what ours say, and it drops the rest.
-pub(crate) fn utoipa_schema(schema: Value) -> RefOr<Schema> {
+pub fn utoipa_schema(schema: Value) -> RefOr<Schema> {
     let declared = ExtensionsBuilder::new().add("x-declared", schema).build();
     ObjectBuilder::new().extensions(Some(declared)).into()
 }
 
-/// Declares an object of the wire.
+/// Declares an object of the interface.
+///
+/// Of one that is sent each field has its type, a sentence and a specification: `field: f64 = number("Title", "mm", 0.1, 50.0),`. From it come reader,
+/// writer and schema.
+///
+/// Of one that is answered (`answer of (what: &There, is: f64)`) each field has its type, a sentence and what it is filled from; a field with a question
+/// mark is absent where its source is `None`. It can be read back. One that is only written is a `view of (…)`.
+#[macro_export]
 macro_rules! document {
     (
         $(#[doc = $about:literal])*
-        $visibility:vis struct $Document:ident as $name:literal, $title:literal {
+        $visibility:vis struct $Object:ident as $name:literal, $title:literal {
             $($(#[doc = $sentence:literal])* $within:vis $field:ident: $kind:ty = $spec:expr,)*
         }
     ) => {
         $(#[doc = $about])*
         #[derive(Debug, Clone, PartialEq)]
-        $visibility struct $Document {
+        $visibility struct $Object {
             $($(#[doc = $sentence])* $within $field: $kind,)*
         }
 
         #[expect(non_upper_case_globals, reason = "a declaration is named as its field")]
-        impl $Document {
+        impl $Object {
             $(
-                pub(crate) const $field:
+                $(#[doc = $sentence])*
+                $visibility const $field:
                     $crate::declare::Declared<<$kind as $crate::declare::Kind>::Spec> =
                     $crate::declare::Declared::new(
                         stringify!($field),
@@ -225,11 +238,11 @@ macro_rules! document {
             )*
         }
 
-        impl $crate::declare::Document for $Document {
+        impl $crate::declare::Object for $Object {
             const NAME: &'static str = $name;
 
             fn read_fields(reader: &mut $crate::declare::ObjectReader<'_>) -> Option<Self> {
-                // All of them are read, so that all that is wrong is told.
+                // All of them are read, so that all that is wrong is reported.
                 $(let $field = Self::$field.read(reader);)*
                 Some(Self { $($field: $field?),* })
             }
@@ -252,49 +265,141 @@ macro_rules! document {
             }
         }
 
-        $crate::declare::document!(@known $Document);
+        $crate::document!(@known $Object);
     };
 
     // What others than this module ask of an object.
-    (@known $Document:ty) => {
-        impl serde::Serialize for $Document {
+    (@known $Object:ty) => {
+        impl serde::Serialize for $Object {
             fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
                 $crate::declare::Kind::write(self, serializer)
             }
         }
 
-        impl utoipa::PartialSchema for $Document {
+        impl utoipa::PartialSchema for $Object {
             fn schema() -> utoipa::openapi::RefOr<utoipa::openapi::schema::Schema> {
-                use $crate::declare::Document;
+                use $crate::declare::Object;
                 $crate::declare::utoipa_schema(Self::json_schema())
             }
         }
 
-        impl utoipa::ToSchema for $Document {
+        impl utoipa::ToSchema for $Object {
             fn name() -> std::borrow::Cow<'static, str> {
-                <Self as $crate::declare::Document>::NAME.into()
+                <Self as $crate::declare::Object>::NAME.into()
             }
 
             fn schemas(
                 schemas: &mut Vec<(String, utoipa::openapi::RefOr<utoipa::openapi::schema::Schema>)>,
             ) {
                 let mut named = Vec::new();
-                <Self as $crate::declare::Document>::name_fields(&mut named);
+                <Self as $crate::declare::Object>::name_fields(&mut named);
                 schemas.extend(named.into_iter().map(|(name, schema)| {
                     (name.to_owned(), $crate::declare::utoipa_schema(schema))
                 }));
             }
         }
     };
+
+    (
+        $(#[$about:meta])*
+        $visibility:vis struct $Object:ident $(<$lifetime:lifetime>)? as $name:ident $(, $title:literal)?
+        answer of $($rest:tt)*
+    ) => {
+        $crate::document! {
+            @derive [Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema]
+            $(#[$about])*
+            $visibility struct $Object $(<$lifetime>)? as $name $(, $title)? of $($rest)*
+        }
+    };
+
+    (
+        $(#[$about:meta])*
+        $visibility:vis struct $Object:ident $(<$lifetime:lifetime>)? as $name:ident $(, $title:literal)?
+        view of $($rest:tt)*
+    ) => {
+        $crate::document! {
+            @derive [serde::Serialize, utoipa::ToSchema]
+            $(#[$about])*
+            $visibility struct $Object $(<$lifetime>)? as $name $(, $title)? of $($rest)*
+        }
+    };
+
+    (
+        @next [$($derive:path),*] $head:tt [$($known:tt)*]
+        $(#[$about:meta])* $field:ident?: $kind:ty = $source:expr, $($rest:tt)*
+    ) => {
+        $crate::document! {
+            @next [$($derive),*] $head
+            [
+                $($known)*
+                $(#[$about])*
+                #[serde(default, skip_serializing_if = "Option::is_none")]
+                $field: Option<$kind> = $source,
+            ]
+            $($rest)*
+        }
+    };
+
+    (
+        @next [$($derive:path),*] $head:tt [$($known:tt)*]
+        $(#[$about:meta])* $field:ident: $kind:ty = $source:expr, $($rest:tt)*
+    ) => {
+        $crate::document! {
+            @next [$($derive),*] $head [$($known)* $(#[$about])* $field: $kind = $source,] $($rest)*
+        }
+    };
+
+    (
+        @next [$($derive:path),*]
+        [
+            $(#[$about:meta])*
+            $visibility:vis struct $Object:ident $(<$lifetime:lifetime>)? as $name:ident $(, $title:literal)?
+            of $given:tt { $($before:tt)* }
+        ]
+        [$($(#[$sentence:meta])* $field:ident: $kind:ty = $source:expr,)*]
+    ) => {
+        $(#[$about])*
+        #[derive($($derive),*)]
+        #[schema(as = $name $(, title = $title)?)]
+        $visibility struct $Object $(<$lifetime>)? {
+            $($(#[$sentence])* $visibility $field: $kind,)*
+        }
+
+        impl $(<$lifetime>)? $Object $(<$lifetime>)? {
+            /// Tells what there is.
+            $visibility fn of $given -> Self {
+                $($before)*
+                Self { $($field: $source,)* }
+            }
+        }
+    };
+
+    (
+        @derive [$($derive:path),*]
+        $(#[$about:meta])*
+        $visibility:vis struct $Object:ident $(<$lifetime:lifetime>)? as $name:ident $(, $title:literal)?
+        of $given:tt $(with { $($before:tt)* })? { $($fields:tt)* }
+    ) => {
+        $crate::document! {
+            @next [$($derive),*]
+            [
+                $(#[$about])*
+                $visibility struct $Object $(<$lifetime>)? as $name $(, $title)?
+                of $given { $($($before)*)? }
+            ]
+            [] $($fields)*
+        }
+    };
 }
 
-pub(crate) use document;
+pub use document;
 
-/// Declares an object that is of one of several kinds, told by the word of its field `kind`.
+/// Declares an object that is of one of several kinds, named by the word of its field `kind`.
+#[macro_export]
 macro_rules! tagged {
     (
         $(#[doc = $about:literal])*
-        $visibility:vis enum $Document:ident as $name:literal, $title:literal {
+        $visibility:vis enum $Object:ident as $name:literal, $title:literal {
             $(
                 $(#[doc = $meaning:literal])*
                 $Variant:ident($part:ty) = $word:literal as $part_name:literal, $part_title:literal,
@@ -303,20 +408,20 @@ macro_rules! tagged {
     ) => {
         $(#[doc = $about])*
         #[derive(Debug, Clone, PartialEq)]
-        $visibility enum $Document {
+        $visibility enum $Object {
             $($(#[doc = $meaning])* $Variant($part),)*
         }
 
-        impl $crate::declare::Document for $Document {
+        impl $crate::declare::Object for $Object {
             const NAME: &'static str = $name;
 
             fn read_fields(reader: &mut $crate::declare::ObjectReader<'_>) -> Option<Self> {
-                use $crate::declare::{Document, Node};
+                use $crate::declare::{Node, Object};
                 const WORDS: &[&str] = &[$($word),*];
                 match reader.get("kind") {
                     $(
                         Some(Node::Text(word)) if word == $word => {
-                            <$part as Document>::read_fields(reader).map(Self::$Variant)
+                            <$part as Object>::read_fields(reader).map(Self::$Variant)
                         }
                     )*
                     other => reader.refuse_kind(other, WORDS),
@@ -328,7 +433,7 @@ macro_rules! tagged {
                     $(
                         Self::$Variant(part) => {
                             map.serialize_entry("kind", $word)?;
-                            $crate::declare::Document::write_fields(part, map)
+                            $crate::declare::Object::write_fields(part, map)
                         }
                     )*
                 }
@@ -347,7 +452,7 @@ macro_rules! tagged {
             }
 
             fn name_fields(named: &mut $crate::declare::Named) {
-                use $crate::declare::{Document, Property};
+                use $crate::declare::{Object, Property};
                 $(
                     let kind = serde_json::json!({
                         "type": "string",
@@ -356,17 +461,17 @@ macro_rules! tagged {
                         "enum": [$word],
                     });
                     let mut properties = vec![Property::new("kind", kind, true)];
-                    properties.extend(<$part as Document>::properties());
+                    properties.extend(<$part as Object>::properties());
                     let schema =
                         $crate::declare::object($part_title, concat!($($meaning),*), properties);
                     named.push(($part_name, schema));
-                    <$part as Document>::name_fields(named);
+                    <$part as Object>::name_fields(named);
                 )*
             }
         }
 
-        $crate::declare::document!(@known $Document);
+        $crate::document!(@known $Object);
     };
 }
 
-pub(crate) use tagged;
+pub use tagged;

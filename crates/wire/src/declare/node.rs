@@ -10,12 +10,18 @@ use crate::units::plain;
 
 /// A JSON value. Unlike `serde_json::Value` it keeps keys that stand twice, so that they can be refused.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Node {
+pub enum Node {
+    /// Nothing.
     Null,
+    /// True or false.
     Bool(bool),
+    /// A number.
     Number(f64),
+    /// A text.
     Text(String),
+    /// A list.
     List(Vec<Node>),
+    /// Names and values, in the order in which they were sent.
     Object(Vec<(String, Node)>),
 }
 
@@ -25,7 +31,7 @@ impl Node {
     /// # Errors
     ///
     /// `malformed_json` for a syntax error, for deep nesting and for a key that stands twice in one object.
-    pub(crate) fn parse(document: &[u8]) -> Result<Self, Problem> {
+    pub fn parse(document: &[u8]) -> Result<Self, Problem> {
         let node: Self = serde_json::from_slice(document).map_err(|error| {
             Problem::new(
                 Code::MalformedJson,
@@ -52,12 +58,12 @@ impl Node {
     }
 
     /// The document that serde read, which had no key twice.
-    pub(crate) fn of(value: &serde_json::Value) -> Self {
+    pub fn of(value: &serde_json::Value) -> Self {
         Self::deserialize(value).expect("every value of JSON is a node")
     }
 
     /// The same document for serde.
-    pub(crate) fn to_value(&self) -> serde_json::Value {
+    pub fn to_value(&self) -> serde_json::Value {
         use serde_json::{Value, json};
         match self {
             Self::Null => Value::Null,
@@ -81,7 +87,7 @@ impl Node {
     }
 
     /// The value of one of its fields, if it is an object with it.
-    pub(crate) fn into_field(self, name: &str) -> Option<Self> {
+    pub fn into_field(self, name: &str) -> Option<Self> {
         let Self::Object(fields) = self else {
             return None;
         };
@@ -90,7 +96,7 @@ impl Node {
     }
 
     /// A text that equal values have in common, and others have not.
-    pub(crate) fn key(&self) -> String {
+    pub fn key(&self) -> String {
         format!("{self:?}")
     }
 
@@ -120,7 +126,7 @@ impl Node {
     }
 
     /// What it is, for a sentence.
-    pub(super) fn kind(&self) -> String {
+    pub fn kind(&self) -> String {
         match self {
             Self::Null => "null".to_owned(),
             Self::Bool(_) => "true or false".to_owned(),
@@ -133,15 +139,16 @@ impl Node {
 }
 
 /// A step of a JSON pointer as it is written: the key with `~` and `/` escaped (RFC 6901).
-pub(crate) fn escaped(key: &str) -> String {
+pub fn escaped(key: &str) -> String {
     key.replace('~', "~0").replace('/', "~1")
 }
 
 /// The pointer to `key` in the object at `pointer`.
-pub(crate) fn joined(pointer: &str, key: &str) -> String {
+pub(super) fn joined(pointer: &str, key: &str) -> String {
     format!("{pointer}/{}", escaped(key))
 }
 
+/// The first characters of a text, for a message.
 pub(super) fn shortened(text: &str) -> String {
     const MOST: usize = 60;
     match text.char_indices().nth(MOST) {

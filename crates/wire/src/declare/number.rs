@@ -3,7 +3,7 @@
 use serde::Serializer;
 use serde_json::{Value, json};
 
-use super::{Kind, Node, ObjectReader, Place};
+use super::{Kind, Location, Node, ObjectReader};
 use crate::problem::Code;
 use crate::units::{plain, significant};
 
@@ -20,12 +20,12 @@ enum Preset {
 
 /// What a declaration says of a number.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Number {
+pub struct Number {
     title: &'static str,
     /// "1" for a pure number; empty where there is nothing to say.
-    pub(crate) unit: &'static str,
+    pub unit: &'static str,
     /// The smallest and the largest value that are accepted, in its unit.
-    pub(crate) bounds: (f64, f64),
+    pub bounds: (f64, f64),
     /// Whether zero is accepted too where the bounds do not hold it.
     or_zero: bool,
     preset: Preset,
@@ -38,12 +38,7 @@ pub(crate) struct Number {
 }
 
 /// A number of a submission, within bounds, that has to be given.
-pub(crate) const fn number(
-    title: &'static str,
-    unit: &'static str,
-    least: f64,
-    most: f64,
-) -> Number {
+pub const fn number(title: &'static str, unit: &'static str, least: f64, most: f64) -> Number {
     Number {
         title,
         unit,
@@ -58,42 +53,42 @@ pub(crate) const fn number(
 
 impl Number {
     /// Not given, it is this.
-    pub(crate) const fn or(self, value: f64) -> Self {
+    pub const fn or(self, value: f64) -> Self {
         let preset = Preset::Value(value);
         Self { preset, ..self }
     }
 
     /// Not given, it is so many times the module of its gear.
-    pub(crate) const fn or_modules(self, modules: f64) -> Self {
+    pub const fn or_modules(self, modules: f64) -> Self {
         let preset = Preset::Modules(modules);
         Self { preset, ..self }
     }
 
     /// Its default is `fit` of what it says and of the numbers that stand before it.
-    pub(crate) const fn fitted(self, fit: fn(f64, &ObjectReader<'_>) -> f64) -> Self {
+    pub const fn fitted(self, fit: fn(f64, &ObjectReader<'_>) -> f64) -> Self {
         let fitted = Some(fit);
         Self { fitted, ..self }
     }
 
     /// Zero is accepted beside the bounds.
-    pub(crate) const fn or_zero(self) -> Self {
+    pub const fn or_zero(self) -> Self {
         let or_zero = true;
         Self { or_zero, ..self }
     }
 
     /// A value below zero is refused with a code of its own.
-    pub(crate) const fn negative_is(self, negative: Code) -> Self {
+    pub const fn negative_is(self, negative: Code) -> Self {
         Self { negative, ..self }
     }
 
     /// A value below zero is refused as what it means elsewhere.
-    pub(crate) const fn negative_means(self, meaning: &'static str) -> Self {
+    pub const fn negative_means(self, meaning: &'static str) -> Self {
         let meaning = Some(meaning);
         Self { meaning, ..self }
     }
 
     /// What stands for it where it is not given, for a gear of `module`.
-    pub(crate) fn preset(&self, module: Option<f64>) -> Option<f64> {
+    pub fn preset(&self, module: Option<f64>) -> Option<f64> {
         match self.preset {
             Preset::Needed => None,
             Preset::Value(value) => Some(value),
@@ -144,7 +139,7 @@ impl Number {
         }
     }
 
-    fn read(&self, node: &Node, place: &Place<'_>, whole: bool) -> Option<f64> {
+    fn read(&self, node: &Node, place: &Location<'_>, whole: bool) -> Option<f64> {
         let Node::Number(value) = node else {
             let detail = format!("{place} is {}; a number is expected.", node.kind());
             return place.wrong(Code::WrongType, detail, None);
@@ -229,7 +224,7 @@ macro_rules! numbers {
             type Spec = Number;
             const MANY: [&'static str; 2] = ["numbers", "numbers"];
 
-            fn read(node: &Node, place: &Place<'_>, spec: &Number) -> Option<Self> {
+            fn read(node: &Node, place: &Location<'_>, spec: &Number) -> Option<Self> {
                 spec.read(node, place, $whole).map(|value| value as Self)
             }
 

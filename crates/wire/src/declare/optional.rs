@@ -3,7 +3,7 @@
 use serde::Serializer;
 use serde_json::{Value, json};
 
-use super::{Declared, Exclusion, Kind, Named, Node, ObjectReader, Place};
+use super::{Declared, Exclusion, Kind, Location, Named, Node, ObjectReader};
 
 /// What it means that a value is absent.
 #[derive(Debug, Clone, Copy)]
@@ -18,8 +18,9 @@ enum Absent {
 
 /// What a declaration says of a value that may be absent.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Optional<S> {
-    pub(crate) spec: S,
+pub struct Optional<S> {
+    /// What is declared of the value that is given.
+    pub spec: S,
     absent: Absent,
     /// The fields that cannot be given together with it.
     others: &'static [&'static str],
@@ -37,28 +38,28 @@ const fn optional<S>(spec: S, absent: Absent, others: &'static [&'static str]) -
 }
 
 /// Absent, it means `meaning`.
-pub(crate) const fn absent<S>(spec: S, meaning: &'static str) -> Optional<S> {
+pub const fn absent<S>(spec: S, meaning: &'static str) -> Optional<S> {
     optional(spec, Absent::Means(meaning), &[])
 }
 
 /// Read and filled in by itself, unless one of the fields `others` is given.
-pub(crate) const fn unless<S>(others: &'static [&'static str], spec: S) -> Optional<S> {
+pub const fn unless<S>(others: &'static [&'static str], spec: S) -> Optional<S> {
     optional(spec, Absent::Unless, others)
 }
 
 /// Either this or one of the fields `others`.
-pub(crate) const fn or_else<S>(others: &'static [&'static str], spec: S) -> Optional<S> {
+pub const fn or_else<S>(others: &'static [&'static str], spec: S) -> Optional<S> {
     optional(spec, Absent::OneOf, others)
 }
 
 impl<S: Copy> Optional<S> {
     /// Refused together with the fields `others`.
-    pub(crate) const fn not_beside(self, others: &'static [&'static str]) -> Self {
+    pub const fn not_beside(self, others: &'static [&'static str]) -> Self {
         Self { others, ..self }
     }
 
     /// Not written where it is absent.
-    pub(crate) const fn left_out(self) -> Self {
+    pub const fn left_out(self) -> Self {
         let left_out = true;
         Self { left_out, ..self }
     }
@@ -66,7 +67,7 @@ impl<S: Copy> Optional<S> {
 
 impl<S> Declared<Optional<S>> {
     /// The declaration of the value that is given.
-    pub(crate) fn given(self) -> Declared<S> {
+    pub fn given(self) -> Declared<S> {
         Declared::new(self.name, self.about, self.spec.spec)
     }
 }
@@ -74,7 +75,7 @@ impl<S> Declared<Optional<S>> {
 impl<T: Kind> Kind for Option<T> {
     type Spec = Optional<T::Spec>;
 
-    fn read(node: &Node, place: &Place<'_>, spec: &Self::Spec) -> Option<Self> {
+    fn read(node: &Node, place: &Location<'_>, spec: &Self::Spec) -> Option<Self> {
         T::read(node, place, &spec.spec).map(Some)
     }
 
@@ -154,7 +155,7 @@ impl<T: Kind> Kind for Option<T> {
 }
 
 /// The schema of what may be null as well, which is as good as absent.
-pub(crate) fn or_null(mut schema: Value) -> Value {
+pub fn or_null(mut schema: Value) -> Value {
     let nothing = json!({ "type": "null" });
     if schema.get("type").is_some() {
         schema["type"] = json!([schema["type"], "null"]);
@@ -172,7 +173,7 @@ pub(crate) fn or_null(mut schema: Value) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::declare::{Document as _, EACH, Errors, document, number};
+    use crate::declare::{EACH, Errors, Object as _, document, number};
 
     document! {
         /// Something whose fields exclude each other.
@@ -182,7 +183,8 @@ mod tests {
             /// The other one.
             angle: Option<f64> = or_else(&["length"], number("Angle", "rad", 0.0, 9.0)),
             /// One of the two may be given.
-            chamfer: Option<f64> = absent(number("Chamfer", "m", 0.0, 9.0), "none").not_beside(&["rounding"]),
+            chamfer: Option<f64> =
+                absent(number("Chamfer", "m", 0.0, 9.0), "none").not_beside(&["rounding"]),
             /// The other one.
             rounding: Option<f64> = absent(number("Rounding", "m", 0.0, 9.0), "none"),
             /// One has a default, in whose place the other may stand.
@@ -223,7 +225,7 @@ mod tests {
             let fields = fields.filter_map(|(i, name)| Some(((*name).to_owned(), state(i)?)));
             let document = Value::Object(fields.collect());
             let errors = Errors::default();
-            Thing::read(&Node::of(&document), &Place::root(&errors), &EACH);
+            Thing::read(&Node::of(&document), &Location::root(&errors), &EACH);
             let is_taken = errors.count() == 0;
             assert_eq!(allows(&schema, &document), is_taken, "{document}");
             taken += usize::from(is_taken);

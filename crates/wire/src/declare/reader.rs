@@ -8,14 +8,15 @@ use crate::problem::{Code, FieldError};
 
 /// A place in a document, and where to report what is wrong there.
 #[derive(Debug, Clone)]
-pub(crate) struct Place<'a> {
-    pub(crate) pointer: String,
+pub struct Location<'a> {
+    /// The JSON pointer to it.
+    pub pointer: String,
     errors: &'a Errors,
 }
 
-impl<'a> Place<'a> {
+impl<'a> Location<'a> {
     /// The whole document.
-    pub(crate) fn root(errors: &'a Errors) -> Self {
+    pub fn root(errors: &'a Errors) -> Self {
         Self {
             pointer: String::new(),
             errors,
@@ -23,7 +24,7 @@ impl<'a> Place<'a> {
     }
 
     /// The field or item `step` of what stands here.
-    pub(crate) fn of(&self, step: &str) -> Self {
+    pub fn of(&self, step: &str) -> Self {
         Self {
             pointer: joined(&self.pointer, step),
             errors: self.errors,
@@ -31,7 +32,7 @@ impl<'a> Place<'a> {
     }
 
     /// Reports what is wrong here. There is no value then, of whatever kind.
-    pub(crate) fn wrong<T>(
+    pub fn wrong<T>(
         &self,
         code: Code,
         detail: impl Into<String>,
@@ -43,14 +44,14 @@ impl<'a> Place<'a> {
     }
 
     /// Reports that something else than `node` was expected here.
-    pub(crate) fn wrong_kind<T>(&self, node: &Node, expected: &str) -> Option<T> {
+    pub fn wrong_kind<T>(&self, node: &Node, expected: &str) -> Option<T> {
         let detail = format!("{self} is {}; expected is {expected}.", node.kind());
         self.wrong(Code::WrongType, detail, None)
     }
 }
 
 /// A place as a sentence names it.
-impl fmt::Display for Place<'_> {
+impl fmt::Display for Location<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(if self.pointer.is_empty() {
             "The document"
@@ -62,10 +63,10 @@ impl fmt::Display for Place<'_> {
 
 /// One object of the document, and which of its fields have been asked for.
 ///
-/// Every method reports what is wrong and answers `None` then; reading goes on, so that all errors are told together.
+/// Every method reports what is wrong and answers `None` then; reading goes on, so that all errors are reported together.
 /// What nobody asked for is refused when the reading is [`finished`](ObjectReader::finish).
-pub(crate) struct ObjectReader<'a> {
-    place: Place<'a>,
+pub struct ObjectReader<'a> {
+    place: Location<'a>,
     fields: &'a [(String, Node)],
     known: Vec<&'static str>,
     /// The numbers that were read so far, those that were filled in among them.
@@ -76,7 +77,7 @@ pub(crate) struct ObjectReader<'a> {
 
 impl<'a> ObjectReader<'a> {
     /// Reads `node` as an object.
-    pub(crate) fn new(node: &'a Node, place: Place<'a>) -> Option<Self> {
+    pub fn new(node: &'a Node, place: Location<'a>) -> Option<Self> {
         let Node::Object(fields) = node else {
             let detail = format!("{place} is {}; an object is expected.", node.kind());
             return place.wrong(Code::WrongType, detail, None);
@@ -91,12 +92,12 @@ impl<'a> ObjectReader<'a> {
     }
 
     /// Where its field `name` stands.
-    pub(crate) fn place_of(&self, name: &str) -> Place<'a> {
+    pub fn place_of(&self, name: &str) -> Location<'a> {
         self.place.of(name)
     }
 
     /// The field `name`, if it is there.
-    pub(crate) fn get(&mut self, name: &'static str) -> Option<&'a Node> {
+    pub fn get(&mut self, name: &'static str) -> Option<&'a Node> {
         if !self.known.contains(&name) {
             self.known.push(name);
         }
@@ -105,17 +106,17 @@ impl<'a> ObjectReader<'a> {
     }
 
     /// The field `name`, if it is there and not null.
-    pub(crate) fn present(&mut self, name: &'static str) -> Option<&'a Node> {
+    pub fn present(&mut self, name: &'static str) -> Option<&'a Node> {
         self.get(name).filter(|node| **node != Node::Null)
     }
 
     /// Remembers a number that was read or filled in.
-    pub(super) fn note(&mut self, name: &'static str, value: f64) {
+    pub fn note(&mut self, name: &'static str, value: f64) {
         self.numbers.push((name, value));
     }
 
     /// A number that was read or filled in before.
-    pub(crate) fn number(&self, name: &str) -> Option<f64> {
+    pub fn number(&self, name: &str) -> Option<f64> {
         let mut numbers = self.numbers.iter();
         numbers
             .find(|(known, _)| *known == name)
@@ -123,13 +124,13 @@ impl<'a> ObjectReader<'a> {
     }
 
     /// Reports that the field `name` is needed.
-    pub(crate) fn missing<T>(&mut self, name: &'static str) -> Option<T> {
+    pub fn missing<T>(&mut self, name: &'static str) -> Option<T> {
         let place = self.place_of(name);
         place.wrong(Code::MissingField, format!("{place} is needed."), None)
     }
 
     /// Reports that one of these fields is needed and none is there.
-    pub(super) fn missing_one_of<T>(&mut self, names: &[&'static str]) -> Option<T> {
+    pub fn missing_one_of<T>(&mut self, names: &[&'static str]) -> Option<T> {
         // It is said once for all of them.
         self.refused.extend(names);
         let names = names.join(", ");
@@ -138,7 +139,7 @@ impl<'a> ObjectReader<'a> {
     }
 
     /// Refuses two fields of which one stands in place of the other.
-    pub(super) fn refuse_both(&mut self, one: &'static str, other: &'static str) {
+    pub fn refuse_both(&mut self, one: &'static str, other: &'static str) {
         let both = self.present(one).is_some() && self.present(other).is_some();
         if both && !self.refused.contains(&other) && !self.refused.contains(&one) {
             self.refused.push(other);
@@ -149,14 +150,14 @@ impl<'a> ObjectReader<'a> {
     }
 
     /// Whether the field was refused because another one stands in its place.
-    pub(super) fn is_refused(&self, name: &str) -> bool {
+    pub fn is_refused(&self, name: &str) -> bool {
         self.refused.contains(&name)
     }
 
     /// Reports that the object is of no kind that there is.
-    pub(crate) fn refuse_kind<T>(&mut self, node: Option<&Node>, kinds: &[&str]) -> Option<T> {
+    pub fn refuse_kind<T>(&mut self, node: Option<&Node>, kinds: &[&str]) -> Option<T> {
         let (place, kinds) = (self.place_of("kind"), kinds.join(", "));
-        // Which fields belong here is not known, so none is told to be unknown.
+        // Which fields belong here is not known, so none is reported as unknown.
         self.fields = &[];
         match node {
             Some(node) => place.wrong_kind(node, &format!("one of {kinds}")),
@@ -168,7 +169,7 @@ impl<'a> ObjectReader<'a> {
     }
 
     /// Refuses the fields that nobody asked for.
-    pub(crate) fn finish(self) {
+    pub fn finish(self) {
         for (key, _) in self.fields {
             // A document of nothing but unknown fields would be compared with the known ones for seconds.
             if self.place.errors.is_full() {

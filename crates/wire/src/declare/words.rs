@@ -3,11 +3,11 @@
 use serde::Serializer;
 use serde_json::{Value, json};
 
-use super::{Kind, Node, ObjectReader, Place};
+use super::{Kind, Location, Node, ObjectReader};
 use crate::problem::Code;
 
 /// Words that a field may take, each standing for a value.
-pub(crate) trait Choice: Copy + PartialEq + 'static {
+pub trait Choice: Copy + PartialEq + 'static {
     /// Word, value, and what it means.
     const OPTIONS: &'static [(&'static str, Self, &'static str)];
 
@@ -36,25 +36,27 @@ pub(crate) trait Choice: Copy + PartialEq + 'static {
 
 /// What a declaration says of one of several words.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct OneWord<C> {
+pub struct OneWord<C> {
     title: &'static str,
-    pub(crate) preset: Option<C>,
+    /// What stands for it where it is absent; nothing if it has to be given.
+    pub preset: Option<C>,
 }
 
 /// One of several words, that has to be given.
-pub(crate) const fn word<C>(title: &'static str) -> OneWord<C> {
+pub const fn word<C>(title: &'static str) -> OneWord<C> {
     let preset = None;
     OneWord { title, preset }
 }
 
 impl<C: Copy> OneWord<C> {
     /// Not given, it is this.
-    pub(crate) const fn or(self, preset: C) -> Self {
+    pub const fn or(self, preset: C) -> Self {
         let preset = Some(preset);
         Self { preset, ..self }
     }
 
-    pub(crate) fn read(&self, node: &Node, place: &Place<'_>) -> Option<C>
+    /// Reads one of the words.
+    pub fn read(&self, node: &Node, place: &Location<'_>) -> Option<C>
     where
         C: Choice,
     {
@@ -65,7 +67,8 @@ impl<C: Copy> OneWord<C> {
         word.or_else(|| place.wrong_kind(node, &format!("one of {}", C::words())))
     }
 
-    pub(crate) fn absent(&self, reader: &mut ObjectReader<'_>, name: &'static str) -> Option<C>
+    /// What stands for the field `name`, which is absent.
+    pub fn absent(&self, reader: &mut ObjectReader<'_>, name: &'static str) -> Option<C>
     where
         C: Choice,
     {
@@ -76,7 +79,8 @@ impl<C: Copy> OneWord<C> {
         })
     }
 
-    pub(crate) fn describe(&self, about: &str) -> Value
+    /// What the schema says of it.
+    pub fn describe(&self, about: &str) -> Value
     where
         C: Choice,
     {
@@ -99,6 +103,7 @@ impl<C: Copy> OneWord<C> {
 }
 
 /// Declares the words of a type, each with what it means; the type itself, too, where it is none of the engine.
+#[macro_export]
 macro_rules! words {
     (
         $(#[doc = $about:literal])*
@@ -112,7 +117,7 @@ macro_rules! words {
             $(#[doc = $meaning] $value,)*
         }
 
-        $crate::declare::words! { $choice { $($value = $word: $meaning),* } }
+        $crate::words! { $choice { $($value = $word: $meaning),* } }
     };
 
     ($($choice:ty { $($value:ident = $word:literal: $meaning:literal),* $(,)? })*) => {$(
@@ -126,7 +131,7 @@ macro_rules! words {
 
             fn read(
                 node: &$crate::declare::Node,
-                place: &$crate::declare::Place<'_>,
+                place: &$crate::declare::Location<'_>,
                 spec: &Self::Spec,
             ) -> Option<Self> {
                 spec.read(node, place)
@@ -155,24 +160,24 @@ macro_rules! words {
     )*};
 }
 
-pub(crate) use words;
+pub use words;
 
 /// What a declaration says of what is true or false.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Flag {
+pub struct Flag {
     title: &'static str,
     preset: bool,
 }
 
 /// True or false; not given, `preset`.
-pub(crate) const fn flag(title: &'static str, preset: bool) -> Flag {
+pub const fn flag(title: &'static str, preset: bool) -> Flag {
     Flag { title, preset }
 }
 
 impl Kind for bool {
     type Spec = Flag;
 
-    fn read(node: &Node, place: &Place<'_>, _: &Flag) -> Option<Self> {
+    fn read(node: &Node, place: &Location<'_>, _: &Flag) -> Option<Self> {
         match node {
             Node::Bool(value) => Some(*value),
             _ => place.wrong_kind(node, "true or false"),
@@ -194,13 +199,13 @@ impl Kind for bool {
 
 /// What a declaration says of a short text.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Text {
+pub struct Text {
     title: &'static str,
     longest: usize,
 }
 
 /// A text of 1 to `longest` characters, none of them a control character.
-pub(crate) const fn text(title: &'static str, longest: usize) -> Text {
+pub const fn text(title: &'static str, longest: usize) -> Text {
     Text { title, longest }
 }
 
@@ -208,7 +213,7 @@ impl Kind for String {
     type Spec = Text;
     const MANY: [&'static str; 2] = ["short strings", "strings"];
 
-    fn read(node: &Node, place: &Place<'_>, spec: &Text) -> Option<Self> {
+    fn read(node: &Node, place: &Location<'_>, spec: &Text) -> Option<Self> {
         let longest = spec.longest;
         match node {
             Node::Text(text) if is_short_text(text, longest) => Some(text.clone()),
@@ -238,6 +243,6 @@ impl Kind for String {
 }
 
 /// Whether a text has 1 to `longest` characters, none of them a control character.
-pub(crate) fn is_short_text(text: &str, longest: usize) -> bool {
+pub fn is_short_text(text: &str, longest: usize) -> bool {
     (1..=longest).contains(&text.chars().count()) && !text.chars().any(char::is_control)
 }

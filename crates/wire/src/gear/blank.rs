@@ -16,7 +16,8 @@ document! {
         pub(super) bore_radius_mm: Option<f64> =
             unless(&["shaft"], number("Bore radius", "mm", 0.02, 25_000.0)).left_out(),
         /// The shaft on which the gear is cut, said instead of the bore: gear and shaft are one piece, solid to the axis.
-        pub(super) shaft: Option<ShaftDocument> = absent(nested("Shaft"), "the gear has a bore").left_out(),
+        pub(super) shaft: Option<ShaftDocument> =
+            absent(nested("Shaft"), "the gear has a bore").left_out(),
         /// The holes of the blank: a pattern, or a list of patterns.
         pub(super) holes: HolesDocument = (),
         /// Straight spokes, with openings between them. Holes and an outline stand beside them.

@@ -19,7 +19,8 @@ document! {
         /// reference circle (ISO 1328-1). Along the base tangent it is times the cosine of the pressure angle. The tooth is displaced as a whole,
         /// unless `other_flank_pitch_cumulative_um` says otherwise. The same constant for all teeth is a turn of the gear.
         pitch_cumulative_um: Option<Vec<f64>> =
-            absent(each_tooth("Cumulative pitch deviations"), "none").not_beside(&["pitch_single_um"]),
+            absent(each_tooth("Cumulative pitch deviations"), "none")
+                .not_beside(&["pitch_single_um"]),
         /// The deviation of each tooth, tooth 0 first, against the tooth before it, as a transverse arc on the reference circle (ISO
         /// 1328-1); that of tooth 0 is against the last tooth. Their sum has to be zero within 0.01 um. Summed up they are cumulative
         /// deviations from the last tooth.
@@ -27,8 +28,10 @@ document! {
         /// Where the other flank of each tooth stands, tooth 0 first, positive in the same sense of rotation as the deviations of the loaded flanks; absent:
         /// as they do, each tooth being displaced as a whole. Its mean is shifted to that of the loaded flanks, because the thickness of
         /// the gear says how thick its teeth are in the mean.
-        other_flank_pitch_cumulative_um: Option<Vec<f64>> =
-            absent(each_tooth("Cumulative pitch deviations of the other flanks"), "as the loaded flanks"),
+        other_flank_pitch_cumulative_um: Option<Vec<f64>> = absent(
+            each_tooth("Cumulative pitch deviations of the other flanks"),
+            "as the loaded flanks",
+        ),
         /// The slope deviation of the loaded flank of each tooth, tooth 0 first: nothing at the form circle, this much towards the mate at
         /// the tip circle, linear in the roll length.
         profile_slope_um: Option<Vec<f64>> = absent(each_tooth("Profile slope deviations"), "none"),
@@ -59,9 +62,9 @@ const fn each_tooth(title: &'static str) -> List<Number> {
 
 impl DeviationsDocument {
     /// How a reader is told `deviations`: to a tenth of a nanometer, single pitches that close.
-    pub(crate) fn of(deviations: &ToothDeviations) -> Self {
-        let told = |value: f64| (to_um(value) * 1e4).round() / 1e4 + 0.0;
-        let sums = deviations.cumulative_pitch.iter().copied().map(told);
+    pub fn of(deviations: &ToothDeviations) -> Self {
+        let rounded = |value: f64| (to_um(value) * 1e4).round() / 1e4 + 0.0;
+        let sums = deviations.cumulative_pitch.iter().copied().map(rounded);
         let single = sums.scan(0.0, |before, sum| {
             let step = ((sum - *before) * 1e4).round() / 1e4 + 0.0;
             *before = sum;
@@ -76,17 +79,24 @@ impl DeviationsDocument {
                         .other_cumulative_pitch
                         .iter()
                         .copied()
-                        .map(told)
+                        .map(rounded)
                         .collect()
                 },
             ),
-            profile_slope_um: Some(deviations.profile_slope.iter().copied().map(told).collect()),
+            profile_slope_um: Some(
+                deviations
+                    .profile_slope
+                    .iter()
+                    .copied()
+                    .map(rounded)
+                    .collect(),
+            ),
             lead_slope_um: (!deviations.lead_slope.is_empty())
-                .then(|| deviations.lead_slope.iter().copied().map(told).collect()),
+                .then(|| deviations.lead_slope.iter().copied().map(rounded).collect()),
             eccentricity: deviations
                 .eccentricity
                 .map(|eccentricity| EccentricityDocument {
-                    amount_um: told(eccentricity.amount),
+                    amount_um: rounded(eccentricity.amount),
                     phase_deg: (eccentricity.direction.to_degrees() * 1e4).round() / 1e4 + 0.0,
                 }),
         }

@@ -7,8 +7,8 @@ use serde::Serializer;
 use serde_json::{Value, json};
 
 use crate::declare::{
-    Declared, EACH, Kind, List, Named, Nested, Node, Number, Place, absent, document, list, nested,
-    number, unless,
+    Declared, EACH, Kind, List, Location, Named, Nested, Node, Number, absent, document, list,
+    nested, number, unless,
 };
 use crate::problem::Code;
 use crate::units::from_mm;
@@ -35,8 +35,11 @@ document! {
         /// The shape of the holes, where they are not round.
         pub(super) slot: Option<SlotDocument> = absent(nested("Slot"), "round holes").left_out(),
         /// The angle of a hole's center from the centerline of tooth 0 of its own gear, positive towards the loaded flank of that tooth.
-        phase_deg: Option<f64> =
-            unless(&["at_deg"], number("Phase of the holes", "deg", -360.0, 360.0).or(0.0)).left_out(),
+        phase_deg: Option<f64> = unless(
+            &["at_deg"],
+            number("Phase of the holes", "deg", -360.0, 360.0).or(0.0),
+        )
+        .left_out(),
         /// The angle of each hole's center from the centerline of tooth 0 of its own gear, positive towards the loaded flank of that
         /// tooth; instead of count and phase_deg. Unequal angles spread the order of the holes over those of a revolution.
         at_deg: Option<Vec<f64>> = absent(
@@ -74,7 +77,7 @@ const PATTERNS: List<Nested> = list("Several patterns of holes", EACH, MOST_PATT
 impl Kind for HolesDocument {
     type Spec = ();
 
-    fn read(node: &Node, place: &Place<'_>, _: &()) -> Option<Self> {
+    fn read(node: &Node, place: &Location<'_>, _: &()) -> Option<Self> {
         match node {
             Node::Null => Some(Self::None),
             Node::List(_) => Kind::read(node, place, &PATTERNS).map(Self::Several),

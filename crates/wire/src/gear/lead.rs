@@ -12,7 +12,8 @@ words! {
     FaceEnds {
         Both = "both": "both ends of the face",
         Minus = "minus": "the end at -z",
-        Plus = "plus": "the end at +z, from which the driving gear is seen to turn counter-clockwise",
+        Plus = "plus":
+            "the end at +z, from which the driving gear is seen to turn counter-clockwise",
     }
 }
 
@@ -21,11 +22,13 @@ tagged! {
     /// off is positive.
     pub enum LeadModificationDocument as "LeadModification", "Lead modification" {
         /// A parabola, nothing in the middle of the face.
-        Crowning(LeadCrowningDocument) = "crowning" as "LeadCrowningModification", "Lead crowning modification",
+        Crowning(LeadCrowningDocument) = "crowning"
+            as "LeadCrowningModification", "Lead crowning modification",
         /// Linear along the face, nothing at the end at -z.
         Slope(LeadSlopeDocument) = "slope" as "LeadSlopeModification", "Lead slope modification",
         /// Linear from where it begins to an end of the face.
-        EndRelief(EndReliefDocument) = "end_relief" as "EndReliefModification", "End relief modification",
+        EndRelief(EndReliefDocument) = "end_relief"
+            as "EndReliefModification", "End relief modification",
         /// Linear between entries, the first and the last held beyond them.
         Table(LeadTableDocument) = "table" as "LeadTableModification", "Lead table modification",
     }

@@ -22,7 +22,7 @@ mod solid;
 mod tests;
 mod thickness;
 
-use meshwright_engine::gear::{GearData, Helix, Rack, TipEdge, ToothDeviations};
+use meshwright_engine::gear::{GearData, Helix, Member, Rack, TipEdge, ToothDeviations};
 
 pub use blank::{BlankDocument, HubDocument, ShaftDocument, WebDocument};
 pub use deviation::{DeviationsDocument, EccentricityDocument};
@@ -41,13 +41,20 @@ pub use relief::{ReliefEnd, RootReliefDocument, StartDocument, StartWay, TipReli
 pub use thickness::{BallsDocument, SpanDocument};
 
 use super::declare::{
-    EACH, Errors, Kind as _, Node, ObjectReader, Place, absent, document, list, nested, number,
-    unless,
+    EACH, Errors, Kind as _, Location, Node, ObjectReader, absent, document, list, nested, number,
+    unless, words,
 };
 use super::units::{Side, from_mm, rounded_inward};
 
 /// The most profile modifications of one gear, beside its tip relief.
 pub(super) const MOST_MODIFICATIONS: usize = 16;
+
+words! {
+    Member {
+        Driving = "driving": "gear 1, which drives",
+        Driven = "driven": "gear 2, which is driven",
+    }
+}
 
 document! {
     /// A spur or helical gear as its drawing describes it.
@@ -78,8 +85,11 @@ document! {
             .or_modules(0.38)
             .fitted(usual_tip_radius),
         /// The hob that cuts before grinding, where it has a protuberance: the root is as it leaves it.
-        protuberance: Option<ProtuberanceDocument> =
-            absent(nested("Protuberance"), "the rack of the ground flanks cuts the root").left_out(),
+        protuberance: Option<ProtuberanceDocument> = absent(
+            nested("Protuberance"),
+            "the rack of the ground flanks cuts the root",
+        )
+        .left_out(),
         /// How much thicker the teeth are than the rack leaves them, as a transverse arc on the reference circle; negative is thinner and
         /// gives backlash. Half a module to either side, and a space has to be left between fillets. A drawing may say the thickness in another way;
         /// at most one of them is given.
@@ -97,12 +107,20 @@ document! {
         /// W_k: the thickness by a span over several teeth.
         span_measurement: Option<SpanDocument> =
             absent(nested("Span measurement"), "said in another way")
-                .not_beside(&["tooth_thickness_deviation_um", "tooth_thickness_deviation_normal_um", "ball_measurement"])
+                .not_beside(&[
+                    "tooth_thickness_deviation_um",
+                    "tooth_thickness_deviation_normal_um",
+                    "ball_measurement",
+                ])
                 .left_out(),
         /// M_dK: the thickness by a size over two balls.
         ball_measurement: Option<BallsDocument> =
             absent(nested("Ball measurement"), "said in another way")
-                .not_beside(&["tooth_thickness_deviation_um", "tooth_thickness_deviation_normal_um", "span_measurement"])
+                .not_beside(&[
+                    "tooth_thickness_deviation_um",
+                    "tooth_thickness_deviation_normal_um",
+                    "span_measurement",
+                ])
                 .left_out(),
         /// The radius of an arc between flank and tip circle, tangent to both, on both flanks alike: 0, or at least 0.01 modules.
         tip_rounding_mm: Option<f64> = absent(
@@ -126,7 +144,8 @@ document! {
         pub(super) lead_modifications: Vec<LeadModificationDocument> =
             list("Lead modifications", EACH, MOST_MODIFICATIONS).or_empty().or_null(),
         /// What the teeth deviate from each other by. The contact then repeats once a revolution.
-        tooth_deviations: Option<DeviationsDocument> = absent(nested("Tooth deviations"), "nothing"),
+        tooth_deviations: Option<DeviationsDocument> =
+            absent(nested("Tooth deviations"), "nothing"),
         /// What teeth and blank are made of. Default: steel.
         material: MaterialDocument = nested("Material").or_defaults(),
         /// What carries the teeth.
@@ -170,7 +189,7 @@ fn usual_tip_radius(usual: f64, gear: &ObjectReader<'_>) -> f64 {
 
 impl GearDocument {
     /// The same gear with teeth that do not deviate.
-    pub(super) fn without_deviations(self) -> Self {
+    pub fn without_deviations(self) -> Self {
         Self {
             tooth_deviations: None,
             ..self
@@ -178,14 +197,14 @@ impl GearDocument {
     }
 
     /// Gives it other teeth.
-    pub(super) fn set_deviations(&mut self, deviations: DeviationsDocument) {
+    pub fn set_deviations(&mut self, deviations: DeviationsDocument) {
         self.tooth_deviations = Some(deviations);
     }
 
     /// The gear that `node` is, if it can be read.
-    pub(super) fn at(node: &Node) -> Option<Self> {
+    pub fn at(node: &Node) -> Option<Self> {
         let errors = Errors::default();
-        let read = Self::read(node, &Place::root(&errors), &EACH);
+        let read = Self::read(node, &Location::root(&errors), &EACH);
         errors.settle(read).ok()
     }
 

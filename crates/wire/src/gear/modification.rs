@@ -20,9 +20,11 @@ tagged! {
     /// What is taken off every loaded flank, normal to it. Taken off is positive.
     pub enum ModificationDocument as "ProfileModification", "Profile modification" {
         /// Grows from its start towards the tip circle.
-        TipRelief(TipReliefDocument) = "tip_relief" as "TipReliefModification", "Tip relief modification",
+        TipRelief(TipReliefDocument) = "tip_relief"
+            as "TipReliefModification", "Tip relief modification",
         /// Grows from its start towards the form circle.
-        RootRelief(RootReliefDocument) = "root_relief" as "RootReliefModification", "Root relief modification",
+        RootRelief(RootReliefDocument) = "root_relief"
+            as "RootReliefModification", "Root relief modification",
         /// A parabola in the roll length, nothing midway between form circle and tip circle.
         Crowning(CrowningDocument) = "crowning" as "CrowningModification", "Crowning modification",
         /// Linear in the roll length, nothing at the form circle.

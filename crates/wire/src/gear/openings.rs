@@ -13,7 +13,7 @@ use super::field::Field;
 use super::holes::MOST_HOLES;
 use super::proportions::check_between;
 use crate::declare::{
-    Declared, EACH, Kind, List, Nested, Node, Number, Place, document, list, number, or_else,
+    Declared, EACH, Kind, List, Location, Nested, Node, Number, document, list, number, or_else,
     unless,
 };
 use crate::problem::{Code, FieldError};
@@ -83,7 +83,7 @@ impl Kind for Point {
     /// What it is.
     type Spec = &'static str;
 
-    fn read(node: &Node, place: &Place<'_>, _: &Self::Spec) -> Option<Self> {
+    fn read(node: &Node, place: &Location<'_>, _: &Self::Spec) -> Option<Self> {
         let Node::List(nodes) = node else {
             return place.wrong_kind(node, "a list of two numbers");
         };

@@ -9,7 +9,8 @@ use serde::ser::SerializeMap;
 use serde_json::{Value, json};
 
 use crate::declare::{
-    Declared, Kind, Named, Node, Number, ObjectReader, Place, document, number, object, word, words,
+    Declared, Kind, Location, Named, Node, Number, ObjectReader, document, number, object, word,
+    words,
 };
 use crate::problem::Code;
 use crate::units::{from_mm, from_um};
@@ -182,7 +183,7 @@ impl ReliefEnd {
 impl Kind for StartDocument {
     type Spec = ReliefEnd;
 
-    fn read(node: &Node, place: &Place<'_>, &end: &ReliefEnd) -> Option<Self> {
+    fn read(node: &Node, place: &Location<'_>, &end: &ReliefEnd) -> Option<Self> {
         let mut reader = ObjectReader::new(node, place.clone())?;
         let mut found = Vec::new();
         let mut wrong = false;

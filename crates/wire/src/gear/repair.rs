@@ -14,7 +14,7 @@ impl GearDocument {
     ///
     /// Every field that has to change, each with a value such that all these values together make a gear, where there
     /// are such values.
-    pub(crate) fn to_gear(&self, pointer: &str, helix: Helix) -> Result<SpurGear, Vec<FieldError>> {
+    pub fn to_gear(&self, pointer: &str, helix: Helix) -> Result<SpurGear, Vec<FieldError>> {
         let lists = self.list_faults(pointer);
         if lists.is_empty() {
             return self.with_numbers(pointer, helix);
@@ -32,7 +32,7 @@ impl GearDocument {
         for _ in 0..MOST_REPAIRS {
             let mut fault = match repaired.made(helix) {
                 Ok(gear) if faults.is_empty() => return Ok(gear),
-                Ok(_) => return Err(Self::told(pointer, faults)),
+                Ok(_) => return Err(Self::field_errors(pointer, faults)),
                 Err(fault) => fault,
             };
             let index = faults
@@ -62,7 +62,7 @@ impl GearDocument {
         if let Some(last) = faults.last_mut() {
             last.cure = None;
         }
-        Err(Self::told(pointer, faults))
+        Err(Self::field_errors(pointer, faults))
     }
 
     /// `fault` with the nearest value that its field takes.
@@ -74,8 +74,8 @@ impl GearDocument {
         Fault { cure, ..fault }
     }
 
-    pub(super) fn told(pointer: &str, faults: Vec<Fault>) -> Vec<FieldError> {
-        let told = faults.into_iter().map(|fault| {
+    pub(super) fn field_errors(pointer: &str, faults: Vec<Fault>) -> Vec<FieldError> {
+        let errors = faults.into_iter().map(|fault| {
             let unit = fault.field.unit;
             let advice = fault
                 .cure
@@ -84,7 +84,7 @@ impl GearDocument {
             let place = format!("{pointer}/{}", fault.field.pointer);
             FieldError::new(place, fault.code, detail).nearest(fault.cure)
         });
-        told.collect()
+        errors.collect()
     }
 }
 

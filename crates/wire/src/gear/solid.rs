@@ -173,7 +173,7 @@ impl GearDocument {
                 outer_radius,
             } => {
                 let fault = self.edge_fault(hole, [from, to], [inner_radius, outer_radius]);
-                return Self::told(pointer, vec![Self::cured(fault)]);
+                return Self::field_errors(pointer, vec![Self::cured(fault)]);
             }
         };
         vec![fault]

@@ -12,14 +12,18 @@ use super::largest_where::PressureStatistics;
 use super::spectrum::SpectrumDocument;
 use super::stress::{PeakStressDocument, StressDocument};
 use super::{all, each};
-use crate::declare::answer;
+use crate::declare::document;
 use crate::units::{one_or_null, or_null, significant, to_mm, to_mpa, to_um};
 
-answer! {
+document! {
     /// The curves at one output torque. All lists, those of the spectrum and of the dynamics aside, run over the same positions.
     pub struct CurveDocument as Curve, "Curve"
-    of (case: &Case, curve: &Curve, dynamics: Option<&CurveDynamics>) with {
-        let turned = |tooth_count: u32| each(&curve.mesh_position, |eta| eta * 360.0 / f64::from(tooth_count));
+    answer of (case: &Case, curve: &Curve, dynamics: Option<&CurveDynamics>) with {
+        let turned = |tooth_count: u32| {
+            each(&curve.mesh_position, |eta| {
+                eta * 360.0 / f64::from(tooth_count)
+            })
+        };
     } {
         /// The output torque on the driven gear, in N m.
         output_torque_n_m: f64 = curve.output_torque,
@@ -46,7 +50,10 @@ answer! {
         pairs_in_contact: Vec<u32> = curve.pairs_in_contact.clone(),
         /// The largest contact pressure, in MPa; null where a sharp tip corner carries, at which it has no limit.
         #[serde(serialize_with = "or_null")]
-        peak_contact_pressure_mpa: Vec<Option<f64>> = all(&curve.peak_contact_pressure, |pressure| pressure.map(to_mpa)),
+        peak_contact_pressure_mpa: Vec<Option<f64>> =
+            all(&curve.peak_contact_pressure, |pressure| {
+                pressure.map(to_mpa)
+            }),
         /// The share of the load on each pair that ever carries any, by rising offset.
         load_shares: Vec<LoadShareDocument> = all(&curve.load_shares, LoadShareDocument::of),
         /// The largest stresses; absent unless the submission asks for them, for other methods than `flexible` and `three_dimensional`, and
@@ -57,17 +64,21 @@ answer! {
         /// Statistics over the span.
         statistics: StatisticsDocument = StatisticsDocument::of(case, curve),
         /// The order spectrum; absent for a partial span.
-        spectrum?: SpectrumDocument = curve.spectrum.as_ref().map(|spectrum| SpectrumDocument::of(case, spectrum)),
+        spectrum?: SpectrumDocument = curve
+            .spectrum
+            .as_ref()
+            .map(|spectrum| SpectrumDocument::of(case, spectrum)),
         /// What the decomposition adds up; absent for other methods.
-        decomposition?: DecompositionDocument = curve.decomposition.as_ref().map(DecompositionDocument::of),
+        decomposition?: DecompositionDocument =
+            curve.decomposition.as_ref().map(DecompositionDocument::of),
         /// The motion over speed; absent unless the submission asks for it.
         dynamics?: CurveDynamicsDocument = dynamics.map(CurveDynamicsDocument::of),
     }
 }
 
-answer! {
+document! {
     /// The load along the common face.
-    pub struct FaceDocument as Face, "Load along the face" of (face: &FaceLoad) {
+    pub struct FaceDocument as Face, "Load along the face" answer of (face: &FaceLoad) {
         /// The middles of equal strips of the common face, in mm from its middle; +z is the side from which the driving gear is seen to turn
         /// counter-clockwise.
         z_mm: Vec<f64> = each(&face.heights, to_mm),
@@ -83,10 +94,11 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// What would even the load along the face at this torque: add a slope and a crowning of these amounts to the `lead_modifications` of the driving gear.
     /// Found from a few positions, and within 2 % of what a job finds for it.
-    pub struct LeadCureDocument as LeadCure, "Lead that evens the load" of (cure: &LeadCure) {
+    pub struct LeadCureDocument as LeadCure, "Lead that evens the load"
+    answer of (cure: &LeadCure) {
         /// The slope to add, in um: taken off at the +z end of the face; negative adds.
         lead_slope_um: f64 = significant(to_um(cure.slope), 4),
         /// The crowning to add, in um; negative takes back what the leads have of it, and makes no flank hollow.
@@ -96,9 +108,9 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// The share of the load that the pairs at one offset carry.
-    pub struct LoadShareDocument as LoadShare, "Load share" of (share: &LoadShare) {
+    pub struct LoadShareDocument as LoadShare, "Load share" answer of (share: &LoadShare) {
         /// 0 for the pair that passed the pitch point last, 1 for the next, -1 for the one before.
         pair_offset: i32 = share.pair_offset,
         /// Its share of the load, from 0 to 1.
@@ -106,9 +118,10 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// Statistics over the span.
-    pub struct StatisticsDocument as Statistics, "Statistics" of (case: &Case, curve: &Curve) {
+    pub struct StatisticsDocument as Statistics, "Statistics"
+    answer of (case: &Case, curve: &Curve) {
         /// Whether the span is less than whole true periods.
         partial: bool = !case.covers_whole_periods(),
         /// Of the transmission error, in um.
@@ -117,15 +130,21 @@ answer! {
         mesh_stiffness_tangent_n_per_m: StatisticsValues =
             StatisticsValues::of(&curve.mesh_stiffness_tangent_statistics, |value| value),
         /// Of the contact pressure, in MPa; absent in results of versions before 0.5.
-        peak_contact_pressure_mpa?: PressureStatistics = Some(PressureStatistics::of(&case.pair, curve)),
+        peak_contact_pressure_mpa?: PressureStatistics =
+            Some(PressureStatistics::of(&case.pair, curve)),
         /// The largest stresses, where they were asked for.
-        stress?: PeakStressDocument = curve.stresses.as_ref().map(|stresses| PeakStressDocument::of(case, stresses)),
+        stress?: PeakStressDocument = curve
+            .stresses
+            .as_ref()
+            .map(|stresses| PeakStressDocument::of(case, stresses)),
     }
 }
 
-answer! {
+document! {
     /// Of the transmission error, in um: also what single-flank testing tells, by the words of ISO/TR 10064-1.
-    pub struct TransmissionErrorStatistics as TransmissionErrorStatistics, "Statistics of the transmission error" of (curve: &Curve) {
+    pub struct TransmissionErrorStatistics
+    as TransmissionErrorStatistics, "Statistics of the transmission error"
+    answer of (curve: &Curve) {
         /// What is told of either curve.
         #[serde(flatten)]
         whole: StatisticsValues = StatisticsValues::of(&curve.transmission_error_statistics, to_um),
@@ -156,10 +175,10 @@ impl Deref for TransmissionErrorStatistics {
     }
 }
 
-answer! {
+document! {
     /// Mean, fluctuation and extremes of a curve, in its unit: of the curve between its positions too, so that they may lie outside the lists.
     pub struct StatisticsValues as StatisticsValues, "Statistics of a curve"
-    of (statistics: &Statistics, convert: fn(f64) -> f64) {
+    answer of (statistics: &Statistics, convert: fn(f64) -> f64) {
         /// The mean.
         mean: f64 = convert(statistics.mean),
         /// The root mean square of the fluctuation, the mean removed.

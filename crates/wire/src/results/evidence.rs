@@ -8,13 +8,14 @@ use serde_json::{Map, Value};
 
 use super::all;
 use super::unseen::does_not_see;
-use crate::declare::answer;
+use crate::declare::document;
 use crate::submission::{SOLVER_VERSION, Submission};
 use crate::units::to_um;
 
-answer! {
+document! {
     /// How well the equations are satisfied, what they are, and what they leave out.
-    pub struct EvidenceDocument as Evidence, "Evidence" of (submission: &Submission, analysis: &Analysis) with {
+    pub struct EvidenceDocument as Evidence, "Evidence"
+    answer of (submission: &Submission, analysis: &Analysis) with {
         let evidence = &analysis.evidence;
         let unseen = does_not_see(submission.case(), submission.forces());
     } {
@@ -45,7 +46,10 @@ answer! {
         /// What the method leaves out.
         does_not_see: Vec<Cow<'static, str>> = unseen.into_iter().map(Cow::from).collect(),
         /// What a second grid level changes, where it was asked for.
-        error_estimate?: ErrorEstimateDocument = evidence.error_estimate.as_ref().map(ErrorEstimateDocument::of),
+        error_estimate?: ErrorEstimateDocument = evidence
+            .error_estimate
+            .as_ref()
+            .map(ErrorEstimateDocument::of),
     }
 }
 
@@ -65,9 +69,10 @@ fn resolution_of(submission: &Submission) -> Map<String, Value> {
     }
 }
 
-answer! {
+document! {
     /// A term and what it means here.
-    pub struct Definition as Definition, "Definition" of ((term, meaning): &(&'static str, &'static str)) {
+    pub struct Definition as Definition, "Definition"
+    answer of ((term, meaning): &(&'static str, &'static str)) {
         /// The term.
         term: Cow<'static, str> = Cow::from(*term),
         /// What it means.
@@ -103,9 +108,10 @@ const DEFINITIONS: [(&str, &str); 7] = [
     ),
 ];
 
-answer! {
+document! {
     /// What a second grid level changes, the largest over the torques.
-    pub struct ErrorEstimateDocument as ErrorEstimate, "Error estimate" of (estimate: &ErrorEstimate) {
+    pub struct ErrorEstimateDocument as ErrorEstimate, "Error estimate"
+    answer of (estimate: &ErrorEstimate) {
         /// In the mean transmission error, in um.
         transmission_error_mean_um: f64 = to_um(estimate.mean),
         /// In the peak-to-peak transmission error, in um.

@@ -70,7 +70,7 @@ impl Results {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::STUB;
+    use crate::testing::STUB;
 
     #[test]
     fn a_span_that_cannot_be_repeated_has_no_table() {

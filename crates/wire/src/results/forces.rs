@@ -6,15 +6,24 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::{all, each};
-use crate::declare::answer;
+use crate::declare::document;
 use crate::units::to_um;
 
-answer! {
+document! {
     /// The force between the gears over mesh position and approach: under which approach each load acts at each position, over the true period.
-    pub struct ForceTableDocument as ForceTable, "Force table" of (table: &ForceTable) with {
+    pub struct ForceTableDocument as ForceTable, "Force table" answer of (table: &ForceTable) with {
         let in_um = |row: &Vec<f64>| each(row, to_um);
-        let stiffness = |row: &Vec<f64>| each(row, |compliance| if compliance > 0.0 { 1.0 / compliance } else { 0.0 });
-        let stiffnesses = |flank: &FlankRows| all(flank.compliance.as_deref().unwrap_or_default(), stiffness);
+        let stiffness = |row: &Vec<f64>| {
+            each(row, |compliance| {
+                if compliance > 0.0 {
+                    1.0 / compliance
+                } else {
+                    0.0
+                }
+            })
+        };
+        let stiffnesses =
+            |flank: &FlankRows| all(flank.compliance.as_deref().unwrap_or_default(), stiffness);
         let (loaded, other) = (table.loaded(), table.other());
     } {
         /// The mesh position, in mesh periods, end excluded.
@@ -40,9 +49,10 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// The motion of the gears over speed under one torque. All lists run over the same speeds.
-    pub struct CurveDynamicsDocument as Dynamics, "Dynamics" of (dynamics: &CurveDynamics) with {
+    pub struct CurveDynamicsDocument as Dynamics, "Dynamics"
+    answer of (dynamics: &CurveDynamics) with {
         let CurveDynamics { run_up, labels, .. } = dynamics;
         let branch = |branch: &Branch| BranchDocument::of(branch, labels);
     } {
@@ -57,13 +67,16 @@ answer! {
         /// Run down from the highest speed; absent if not asked for.
         down?: BranchDocument = run_up.down.as_ref().map(branch),
         /// The speeds at which an order meets the natural frequency, or twice it: the one with the largest amplitude first.
-        resonances: Vec<ResonanceDocument> = all(&run_up.resonances, |found| ResonanceDocument::of(found, labels)),
+        resonances: Vec<ResonanceDocument> = all(&run_up.resonances, |found| {
+            ResonanceDocument::of(found, labels)
+        }),
     }
 }
 
-answer! {
+document! {
     /// The motion over speed, run through one way.
-    pub struct BranchDocument as RunUpBranch, "Branch of a run-up" of (branch: &Branch, labels: &[String]) {
+    pub struct BranchDocument as RunUpBranch, "Branch of a run-up"
+    answer of (branch: &Branch, labels: &[String]) {
         /// The dynamic transmission error, in um.
         dynamic_transmission_error_um: DynamicErrorDocument = DynamicErrorDocument::of(branch),
         /// The largest force between the gears over the static load.
@@ -74,14 +87,18 @@ answer! {
         period_multiple: Vec<u32> = all(&branch.repeats, |repeats| repeats.unwrap_or(0)),
         /// The amplitudes at the orders of the mesh to the tenth, of holes, of the first revolutions of gears that deviate, at the sidebands of both, and at
         /// others that stand out.
-        orders: Vec<OrderAmplitudesDocument> =
-            labels.iter().zip(&branch.orders).map(|(label, found)| OrderAmplitudesDocument::of(label, found)).collect(),
+        orders: Vec<OrderAmplitudesDocument> = labels
+            .iter()
+            .zip(&branch.orders)
+            .map(|(label, found)| OrderAmplitudesDocument::of(label, found))
+            .collect(),
     }
 }
 
-answer! {
+document! {
     /// The dynamic transmission error over speed, in um.
-    pub struct DynamicErrorDocument as DynamicTransmissionError, "Dynamic transmission error" of (branch: &Branch) {
+    pub struct DynamicErrorDocument as DynamicTransmissionError, "Dynamic transmission error"
+    answer of (branch: &Branch) {
         /// The root mean square of the fluctuation, the mean removed.
         rms: Vec<f64> = each(&branch.rms, to_um),
         /// The largest less the smallest value.
@@ -89,9 +106,10 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// The amplitude at one order over speed.
-    pub struct OrderAmplitudesDocument as OrderAmplitudes, "Amplitudes of an order" of (label: &str, amplitudes: &[f64]) {
+    pub struct OrderAmplitudesDocument as OrderAmplitudes, "Amplitudes of an order"
+    answer of (label: &str, amplitudes: &[f64]) {
         /// Its name, as in the spectrum.
         #[schema(example = "H_Z2")]
         label: String = label.to_owned(),
@@ -100,9 +118,10 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// A speed at which an order resonates.
-    pub struct ResonanceDocument as Resonance, "Resonance" of (resonance: &Resonance, labels: &[String]) {
+    pub struct ResonanceDocument as Resonance, "Resonance"
+    answer of (resonance: &Resonance, labels: &[String]) {
         /// The speed of the driving gear, in 1/min.
         driving_speed_rpm: f64 = to_rpm(resonance.speed),
         /// The name of the order.

@@ -4,13 +4,16 @@ use meshwright_engine::analysis::Curve;
 use meshwright_engine::analysis::largest_where::LargestWhere;
 use meshwright_engine::gear::GearPair;
 
-use crate::declare::answer;
+use crate::declare::document;
 use crate::units::{significant, to_mm, to_mpa};
 
-answer! {
+document! {
     /// Where the largest value of a curve stands: a pressure on both flanks, a stress in its own gear.
-    pub struct WhereDocument as LargestWhere, "Place of a largest value" of (stands: &LargestWhere) with {
-        let diameters = stands.diameters.map(|diameter| diameter.map(|diameter| significant(to_mm(diameter), 7)));
+    pub struct WhereDocument as LargestWhere, "Place of a largest value"
+    answer of (stands: &LargestWhere) with {
+        let diameters = stands
+            .diameters
+            .map(|diameter| diameter.map(|diameter| significant(to_mm(diameter), 7)));
     } {
         /// The mesh position.
         mesh_position: f64 = stands.mesh_position,
@@ -26,15 +29,18 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// The largest contact pressure over the span.
-    pub struct PressureStatistics as PressureStatistics, "Statistics of the contact pressure" of (pair: &GearPair, curve: &Curve) with {
+    pub struct PressureStatistics as PressureStatistics, "Statistics of the contact pressure"
+    answer of (pair: &GearPair, curve: &Curve) with {
         let pressures: Option<Vec<f64>> = curve.peak_contact_pressure.iter().copied().collect();
         let largest = pressures.and_then(|pressures| pressures.into_iter().reduce(f64::max));
     } {
         /// The largest pressure, in MPa; absent where a sharp tip corner carries at some position, at which it has no limit.
         largest?: f64 = largest.map(to_mpa),
         /// Where it stands; absent without a largest pressure, and at the torque 0.
-        largest_where?: WhereDocument = curve.largest_pressure.map(|largest| WhereDocument::of(&largest.stands(pair))),
+        largest_where?: WhereDocument = curve
+            .largest_pressure
+            .map(|largest| WhereDocument::of(&largest.stands(pair))),
     }
 }

@@ -36,17 +36,17 @@ pub use stress::{
     GearPeakStress, GearStressDocument, GearStressWhere, PeakStressDocument, StressDocument,
 };
 
-use super::declare::answer;
+use super::declare::document;
 use super::geometry::{Frequencies, PairGeometry};
 use super::problem::{Code, Problem};
 use super::submission::Submission;
 use super::units::{known, rounded_json};
 use super::warning::WarningDocument;
 
-answer! {
+document! {
     /// What a submission comes to. It is bit-identical for the same input and version.
     pub struct Results as Results, "Results"
-    of (submission: &Submission, analysis: &Analysis, forces: Option<&Forces>) with {
+    answer of (submission: &Submission, analysis: &Analysis, forces: Option<&Forces>) with {
         let case = submission.case();
         let dynamics = |i: usize| forces.and_then(|forces| forces.dynamics.get(i));
     } {
@@ -61,10 +61,15 @@ answer! {
         #[serde(deserialize_with = "known")]
         warnings: Vec<WarningDocument> = submission.warnings(&analysis.warnings),
         /// One curve for each output torque, in the order of the submission.
-        curves: Vec<CurveDocument> =
-            analysis.curves.iter().enumerate().map(|(i, curve)| CurveDocument::of(case, curve, dynamics(i))).collect(),
+        curves: Vec<CurveDocument> = analysis
+            .curves
+            .iter()
+            .enumerate()
+            .map(|(i, curve)| CurveDocument::of(case, curve, dynamics(i)))
+            .collect(),
         /// The force over mesh position and approach; absent unless the submission asks for it.
-        force_table?: ForceTableDocument = forces.map(|forces| ForceTableDocument::of(&forces.table)),
+        force_table?: ForceTableDocument =
+            forces.map(|forces| ForceTableDocument::of(&forces.table)),
         /// How good the numbers are, and what they mean.
         evidence: EvidenceDocument = EvidenceDocument::of(submission, analysis),
     }
@@ -89,10 +94,6 @@ impl Results {
         rounded_json(self).map_err(|error| Problem::new(Code::InternalError, error.to_string()))
     }
 }
-
-/// A small results document.
-#[cfg(test)]
-pub(crate) const STUB: &str = include_str!("../../../../tests/it/results.json");
 
 fn each(values: &[f64], convert: impl Fn(f64) -> f64) -> Vec<f64> {
     values.iter().copied().map(convert).collect()

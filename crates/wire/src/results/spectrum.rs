@@ -7,14 +7,15 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::{all, each};
-use crate::declare::answer;
+use crate::declare::document;
 use crate::geometry::Frequencies;
 use crate::units::{known, to_um};
 use crate::warning::GearName;
 
-answer! {
+document! {
     /// Single-sided amplitudes and phases: y = sum of A cos(2 pi k j/n + phase), no window; the mean is left out.
-    pub struct SpectrumDocument as Spectrum, "Spectrum" of (case: &Case, spectrum: &Spectrum) with {
+    pub struct SpectrumDocument as Spectrum, "Spectrum"
+    answer of (case: &Case, spectrum: &Spectrum) with {
         // An order counts per revolution of the driven gear, so that gear's speed turns it into a frequency.
         let driven_hz = Frequencies::of_case(case).map(|frequencies| frequencies.driven_hz);
         let [z_1, z_2] = Member::BOTH.map(|member| f64::from(case.pair.gear(member).tooth_count()));
@@ -28,20 +29,25 @@ answer! {
         /// Amplitudes of the transmission error, in um.
         transmission_error_um: Vec<f64> = each(&spectrum.transmission_error, to_um),
         /// Phases of the transmission error, in degrees.
-        transmission_error_phase_deg: Vec<f64> = each(&spectrum.transmission_error_phase, f64::to_degrees),
+        transmission_error_phase_deg: Vec<f64> =
+            each(&spectrum.transmission_error_phase, f64::to_degrees),
         /// Amplitudes of the tangent stiffness, in N/m.
         mesh_stiffness_tangent_n_per_m: Vec<f64> = spectrum.mesh_stiffness_tangent.clone(),
         /// Phases of the tangent stiffness, in degrees.
-        mesh_stiffness_tangent_phase_deg: Vec<f64> = each(&spectrum.mesh_stiffness_tangent_phase, f64::to_degrees),
+        mesh_stiffness_tangent_phase_deg: Vec<f64> =
+            each(&spectrum.mesh_stiffness_tangent_phase, f64::to_degrees),
         /// The lines that have names, by rising order.
         #[serde(deserialize_with = "known")]
-        named: Vec<NamedOrderDocument> = all(&spectrum.named, |line| NamedOrderDocument::of(line, driven_hz)),
+        named: Vec<NamedOrderDocument> = all(&spectrum.named, |line| {
+            NamedOrderDocument::of(line, driven_hz)
+        }),
     }
 }
 
-answer! {
+document! {
     /// A line of the spectrum that has a name.
-    pub struct NamedOrderDocument as NamedOrder, "Named order" of (line: &NamedOrder, driven_hz: Option<f64>) with {
+    pub struct NamedOrderDocument as NamedOrder, "Named order"
+    answer of (line: &NamedOrder, driven_hz: Option<f64>) with {
         let (kind, cause, mesh_harmonic, multiple) = parts_of(&line.kind);
     } {
         /// The order per revolution of the driven gear.
@@ -54,7 +60,12 @@ answer! {
         /// What it is.
         kind: OrderKindName = kind,
         /// The gears that make it: both for the mesh.
-        gears: Vec<GearName> = cause.map_or(&Member::BOTH[..], |cause| &cause.gears).iter().copied().map(GearName::from).collect(),
+        gears: Vec<GearName> = cause
+            .map_or(&Member::BOTH[..], |cause| &cause.gears)
+            .iter()
+            .copied()
+            .map(GearName::from)
+            .collect(),
         /// k, for the k-th multiple of the mesh order and for sidebands about it; absent for others.
         mesh_harmonic?: u32 = mesh_harmonic,
         /// n, for the n-th multiple of a hole or revolution order; for a sideband with the sign of its side, absent for the mesh.

@@ -6,13 +6,14 @@ use meshwright_engine::gear::Member;
 
 use super::all;
 use super::largest_where::WhereDocument;
-use crate::declare::answer;
+use crate::declare::document;
 use crate::units::{to_mm, to_mpa};
 
-answer! {
+document! {
     /// The largest stresses of both gears at each position. Angles are polar ones from the centerline of tooth 0, where it stands in the middle of
     /// the face, from 0 to 360 degrees; heights are those from the middle of the gear's own face, and absent in the plane.
-    pub struct StressDocument as Stress, "Stress" of ([driving, driven]: &[GearStresses; 2]) {
+    pub struct StressDocument as Stress, "Stress"
+    answer of ([driving, driven]: &[GearStresses; 2]) {
         /// Of the driving gear.
         driving: GearStressDocument = GearStressDocument::of(driving),
         /// Of the driven gear.
@@ -20,12 +21,14 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// The largest stresses of a gear at each position, and where they are.
-    pub struct GearStressDocument as GearStress, "Stress of a gear" of (gear: &GearStresses) with {
+    pub struct GearStressDocument as GearStress, "Stress of a gear"
+    answer of (gear: &GearStresses) with {
         let stresses = |peaks: &[PeakStress]| all(peaks, |peak| to_mpa(peak.stress));
         let angles = |peaks: &[PeakStress]| all(peaks, |peak| peak.angle.to_degrees());
-        let heights = |peaks: &[PeakStress]| peaks.iter().filter_map(|peak| peak.z.map(to_mm)).collect();
+        let heights =
+            |peaks: &[PeakStress]| peaks.iter().filter_map(|peak| peak.z.map(to_mm)).collect();
     } {
         /// The largest von Mises stress along the tensile root fillets of the teeth in mesh and their neighbors, in MPa.
         root_mpa: Vec<f64> = stresses(&gear.root),
@@ -68,9 +71,10 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// The largest stresses of both gears over the span.
-    pub struct PeakStressDocument as PeakStress, "Peak stress" of (case: &Case, [driving, driven]: &[GearStresses; 2]) {
+    pub struct PeakStressDocument as PeakStress, "Peak stress"
+    answer of (case: &Case, [driving, driven]: &[GearStresses; 2]) {
         /// Of the driving gear.
         driving: GearPeakStress = GearPeakStress::of((case, Member::Driving), driving),
         /// Of the driven gear.
@@ -78,9 +82,10 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// The largest stresses of a gear over the span.
-    pub struct GearPeakStress as GearPeakStress, "Peak stress of a gear" of (of: (&Case, Member), gear: &GearStresses) with {
+    pub struct GearPeakStress as GearPeakStress, "Peak stress of a gear"
+    answer of (of: (&Case, Member), gear: &GearStresses) with {
         let extreme = |peaks: &[PeakStress], of: fn(f64, f64) -> f64| {
             peaks.iter().map(|peak| to_mpa(peak.stress)).reduce(of)
         };
@@ -98,9 +103,10 @@ answer! {
     }
 }
 
-answer! {
+document! {
     /// Where the largest stresses of a gear stand.
-    pub struct GearStressWhere as GearStressWhere, "Places of the largest stresses of a gear" of ((case, member): (&Case, Member), gear: &GearStresses) with {
+    pub struct GearStressWhere as GearStressWhere, "Places of the largest stresses of a gear"
+    answer of ((case, member): (&Case, Member), gear: &GearStresses) with {
         let stands = |peaks: &[PeakStress], on_tooth: bool| {
             PeakStress::largest_where(case, member, peaks, on_tooth).as_ref().map(WhereDocument::of)
         };

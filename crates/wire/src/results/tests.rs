@@ -17,7 +17,7 @@ use meshwright_engine::run::Run;
 use serde_json::{Value, json};
 
 use super::*;
-use crate::testing::{and, example, parse, with};
+use crate::testing::{STUB, and, example, parse, with};
 use crate::warning::WarningCode;
 use crate::{examples, solve};
 

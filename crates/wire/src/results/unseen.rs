@@ -47,7 +47,7 @@ pub(super) fn does_not_see(case: &Case, forces: Option<&ForcesRequest>) -> Vec<&
         .chain(forces_do_not_see(forces))
         .chain(real_teeth_do_not_see(case))
         .chain(own)
-        .chain(stress_not_told(case))
+        .chain(stress_not_computed(case))
         .collect()
 }
 
@@ -65,7 +65,7 @@ fn forces_do_not_see(forces: Option<&ForcesRequest>) -> Vec<&'static str> {
 }
 
 /// Why stresses that were asked for are not all there.
-fn stress_not_told(case: &Case) -> Option<&'static str> {
+fn stress_not_computed(case: &Case) -> Option<&'static str> {
     case.stress.then_some(
         "stress under the contact itself, and concentrated where regions of unlike thickness meet: stress tells roots and hole edges",
     )
@@ -191,9 +191,9 @@ mod tests {
             (parts, BodyFormula::Rigid, "they are rigid"),
             (whole, BodyFormula::Sainsot, "C_M"),
         ] {
-            let told = unseen(tooth, body);
-            assert!(told.contains(word), "{told}");
-            assert!(told.contains("holes: the bodies are solid"));
+            let listed = unseen(tooth, body);
+            assert!(listed.contains(word), "{listed}");
+            assert!(listed.contains("holes: the bodies are solid"));
         }
         assert!(!unseen(parts, BodyFormula::Sainsot).contains("C_M"));
         assert!(!unseen(whole, BodyFormula::Rigid).contains("they are rigid"));

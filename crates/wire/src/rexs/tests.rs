@@ -66,7 +66,7 @@ fn assert_refused(model: &str, place: &str, words: &[&str]) {
 }
 
 /// That each of these words is in a remark.
-fn assert_told(imported: &Import, words: &[&str]) {
+fn assert_noted(imported: &Import, words: &[&str]) {
     let remarks = &imported.remarks;
     for word in words {
         let is_told = remarks.iter().any(|remark| remark.contains(word));
@@ -272,7 +272,7 @@ fn the_gear_that_says_so_drives() {
     let silent = CASE_2.replace(">true<", "><").replace(">false<", "><");
     let silent = taken(&silent);
     assert_eq!(field(&silent, "/pair/driven/blank/holes/count"), 10);
-    assert_told(&silent, &["drives"]);
+    assert_noted(&silent, &["drives"]);
     let both = CASE_2.replace(">false<", ">true<");
     assert_refused(&both, "component 2", &["exactly one drives"]);
 }
@@ -285,7 +285,7 @@ fn what_is_absent_is_told_as_assumed_or_missed_and_what_is_not_read_is_named() {
     );
     let imported = taken(&poor);
     assert_eq!(field(&imported, "/pair/driven/pressure_angle_deg"), 20.0);
-    assert_told(
+    assert_noted(
         &imported,
         &[
             "Assumed: component 10 (cylindrical_gear \"Pinion\") has no normal_pressure_angle; taken is 20 deg.",
@@ -324,7 +324,7 @@ fn the_tool_stands_where_it_generates_the_teeth() {
     let root = said("root_diameter", "mm", "94.8");
     let ground = taken(&CASE_2.replace(tip, &(tip.to_owned() + &root)));
     assert_eq!(field(&ground, "/pair/driven/dedendum_mm"), 2.6);
-    assert_told(&ground, &["root_diameter 2.6 mm"]);
+    assert_noted(&ground, &["root_diameter 2.6 mm"]);
     let other = with(
         r#""normal_module" unit="mm">2</attribute>
       <attribute id="normal_pressure_angle""#,
@@ -353,7 +353,7 @@ fn a_web_lies_between_the_rim_and_the_bore() {
     let imported = taken(&model);
     let web = json!({ "inner_radius_mm": 16.0, "outer_radius_mm": 43.0, "thickness_mm": 6.0 });
     assert_eq!(field(&imported, "/pair/driven/blank/web"), web);
-    assert_told(&imported, &["no hub"]);
+    assert_noted(&imported, &["no hub"]);
     assert_refused(&model.replace(&rim, ""), "component 50", &["needs both"]);
 }
 
@@ -399,7 +399,7 @@ fn a_crowning_takes_off_the_same_at_both_ends_and_a_slope_at_the_tip() {
         field(&imported, "/pair/driving/profile_modifications"),
         json!([{ "kind": "crowning", "amount_um": 4.0 }, { "kind": "slope", "amount_um": -3.0 }])
     );
-    assert_told(&imported, &["takes material off at the tip"]);
+    assert_noted(&imported, &["takes material off at the tip"]);
     let unlike = model(&(at("tip", "0.004") + &at("root", "0.006")));
     assert_refused(
         &unlike,
@@ -523,14 +523,14 @@ fn helices_leads_and_what_stands_askew_come_back_as_they_went() {
         } else {
             "left-handed"
         };
-        assert_told(&imported, &[hand, "+z end"]);
+        assert_noted(&imported, &[hand, "+z end"]);
 
         // Another program says no method: the one that sees the helix is taken, and that is told.
         let own = "<attribute id=\"custom_meshwright_method\" unit=\"none\">three_dimensional</attribute>";
         assert!(text.contains(own));
         let other = taken(&text.replace(own, ""));
         assert_eq!(other.submission["method"], "three_dimensional");
-        assert_told(&other, &["by three_dimensional"]);
+        assert_noted(&other, &["by three_dimensional"]);
         let angle =
             |angle: f64| format!("\"helix_angle_reference_diameter\" unit=\"deg\">{angle}<");
         let alone = text.replace(&angle(-helix), &angle(11.0));
@@ -807,9 +807,9 @@ fn one_pair_is_the_same_in_every_container_version_encoding_and_spelling() {
         assert_eq!(taken_of(model).submission, plain.submission);
     }
     for model in [latin, &wide] {
-        assert_told(&taken_of(model), &["(cylindrical_gear \"Prüfritzel\")"]);
+        assert_noted(&taken_of(model), &["(cylindrical_gear \"Prüfritzel\")"]);
     }
-    assert_told(
+    assert_noted(
         &taken_of(BOTH_FALSE),
         &["Assumed: gear_1 drives, component 10 (cylindrical_gear \"Pinion\")"],
     );
@@ -857,7 +857,7 @@ fn a_torque_goes_on_over_the_shafts_by_the_ratios() {
     assert_eq!(field(&first, "/output_torques_n_m"), json!([75.0]));
     let second = of(text, 3).expect("taken");
     assert_eq!(field(&second, "/output_torques_n_m"), json!([112.5]));
-    assert_told(
+    assert_noted(
         &second,
         &[
             "Assumed: the torque of component 3 (cylindrical_stage \"Second\") is carried over the shafts from component 60 (external_load) without losses.",
@@ -896,7 +896,7 @@ fn a_gear_without_a_bore_sits_on_the_section_of_its_shaft() {
     let seated = taken_of(model);
     assert_eq!(field(&seated, "/pair/driving/blank/bore_radius_mm"), 12.0);
     assert_eq!(field(&seated, "/pair/driven/blank/bore_radius_mm"), 15.0);
-    assert_told(
+    assert_noted(
         &seated,
         &[
             "Assumed: component 10 (cylindrical_gear \"Pinion\") has no inner_diameter; taken is the outer diameter of its shaft under it, 24 mm of component 61 (shaft_section).",
@@ -1026,7 +1026,7 @@ fn a_gear_without_a_material_has_that_of_its_shaft() {
         );
         assert_eq!(modulus, 70.0);
     }
-    assert_told(
+    assert_noted(
         &aluminium,
         &[
             "Assumed: component 20 (cylindrical_gear \"Wheel\") has no material; taken is that of its shaft, component 30 (material).",

@@ -4,7 +4,7 @@ use meshwright_engine::analysis::Method;
 use meshwright_engine::gear::{GearPair, SpurGear};
 
 use super::Purpose;
-use super::document::{Document, OUTPUT_TORQUE};
+use super::document::{OUTPUT_TORQUE, SubmissionDocument};
 use crate::declare::{Choice as _, Errors};
 use crate::forces::{DynamicsQuestion, ForceTableQuestion, SpeedRange, Speeds};
 use crate::problem::{Code, FieldError};
@@ -12,15 +12,15 @@ use crate::resolution::{ContactSolverDocument, ResolutionDocument};
 use crate::units::{Side, plain, rounded_inward};
 
 /// The most positions times torques of one submission.
-pub(crate) const MOST_POSITIONS: u64 = 20_000;
+pub const MOST_POSITIONS: u64 = 20_000;
 
 /// The same of the projected methods on teeth that do not deviate: they solve one mesh period, and add what holes do to it at each position.
-pub(crate) const MOST_PROJECTED_POSITIONS: u64 = 200_000;
+pub const MOST_PROJECTED_POSITIONS: u64 = 200_000;
 
 /// The most mesh periods of a run-up: of its true period, at all speeds, under all torques.
 const MOST_PERIODS_RUN: u64 = 200_000;
 
-impl Document {
+impl SubmissionDocument {
     /// Refuses torques that would deflect the teeth by more than about a quarter of a module: small displacements and a
     /// search among neighboring flanks mean nothing there.
     pub(super) fn check_torques(&self, pair: &GearPair, errors: &Errors) {
@@ -34,15 +34,15 @@ impl Document {
     pub(super) fn check_stress(&self, errors: &Errors) {
         if self.stress && !self.method.tells_stress() {
             let pointer = format!("/{}", Self::stress.name);
-            let told = Method::OPTIONS.iter();
-            let told: Vec<&str> = told
+            let methods = Method::OPTIONS.iter();
+            let methods: Vec<&str> = methods
                 .filter(|(_, method, _)| method.tells_stress())
                 .map(|(word, ..)| *word)
                 .collect();
             let detail = format!(
                 "{pointer} is asked for, and the method {} does not tell it; {} do.",
                 self.method.word(),
-                told.join(" and ")
+                methods.join(" and ")
             );
             errors.push(FieldError::new(pointer, Code::QuantityNotTold, detail));
         }

@@ -11,7 +11,7 @@ use crate::problem::Code;
 use crate::resolution::ResolutionDocument;
 
 /// The most output torques of one submission.
-pub(crate) const MOST_TORQUES: usize = 60;
+pub const MOST_TORQUES: usize = 60;
 
 /// The most tags of a job or a study, and the most characters of one.
 pub(crate) const MOST_TAGS: (usize, usize) = (16, 64);
@@ -26,7 +26,7 @@ words! {
 
 document! {
     /// What is asked: a gear pair, torques, and how to compute. Unknown fields are refused.
-    pub(crate) struct Document as "Submission", "Submission" {
+    pub(crate) struct SubmissionDocument as "Submission", "Submission" {
         /// How the curves are computed.
         pub(super) method: Method = word("Method"),
         /// The gears.
@@ -34,10 +34,11 @@ document! {
         /// The torques T on the driven gear, each of which gives a curve; 0 is the limit of light load, the kinematic error of the flanks.
         /// The load on the line of action is T over the driven base radius; one that would deflect the teeth by more than about a quarter
         /// of a module is refused.
-        pub(super) output_torques_n_m: Vec<f64> = list("Output torques", OUTPUT_TORQUE, MOST_TORQUES)
-            .of("torques in N m", "torques", "fit in one submission")
-            .not_empty(Code::OutOfRange, "give a torque")
-            .unique("repeats a torque; each gives one curve"),
+        pub(super) output_torques_n_m: Vec<f64> =
+            list("Output torques", OUTPUT_TORQUE, MOST_TORQUES)
+                .of("torques in N m", "torques", "fit in one submission")
+                .not_empty(Code::OutOfRange, "give a torque")
+                .unique("repeats a torque; each gives one curve"),
         /// The speed that turns orders into frequencies. It changes nothing else: the analysis is quasi-static.
         pub(super) driving_speed_rpm: Option<f64> = absent(
             number("Speed of the driving gear", "1/min", 1e-3, 1e6),
@@ -50,10 +51,12 @@ document! {
         pub(super) face_load: FaceRows = word("Load along the face").or(FaceRows::Mean),
         /// Whether results have a table of the force between the gears over mesh position and approach, for run-ups and other programs. It is
         /// computed over the true period, and its positions times its loads count as positions of the submission.
-        pub(super) force_table: Option<ForceTableQuestion> = absent(nested("ForceTableRequest"), "no table"),
+        pub(super) force_table: Option<ForceTableQuestion> =
+            absent(nested("ForceTableRequest"), "no table"),
         /// Whether each curve has the motion of the gears over speed: run up and down, with resonances, contact loss and jumps. It needs a
         /// force table, and the usual one stands in where none is asked for.
-        pub(super) dynamics: Option<DynamicsQuestion> = absent(nested("DynamicsRequest"), "no run-up"),
+        pub(super) dynamics: Option<DynamicsQuestion> =
+            absent(nested("DynamicsRequest"), "no run-up"),
         /// How finely and by which rules.
         pub(super) resolution: ResolutionDocument = nested("Resolution").or_defaults(),
         /// Short strings to find the job by. They do not change the result.
@@ -67,7 +70,7 @@ pub(crate) const OUTPUT_TORQUE: Number = number("Output torque", "N m", 1e-6, 1e
     .negative_is(Code::TorqueNotPositive);
 
 /// Short strings to find jobs and studies by.
-pub(crate) const TAGS: List<Text> = list("Tags", text("Tag", MOST_TAGS.1), MOST_TAGS.0)
+pub const TAGS: List<Text> = list("Tags", text("Tag", MOST_TAGS.1), MOST_TAGS.0)
     .of("short strings", "tags", "are kept")
     .too_many_is(Code::OutOfRange)
     .or_empty();

@@ -9,16 +9,17 @@ use meshwright_engine::assembly::FaceResolution;
 mod checks;
 mod document;
 
-pub(super) use checks::{MOST_POSITIONS, MOST_PROJECTED_POSITIONS};
+pub use checks::{MOST_POSITIONS, MOST_PROJECTED_POSITIONS};
+pub(super) use document::MOST_TAGS;
 #[cfg(test)]
 pub(super) use document::OUTPUT_TORQUE;
-pub(super) use document::{MOST_TAGS, MOST_TORQUES, TAGS};
+pub use document::{MOST_TORQUES, TAGS};
 
-pub(super) use document::Document;
 use document::FaceRows;
+pub(super) use document::SubmissionDocument;
 
 use super::declare::{
-    Choice, Document as _, EACH, Errors, Kind, Node, ObjectReader, Place, utoipa_schema, word,
+    Choice, EACH, Errors, Kind, Location, Node, Object as _, ObjectReader, utoipa_schema, word,
 };
 use super::forces::DynamicsQuestion;
 use super::pair::PairDocument;
@@ -40,7 +41,7 @@ pub const DOCUMENT_VERSION: i64 = 3;
 /// A value of this type can be computed: its gears can be made and mesh, and the work is within the limits.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Submission {
-    document: Document,
+    document: SubmissionDocument,
     case: Case,
     forces: Option<ForcesRequest>,
 }
@@ -53,17 +54,17 @@ impl serde::Serialize for Submission {
 
 impl utoipa::PartialSchema for Submission {
     fn schema() -> utoipa::openapi::RefOr<utoipa::openapi::Schema> {
-        <Document as utoipa::PartialSchema>::schema()
+        <SubmissionDocument as utoipa::PartialSchema>::schema()
     }
 }
 
 impl utoipa::ToSchema for Submission {
     fn name() -> std::borrow::Cow<'static, str> {
-        Document::name()
+        SubmissionDocument::name()
     }
 
     fn schemas(schemas: &mut Vec<(String, utoipa::openapi::RefOr<utoipa::openapi::Schema>)>) {
-        Document::schemas(schemas);
+        SubmissionDocument::schemas(schemas);
     }
 }
 
@@ -87,7 +88,7 @@ pub(super) enum Purpose {
     },
 }
 
-impl Document {
+impl SubmissionDocument {
     /// The submission, if all that it says goes together.
     fn checked(mut self, purpose: Purpose, errors: &Errors) -> Option<Submission> {
         let solid = if self.method.sees_faces() {
@@ -169,17 +170,17 @@ impl Submission {
     }
 
     /// Reads and checks a submission that is taken apart already.
-    pub(super) fn of_node(node: &Node) -> Result<Self, Problem> {
+    pub fn of_node(node: &Node) -> Result<Self, Problem> {
         Self::of_node_with(node, |_, _, _| Some(()))
     }
 
     /// The same, once `finish` has made of the pair what cannot be written down beforehand. What prevents that it reports.
-    pub(super) fn of_node_with(
+    pub fn of_node_with(
         node: &Node,
         finish: impl FnOnce(&mut PairDocument, Method, &Errors) -> Option<()>,
     ) -> Result<Self, Problem> {
         let errors = Errors::default();
-        let document = Document::read(node, &Place::root(&errors), &EACH);
+        let document = SubmissionDocument::read(node, &Location::root(&errors), &EACH);
         let document = document.filter(|_| errors.count() == 0);
         let read = document.and_then(|mut document| {
             finish(&mut document.pair, document.method, &errors)?;
@@ -198,9 +199,9 @@ impl Submission {
     }
 
     /// What is wrong with the fields of a submission, each by itself. Whether they go together is not looked at.
-    pub(super) fn wrong_fields(node: &Node) -> Vec<FieldError> {
+    pub fn wrong_fields(node: &Node) -> Vec<FieldError> {
         let errors = Errors::default();
-        Document::read(node, &Place::root(&errors), &EACH);
+        SubmissionDocument::read(node, &Location::root(&errors), &EACH);
         errors.into_errors()
     }
 
@@ -210,7 +211,7 @@ impl Submission {
         purpose: Purpose,
         errors: &Errors,
     ) -> Option<Self> {
-        let document = Document::read_whole(reader)?;
+        let document = SubmissionDocument::read_whole(reader)?;
         if errors.count() > 0 {
             return None;
         }
@@ -242,7 +243,7 @@ impl Submission {
     /// SHA-256, in hexadecimal, of what decides the result: the canonical document without its tags, and the solver's
     /// version.
     pub fn input_hash(&self) -> String {
-        let untagged = Document {
+        let untagged = SubmissionDocument {
             tags: Vec::new(),
             ..self.document.clone()
         };

@@ -3,7 +3,7 @@
 use meshwright_engine::gear::{Core, FaceEnds, Hole, HoleShape};
 use serde_json::{Value, json};
 
-use super::{fault, faults, mended, near, told};
+use super::{data_of, fault, faults, mended, near};
 use crate::Code;
 use crate::testing::{and, refused};
 
@@ -22,11 +22,11 @@ fn web(inner: f64, outer: f64, thickness: f64) -> Value {
 fn a_pattern_alone_and_in_a_list_and_by_its_angles_is_the_same() {
     let even = json!({ "count": 4, "circle_radius_mm": 30.0, "radius_mm": 6.0, "phase_deg": 10.0 });
     let at = json!({ "at_deg": [10, 100, 190, 280], "circle_radius_mm": 30.0, "radius_mm": 6.0 });
-    let told_of = |document: &Value| told(&holes(document)).blank.holes;
-    let alone = told_of(&even);
+    let holes_of = |document: &Value| data_of(&holes(document)).blank.holes;
+    let alone = holes_of(&even);
     assert_eq!(alone.len(), 4);
-    assert_eq!(told_of(&json!([even])), alone);
-    for (one, other) in told_of(&at).iter().zip(&alone) {
+    assert_eq!(holes_of(&json!([even])), alone);
+    for (one, other) in holes_of(&at).iter().zip(&alone) {
         near(one.angle, other.angle);
         assert_eq!(
             (&one.shape, one.circle_radius),
@@ -34,17 +34,17 @@ fn a_pattern_alone_and_in_a_list_and_by_its_angles_is_the_same() {
         );
     }
     for none in [json!(null), json!([])] {
-        assert!(told_of(&none).is_empty());
+        assert!(holes_of(&none).is_empty());
     }
 }
 
 #[test]
 fn slots_and_several_circles_reach_the_engine_in_order() {
-    let told = told(&holes(&json!([
+    let data = data_of(&holes(&json!([
         { "count": 2, "circle_radius_mm": 24.0, "radius_mm": 4.0 },
         { "at_deg": [45.0, -135.0], "circle_radius_mm": 38.0, "slot": { "width_mm": 6.0, "angle_deg": 30.0 } }
     ])));
-    let [.., third, fourth] = told.blank.holes.as_slice() else {
+    let [.., third, fourth] = data.blank.holes.as_slice() else {
         panic!("four holes")
     };
     assert_eq!(
@@ -122,9 +122,9 @@ fn a_pattern_says_where_and_how_its_holes_are_in_one_way() {
 #[test]
 fn a_gear_that_is_cut_on_its_shaft_says_the_shaft_instead_of_the_bore() {
     let on_shaft = |radius: f64| json!({ "blank": { "shaft": { "radius_mm": radius } } });
-    let told = told(&on_shaft(15.0)).blank;
+    let data = data_of(&on_shaft(15.0)).blank;
     assert_eq!(
-        (told.core, told.bore_radius),
+        (data.core, data.bore_radius),
         (
             Core::Shaft {
                 torque_at: FaceEnds::Both
@@ -147,9 +147,9 @@ fn a_gear_that_is_cut_on_its_shaft_says_the_shaft_instead_of_the_bore() {
 
 #[test]
 fn a_web_lies_between_bore_and_rim() {
-    let told = told(&web(20.0, 44.0, 6.0)).blank.web.expect("a web");
+    let data = data_of(&web(20.0, 44.0, 6.0)).blank.web.expect("a web");
     assert_eq!(
-        (told.inner_radius, told.outer_radius, told.thickness),
+        (data.inner_radius, data.outer_radius, data.thickness),
         (20e-3, 44e-3, 6e-3)
     );
     for (fields, name, code, _) in refused! {

@@ -3,7 +3,7 @@
 use meshwright_engine::gear::Protuberance;
 use serde_json::{Value, json};
 
-use super::{fault, told, with};
+use super::{data_of, fault, with};
 use crate::Code;
 use crate::testing::{echo, parse};
 
@@ -21,14 +21,14 @@ fn a_protuberance_reaches_the_engine_in_meters_and_no_stock_is_the_default() {
         height: 1.5e-3,
         grinding_stock: 120e-6,
     };
-    let data = told(&hob(220.0, 1.5, 120.0));
+    let data = data_of(&hob(220.0, 1.5, 120.0));
     assert_eq!(data.rack.protuberance, Some(expected));
     let bare = json!({ "protuberance": { "amount_um": 100, "height_mm": 1.5 } });
-    let found = told(&bare).rack.protuberance.expect("said");
+    let found = data_of(&bare).rack.protuberance.expect("said");
     assert_eq!(found.grinding_stock, 0.0);
-    assert_eq!(told(&json!({})).rack.protuberance, None);
+    assert_eq!(data_of(&json!({})).rack.protuberance, None);
     assert_eq!(
-        told(&json!({ "protuberance": null })).rack.protuberance,
+        data_of(&json!({ "protuberance": null })).rack.protuberance,
         None
     );
 }
@@ -42,8 +42,11 @@ fn a_hob_that_cannot_be_is_answered_with_the_nearest_that_can() {
         (hob(220.0, 0.9, 120.0), "height_mm", 1.1375),
     ] {
         let found = fault(&fields, &format!("protuberance/{place}"), Code::OutOfRange);
-        let told = found.nearest.expect("one that would do");
-        assert!((told - nearest).abs() < 1e-4 * nearest, "{found:?}");
+        let nearest_found = found.nearest.expect("one that would do");
+        assert!(
+            (nearest_found - nearest).abs() < 1e-4 * nearest,
+            "{found:?}"
+        );
     }
     let none = json!({ "protuberance": { "height_mm": 1.0 } });
     fault(&none, "protuberance/amount_um", Code::MissingField);

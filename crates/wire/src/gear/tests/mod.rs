@@ -25,8 +25,8 @@ fn with(fields: &Value) -> Value {
     })
 }
 
-/// What the engine is told of the driving gear with these fields.
-fn told(fields: &Value) -> GearData {
+/// The engine's data of the driving gear with these fields.
+fn data_of(fields: &Value) -> GearData {
     let submission = parse(&with(fields));
     let submission = submission.unwrap_or_else(|problem| panic!("{fields}: {problem:?}"));
     let echo = echo(&submission);

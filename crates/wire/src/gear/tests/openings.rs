@@ -1,4 +1,4 @@
-//! Spokes and outlines: what is read, told to the engine and refused, and that a gear drawn in two ways, or in a drawing, is one gear.
+//! Spokes and outlines: what is read, handed to the engine and refused, and that a gear drawn in two ways, or in a drawing, is one gear.
 
 use std::f64::consts::PI;
 
@@ -8,7 +8,7 @@ use meshwright_engine::run::Run;
 use meshwright_exchange::dxf::outline;
 use serde_json::{Value, json};
 
-use super::{fault, faults, mended, near, told};
+use super::{data_of, fault, faults, mended, near};
 use crate::Code;
 use crate::outline::PairOutline;
 use crate::solve::solve;
@@ -113,10 +113,10 @@ fn between_spokes(spokes: &Value, index: u32) -> Value {
 fn spokes_stand_beside_holes_and_are_told_with_what_is_left_between_them() {
     let holes =
         json!({ "count": 5, "circle_radius_mm": 42.5, "radius_mm": 1.0, "phase_deg": 10.0 });
-    let told = told(&blank(&json!({ "spokes": spokes(), "holes": holes })));
-    assert_eq!(told.blank.holes.len(), 10);
-    assert!(matches!(told.blank.holes[5].shape, HoleShape::Contour(_)));
-    near(told.blank.holes[5].angle, 46_f64.to_radians());
+    let data = data_of(&blank(&json!({ "spokes": spokes(), "holes": holes })));
+    assert_eq!(data.blank.holes.len(), 10);
+    assert!(matches!(data.blank.holes[5].shape, HoleShape::Contour(_)));
+    near(data.blank.holes[5].angle, 46_f64.to_radians());
     let submission = parse(&super::with(&blank(&json!({ "spokes": spokes() })))).expect("valid");
     let gear = submission.case().pair.driving();
     near(gear.least_ligament().expect("openings"), 4e-3);
@@ -176,7 +176,7 @@ fn an_outline_has_a_thousand_sides_at_most() {
         };
         json!({ "outline": (0..loops).map(polygon).collect::<Value>() })
     };
-    assert_eq!(told(&blank(&outline(10, 100))).blank.holes.len(), 10);
+    assert_eq!(data_of(&blank(&outline(10, 100))).blank.holes.len(), 10);
     fault(&blank(&outline(10, 101)), "blank/outline", Code::TooLarge);
 }
 
@@ -191,7 +191,10 @@ fn loops_that_bound_no_region_are_refused_at_their_side() {
         ])
     };
     let outlined = |loops: Value| blank(&json!({ "outline": loops }));
-    assert_eq!(told(&outlined(json!([square(25.0)]))).blank.holes.len(), 1);
+    assert_eq!(
+        data_of(&outlined(json!([square(25.0)]))).blank.holes.len(),
+        1
+    );
     for (loops, place, code, _) in refused! {
         json!([square(25.0), square(30.0)]) => "1", HolesOverlap;
         json!([square(18.5), square(39.0)]) => "1", HolesBreachRim;
@@ -308,7 +311,7 @@ fn the_same_gear_drawn_both_ways_has_the_same_curve() {
         .map(|i| kidney(30.0, 9.0, 7.0 + 72.0 * f64::from(i), 40.0))
         .collect();
     let mut of_spokes: Vec<Value> = (0..5).map(|i| between_spokes(&spokes(), i)).collect();
-    // The bore and the circle around may be told as well.
+    // The bore and the circle around may be given as well.
     of_spokes.push(circle([0.0, 0.0], 15.0, true));
     of_spokes.push(circle([0.0, 0.0], 47.5, false));
     // As a drawing has them.
@@ -365,9 +368,9 @@ fn the_same_gear_drawn_both_ways_has_the_same_curve() {
 
 #[test]
 fn an_outline_takes_away_the_area_of_its_loops() {
-    let told = told(&blank(
+    let data = data_of(&blank(
         &json!({ "outline": [circle([30.0, 0.0], 6.0, true)] }),
     ));
-    let area = told.blank.hole_area();
+    let area = data.blank.hole_area();
     assert!((area / (PI * 36e-6) - 1.0).abs() < 1e-12);
 }

@@ -3,7 +3,7 @@
 use meshwright_engine::gear::{ModificationData, TablePlaces, TipEdge};
 use serde_json::{Value, json};
 
-use super::{fault, faults, near, told, with};
+use super::{data_of, fault, faults, near, with};
 use crate::Code;
 use crate::testing::{and, parse, refused};
 
@@ -11,11 +11,11 @@ use crate::testing::{and, parse, refused};
 fn a_tip_diameter_says_the_addendum() {
     // 104 mm on 50 teeth of module 2 is an addendum of a module; a shift of -0.1 makes it 2.2 mm.
     near(
-        told(&json!({ "tip_diameter_mm": 104.0 })).rack.addendum,
+        data_of(&json!({ "tip_diameter_mm": 104.0 })).rack.addendum,
         2e-3,
     );
     let shifted = json!({ "tip_diameter_mm": 104.0, "profile_shift": -0.1, "addendum_mm": null });
-    near(told(&shifted).rack.addendum, 2.2e-3);
+    near(data_of(&shifted).rack.addendum, 2.2e-3);
     let both = json!({ "tip_diameter_mm": 104.0, "addendum_mm": 2.0 });
     fault(&both, "tip_diameter_mm", Code::ConflictingFields);
 }
@@ -42,9 +42,9 @@ fn a_tip_diameter_has_the_bounds_of_the_addendum_and_answers_in_its_own_words() 
 
 #[test]
 fn thickness_and_edges_reach_the_engine_in_meters() {
-    let thin = told(&json!({ "tooth_thickness_deviation_um": -60.0 }));
+    let thin = data_of(&json!({ "tooth_thickness_deviation_um": -60.0 }));
     assert_eq!(thin.thickness_deviation, -60e-6);
-    let edge = |fields: Value| told(&fields).tip_edge;
+    let edge = |fields: Value| data_of(&fields).tip_edge;
     assert_eq!(
         edge(json!({ "tip_rounding_mm": 0.2 })),
         TipEdge::Rounded(0.2e-3)
@@ -86,7 +86,7 @@ fn teeth_and_edges_that_do_not_fit_are_answered_with_those_that_do() {
 #[test]
 fn modifications_follow_the_short_form_in_the_order_of_the_document() {
     let start = json!({ "radial_length_mm": 1.0 });
-    let data = told(&json!({
+    let data = data_of(&json!({
         "tip_relief": { "amount_um": 5.0, "start": start },
         "profile_modifications": [
             { "kind": "root_relief", "amount_um": 6.0, "shape": "parabolic", "start": { "roll_length_from_form_mm": 1.5 } },
@@ -153,7 +153,7 @@ fn a_relief_off_the_flank_is_told_where_it_stands_with_a_start_that_would_do() {
             Code::ReliefTooLong,
         );
         let nearest = found.nearest.expect("a start that would do");
-        told(&listed(kind, json!({ name: nearest })));
+        data_of(&listed(kind, json!({ name: nearest })));
     }
 }
 
@@ -200,7 +200,7 @@ fn alternating(step: f64) -> Vec<f64> {
 #[test]
 fn deviations_reach_the_engine_and_single_ones_sum_up_from_the_last_tooth() {
     let slopes: Vec<u32> = (0..50).collect();
-    let data = told(&json!({ "tooth_deviations": {
+    let data = data_of(&json!({ "tooth_deviations": {
         "pitch_single_um": alternating(4.0), "profile_slope_um": slopes,
         "eccentricity": { "amount_um": 12.0, "phase_deg": 90.0 }
     } }));
@@ -220,10 +220,11 @@ fn deviations_reach_the_engine_and_single_ones_sum_up_from_the_last_tooth() {
     let eccentricity = deviations.eccentricity.expect("eccentric");
     near(eccentricity.amount, 12e-6);
     near(eccentricity.direction, std::f64::consts::FRAC_PI_2);
-    let given = told(&json!({ "tooth_deviations": { "pitch_cumulative_um": alternating(4.0) } }));
+    let given =
+        data_of(&json!({ "tooth_deviations": { "pitch_cumulative_um": alternating(4.0) } }));
     near(given.deviations.cumulative_pitch[1], -4e-6);
     assert!(
-        told(&json!({ "tooth_deviations": {} }))
+        data_of(&json!({ "tooth_deviations": {} }))
             .deviations
             .is_none()
     );
@@ -231,7 +232,7 @@ fn deviations_reach_the_engine_and_single_ones_sum_up_from_the_last_tooth() {
 
 #[test]
 fn other_flanks_stand_where_a_list_of_their_own_says() {
-    let given = told(
+    let given = data_of(
         &json!({ "tooth_deviations": { "other_flank_pitch_cumulative_um": alternating(4.0) } }),
     );
     near(given.deviations.other_cumulative_pitch[1], -4e-6);
@@ -261,7 +262,7 @@ fn deviations_need_one_number_a_tooth_and_single_ones_have_to_close() {
     );
     let mut closes = alternating(4.0);
     closes[3] += 0.01;
-    told(&single(&closes));
+    data_of(&single(&closes));
     let both = json!({ "tooth_deviations": { "pitch_single_um": [], "pitch_cumulative_um": [] } });
     fault(&both, place, Code::ConflictingFields);
     // A quarter of a module.

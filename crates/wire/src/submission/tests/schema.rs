@@ -4,8 +4,8 @@ use std::collections::{BTreeSet, HashMap};
 
 use serde_json::Value;
 
-use super::{DOCUMENT_VERSION, Document, least};
-use crate::declare::Document as _;
+use super::{DOCUMENT_VERSION, SubmissionDocument, least};
+use crate::declare::Object as _;
 use crate::examples;
 use crate::hash::sha256_hex;
 use crate::pointer::Pointer;
@@ -13,8 +13,8 @@ use crate::testing::{filled_in, parse};
 
 #[test]
 fn every_field_of_the_schema_has_a_title_and_the_defaults_are_those_that_are_filled_in() {
-    let mut named = vec![("Submission", Document::json_schema())];
-    Document::name_fields(&mut named);
+    let mut named = vec![("Submission", SubmissionDocument::json_schema())];
+    SubmissionDocument::name_fields(&mut named);
     let schemas: HashMap<_, Value> = named.into_iter().collect();
     let echo: Value =
         serde_json::from_str(&parse(&least()).expect("valid").canonical_json()).expect("JSON");
@@ -127,8 +127,8 @@ fn a_submission_with_other_fields_or_words_has_another_version() {
             _ => {}
         }
     }
-    let mut named = vec![("Submission", Document::json_schema())];
-    Document::name_fields(&mut named);
+    let mut named = vec![("Submission", SubmissionDocument::json_schema())];
+    SubmissionDocument::name_fields(&mut named);
     let mut found = BTreeSet::new();
     for (name, schema) in &named {
         collect(schema, name, &mut found);

@@ -9,7 +9,7 @@ use super::least;
 use crate::contact_pattern::{PatternCurveDocument, PatternFlank, PatternPressure};
 use crate::results::FaceDocument;
 use crate::solve::contact_pattern;
-use crate::testing::{fault, filled_in, parse, refused, told, with};
+use crate::testing::{fault, faults, filled_in, parse, refused, with};
 use crate::{Code, ContactPatternDocument, Results, Submission, solve};
 
 /// A straight pair that three dimensions take.
@@ -47,7 +47,7 @@ fn planes_refuse_what_they_do_not_know_and_three_dimensions_take_it() {
                 &[(pointer, value.clone()), ("/method", json!(method))],
             );
             let problem = parse(&document).expect_err(pointer);
-            assert_eq!(told(problem), [(told_at.to_owned(), code, nearest)]);
+            assert_eq!(faults(problem), [(told_at.to_owned(), code, nearest)]);
         }
         let mut changes = vec![(pointer, value)];
         if pointer.contains("helix") {

@@ -1,0 +1,230 @@
+//! What becomes of some designs, looked at before any is computed: whether any can be had at all, and whether they tell what a search goes by.
+
+use meshwright_engine::run::Run;
+use meshwright_wire::declare::{Errors, Node};
+use meshwright_wire::pointer::Pointer;
+use meshwright_wire::problem::{Code, FieldError, Problem};
+use meshwright_wire::submission::Submission;
+
+use super::faults::look_around;
+use super::{Plan, Study};
+use crate::population::Population;
+use crate::search::{Role, Search};
+use crate::table::Quantity;
+
+/// So many members of a population are tried at most.
+const MEMBERS: usize = 256;
+
+/// So many designs of a search are tried over its population at most, and so many members of each.
+const OF_SEARCH: (usize, u32) = (4, 16);
+
+impl Study {
+    /// Reads and checks a study that is to be computed.
+    ///
+    /// # Errors
+    ///
+    /// As [`Study::parse`], and 422 where no member or design could be had, for one reason that none of them would mend, or where they do not tell
+    /// what a search goes by (`quantity_not_told`).
+    pub fn submitted(document: &[u8], run: &Run) -> Result<Self, Problem> {
+        let study = Self::parse(document, run)?;
+        let errors = Errors::default();
+        match &study.plan {
+            Plan::Population(population) => {
+                study.inspect(population, "/population", &errors);
+                if errors.count() == 0 {
+                    study.try_members(population, &errors, run)?;
+                }
+            }
+            Plan::Search(search) => {
+                // A variable may make other gears of them, or make them better.
+                let varies = |path: &Pointer| {
+                    path.last(1)
+                        .iter()
+                        .any(|last| last == "capability" || last == "tooth_count")
+                };
+                if let Some(population) = search.population()
+                    && !search.paths_of_variables().any(varies)
+                {
+                    study.inspect(population, "/search/population", &errors);
+                }
+                if errors.count() == 0 {
+                    study.try_designs(search, &errors, run)?;
+                }
+            }
+            Plan::Axes(_) | Plan::Designs(_) => {}
+        }
+        errors.settle(Some(study))
+    }
+
+    /// Refuses gears of which hardly any would pass their inspection.
+    fn inspect(&self, population: &Population, at: &str, errors: &Errors) {
+        let mut base = self.base.clone();
+        for varied in population.varied() {
+            let value = varied.json_of(varied.median());
+            base.put(varied.path.steps(), Node::of(&value));
+        }
+        population.refuse_hopeless(&base, at, errors);
+    }
+
+    /// Refuses a population of which no member can be built; of a large one, whose first ones all fail for one reason.
+    fn try_members(
+        &self,
+        population: &Population,
+        errors: &Errors,
+        run: &Run,
+    ) -> Result<(), Problem> {
+        let tried = population.size().min(MEMBERS);
+        let mut failures = Failures::default();
+        for member in 0..tried {
+            look_around(member, run)?;
+            match self.design(member).map(|design| design.submission) {
+                Some(Err(problem)) => failures.add(problem),
+                Some(Ok(_)) | None => return Ok(()),
+            }
+            if tried < population.size() && !failures.are_alike {
+                return Ok(());
+            }
+        }
+        failures.report(&format!("None of {tried} members can be built"), errors);
+        Ok(())
+    }
+
+    /// Refuses a search none of whose designs, or none of whose members, can be had for a reason that does not lie in the pair, and one that goes by what they
+    /// do not tell.
+    fn try_designs(&self, search: &Search, errors: &Errors, run: &Run) -> Result<(), Problem> {
+        let (most, members) = OF_SEARCH;
+        let [mut of_designs, mut of_members] = [false, true].map(|percent| Asked {
+            missing: search.asked(percent),
+            any_built: false,
+            failures: Failures::default(),
+        });
+        let looks_at_members = search.looks_at_members();
+        let mut looked = 0;
+        for (i, changes) in search.trials(self.base()).enumerate() {
+            look_around(i, run)?;
+            of_designs.add(self.searched(Role::Design(1), &changes).submission);
+            if of_designs.any_built && looks_at_members && looked < most {
+                looked += 1;
+                for member in 0..members.min(search.members() as u32) {
+                    if of_members.is_settled() {
+                        break;
+                    }
+                    let role = Role::Member(1, member);
+                    of_members.add(self.searched(role, &changes).submission);
+                }
+            }
+            let members_settled = !looks_at_members || looked == most || of_members.is_settled();
+            if of_designs.is_settled() && members_settled {
+                break;
+            }
+        }
+        let mends = |pointer: &str| {
+            let mut paths = search.paths();
+            pointer.starts_with("/pair/") || paths.any(|path| path.covers(pointer))
+        };
+        for (asked, what) in [(of_designs, "design"), (of_members, "member")] {
+            asked.report(what, mends, errors);
+        }
+        Ok(())
+    }
+}
+
+/// What a search goes by that no design, or no member, comes to so far: where it is asked for, and why the first one that was built does not come to it.
+struct Asked {
+    missing: Vec<(String, &'static Quantity, Option<String>)>,
+    any_built: bool,
+    failures: Failures,
+}
+
+impl Asked {
+    fn add(&mut self, submission: Result<Submission, Problem>) {
+        match submission {
+            Err(problem) => self.failures.add(problem),
+            Ok(submission) => {
+                self.any_built = true;
+                self.missing.retain_mut(|(_, quantity, why)| {
+                    let own = quantity.why_absent(&submission);
+                    let stays = own.is_some();
+                    *why = why.take().or(own);
+                    stays
+                });
+            }
+        }
+    }
+
+    fn is_settled(&self) -> bool {
+        self.any_built && self.missing.is_empty()
+    }
+
+    fn report(self, what: &str, mends: impl Fn(&str) -> bool, errors: &Errors) {
+        if !self.any_built {
+            self.report_stresses(errors);
+            if self.failures.are_alike && !self.failures.could_be_mended(mends) {
+                self.failures
+                    .report(&format!("No {what} can be built"), errors);
+            }
+            return;
+        }
+        for (pointer, quantity, why) in self.missing {
+            let why = why.unwrap_or_default();
+            let detail = format!("{} is not told: {why}.", quantity.name);
+            errors.push(FieldError::new(pointer, Code::QuantityNotTold, detail));
+        }
+    }
+
+    /// Where no design can be built because its method does not tell the stresses that are asked for, goals and conditions of stress are told so too.
+    fn report_stresses(&self, errors: &Errors) {
+        let failed = self
+            .failures
+            .first
+            .iter()
+            .flat_map(|problem| &problem.errors);
+        let failed = failed.filter(|_| self.failures.are_alike);
+        for error in failed.filter(|error| error.code == Code::QuantityNotTold) {
+            for (pointer, quantity, _) in &self.missing {
+                if quantity.is_stress() {
+                    let detail = format!("{} is not told: {}", quantity.name, error.detail);
+                    errors.push(FieldError::new(pointer, Code::QuantityNotTold, detail));
+                }
+            }
+        }
+    }
+}
+
+/// Why designs could not be built.
+#[derive(Default)]
+struct Failures {
+    first: Option<Problem>,
+    are_alike: bool,
+}
+
+impl Failures {
+    fn add(&mut self, problem: Problem) {
+        fn places(problem: &Problem) -> Vec<(&str, Code)> {
+            let errors = problem.errors.iter();
+            errors
+                .map(|error| (error.pointer.as_str(), error.code))
+                .collect()
+        }
+        match &self.first {
+            None => (self.first, self.are_alike) = (Some(problem), true),
+            Some(first) => self.are_alike &= places(first) == places(&problem),
+        }
+    }
+
+    fn could_be_mended(&self, mends: impl Fn(&str) -> bool) -> bool {
+        let mut errors = self.first.iter().flat_map(|problem| &problem.errors);
+        errors.any(|error| mends(&error.pointer))
+    }
+
+    /// Reports the errors of the first at their places in the base.
+    fn report(self, what: &str, errors: &Errors) {
+        for error in self.first.into_iter().flat_map(|problem| problem.errors) {
+            errors.push(FieldError {
+                pointer: format!("/base{}", error.pointer),
+                detail: format!("{what}: {}", error.detail),
+                ..error
+            });
+        }
+    }
+}

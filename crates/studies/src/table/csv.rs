@@ -1,0 +1,91 @@
+//! The table as CSV: one line for each row and torque, a row without curves having one line.
+
+use meshwright_wire::csv::CsvWriter;
+use meshwright_wire::warning::GearName;
+
+use super::pareto::KnownQuantities;
+use super::quantity::{Of, QUANTITIES, Quantity};
+use super::row::TableRow;
+use super::summary::CurveSummary;
+
+/// The columns of a table, whose lines can be written some at a time. Columns bear the names of the JSON, joined by dots;
+/// `changes.` is followed by the pointer.
+#[derive(Debug, Clone)]
+pub struct CsvTable {
+    pointers: Vec<String>,
+    quantities: KnownQuantities,
+}
+
+impl CsvTable {
+    /// A table whose rows change what is at these pointers, with columns for what it has `told`.
+    pub fn new(pointers: Vec<String>, quantities: KnownQuantities) -> Self {
+        Self {
+            pointers,
+            quantities,
+        }
+    }
+
+    /// The line of names.
+    pub fn header(&self) -> String {
+        let mut text = CsvWriter::default();
+        text.text("label");
+        for pointer in &self.pointers {
+            text.text(&format!("changes.{pointer}"));
+        }
+        for name in ["job", "status", "method"] {
+            text.text(name);
+        }
+        // Rows of any study have the same names.
+        of_pair(GearName::Driven).for_each(|quantity| text.text(&quantity.column()));
+        for name in ["pareto", "output_torque_n_m"] {
+            text.text(name);
+        }
+        let curves = self.quantities.columns();
+        curves.for_each(|quantity| text.text(&quantity.column()));
+        for name in ["problem.code", "problem.detail"] {
+            text.text(name);
+        }
+        text.end_line();
+        text.into_text()
+    }
+
+    /// The lines of some rows.
+    pub fn lines<'a>(&self, rows: impl IntoIterator<Item = &'a TableRow>) -> String {
+        let mut text = CsvWriter::default();
+        for row in rows {
+            if row.curves.is_empty() {
+                self.line(&mut text, row, None);
+            }
+            for curve in row.summary().curves() {
+                self.line(&mut text, row, Some(curve));
+            }
+        }
+        text.into_text()
+    }
+
+    fn line(&self, text: &mut CsvWriter, row: &TableRow, curve: Option<&CurveSummary>) {
+        text.text(&row.label);
+        for pointer in &self.pointers {
+            text.value(row.changes.get(pointer));
+        }
+        text.text(&row.job.map_or_else(String::new, |job| job.to_string()));
+        text.text(row.status.as_str());
+        text.text(row.method.as_deref().unwrap_or_default());
+        of_pair(row.gear()).for_each(|quantity| text.number(row.number(quantity, curve)));
+        text.text(if row.pareto { "true" } else { "false" });
+        text.number(curve.map(|curve| curve.output_torque_n_m));
+        let curves = self.quantities.columns();
+        curves.for_each(|quantity| text.number(row.number(quantity, curve)));
+        for part in ["code", "detail"] {
+            text.value(row.problem.as_ref().and_then(|problem| problem.get(part)));
+        }
+        text.end_line();
+    }
+}
+
+/// The quantities that a row of a study of `gear` has of the pair.
+fn of_pair(gear: GearName) -> impl Iterator<Item = &'static Quantity> {
+    let of_pair = |quantity: &&Quantity| matches!(quantity.of, Of::Pair(_));
+    let all = QUANTITIES.iter().filter(of_pair);
+    all.filter(move |quantity| quantity.is_in_rows_of(gear))
+}

@@ -1,0 +1,232 @@
+//! What of a results document the table shows, kept beside the document.
+
+use std::collections::BTreeMap;
+
+use meshwright_wire::geometry::GearGeometry;
+use meshwright_wire::problem::{Code, Problem};
+use meshwright_wire::results::{CurveDocument, ErrorEstimateDocument, Results, StatisticsDocument};
+use meshwright_wire::units::{rounded, significant};
+use meshwright_wire::warning::GearName;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// What of a results document a table shows. It is kept beside the document, so that a table of thousands of rows reads
+/// kilobytes where the documents have hundreds of megabytes.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    #[serde(default)]
+    pub(super) method: Option<String>,
+    #[serde(default)]
+    pub(super) driving: GearSummary,
+    #[serde(default)]
+    pub(super) driven: GearSummary,
+    #[serde(default)]
+    pub(super) contact_ratio: Option<f64>,
+    #[serde(default)]
+    pub(super) backlash_mm: Option<f64>,
+    #[serde(default)]
+    pub(super) curves: Vec<CurveSummary>,
+    /// What a second grid level changes, where it was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    error_estimate: Option<ErrorEstimateDocument>,
+}
+
+/// The mass of a gear and what holes leave of it.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[schema(title = "Gear of a row")]
+pub(super) struct GearSummary {
+    /// The mass of the true profile, in kg.
+    pub mass_kg: Option<f64>,
+    /// The share of the blank that the holes remove, in percent.
+    pub mass_removed_percent: Option<f64>,
+    /// The least material around the holes, in mm; null without holes.
+    pub least_ligament_mm: Option<f64>,
+    /// The polar moment of inertia of the true profile, in kg m2.
+    pub polar_inertia_kg_m2: Option<f64>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct CurveSummary {
+    pub(crate) output_torque_n_m: f64,
+    pub(super) statistics: Option<StatisticsDocument>,
+    /// The largest contact pressure over the span, in MPa; none where it has no limit somewhere.
+    #[serde(default)]
+    pub(super) peak_contact_pressure_mpa: Option<f64>,
+    /// The largest peak-to-peak value of the dynamic transmission error over the speeds of a run-up, whichever way it is run through.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) dynamic_peak_to_peak_um: Option<f64>,
+    /// K_Hbeta, where the method sees the faces.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) face_load_factor: Option<f64>,
+    /// Amplitudes of the transmission error, in um, by the names of their orders.
+    pub(super) orders: BTreeMap<String, f64>,
+    /// Those that the holes alone make, where teeth deviate.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    orders_of_holes: BTreeMap<String, f64>,
+}
+
+/// Method and torques: what has to be the same for a comparison to mean something.
+pub(super) type Conditions = (Option<String>, Vec<u64>);
+
+/// The names of orders that a table shows.
+const ORDERS: [&str; 4] = [
+    MESH_ORDER,
+    HOLE_ORDER,
+    DRIVING_HOLE_ORDER,
+    DRIVEN_HOLE_ORDER,
+];
+const MESH_ORDER: &str = "H_Z2";
+/// The holes of the only holed gear, or of both if they make the same order.
+const HOLE_ORDER: &str = "H_N";
+const DRIVING_HOLE_ORDER: &str = "H_N1";
+const DRIVEN_HOLE_ORDER: &str = "H_N2";
+
+impl Summary {
+    /// That of `results`, in the very numbers that their document has.
+    ///
+    /// # Errors
+    ///
+    /// `internal_error` if a number is not finite, which no valid case may come to.
+    pub fn of(results: &Results) -> Result<Self, Problem> {
+        let Results {
+            method,
+            pair,
+            curves,
+            evidence,
+            ..
+        } = results;
+        let exact = Self {
+            method: Some(method.to_string()),
+            driving: GearSummary::of(&pair.driving),
+            driven: GearSummary::of(&pair.driven),
+            contact_ratio: Some(pair.contact_ratio),
+            backlash_mm: Some(pair.backlash_mm),
+            curves: curves.iter().map(CurveSummary::of).collect(),
+            error_estimate: evidence.error_estimate.clone(),
+        };
+        rounded(&exact).map_err(|error| Problem::new(Code::InternalError, error.to_string()))
+    }
+
+    /// It as it is kept.
+    pub fn to_json(&self) -> String {
+        serde_json::to_string(self).expect("a summary is plain data")
+    }
+}
+
+impl GearSummary {
+    pub(super) fn has_no_holes(&self) -> bool {
+        self.least_ligament_mm.is_none()
+    }
+
+    fn of(gear: &GearGeometry) -> Self {
+        Self {
+            mass_kg: Some(gear.mass_kg),
+            mass_removed_percent: Some(gear.mass_removed_percent),
+            least_ligament_mm: gear.least_ligament_mm,
+            polar_inertia_kg_m2: Some(gear.polar_inertia_kg_m2),
+        }
+    }
+}
+
+impl CurveSummary {
+    fn of(curve: &CurveDocument) -> Self {
+        let pressures = curve.peak_contact_pressure_mpa.iter().copied();
+        let pressures: Option<Vec<f64>> = pressures.collect();
+        let branches = curve.dynamics.iter();
+        let branches = branches.flat_map(|dynamics| [&dynamics.up, &dynamics.down]);
+        let ranges = branches
+            .flatten()
+            .flat_map(|branch| &branch.dynamic_transmission_error_um.peak_to_peak);
+        let named = curve.spectrum.iter().flat_map(|spectrum| &spectrum.named);
+        let shown = named.filter(|line| ORDERS.contains(&line.label.as_str()));
+        Self {
+            output_torque_n_m: curve.output_torque_n_m,
+            statistics: Some(curve.statistics.clone()),
+            peak_contact_pressure_mpa: pressures
+                .and_then(|pressures| pressures.into_iter().reduce(f64::max)),
+            dynamic_peak_to_peak_um: ranges.copied().reduce(f64::max),
+            face_load_factor: curve.face.as_ref().map(|face| face.face_load_factor),
+            orders_of_holes: shown
+                .clone()
+                .filter_map(|line| Some((line.label.clone(), line.transmission_error_of_holes_um?)))
+                .collect(),
+            orders: shown
+                .map(|line| (line.label.clone(), line.transmission_error_um))
+                .collect(),
+        }
+    }
+}
+
+impl CurveSummary {
+    /// The amplitude at the order of the holes; where both gears make an order of their own, that of `gear`.
+    pub(super) fn hole_order(&self, gear: GearName) -> Option<f64> {
+        of_holes(&self.orders, gear)
+    }
+
+    /// What the holes alone make of it, where teeth deviate.
+    pub(super) fn hole_order_of_holes(&self, gear: GearName) -> Option<f64> {
+        of_holes(&self.orders_of_holes, gear)
+    }
+
+    /// The amplitude at the mesh order.
+    pub(super) fn mesh_order(&self) -> Option<f64> {
+        self.orders.get(MESH_ORDER).copied()
+    }
+}
+
+/// The amplitude at the order of the holes; where both gears make an order of their own, that of `gear`.
+fn of_holes(orders: &BTreeMap<String, f64>, gear: GearName) -> Option<f64> {
+    let own = match gear {
+        GearName::Driving => DRIVING_HOLE_ORDER,
+        GearName::Driven => DRIVEN_HOLE_ORDER,
+    };
+    orders.get(HOLE_ORDER).or_else(|| orders.get(own)).copied()
+}
+
+impl Summary {
+    /// Its curves, one for each torque.
+    pub(crate) fn curves(&self) -> &[CurveSummary] {
+        &self.curves
+    }
+
+    /// What a second grid level changes, where it was asked for.
+    pub(crate) fn error_estimate(&self) -> Option<ErrorEstimateDocument> {
+        self.error_estimate.clone()
+    }
+
+    pub(super) fn pair_mass(&self) -> Option<f64> {
+        let sum = self.driving.mass_kg? + self.driven.mass_kg?;
+        Some(significant(sum, 10))
+    }
+
+    /// What designs are compared by, each the less the better; none if a number is missing.
+    pub(super) fn objectives(&self) -> Option<[f64; 3]> {
+        let mut worst_range = f64::NEG_INFINITY;
+        let mut stiffness = 0.0;
+        for curve in &self.curves {
+            let statistics = curve.statistics.as_ref()?;
+            worst_range = worst_range.max(statistics.transmission_error_um.peak_to_peak);
+            stiffness += statistics.mesh_stiffness_tangent_n_per_m.mean;
+        }
+        if self.curves.is_empty() {
+            return None;
+        }
+        let objectives = [
+            self.pair_mass()?,
+            worst_range,
+            -stiffness / self.curves.len() as f64,
+        ];
+        // Six digits: what differs beyond them, as the masses of a study of constant mass do, is rounding and no merit.
+        Some(objectives.map(|objective| significant(objective, 6)))
+    }
+
+    pub(super) fn conditions(&self) -> Conditions {
+        let mut torques: Vec<u64> = self
+            .curves
+            .iter()
+            .map(|curve| curve.output_torque_n_m.to_bits())
+            .collect();
+        torques.sort_unstable();
+        (self.method.clone(), torques)
+    }
+}

@@ -1,0 +1,242 @@
+//! The body of a request: a JSON document of bounded size.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::time::Duration;
+
+use axum::body::{Body, Bytes};
+use axum::extract::{FromRequest, Request};
+use axum::http::HeaderMap;
+use axum::http::header::{CONTENT_ENCODING, CONTENT_TYPE, EXPECT};
+use futures_util::StreamExt;
+use http_body::Body as _;
+use meshwright_connections::Part;
+use meshwright_engine::run::Run;
+use meshwright_exchange::rexs::{Refused, is_packed, unpacked};
+use meshwright_wire::{Code, Problem};
+use serde::Deserialize;
+use tokio::time::timeout;
+use utoipa::IntoResponses;
+use utoipa::openapi::{RefOr, Response};
+
+use super::app::App;
+use super::blocking::blocking;
+use super::client::ClientName;
+use super::problem::Refusal;
+
+/// So many times the limit is read and thrown away, because a client that is still sending does not see the answer.
+const DRAINED: usize = 64;
+
+/// The body is here within this time, from when there is memory for it.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// The bytes of a request's JSON document, so many MiB at most. The largest submission, with every table full, has a few hundred thousand bytes.
+/// And the memory that it and what is made of it take: a document does not come in, and is not read, before there is some, and who
+/// has many read shares it with the others.
+pub(super) struct JsonBody<const MIB: usize = 1>(pub(super) Bytes, pub(super) Memory);
+
+/// The memory of a document: of its bytes, and of what is made of them.
+pub(super) type Memory = [Option<Part>; 2];
+
+impl<const MIB: usize> FromRequest<App> for JsonBody<MIB> {
+    type Rejection = Refusal;
+
+    async fn from_request(request: Request, app: &App) -> Result<Self, Refusal> {
+        let (body, memory) = taken(request, app, MIB, &["json"]).await?;
+        Ok(Self(body, memory))
+    }
+}
+
+impl<const MIB: usize> IntoResponses for JsonBody<MIB> {
+    fn responses() -> BTreeMap<String, RefOr<Response>> {
+        let broken = (
+            "400",
+            "The body is no JSON, or a header is not understood.".to_owned(),
+        );
+        [broken]
+            .into_iter()
+            .chain(refusals(MIB, "JSON"))
+            .map(declared)
+            .collect()
+    }
+}
+
+/// What may be wrong with a body before it is read: its status, and a sentence.
+fn refusals(mib: usize, kind: &str) -> [(&'static str, String); 2] {
+    [
+        ("413", format!("The body has more than {mib} MiB.")),
+        ("415", format!("The body is not declared as {kind}.")),
+    ]
+}
+
+fn declared((status, sentence): (&str, String)) -> (String, RefOr<Response>) {
+    (status.to_owned(), Response::new(sentence).into())
+}
+
+/// The name of the client that sent `request`.
+fn client_of(request: &Request) -> Arc<str> {
+    let client = request.extensions().get::<ClientName>();
+    client.map_or_else(|| Arc::from(""), |client| Arc::clone(&client.0))
+}
+
+/// The body of `request`, of one of the media types `kinds` and `mib` MiB at most, and the memory for it.
+async fn taken(
+    request: Request,
+    app: &App,
+    mib: usize,
+    kinds: &[&str],
+) -> Result<(Bytes, Memory), Problem> {
+    let limit = mib * 1024 * 1024;
+    let media_type = check_media_type(request.headers(), kinds);
+    let length = request.body().size_hint().upper();
+    if request.headers().contains_key(EXPECT) {
+        // The client waits with its body until it is told to go on.
+        media_type.clone()?;
+        if length.is_some_and(|length| length > limit as u64) {
+            return Err(too_long(limit));
+        }
+    }
+    let length = length.map_or(limit, |length| length.min(limit as u64) as usize);
+    let client = client_of(&request);
+    let bytes = app.bodies.for_bytes(&client, length).await?;
+    let body = timeout(PATIENCE, read(request.into_body(), limit, length)).await;
+    let body = body.map_err(|_| late())??;
+    media_type?;
+    let made = app.bodies.to_read(&client, &body).await?;
+    Ok((body, [bytes, made]))
+}
+
+impl<const MIB: usize> JsonBody<MIB> {
+    /// The document as a `T`, of which a problem speaks as `name`.
+    pub(super) fn parse<'a, T: Deserialize<'a>>(&'a self, name: &str) -> Result<T, Problem> {
+        serde_json::from_slice(&self.0).map_err(|error| {
+            let code = if error.is_data() {
+                Code::WrongType
+            } else {
+                Code::MalformedJson
+            };
+            Problem::new(code, format!("This is no {name}: {error}."))
+        })
+    }
+}
+
+/// A model of a gearbox may have so many MiB, unpacked.
+const MODEL_MIB: usize = 4;
+
+/// The media types of the containers of a model.
+pub(super) const MODEL_TYPES: &[&str] = &["xml", "json", "zip"];
+
+/// The bytes of a request's model of a gearbox, unpacked, and the memory that it takes.
+pub(super) struct ModelBody(pub(super) Bytes, pub(super) Memory);
+
+impl FromRequest<App> for ModelBody {
+    type Rejection = Refusal;
+
+    async fn from_request(request: Request, app: &App) -> Result<Self, Refusal> {
+        let client = client_of(&request);
+        let (body, memory) = taken(request, app, MODEL_MIB, MODEL_TYPES).await?;
+        if !is_packed(&body) {
+            return Ok(Self(body, memory));
+        }
+        // What comes out of an archive takes the memory that it would take had it been sent so.
+        let limit = MODEL_MIB * 1024 * 1024;
+        let bytes = app.bodies.for_bytes(&client, limit).await?;
+        let unpack = move |_: &Run| unpacked(&body, limit).map(Cow::into_owned);
+        let model = blocking(&client, unpack).await?;
+        let refuse =
+            |refused: Refused| Problem::new(Code::ModelRefused, refused.to_string().trim_end());
+        let model = model.map_err(refuse)?;
+        let made = app.bodies.to_read(&client, &model).await?;
+        Ok(Self(model.into(), [bytes, made]))
+    }
+}
+
+impl IntoResponses for ModelBody {
+    fn responses() -> BTreeMap<String, RefOr<Response>> {
+        let refusals = refusals(MODEL_MIB, "XML, JSON or a zip archive");
+        refusals.into_iter().map(declared).collect()
+    }
+}
+
+/// Whether the body is declared as one of `kinds`, by whichever of its names.
+fn check_media_type(headers: &HeaderMap, kinds: &[&str]) -> Result<(), Problem> {
+    let refuse = |detail: String| Err(Problem::new(Code::UnsupportedMediaType, detail));
+    if headers
+        .get(CONTENT_ENCODING)
+        .is_some_and(|encoding| encoding != "identity")
+    {
+        return refuse("Send the body without a Content-Encoding.".to_owned());
+    }
+    let wanted: Vec<String> = kinds
+        .iter()
+        .map(|kind| format!("application/{kind}"))
+        .collect();
+    let wanted = wanted.join(" or ");
+    let Some(given) = headers.get(CONTENT_TYPE) else {
+        return refuse(format!("Send the body with Content-Type: {wanted}."));
+    };
+    let essence = given
+        .to_str()
+        .unwrap_or_default()
+        .split(';')
+        .next()
+        .unwrap_or_default()
+        .trim()
+        .to_ascii_lowercase();
+    let known = |kind: &&str| match essence.strip_prefix("application/") {
+        Some(name) => {
+            name == *kind
+                || name.ends_with(&format!("+{kind}"))
+                // What browsers call an archive, and a file whose name they do not know.
+                || (*kind == "zip" && ["x-zip-compressed", "octet-stream"].contains(&name))
+        }
+        None => *kind == "xml" && essence == "text/xml",
+    };
+    if kinds.iter().any(known) {
+        return Ok(());
+    }
+    refuse(format!(
+        "Send the body with Content-Type: {wanted}, not {essence:?}."
+    ))
+}
+
+async fn read(body: Body, limit: usize, expected: usize) -> Result<Bytes, Problem> {
+    let (mut stream, mut length) = (body.into_data_stream(), 0_usize);
+    let mut bytes = Vec::with_capacity(expected);
+    while let Some(chunk) = stream.next().await {
+        let chunk = chunk.map_err(|_| broken())?;
+        length = length.saturating_add(chunk.len());
+        if length > DRAINED * limit {
+            break;
+        }
+        if length <= limit {
+            bytes.extend_from_slice(&chunk);
+        }
+    }
+    if length > limit {
+        return Err(too_long(limit));
+    }
+    Ok(bytes.into())
+}
+
+fn too_long(limit: usize) -> Problem {
+    Problem::new(
+        Code::PayloadTooLarge,
+        format!("The body has more than {limit} bytes, the limit here."),
+    )
+}
+
+fn late() -> Problem {
+    Problem::new(
+        Code::RequestTimeout,
+        format!("The body was not here within {} s.", PATIENCE.as_secs()),
+    )
+}
+
+fn broken() -> Problem {
+    Problem::new(
+        Code::MalformedJson,
+        "The body ended before it was complete.",
+    )
+}
