@@ -4,13 +4,13 @@ use axum::body::Bytes;
 use axum::http::StatusCode;
 use axum::http::header::HeaderMap;
 use axum::response::Response;
+use meshwright_connections::Tag;
 use meshwright_wire::Problem;
 use serde::{Deserialize, Serialize};
 use utoipa::IntoParams;
 use uuid::Uuid;
 
-use meshwright_connections::Tag;
-
+use super::answer::tag_of_parts;
 use super::app::App;
 use super::client::Client;
 use super::edge::Edge;
@@ -230,7 +230,7 @@ impl Shown for Job {
 
     fn tag(&self, edge: &Edge) -> Tag {
         let small = JobView::of(self, edge).to_json();
-        Tag::of(&["job", &String::from_utf8_lossy(&small)])
+        tag_of_parts(&["job", &String::from_utf8_lossy(&small)])
     }
 
     fn watch(app: App, client: String, id: Uuid) -> Watch {

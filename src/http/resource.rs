@@ -4,6 +4,7 @@ use axum::body::Bytes;
 use axum::http::StatusCode;
 use axum::http::header::HeaderMap;
 use axum::response::{IntoResponse, Response};
+use meshwright_connections::{Keep, Tag};
 use serde::Serialize;
 use uuid::Uuid;
 
@@ -11,7 +12,6 @@ use super::answer::{json, tell_when_to_return};
 use super::app::App;
 use super::blocking::turn_to_read;
 use super::client::Client;
-use super::conditional::{Keep, Tag};
 use super::edge::Edge;
 use super::events::{self, Watching};
 use super::page;

@@ -3,7 +3,7 @@
 use jiff::Timestamp;
 use meshwright_store::{Damaged, DocumentLine, Kept, NewJob, NewRow, StoredRow};
 use meshwright_studies::{Design, RowState, Study};
-use meshwright_wire::{memory_above, too_much_memory};
+use meshwright_wire::{Status, memory_above, too_much_memory};
 use uuid::Uuid;
 
 use super::error::JobError;

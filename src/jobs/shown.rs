@@ -23,7 +23,7 @@ pub fn shown_kept(kept: Kept) -> wire::Kept {
 }
 
 /// How much of the results of its designs a study wants to be kept.
-pub(super) fn kept_by(study: &wire::Study) -> Kept {
+pub(super) fn kept_by(study: &meshwright_studies::Study) -> Kept {
     match study.keep() {
         wire::Kept::Results => Kept::Results,
         wire::Kept::Statistics => Kept::Statistics,

@@ -4,7 +4,9 @@
 use std::time::Duration;
 
 use meshwright_engine::run::Run;
-use meshwright_store::{NewRow, NewStudy, Status, StoreError, StudyFilter, StudyOutcome, StudyRecord};
+use meshwright_store::{
+    NewRow, NewStudy, Status, StoreError, StudyFilter, StudyOutcome, StudyRecord,
+};
 use meshwright_studies::Study;
 use meshwright_wire::DOCUMENT_VERSION;
 use meshwright_wire::hash::sha256_hex;

@@ -7,7 +7,8 @@ use std::time::Duration;
 use jiff::Timestamp;
 use meshwright::compute::Solve;
 use meshwright::jobs::{
-    Clock, DatabaseAddress, Filter, Job, Jobs, Member, Pace, Resource as _, Rules, Status, Store, Workers,
+    Clock, DatabaseAddress, Filter, Job, Jobs, Member, Pace, Resource as _, Rules, Status, Store,
+    Workers,
 };
 use meshwright_wire::{Code, Problem, Results, Submission};
 use tempfile::TempDir;

@@ -16,7 +16,8 @@ use super::tables::numbers;
 use crate::commands::serve::signal;
 use crate::compute::Cores;
 use crate::jobs::{
-    Clock, DatabaseAddress, Jobs, Member, Migrate, Pace, Resource as _, Rules, StudyRecord, Workers, search_state,
+    Clock, DatabaseAddress, Jobs, Member, Migrate, Pace, Resource as _, Rules, StudyRecord,
+    Workers, search_state,
 };
 use crate::serve::open;
 

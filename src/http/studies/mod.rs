@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::IntoParams;
 use uuid::Uuid;
 
-use super::answer::{self, json};
+use super::answer::{self, json, tag_of_parts};
 use super::app::App;
 use super::blocking::{blocking, turn_to_read};
 use super::body::JsonBody;
