@@ -146,7 +146,7 @@ impl Model {
     }
 }
 
-/// A place in a curve, and the contact that tells of it.
+/// A place in a curve, and its contact.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
     /// The mesh position.
@@ -205,6 +205,12 @@ impl Case {
             Model::Faces(faces, _) => Some(faces),
             Model::Section(_) | Model::Formulas(_) => None,
         }
+    }
+
+    /// The output torques that are not 0. Without load nothing is elastic, and all methods have the same curve.
+    pub(super) fn loaded_torques(&self) -> impl Iterator<Item = f64> {
+        let torques = self.output_torques.iter().copied();
+        torques.filter(|torque| *torque != 0.0)
     }
 
     /// The mesh periods that are computed.
@@ -273,14 +279,9 @@ impl Case {
         positions
     }
 
-    /// The places in a curve that contacts at the mesh positions `at` tell of, where those after a mesh period, or those of the whole span, are
-    /// known: these positions, and as many mesh periods later as the span has.
-    pub(super) fn places(&self, at: &[f64]) -> Vec<Place> {
-        self.places_after(at, self.contacts_repeat_after())
-    }
-
-    /// The places in a curve that contacts at the mesh positions `at` tell of, which are known to repeat `after` so many mesh periods.
-    pub(super) fn places_after(&self, at: &[f64], after: u32) -> Vec<Place> {
+    /// The places in a curve at which the contacts at the mesh positions `at` stand, which repeat `after` so many mesh periods: these positions, and as
+    /// many mesh periods later as the span has.
+    pub(super) fn places(&self, at: &[f64], after: u32) -> Vec<Place> {
         let of_period = |later: i64| {
             let at = at.iter().enumerate();
             at.map(move |(contact, position)| Place {
