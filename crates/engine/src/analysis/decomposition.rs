@@ -171,7 +171,7 @@ impl HoledBlank<'_> {
         let Setup { case, run, .. } = self.rigid.setup;
         let gear = case.pair.gear(self.member);
         let positions = self.positions;
-        let made = self.model.made(self.rigid.setup.deviations);
+        let made = self.model.deviating(self.rigid.setup.deviations);
         let whole = contacts_keeping(made, load, positions, run, |cells, solution| {
             cells.flank_loads(self.member, &solution.forces)
         })?;

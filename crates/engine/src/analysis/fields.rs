@@ -75,7 +75,7 @@ pub fn fields(
     let (model, _) = setup.model(Blanks::Flexible)?;
     let at = |error| AnalysisError::at_position(error, eta);
     let mut stage = Stage::new(
-        model.made(deviations),
+        model.deviating(deviations),
         eta,
         case.pair.load(output_torque),
     )

@@ -63,7 +63,7 @@ impl<'a> ModeledPair<'a> {
             if case.pair.is_as_drawn() {
                 return Ok(self.contacts(load, &sweep.positions)?.to_vec());
             }
-            let made = self.model.made(deviations);
+            let made = self.model.deviating(deviations);
             Ok(contacts(made, load, &sweep.positions, run)?)
         };
         let contacts = at(load)?;

@@ -12,8 +12,8 @@ use super::under_load::curves;
 use super::{Analysis, AnalysisError};
 use crate::assembly::Blanks;
 use crate::contact::positions::contacts;
-use crate::contact::{ContactCells, ContactSolution, PairLoads, PairModel};
-use crate::gear::{Member, teeth_on};
+use crate::contact::{ContactCells, ContactSolution, PairLoads, PairModel, add_yielded};
+use crate::gear::Member;
 
 /// The exact first-order term of the holes, sidebands included ([`super::first_order`]).
 ///
@@ -48,7 +48,7 @@ pub(super) fn solve(setup: Setup<'_>, pass: &Pass) -> Result<Analysis, AnalysisE
         let parts = under.parts(&found, &[], |sweep, _| find(sweep))?;
         under.check(&found, |positions| {
             let exact =
-                contacts(whole.made(setup.deviations), load, positions, run)?.into_iter();
+                contacts(whole.deviating(setup.deviations), load, positions, run)?.into_iter();
             Ok(exact.map(|contact| contact.transmission_error).collect())
         })?;
         let of_rigid = of_rigid.iter().map(|contact| contact.transmission_error);
@@ -75,26 +75,13 @@ fn round_average(whole: &PairModel, holed: &[Member]) -> PairModel {
 
 /// qᵀ X p and qᵀ X q of `members` for the loads of `pairs` in the mesh period `period`: what their blanks yield.
 fn yielded(model: &PairModel, members: &[Member], pairs: &[PairLoads], period: i64) -> [f64; 2] {
-    let (mut forces, mut derivatives) = (0.0, 0.0);
+    let mut sums = [0.0; 2];
     for &member in members {
-        let g = member.index();
-        for a in pairs {
-            let tooth = model.pair.tooth(member, period + a.pair);
-            let q = a.loads[g].col(1).transpose();
-            for b in pairs {
-                let offset = teeth_on(member, b.pair - a.pair);
-                let (x, transposed) = model.gears[g].coupling.block(tooth, offset);
-                let moved = if transposed {
-                    x.transpose() * &b.loads[g]
-                } else {
-                    x * &b.loads[g]
-                };
-                forces += q * moved.col(0);
-                derivatives += q * moved.col(1);
-            }
-        }
+        add_yielded(&mut sums, member.index(), pairs, |a, b| {
+            model.coupling(member, period, [a, b])
+        });
     }
-    [forces, derivatives]
+    sums
 }
 
 #[cfg(test)]

@@ -62,7 +62,7 @@ impl<'a> Setup<'a> {
         sweep: &Sweep,
         keep: impl Fn(&ContactCells<'_>, &ContactSolution) -> T + Sync,
     ) -> Result<(Vec<MeshContact>, Vec<T>, Vec<f64>), AnalysisError> {
-        let made = model.made(self.deviations);
+        let made = model.deviating(self.deviations);
         let middle = contacts_keeping(made, load, &sweep.positions, self.run, keep)?;
         let (found, kept): (Vec<MeshContact>, Vec<T>) = middle.into_iter().unzip();
         let stiffness = sweep.stiffness(load, &found, |load| {

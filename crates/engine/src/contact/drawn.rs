@@ -27,7 +27,7 @@ const LEAST_REACH: f64 = 1e-9;
 
 /// What cells depend on: the bits of the phase, the gear on whose flank they lie, the bits of the load, the cells on a core, how far they are laid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-struct Laid {
+struct PlacedCells {
     phase: u64,
     seat: Member,
     load: u64,
@@ -39,8 +39,8 @@ struct Laid {
 #[derive(Debug)]
 pub struct DrawnFlanks {
     facings: Memo<(u64, Member), Option<Facing>>,
-    cells: Memo<Laid, Option<PairCells>>,
-    looks: Memo<(Laid, i32, Carrying), Looks>,
+    cells: Memo<PlacedCells, Option<PairCells>>,
+    looks: Memo<(PlacedCells, i32, Carrying), Looks>,
 }
 
 impl Default for DrawnFlanks {
@@ -137,8 +137,8 @@ impl DrawnFlanks {
     }
 }
 
-fn laid(flanks: &PairFlanks<'_>, pair: &DrawnPair, load: f64, extent: Extent) -> Laid {
-    Laid {
+fn laid(flanks: &PairFlanks<'_>, pair: &DrawnPair, load: f64, extent: Extent) -> PlacedCells {
+    PlacedCells {
         phase: pair.phase.to_bits(),
         seat: pair.seat,
         load: load.to_bits(),
