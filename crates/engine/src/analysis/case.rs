@@ -40,7 +40,7 @@ impl Method {
         )
     }
 
-    /// Whether it tells stresses at roots and holes.
+    /// Whether it finds stresses at roots and holes.
     pub fn tells_stress(self) -> bool {
         matches!(self, Self::Flexible | Self::ThreeDimensional)
     }
@@ -82,7 +82,7 @@ pub struct Resolution {
     pub blank_positions: u32,
     /// The interface radius R_w of each gear that has holes, in meters; `None` for its default.
     pub interface_radii: [Option<f64>; 2],
-    /// Whether to add a second, finer run that tells the discretization error.
+    /// Whether to add a second run at another grid level for the discretization error.
     pub error_estimate: bool,
 }
 
@@ -95,7 +95,7 @@ pub struct Faces {
     pub resolution: FaceResolution,
     /// Slices into which the common face is cut.
     pub slices: usize,
-    /// Whether the load along the face is told at every position, and not only in the mean.
+    /// Whether the result has the load along the face at every position, and not only in the mean.
     pub at_each_position: bool,
     /// Whether the lead is looked for that would even the load along the face.
     pub cure: bool,
@@ -225,8 +225,8 @@ impl Case {
         self.span().is_multiple_of(self.pair.period())
     }
 
-    /// The pair as it is drawn, where teeth deviate and a spectrum tells what the order of holes comes to: what the holes alone make of it. By the same
-    /// method, which takes at most as long again; along faces by the one that takes holes to the first order, where a contact is dear.
+    /// The same of the pair as drawn, for what its holes alone make of their order in the spectrum; `None` where no teeth deviate, or there is no spectrum.
+    /// It goes by the same method, which takes at most as long again. Along faces, where a contact takes longest, it goes by that of the first order.
     pub(super) fn holes_alone(&self) -> Option<Self> {
         let is_told = self.covers_whole_periods() && self.method().sees_holes();
         if !is_told || self.pair.is_as_drawn() || self.holed().is_empty() {

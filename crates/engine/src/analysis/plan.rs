@@ -25,11 +25,11 @@ pub(super) struct Plan {
     pub(super) case: Case,
     /// The contacts under torque 0.
     pub(super) light: Sweep,
-    /// The pass that answers, and a second one that tells the discretization error of it. There is none without load.
+    /// The pass behind the curves, and a second one at another level for their discretization error. There is none without load.
     pub(super) passes: Vec<Pass>,
 }
 
-/// The level that tells the error of one along faces: the next coarser, which differs by more than a finer one would and costs less; the next finer of the
+/// The level with which one along faces is compared for its error: the next coarser, which differs by more than a finer one would and costs less; the next finer of the
 /// coarsest.
 fn compared_along_faces(level: GridLevel) -> GridLevel {
     match level {
@@ -68,7 +68,7 @@ pub(super) struct Sweep {
     pub(super) further: Further,
 }
 
-/// Positions between those of a sweep that may be solved further, where they tell most of the curve.
+/// Positions between those of a sweep that may be solved further, where the curve is least known.
 #[derive(Clone, Copy)]
 pub(super) struct Further {
     /// How many at most.
@@ -107,7 +107,7 @@ impl Plan {
         }
     }
 
-    /// The plan for the rows of a table, which are told at their positions alone.
+    /// The plan for the rows of a table, which are known at their positions alone.
     pub(super) fn of_rows(case: &Case) -> Self {
         let mut plan = Self::of(case);
         plan.light.further = Further::NONE;

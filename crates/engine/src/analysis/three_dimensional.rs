@@ -21,8 +21,8 @@ use crate::contact::{MeshContact, PairLoads};
 use crate::gear::Member;
 use crate::run::Run;
 
-/// A tip corner is told of from this part of the load: one of many slices touches nearly always.
-const TOLD: f64 = 0.005;
+/// There is a warning of a tip corner from this part of the load: one of many slices touches nearly always.
+const WARNED_OF: f64 = 0.005;
 
 /// Computes `case` along its faces at the grid level of `pass`.
 pub(super) fn solve(
@@ -51,7 +51,7 @@ pub(super) fn solve(
             let shares = found.kept.iter();
             let shares = shares.map(|contact| contact.corner_shares[member.index()]);
             let largest = shares.fold(0.0, f64::max);
-            if largest > TOLD {
+            if largest > WARNED_OF {
                 warn_of_corner(under.warnings, member, largest);
             }
         }

@@ -542,7 +542,7 @@ impl<'a> ContactCells<'a> {
         (count > 0).then(|| yields.sum::<f64>() / count as f64)
     }
 
-    /// What this contact under `load` tells of others near it, of which the `last` was one.
+    /// The start of contacts near this one under `load`; the `last` started this.
     pub(super) fn warm_start(
         &self,
         problem: &ContactProblem,

@@ -49,11 +49,11 @@ pub struct GapMinimum {
 
 /// Two flanks that face each other.
 ///
-/// One of them is looked at from the other: points are told by their arc length on the flank of `seat`, the gear whose
+/// One of them is looked at from the other: points are given by their arc length on the flank of `seat`, the gear whose
 /// tip is nearer to the contact, so that the stretch may end at its tip corner.
 #[derive(Debug, Clone)]
 pub struct Facing {
-    /// The gear on whose flank points are told.
+    /// The gear on whose flank points are given.
     pub seat: Member,
     /// The part of its flank that faces the other.
     pub range: FlankRange,
@@ -82,13 +82,13 @@ pub(super) struct FacingPoint {
 }
 
 impl Facing {
-    /// How the flanks of a pair of `gears` as drawn face each other, `phase` mesh periods after it passed the pitch point, told on the gear
+    /// How the flanks of a pair of `gears` as drawn face each other, `phase` mesh periods after it passed the pitch point, seen from the gear
     /// whose tip is nearer; `None` where they do not.
     pub fn drawn(gears: &GearPair, phase: f64) -> Option<Self> {
         Self::drawn_on(gears, phase, nearer_tip(gears, phase))
     }
 
-    /// As [`Facing::drawn`], told on the flank of `seat`.
+    /// As [`Facing::drawn`], seen from the flank of `seat`.
     pub fn drawn_on(gears: &GearPair, phase: f64, seat: Member) -> Option<Self> {
         let placement = Placement::drawn(gears, phase);
         View { placement, seat }.facing(phase)
@@ -107,7 +107,7 @@ impl Facing {
         Self::real_on((gears, deviations), eta, n, lag, seat)
     }
 
-    /// As [`Facing::real`], told on the flank of `seat`.
+    /// As [`Facing::real`], seen from the flank of `seat`.
     pub(super) fn real_on(
         (gears, deviations): (&GearPair, &PairDeviations),
         eta: f64,
@@ -146,7 +146,7 @@ impl Facing {
 pub(super) fn nearer_tip(gears: &GearPair, phase: f64) -> Member {
     let (s_a, s_e) = gears.path_of_contact();
     // Past the middle of the path of contact the contact is nearer to the driving tip, which leaves it at E. A pair that stands
-    // just there is told alike however its numbers are rounded.
+    // just there is found alike however its numbers are rounded.
     let middle = f64::midpoint(s_a, s_e) + 1e-9 * (s_e - s_a);
     if gears.roll_length_of(phase) > middle {
         Member::Driving

@@ -18,7 +18,7 @@ const PHASES: f64 = 64.0;
 /// the most.
 const MOST_RUNOUT: f64 = 2.0;
 
-/// Where eccentricities come to more than this part of a phase together, pairs are looked at as they stand: what the minimum of a pair as laid tells
+/// Where eccentricities come to more than this part of a phase together, pairs are looked at as they stand: what the minimum of a pair as laid says
 /// of its touch is off by the square of the way from there, and by much more across a kink or beside a corner.
 const LOOKED_AT: f64 = 0.25;
 
@@ -384,7 +384,7 @@ impl<'a> Facings<'a> {
 struct Shifts {
     /// By the deviations of its teeth alone.
     by_tooth: f64,
-    /// With gears that run out, told by where on the driving and where on the driven flank that is: not alike, because the line of action is as long as the
+    /// With gears that run out, given by where on the driving and where on the driven flank that is: not alike, because the line of action is as long as the
     /// axes are apart.
     on_flanks: [f64; 2],
     /// The gear whose tip is nearer to the contact then.

@@ -12,7 +12,7 @@
 //!   them, and what their solution says of the mesh,
 //! - [`stage`]: one fraction of the mesh period, from laying the cells to a solution that nothing penetrates,
 //! - `light`: what is left of it as the load vanishes,
-//! - `peak`: where flanks press hardest; [`mesh_contact`]: what a solved contact tells,
+//! - `peak`: where flanks press hardest; [`mesh_contact`]: the summary of a solved contact,
 //! - `looks` and `penetration`: the look over the whole flanks that proves that nothing penetrates,
 //! - [`positions`]: many positions of one load, in parallel,
 //! - [`face`]: the same along faces of helical, misaligned or uneven gears, slice by slice,

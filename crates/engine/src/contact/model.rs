@@ -170,12 +170,12 @@ impl PairModel {
         }
     }
 
-    /// Its pair at `phase`, told on the gear whose tip is nearer.
+    /// Its pair at `phase`, seen from the gear whose tip is nearer.
     pub(super) fn drawn_pair(&self, phase: f64) -> DrawnPair {
         self.drawn.pair(&self.flanks(), phase)
     }
 
-    /// Its pair at `phase`, told on the flank of `seat`.
+    /// Its pair at `phase`, seen from the flank of `seat`.
     pub(super) fn drawn_pair_on(&self, phase: f64, seat: Member) -> DrawnPair {
         self.drawn.pair_on(&self.flanks(), phase, seat)
     }

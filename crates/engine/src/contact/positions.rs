@@ -159,14 +159,14 @@ pub fn contacts_of_many<T: Send>(
     Ok(answers.map(|answer| answer.map(in_order)).collect())
 }
 
-/// The contacts of `deviating` on a chunk of stages, each told to `tell` with the place of its position.
+/// The contacts of `deviating` on a chunk of stages. Each is handed to `each`, with the place of its position.
 fn chunk_of(
     deviating: DeviatingPair<'_>,
     load: f64,
     positions: &[f64],
     chunk: &[Places],
     run: &Run,
-    mut tell: impl FnMut(usize, MeshContact, &ContactCells<'_>, &ContactSolution),
+    mut each: impl FnMut(usize, MeshContact, &ContactCells<'_>, &ContactSolution),
 ) -> Result<(), PositionsError> {
     let mut first = WarmStart::default();
     for (fraction, places) in chunk {
@@ -181,10 +181,10 @@ fn chunk_of(
         for &place in places {
             let eta = positions[place];
             let period = (eta - fraction).round() as i64;
-            let told = stage.contact_with(period, &mut warm, |contact, cells, solution| {
-                tell(place, contact, cells, solution);
+            let solved = stage.contact_with(period, &mut warm, |contact, cells, solution| {
+                each(place, contact, cells, solution);
             });
-            told.map_err(|error| at(error, eta))?;
+            solved.map_err(|error| at(error, eta))?;
             run.reached(1)?;
             if place == places[0] {
                 first = warm.clone();

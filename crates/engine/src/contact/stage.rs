@@ -111,16 +111,16 @@ impl<'a> Stage<'a> {
         })
     }
 
-    /// What `tell` makes of the contact in mesh period `period`, of its cells and their solution.
+    /// What `summary` makes of the contact in mesh period `period`, of its cells and their solution.
     pub(super) fn contact_with<T>(
         &mut self,
         period: i64,
         warm: &mut WarmStart,
-        tell: impl FnOnce(MeshContact, &ContactCells<'_>, &ContactSolution) -> T,
+        summary: impl FnOnce(MeshContact, &ContactCells<'_>, &ContactSolution) -> T,
     ) -> Result<T, PositionError> {
         let load = self.load;
         self.solved(period, warm, |cells, _, solution, found| {
-            tell(
+            summary(
                 cells.mesh_contact(load, &solution, &found),
                 cells,
                 &solution,

@@ -39,7 +39,7 @@ pub(super) struct Spring {
     /// The logarithms of the latter and of the factor.
     ln_most: f64,
     ln_factor: f64,
-    /// The part of asinh(h/(2 ρ)) that [`Spring::spread`] tells.
+    /// The part of asinh(h/(2 ρ)) that is [`Spring::spread`].
     spread: f64,
     contact: Contact,
 }
