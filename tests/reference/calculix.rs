@@ -117,7 +117,7 @@ fn compare(file: &str, pair: &GearPair) -> Vec<Compared> {
     let deviations = pair.deviations();
     let at = |eta: f64, load: f64| -> MeshContact {
         model
-            .made(&deviations)
+            .deviating(&deviations)
             .contact(eta, load, &mut WarmStart::default())
             .expect("every position has a solution")
     };

@@ -312,7 +312,7 @@ fn a_light_load_on_a_measured_profile_takes_no_more_cells_than_memory_has() {
             let eta = f64::from(i) / 40.0;
             for torque in [1e-4, 1e-3] {
                 let load = pair.load(torque);
-                let made = model.model.made(&model.deviations);
+                let made = model.model.deviating(&model.deviations);
                 let cells = made.cells(eta, load, &mut WarmStart::default());
                 let cells = cells.expect("contact").solution.forces.len();
                 assert!(cells < 5000, "{seed}, {eta}, {torque} N m: {cells}");

@@ -19,7 +19,7 @@ use meshwright_engine::analysis::{
     Analysis, Case, Faces, Method, StiffnessRule, Warning, analyze, pair_model,
 };
 use meshwright_engine::assembly::FaceResolution;
-use meshwright_engine::contact::{MadePair, WarmStart};
+use meshwright_engine::contact::{DeviatingPair, WarmStart};
 use meshwright_engine::dynamics::ForceTable;
 use meshwright_engine::gear::{
     Alignment, Eccentricity, GearPair, Helix, LeadModification, Member, Normals, PairDeviations,
@@ -102,7 +102,7 @@ fn thickness(case: &Case) -> f64 {
 fn plane_model(case: &Case) -> impl Fn(f64, f64) -> f64 {
     let model = pair_model(case, &*LIBRARY, &Run::unattended()).expect("a model");
     move |eta, load| {
-        let made = MadePair {
+        let made = DeviatingPair {
             model: &model,
             deviations: &PairDeviations::NONE,
         };

@@ -67,7 +67,7 @@ fn a_pair_among_others_is_the_pair_that_it_is_alone() {
             // By a model that has seen no other.
             if i % 7 == 0 {
                 let fresh = model(&pair);
-                let alone = contacts(fresh.made(&members[i]), load, &positions, &run);
+                let alone = contacts(fresh.deviating(&members[i]), load, &positions, &run);
                 assert_eq!(alone.expect("contacts"), found, "{i}, {torque} N m");
             }
             // And as a pair of gears that are drawn with these teeth.
@@ -140,7 +140,7 @@ fn the_load_derivative_is_the_derivative_of_delta_by_every_gap() {
     let deviations = PairDeviations::new(&pair, teeth(&pair, 7, 3).each_ref()).expect("room");
     let load = pair.load(TORQUE);
     for eta in [0.1, 3.45, 7.8] {
-        let made = model.made(&deviations);
+        let made = model.deviating(&deviations);
         let cells = made.cells(eta, load, &mut WarmStart::default());
         let cells = cells.expect("contact");
         let (problem, solution) = (&cells.problem, &cells.solution);
@@ -180,7 +180,7 @@ fn delta_follows_pitch_and_slope_of_every_tooth_as_its_influences_say() {
     let positions = [0.13, 4.4, 6.71, 9.95];
     let influences = |teeth: &[ToothDeviations; 2]| -> Vec<Vec<PairInfluence>> {
         let deviations = deviations(teeth);
-        let made = model.made(&deviations);
+        let made = model.deviating(&deviations);
         let kept = contacts_keeping(made, load, &positions, &run, |cells, solution| {
             cells.influences(solution)
         });
@@ -260,7 +260,7 @@ fn gradients_tell_what_each_gear_makes_of_the_spread_as_a_sample_does() {
     };
     let none = ToothDeviations::default();
     let none = PairDeviations::new(&pair, [&none, &none]).expect("room");
-    let made = model.made(&none);
+    let made = model.deviating(&none);
     let influences = contacts_keeping(made, load, &positions, &run, |cells, solution| {
         cells.influences(solution)
     });

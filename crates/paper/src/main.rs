@@ -1,5 +1,7 @@
-//! What the documents of the repository are made by: the paper, recomputed, and the machine, measured at it.
+//! What the documents of the repository are made by: the paper, recomputed, and the machine, measured at it; and the hashes by which two versions of
+//! the engine are compared.
 
+mod digests;
 mod measure;
 mod reproduce;
 mod validity;
@@ -16,6 +18,8 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Print the hash of every result, or compare it with an earlier list.
+    Digests(digests::Digests),
     /// Measure how fast this machine computes, and how time grows with what is asked.
     Measure(measure::Measure),
     /// Recompute the paper's tables, figures and study.
@@ -30,6 +34,7 @@ static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
 fn main() -> anyhow::Result<()> {
     match Arguments::parse().command {
+        Command::Digests(digests) => digests.run(),
         Command::Measure(measure) => measure.run(),
         Command::Reproduce(reproduce) => reproduce.run(),
         Command::Validity(validity) => validity.run(),

@@ -1,11 +1,10 @@
 //! From a case to its answer: the methods carry out their plan.
 
-use super::case::Case;
-use super::case::{Model, SectionHoles};
+use super::case::{Case, Model, SectionHoles};
 use super::evidence::{ErrorEstimate, Evidence};
 use super::plan::{Pass, Plan};
 use super::setup::Setup;
-use super::warning::{warn_of_pressures, warnings};
+use super::warning::warnings;
 use super::{
     Analysis, AnalysisError, decomposition, flexible, light, load_distribution, projected,
     three_dimensional,
@@ -38,7 +37,7 @@ pub(super) fn answered(
     run: &Run,
 ) -> Result<Analysis, AnalysisError> {
     let mut analysis = carried_out(plan, parts, run)?;
-    if let Some(drawn) = plan.asked.holes_alone() {
+    if let Some(drawn) = plan.case.holes_alone() {
         let alone = carried_out(&Plan::of(&drawn), parts, &run.unwatched())?;
         for (curve, alone) in analysis.curves.iter_mut().zip(&alone.curves) {
             if let (Some(own), Some(alone)) = (&mut curve.spectrum, &alone.spectrum) {
@@ -57,14 +56,14 @@ pub(super) fn carried_out(
 ) -> Result<Analysis, AnalysisError> {
     // Threads work on different bodies and positions; inside one, faer is sequential.
     faer::set_global_parallelism(faer::Par::Seq);
-    let case = &plan.loaded;
+    let case = &plan.case;
     let mut passes = plan.passes.iter();
     let mut analysis = match passes.next() {
         Some(pass) => passed(case, pass, parts, run)?,
         None => Analysis {
             curves: Vec::new(),
             evidence: Evidence::new(0),
-            warnings: warnings(&plan.asked),
+            warnings: warnings(case),
         },
     };
     if let Some(pass) = passes.next() {
@@ -72,7 +71,13 @@ pub(super) fn carried_out(
         let estimate = ErrorEstimate::between(&analysis.curves, &other.curves);
         analysis.evidence.error_estimate = Some(estimate);
     }
-    analysis.curves = light::with_torque_zero(&plan.asked, plan.is_refined, analysis.curves)?;
+    let mut loaded = analysis.curves.into_iter();
+    let curve = |torque: &f64| match *torque {
+        0.0 => Some(light::curve(case, &plan.light)),
+        _ => loaded.next().map(Ok),
+    };
+    let torques = case.output_torques.iter();
+    analysis.curves = torques.filter_map(curve).collect::<Result<_, _>>()?;
     Ok(analysis)
 }
 
@@ -84,7 +89,7 @@ fn passed(
     run: &Run,
 ) -> Result<Analysis, AnalysisError> {
     let in_plane = |solve| coupled_as_needed(case, pass, parts, run, solve);
-    let mut analysis = match &case.model {
+    match &case.model {
         Model::Section(SectionHoles::Whole) => in_plane(flexible::solve),
         Model::Section(SectionHoles::Fitted) => in_plane(decomposition::solve),
         Model::Section(SectionHoles::FirstOrder) => in_plane(projected::solve),
@@ -92,9 +97,7 @@ fn passed(
             three_dimensional::solve((case, faces, *holes), pass, parts, run)
         }
         Model::Formulas(formulas) => load_distribution::solve(case, *formulas, pass, run),
-    }?;
-    warn_of_pressures(&mut analysis.warnings, case, &analysis.curves);
-    Ok(analysis)
+    }
 }
 
 /// How a plane method computes a case.

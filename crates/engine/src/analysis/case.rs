@@ -40,7 +40,7 @@ impl Method {
         )
     }
 
-    /// Whether it tells stresses at roots and holes.
+    /// Whether it finds stresses at roots and holes.
     pub fn tells_stress(self) -> bool {
         matches!(self, Self::Flexible | Self::ThreeDimensional)
     }
@@ -82,7 +82,7 @@ pub struct Resolution {
     pub blank_positions: u32,
     /// The interface radius R_w of each gear that has holes, in meters; `None` for its default.
     pub interface_radii: [Option<f64>; 2],
-    /// Whether to add a second, finer run that tells the discretization error.
+    /// Whether to add a second run at another grid level for the discretization error.
     pub error_estimate: bool,
 }
 
@@ -95,7 +95,7 @@ pub struct Faces {
     pub resolution: FaceResolution,
     /// Slices into which the common face is cut.
     pub slices: usize,
-    /// Whether the load along the face is told at every position, and not only in the mean.
+    /// Whether the result has the load along the face at every position, and not only in the mean.
     pub at_each_position: bool,
     /// Whether the lead is looked for that would even the load along the face.
     pub cure: bool,
@@ -146,7 +146,7 @@ impl Model {
     }
 }
 
-/// A place in a curve, and the contact that tells of it.
+/// A place in a curve, and its contact.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
     /// The mesh position.
@@ -207,6 +207,12 @@ impl Case {
         }
     }
 
+    /// The output torques that are not 0. Without load nothing is elastic, and all methods have the same curve.
+    pub(super) fn loaded_torques(&self) -> impl Iterator<Item = f64> {
+        let torques = self.output_torques.iter().copied();
+        torques.filter(|torque| *torque != 0.0)
+    }
+
     /// The mesh periods that are computed.
     pub fn span(&self) -> u32 {
         self.resolution
@@ -219,8 +225,8 @@ impl Case {
         self.span().is_multiple_of(self.pair.period())
     }
 
-    /// The pair as it is drawn, where teeth deviate and a spectrum tells what the order of holes comes to: what the holes alone make of it. By the same
-    /// method, which takes at most as long again; along faces by the one that takes holes to the first order, where a contact is dear.
+    /// The same of the pair as drawn, for what its holes alone make of their order in the spectrum; `None` where no teeth deviate, or there is no spectrum.
+    /// It goes by the same method, which takes at most as long again. Along faces, where a contact takes longest, it goes by that of the first order.
     pub(super) fn holes_alone(&self) -> Option<Self> {
         let is_told = self.covers_whole_periods() && self.method().sees_holes();
         if !is_told || self.pair.is_as_drawn() || self.holed().is_empty() {
@@ -273,14 +279,9 @@ impl Case {
         positions
     }
 
-    /// The places in a curve that contacts at the mesh positions `at` tell of, where those after a mesh period, or those of the whole span, are
-    /// known: these positions, and as many mesh periods later as the span has.
-    pub(super) fn places(&self, at: &[f64]) -> Vec<Place> {
-        self.places_after(at, self.contacts_repeat_after())
-    }
-
-    /// The places in a curve that contacts at the mesh positions `at` tell of, which are known to repeat `after` so many mesh periods.
-    pub(super) fn places_after(&self, at: &[f64], after: u32) -> Vec<Place> {
+    /// The places in a curve at which the contacts at the mesh positions `at` stand, which repeat `after` so many mesh periods: these positions, and as
+    /// many mesh periods later as the span has.
+    pub(super) fn places(&self, at: &[f64], after: u32) -> Vec<Place> {
         let of_period = |later: i64| {
             let at = at.iter().enumerate();
             at.map(move |(contact, position)| Place {

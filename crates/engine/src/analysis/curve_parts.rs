@@ -3,6 +3,7 @@
 use super::Case;
 use super::between::Sections;
 use super::curve::{Curve, DecompositionParts, FaceLoad, LoadShare};
+use super::found::Found;
 use super::largest_where::LargestPressure;
 use super::single_flank::SingleFlank;
 use super::spectrum::Spectrum;
@@ -74,40 +75,16 @@ impl CurveParts {
 }
 
 impl CurveParts {
-    /// What `contacts` at every position of `case` say, but for the stiffness and what is between them.
-    pub(super) fn of_contacts(
-        case: &Case,
-        contacts: &[MeshContact],
-        stiffness: Vec<f64>,
-        sections: Sections,
-    ) -> Self {
-        let each = contacts.iter();
-        Self {
-            transmission_error: each
-                .clone()
-                .map(|contact| contact.transmission_error)
-                .collect(),
-            stiffness,
-            sections,
-            driving_load: each.clone().map(|contact| contact.driving_load).collect(),
-            pairs_in_contact: each.clone().map(MeshContact::loaded_pairs).collect(),
-            peak_contact_pressure: each.map(|contact| contact.peak_pressure).collect(),
-            largest_pressure: largest_pressure(&case.mesh_positions(), contacts),
-            load_shares: load_shares(&case.mesh_positions(), contacts),
-            decomposition: None,
-            stresses: None,
-            face: None,
-        }
-    }
-
-    /// What `contacts` at the repeating positions of `case` say of everything but δ and k, whose curve is that of `sections`.
-    pub(super) fn of_repeating(case: &Case, contacts: &[MeshContact], sections: Sections) -> Self {
-        let each = contacts.iter();
-        let positions = case.repeating_positions();
+    /// What is `found` at the first positions of `case`, after which it repeats; its curve is that of `sections`.
+    pub(super) fn of<K>(case: &Case, found: &Found<K>, sections: Sections) -> Self {
+        let contacts = &found.contacts;
+        let mut positions = case.mesh_positions();
+        positions.truncate(contacts.len());
         let shares = load_shares(&positions, contacts).into_iter();
+        let each = contacts.iter();
         Self {
-            transmission_error: Vec::new(),
-            stiffness: Vec::new(),
+            transmission_error: found.transmission_error.clone(),
+            stiffness: found.stiffness.clone(),
             sections,
             driving_load: case.repeated(each.clone().map(|contact| contact.driving_load)),
             pairs_in_contact: case.repeated(each.clone().map(MeshContact::loaded_pairs)),

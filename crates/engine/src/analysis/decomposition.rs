@@ -3,15 +3,14 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use super::between::Sample;
 use super::case::Case;
-use super::curve::{BlankFit, BlankSample, Curve, DecompositionParts};
+use super::curve::{BlankFit, BlankSample, DecompositionParts};
 use super::curve_parts::CurveParts;
-use super::evidence::Evidence;
+use super::found::Found;
 use super::pair_contacts::ModeledPair;
 use super::plan::{Pass, Sweep, unlike_holes};
 use super::setup::Setup;
-use super::warning::{warn_of_tips, warnings};
+use super::under_load::curves;
 use super::{Analysis, AnalysisError};
 use crate::assembly::interface::interface_radius;
 use crate::assembly::{Blanks, CutGear, PartError};
@@ -39,7 +38,7 @@ struct HoledBlank<'a> {
 }
 
 /// Eqs. 9 to 15: δ = δ_wh + Σ over holed gears of A + B cos(N θ + phase), fitted to samples of the holed blank's rotation.
-pub(super) fn solve(setup: Setup<'_>, plan: &Pass) -> Result<Analysis, AnalysisError> {
+pub(super) fn solve(setup: Setup<'_>, pass: &Pass) -> Result<Analysis, AnalysisError> {
     let case = setup.case;
     let rigid = ModeledPair::new(setup, Blanks::HoledRigid)?;
     // How a blank turns under its hub is fitted as drawn: what teeth deviate is in δ_wh.
@@ -61,9 +60,9 @@ pub(super) fn solve(setup: Setup<'_>, plan: &Pass) -> Result<Analysis, AnalysisE
         let cut = spec.cut(*member, setup.parts, setup.run)?;
         Ok::<_, AnalysisError>((model, cut))
     };
-    let modeled: Vec<_> = plan.samples.iter().map(modeled).collect::<Result<_, _>>()?;
+    let modeled: Vec<_> = pass.samples.iter().map(modeled).collect::<Result<_, _>>()?;
     let mut blanks = Vec::new();
-    for ((member, sweep), ((model, unknowns), cut)) in plan.samples.iter().zip(&modeled) {
+    for ((member, sweep), ((model, unknowns), cut)) in pass.samples.iter().zip(&modeled) {
         degrees_of_freedom = degrees_of_freedom.max(*unknowns);
         let of_member = |error: FemError| PartError::from(error).of(*member);
         let motion = cut.motion(setup.run).map_err(of_member)?;
@@ -83,73 +82,40 @@ pub(super) fn solve(setup: Setup<'_>, plan: &Pass) -> Result<Analysis, AnalysisE
             interface_radius: interface_radius(case.pair.gear(*member), asked),
         });
     }
-    let mut evidence = Evidence::new(degrees_of_freedom);
-    let mut warnings = warnings(case);
-    let mut curves = Vec::with_capacity(case.output_torques.len());
-    for &output_torque in &case.output_torques {
-        let (curve, contacts) = curve(&rigid, &blanks, &plan.told, output_torque, &mut evidence)?;
-        evidence.gather(&contacts, curve.load);
-        warn_of_tips(&mut warnings, &contacts);
-        curves.push(curve);
-    }
-    Ok(Analysis {
-        curves,
-        evidence,
-        warnings,
+    curves((case, pass), degrees_of_freedom, setup.run, |under| {
+        let load = under.load;
+        let step = pass.curve.step.unwrap_or(0.0);
+        let terms = |load: f64| Terms::under(&rigid, &blanks, load);
+        let (middle, below, above) = (
+            terms(load)?,
+            terms(load * (1.0 - step))?,
+            terms(load * (1.0 + step))?,
+        );
+        let find = |sweep: &Sweep| {
+            let (contacts, transmission_error) = middle.at(sweep)?;
+            let stiffness = sweep.stiffness_by_step(load, |other| {
+                let terms = if other < load { &below } else { &above };
+                Ok(terms.at(sweep)?.1)
+            })?;
+            Ok(Found::<()> {
+                contacts: contacts.to_vec(),
+                transmission_error,
+                stiffness: stiffness.unwrap_or_default(),
+                kept: Vec::new(),
+            })
+        };
+        let found = find(&pass.curve)?;
+        let parts = under.parts(&found, &[], |sweep, _| find(sweep))?;
+        let of_rigid = found.contacts.iter();
+        let of_rigid = of_rigid.map(|contact| contact.transmission_error);
+        Ok(CurveParts {
+            decomposition: Some(DecompositionParts {
+                rigid_blank_transmission_error: case.repeated(of_rigid),
+                blanks: middle.fits,
+            }),
+            ..parts
+        })
     })
-}
-
-/// The curve at one torque, its stiffness by a central difference, and the contacts on rigid blanks behind it.
-fn curve(
-    rigid: &ModeledPair<'_>,
-    blanks: &[HoledBlank<'_>],
-    told: &Sweep,
-    output_torque: f64,
-    evidence: &mut Evidence,
-) -> Result<(Curve, Arc<Vec<MeshContact>>), AnalysisError> {
-    let case = rigid.setup.case;
-    let load = case.pair.load(output_torque);
-    let step = told.step.unwrap_or(0.0);
-    let under = |load: f64| Terms::under(rigid, blanks, load);
-    let (middle, below, above) = (
-        under(load)?,
-        under(load * (1.0 - step))?,
-        under(load * (1.0 + step))?,
-    );
-    let found = |sweep: &Sweep| {
-        let (contacts, delta) = middle.at(&sweep.positions)?;
-        let stiffness = sweep.stiffness(load, Vec::new, |other| {
-            let terms = if other < load { &below } else { &above };
-            Ok(terms.at(&sweep.positions)?.1)
-        })?;
-        Ok::<_, AnalysisError>((contacts, delta, stiffness))
-    };
-    let samples = |sweep: &Sweep, contacts: &[MeshContact], delta: &[f64], k: &[f64]| {
-        Sample::of(&case.places(&sweep.positions), contacts, delta, k)
-    };
-    let (contacts, transmission_error, stiffness) = found(told)?;
-    let known = samples(told, &contacts, &transmission_error, &stiffness);
-    let sections = told.sections(
-        (case, case.contacts_repeat_after()),
-        known,
-        rigid.setup.run,
-        |sweep| {
-            let (contacts, delta, stiffness) = found(sweep)?;
-            evidence.gather(&contacts, load);
-            Ok(samples(sweep, &contacts, &delta, &stiffness))
-        },
-    )?;
-    let of_rigid_blank = contacts.iter().map(|contact| contact.transmission_error);
-    let parts = CurveParts {
-        transmission_error,
-        stiffness,
-        decomposition: Some(DecompositionParts {
-            rigid_blank_transmission_error: case.repeated(of_rigid_blank),
-            blanks: middle.fits,
-        }),
-        ..CurveParts::of_repeating(case, &contacts, sections)
-    };
-    Ok((parts.into_curve(case, output_torque), contacts))
 }
 
 /// The terms of eq. 15 under one load.
@@ -173,11 +139,11 @@ impl<'a> Terms<'a> {
         })
     }
 
-    /// The contacts on rigid blanks at `positions`, and δ at the places in the curve that they tell of.
-    fn at(&self, positions: &[f64]) -> Result<(Arc<Vec<MeshContact>>, Vec<f64>), AnalysisError> {
+    /// The contacts on rigid blanks at the positions of `sweep`, and δ at all places in the curve at which they stand.
+    fn at(&self, sweep: &Sweep) -> Result<(Arc<Vec<MeshContact>>, Vec<f64>), AnalysisError> {
         let case = self.rigid.setup.case;
-        let contacts = self.rigid.contacts(self.load, positions)?;
-        let places = case.places(positions).into_iter();
+        let contacts = self.rigid.contacts(self.load, &sweep.positions)?;
+        let places = sweep.places(case).into_iter();
         let delta = places.map(|place| {
             let fits = self.fits.iter().map(|fit| {
                 let gear = case.pair.gear(fit.member);
@@ -205,7 +171,7 @@ impl HoledBlank<'_> {
         let Setup { case, run, .. } = self.rigid.setup;
         let gear = case.pair.gear(self.member);
         let positions = self.positions;
-        let made = self.model.made(self.rigid.setup.deviations);
+        let made = self.model.deviating(self.rigid.setup.deviations);
         let whole = contacts_keeping(made, load, positions, run, |cells, solution| {
             cells.flank_loads(self.member, &solution.forces)
         })?;

@@ -79,7 +79,7 @@ pub fn estimate(case: &Case, forces: Option<&ForcesRequest>) -> Estimate {
 
 /// Adds what the contacts of `plan` cost.
 fn add_contacts(estimate: &mut Estimate, plan: &Plan) {
-    let case = &plan.asked;
+    let case = &plan.case;
     let positions = (case.positions() * case.output_torques.len()) as u64;
     estimate.memory += (POSITION_MEMORY * positions as f64) as u64;
     estimate.seconds += match &case.model {
@@ -96,7 +96,7 @@ fn add_contacts(estimate: &mut Estimate, plan: &Plan) {
 fn add_gears(estimate: &mut Estimate, plan: &Plan) {
     for (number, pass) in plan.passes.iter().enumerate() {
         for member in Member::BOTH {
-            let gear = of_gear(&plan.loaded, member, pass);
+            let gear = of_gear(&plan.case, member, pass);
             estimate.seconds += gear.seconds;
             estimate.memory += gear.memory;
             if number == 0 {
@@ -106,7 +106,7 @@ fn add_gears(estimate: &mut Estimate, plan: &Plan) {
                 // It is made once more, with rows that lead inside.
                 estimate.seconds += gear.seconds;
                 estimate.memory += gear.memory / 4;
-                let teeth = f64::from(plan.loaded.pair.gear(member).tooth_count());
+                let teeth = f64::from(plan.case.pair.gear(member).tooth_count());
                 estimate.seconds += PER_ANSWER * teeth * answers(plan, pass);
             }
         }
@@ -115,7 +115,7 @@ fn add_gears(estimate: &mut Estimate, plan: &Plan) {
 
 /// Contacts that gears answer to with their stresses in a `pass` of `plan`.
 fn answers(plan: &Plan, pass: &Pass) -> f64 {
-    (pass.told.positions.len() * plan.loaded.output_torques.len()) as f64
+    (pass.curve.positions.len() * plan.case.loaded_torques().count()) as f64
 }
 
 /// Seconds of one core for the yield of one gear with nine functions across the face, for its web besides, and for the contact of a slice at a
@@ -149,7 +149,7 @@ const SECTION_NODES: f64 = 330.0;
 
 /// Adds what the gears of `plan` cost along their `faces`, and what they answer to contacts.
 fn add_faces(estimate: &mut Estimate, plan: &Plan, faces: &Faces) {
-    let case = &plan.loaded;
+    let case = &plan.case;
     let [per_gear, per_web, _] = FACE_SECONDS;
     for (number, pass) in plan.passes.iter().enumerate() {
         let resolution = faces.at(pass.level).resolution;
@@ -194,7 +194,7 @@ fn along_faces(plan: &Plan, faces: &Faces) -> f64 {
     let [.., per_slice] = FACE_SECONDS;
     // Two pairs or more carry along all of the face.
     let lines = 1.0 + faces.pair.total_contact_ratio();
-    let torques = plan.loaded.output_torques.len() as u64;
+    let torques = plan.case.loaded_torques().count() as u64;
     let of_pass = |pass: &Pass| {
         let slices = faces.at(pass.level).slices as f64 * lines;
         let solutions = pass.solutions() + EVENING * pass.evened.len() as u64;
@@ -205,7 +205,7 @@ fn along_faces(plan: &Plan, faces: &Faces) -> f64 {
 
 /// Seconds that the contacts of a `pass` of `plan` take in the plane.
 fn in_plane(plan: &Plan, pass: &Pass) -> f64 {
-    let case = &plan.loaded;
+    let case = &plan.case;
     let [per_first, per_further, per_system, ..] = SECONDS;
     let torques = case.output_torques.len() as f64;
     let [solutions, firsts] =

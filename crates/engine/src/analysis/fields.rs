@@ -74,8 +74,12 @@ pub fn fields(
     let setup = Setup::new((case, deviations), level, FARTHEST_COUPLED, parts, run);
     let (model, _) = setup.model(Blanks::Flexible)?;
     let at = |error| AnalysisError::at_position(error, eta);
-    let mut stage =
-        Stage::new(model.made(deviations), eta, case.pair.load(output_torque)).map_err(at)?;
+    let mut stage = Stage::new(
+        model.deviating(deviations),
+        eta,
+        case.pair.load(output_torque),
+    )
+    .map_err(at)?;
     let period = eta.floor() as i64;
     let (contact, loads) = stage
         .contact(period, &mut WarmStart::default(), |cells, solution| {

@@ -8,104 +8,36 @@
 //! H_0 is the mean of H over the teeth, p the contact forces on it and q = dp/dF. The term of δ is exact at first order, whatever the contact law;
 //! that of 1/k is where the law is linear.
 
-use super::Case;
-use super::case::Place;
+use super::case::{Case, Place};
+use super::found::Found;
+use super::plan::Sweep;
+use crate::contact::MeshContact;
 
-/// Where the projection is held to exact solutions: fractions of the mesh period, and mesh periods for each of them, at most.
-///
-/// The term is exact while the same cells touch. What it leaves out is where holes let a pair touch earlier or later: at the fractions
-/// at which the stiffness of round blanks changes most, in some periods and not in others. On the paper's cases, and on a polymer gear
-/// with five large holes, these hold from 0.7 to all of the largest difference; positions at which the term itself is largest hold
-/// nothing of it.
-const CHECKED: [usize; 2] = [4, 6];
-
-/// What is known at a repeating position of blanks that are alike all around.
-pub(super) struct OnRound {
-    pub(super) transmission_error: f64,
-    pub(super) stiffness: f64,
-    /// qᵀ H_0 p and qᵀ H_0 q.
-    pub(super) yielded: [f64; 2],
-}
-
-/// δ and k at every position.
-pub(super) struct WithHoles {
-    pub(super) transmission_error: Vec<f64>,
-    pub(super) stiffness: Vec<f64>,
-}
-
-/// δ and k at `places`, of what is known of their contacts: `yielded` says qᵀ H p and qᵀ H q of the forces of one of them, so much later.
-pub(super) fn with_holes(
-    places: &[Place],
-    round: &[OnRound],
-    yielded: impl Fn(&Place) -> [f64; 2],
-) -> WithHoles {
-    let (transmission_error, stiffness) = places
-        .iter()
-        .map(|place| {
-            let (here, after) = (&round[place.contact], yielded(place));
-            let [delta, compliance] = [0, 1].map(|k| after[k] - here.yielded[k]);
-            (
-                here.transmission_error + delta,
-                1.0 / (1.0 / here.stiffness + compliance),
-            )
-        })
-        .unzip();
-    WithHoles {
+/// What is found by `sweep` of `case` where round blanks have these `contacts` and this `stiffness`: `round` says qᵀ H_0 p and qᵀ H_0 q of the forces of
+/// each contact, `whole` the same with H at a place of the curve.
+pub(super) fn with_holes<K>(
+    (case, sweep): (&Case, &Sweep),
+    (contacts, stiffness): (Vec<MeshContact>, &[f64]),
+    kept: Vec<K>,
+    round: impl Fn(&K) -> [f64; 2],
+    whole: impl Fn(&K, &Place) -> [f64; 2],
+) -> Found<K> {
+    let round: Vec<[f64; 2]> = kept.iter().map(round).collect();
+    let places = sweep.places(case);
+    let at = |place: &Place| {
+        let i = place.contact;
+        let after = whole(&kept[i], place);
+        let [delta, compliance] = [0, 1].map(|k| after[k] - round[i][k]);
+        (
+            contacts[i].transmission_error + delta,
+            1.0 / (1.0 / stiffness[i] + compliance),
+        )
+    };
+    let (transmission_error, stiffness) = places.iter().map(at).unzip();
+    Found {
         transmission_error,
         stiffness,
-    }
-}
-
-/// Exact solutions to which the projection is held: how many are known before where.
-#[derive(Clone, Copy)]
-pub(super) struct Checks {
-    fractions: usize,
-    periods: usize,
-}
-
-impl Checks {
-    pub(super) const NONE: Self = Self {
-        fractions: 0,
-        periods: 0,
-    };
-
-    /// Those of `case`: none where nothing is projected.
-    pub(super) fn of(case: &Case) -> Self {
-        if case.holed().is_empty() {
-            return Self::NONE;
-        }
-        let fractions = case.resolution.positions_per_mesh_period as usize;
-        Self {
-            fractions: fractions.min(CHECKED[0]),
-            periods: (case.span() as usize).min(CHECKED[1]),
-        }
-    }
-
-    pub(super) fn solutions(self) -> u64 {
-        (self.fractions * self.periods) as u64
-    }
-
-    /// Those that are the first at their fraction of the mesh period.
-    pub(super) fn first_solutions(self) -> u64 {
-        self.fractions as u64
-    }
-
-    /// Their places in the curve of `case`, with this stiffness on `round` blanks at its repeating positions.
-    pub(super) fn places(self, case: &Case, round: &[f64]) -> Vec<usize> {
-        let per_period = case.resolution.positions_per_mesh_period as usize;
-        let (span, count) = (case.span() as usize, round.len());
-        let stiffness = |i: usize| round[i % count];
-        let change = |i: usize| {
-            let after = stiffness(i + 1) / stiffness(i);
-            let before = stiffness(i + count - 1) / stiffness(i);
-            after.ln().abs().max(before.ln().abs())
-        };
-        let mut fractions: Vec<usize> = (0..per_period).collect();
-        fractions.sort_by(|&a, &b| change(b).total_cmp(&change(a)));
-        fractions.truncate(self.fractions);
-        let periods = self.periods;
-        let of_fraction =
-            |fraction| (0..periods).map(move |j| j * span / periods * per_period + fraction);
-        fractions.into_iter().flat_map(of_fraction).collect()
+        contacts,
+        kept,
     }
 }

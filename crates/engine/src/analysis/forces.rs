@@ -129,7 +129,7 @@ impl TablePlan {
                 compliance: Some(compliance),
             })
         };
-        let case = &self.rows.asked;
+        let case = &self.rows.case;
         let [loaded, mirrored] = self.plans().map(rows_of);
         let flanks = [loaded?, self.other.turned(&mirrored?, case.positions())];
         Ok(ForceTable::new(case.pair.period(), self.loads, flanks)?)
@@ -199,7 +199,7 @@ impl OtherFlank {
             };
             rows.iter().map(row).collect()
         };
-        let backlash = self.mirrored.asked.pair.backlash();
+        let backlash = self.mirrored.case.pair.backlash();
         let compliance = mirrored.compliance.as_ref();
         FlankRows {
             delta: turned(&mirrored.delta, &|delta| -backlash - delta),

@@ -1,33 +1,22 @@
 //! Curves at torque 0: the limit as the load vanishes, in which nothing is elastic. All methods agree on it but the load distribution, which sees
 //! contact on the line of contact alone.
 
-use super::case::Model;
 use rayon::prelude::*;
 
-use super::between::{Refinement, Sample, Sections};
-use super::case::Place;
-use super::curve_parts::CurveParts;
-use super::{AnalysisError, Case, Curve, load_distribution};
+use super::AnalysisError;
+use super::case::{Case, Model};
+use super::curve::Curve;
+use super::found::Found;
+use super::load_distribution::{ends_of_contact, light};
+use super::plan::Sweep;
+use super::under_load::parts_of;
 use crate::contact::face::FaceModel;
 use crate::contact::{MeshContact, light_contact};
 use crate::load_distribution::PairFormulas;
+use crate::run::Run;
 
-/// The `curves` of the loaded torques of `case`, and those of its torques of zero, in its order; `is_refined` says whether these are looked at
-/// between their positions.
-pub(super) fn with_torque_zero(
-    case: &Case,
-    is_refined: bool,
-    curves: Vec<Curve>,
-) -> Result<Vec<Curve>, AnalysisError> {
-    let mut curves = curves.into_iter();
-    let of = |torque: &f64| match *torque {
-        0.0 => Some(curve(case, is_refined)),
-        _ => curves.next().map(Ok),
-    };
-    case.output_torques.iter().filter_map(of).collect()
-}
-
-fn curve(case: &Case, is_refined: bool) -> Result<Curve, AnalysisError> {
+/// The curve of `case` at torque 0, by contacts at the positions of `sweep`.
+pub(super) fn curve(case: &Case, sweep: &Sweep) -> Result<Curve, AnalysisError> {
     let deviations = case.pair.deviations();
     let formulas = match &case.model {
         Model::Formulas(formulas) => Some(PairFormulas::new(&case.pair, *formulas)),
@@ -38,40 +27,28 @@ fn curve(case: &Case, is_refined: bool) -> Result<Curve, AnalysisError> {
         .map(|faces| FaceModel::rigid(faces.pair.clone(), faces.at(case.resolution.grid).slices));
     let contact = |&eta: &f64| -> Result<MeshContact, AnalysisError> {
         let contact = match (&formulas, &rigid) {
-            (Some(formulas), _) => return load_distribution::light(formulas, eta),
+            (Some(formulas), _) => return light(formulas, eta),
             (None, Some(rigid)) => rigid.light_contact(eta),
             (None, None) => light_contact(&case.pair, &deviations, eta),
         };
         contact.map_err(|error| AnalysisError::at_position(error, eta))
     };
-    let found = |positions: &[f64]| {
-        let contacts: Vec<_> = positions.par_iter().map(contact).collect();
+    let find = |sweep: &Sweep| -> Result<Found, AnalysisError> {
+        let contacts: Vec<_> = sweep.positions.par_iter().map(contact).collect();
         let contacts = contacts.into_iter().collect::<Result<Vec<_>, _>>()?;
-        let places = case.places(positions);
-        let at = |place: &Place| &contacts[place.contact];
-        let delta = places.iter().map(|place| at(place).transmission_error);
-        let stiffness = places.iter().map(|place| at(place).stiffness);
-        let curves: [Vec<f64>; 2] = [delta.collect(), stiffness.collect()];
-        let samples = Sample::of(&places, &contacts, &curves[0], &curves[1]);
-        Ok::<_, AnalysisError>((contacts, curves, samples))
+        let stiffness: Vec<f64> = contacts.iter().map(|contact| contact.stiffness).collect();
+        Ok(Found::of_contacts(
+            (case, sweep),
+            contacts,
+            &stiffness,
+            Vec::new(),
+        ))
     };
-    let positions = case.repeating_positions();
-    let (contacts, [transmission_error, stiffness], mut samples) = found(&positions)?;
-    let sections = if is_refined {
-        if let Some(formulas) = &formulas {
-            let ends = load_distribution::ends_of_contact(formulas, case);
-            samples.extend(found(&ends)?.2);
-            samples.sort_by(|a, b| a.position.total_cmp(&b.position));
-        }
-        let refinement = Refinement::of(case, case.contacts_repeat_after(), positions.len());
-        refinement.sections(samples, |further| Ok::<_, AnalysisError>(found(further)?.2))?
-    } else {
-        Sections::of(case, &samples)
-    };
-    let parts = CurveParts {
-        transmission_error,
-        stiffness,
-        ..CurveParts::of_repeating(case, &contacts, sections)
-    };
+    let ends = formulas
+        .as_ref()
+        .map(|formulas| ends_of_contact(formulas, case));
+    let (found, run) = (find(sweep)?, Run::unattended());
+    let kinks = ends.unwrap_or_default();
+    let parts = parts_of((case, sweep), &found, &kinks, &run, |sweep, _| find(sweep))?;
     Ok(parts.into_curve(case, 0.0))
 }

@@ -1,14 +1,12 @@
 //! The load distribution ([`crate::load_distribution`]) as a method: position by position, torque by torque.
 
-use super::between::{PairState, Sample, Sections};
-use super::case::{Case, Place};
-use super::curve::LoadShare;
-use super::curve_parts::CurveParts;
-use super::largest_where::LargestPressure;
+use super::case::Case;
+use super::found::Found;
 use super::plan::{Pass, Sweep};
-use super::warning::warnings;
-use super::{Analysis, AnalysisError, Evidence};
-use crate::contact::{MeshContact, PeakPlace};
+use super::under_load::curves;
+use super::{Analysis, AnalysisError};
+use crate::contact::{MeshContact, PairContact, PeakPlace};
+use crate::gear::GearPair;
 use crate::load_distribution::{Formulas, PairFormulas, Shared, rise, share, touch};
 use crate::run::Run;
 
@@ -16,43 +14,16 @@ use crate::run::Run;
 pub(super) fn solve(
     case: &Case,
     formulas: Formulas,
-    plan: &Pass,
+    pass: &Pass,
     run: &Run,
 ) -> Result<Analysis, AnalysisError> {
     let formulas = PairFormulas::new(&case.pair, formulas);
-    let told = &plan.told;
-    let mut evidence = Evidence::new(0);
-    let mut curves = Vec::with_capacity(case.output_torques.len());
-    for &output_torque in &case.output_torques {
-        let load = case.pair.load(output_torque);
-        let mut found = |sweep: &Sweep, run: &Run| {
-            let found = Found::at(&formulas, sweep, load, run)?;
-            for contact in &found.contacts {
-                evidence.equilibrium_residual = evidence.equilibrium_residual.max(contact.residual);
-            }
-            Ok::<_, AnalysisError>(found)
-        };
-        let first = found(told, run)?;
-        let mut samples = first.samples(case, told, load);
-        if told.further > 0 {
-            let ends = told.at(&ends_of_contact(&formulas, case));
-            // They belong to the curve as its positions do, and nobody waits for them.
-            samples.extend(found(&ends, &Run::unattended())?.samples(case, &ends, load));
-            samples.sort_by(|a, b| a.position.total_cmp(&b.position));
-        }
-        let sections = told.sections(
-            (case, case.contacts_repeat_after()),
-            samples,
-            run,
-            |sweep| Ok(found(sweep, run)?.samples(case, sweep, load)),
-        )?;
-        let parts = curve_parts(case, (&told.positions, first), sections, load);
-        curves.push(parts.into_curve(case, output_torque));
-    }
-    Ok(Analysis {
-        curves,
-        evidence,
-        warnings: warnings(case),
+    let ends = ends_of_contact(&formulas, case);
+    curves((case, pass), 0, run, |under| {
+        let load = under.load;
+        let find = |sweep: &Sweep, run: &Run| found((case, &formulas), sweep, load, run);
+        let found = find(&pass.curve, run)?;
+        under.parts(&found, &ends, find)
     })
 }
 
@@ -69,57 +40,64 @@ pub(super) fn ends_of_contact(formulas: &PairFormulas, case: &Case) -> Vec<f64> 
     (0..periods).flat_map(of_period).collect()
 }
 
-/// How the pairs share a load at some positions.
-struct Found {
-    contacts: Vec<Shared>,
-    stiffness: Vec<f64>,
+/// How the pairs share a load at the positions of `sweep`.
+fn found(
+    (case, formulas): (&Case, &PairFormulas),
+    sweep: &Sweep,
+    load: f64,
+    run: &Run,
+) -> Result<Found, AnalysisError> {
+    let positions = sweep.positions.iter();
+    let pairs = positions.clone().map(|&eta| formulas.pairs_at(eta));
+    let pairs = pairs.collect::<Result<Vec<_>, _>>()?;
+    let mut contacts = Vec::with_capacity(pairs.len());
+    for (eta, pairs) in positions.zip(&pairs) {
+        contacts.push(contact(&case.pair, *eta, &share(pairs, load), load));
+        run.reached(1)?;
+    }
+    let by_step = sweep.stiffness_by_step(load, |load| {
+        run.reached(pairs.len() as u64)?;
+        Ok(pairs.iter().map(|pairs| rise(pairs, load)).collect())
+    })?;
+    let of_contacts = || contacts.iter().map(|contact| contact.stiffness).collect();
+    let stiffness = by_step.unwrap_or_else(of_contacts);
+    Ok(Found::of_contacts(
+        (case, sweep),
+        contacts,
+        &stiffness,
+        Vec::new(),
+    ))
 }
 
-impl Found {
-    fn at(
-        formulas: &PairFormulas,
-        sweep: &Sweep,
-        load: f64,
-        run: &Run,
-    ) -> Result<Self, AnalysisError> {
-        let positions = sweep.positions.iter();
-        let positions = positions.map(|&eta| formulas.pairs_at(eta));
-        let positions = positions.collect::<Result<Vec<_>, _>>()?;
-        let mut contacts = Vec::with_capacity(positions.len());
-        for pairs in &positions {
-            contacts.push(share(pairs, load));
-            run.reached(1)?;
-        }
-        let of_contacts = || contacts.iter().map(|contact| contact.stiffness).collect();
-        let stiffness = sweep.stiffness(load, of_contacts, |load| {
-            run.reached(positions.len() as u64)?;
-            Ok(positions.iter().map(|pairs| rise(pairs, load)).collect())
-        })?;
-        Ok(Self {
-            contacts,
-            stiffness,
-        })
-    }
-
-    /// What is known at the places in the curve of `case` that the positions of `sweep` tell of.
-    fn samples(&self, case: &Case, sweep: &Sweep, load: f64) -> Vec<Sample> {
-        let places = case.places(&sweep.positions).into_iter();
-        let sample = |place: Place| {
-            let contact = &self.contacts[place.contact];
-            let period = place.position.floor() as i64;
-            let pairs = contact.loaded().map(|(offset, force)| PairState {
-                pair: i64::from(offset) + period,
-                share: force / load,
-                clearance: None,
-            });
-            Sample {
-                position: place.position,
-                transmission_error: contact.transmission_error,
-                stiffness: self.stiffness[place.contact],
-                pairs: pairs.collect(),
-            }
-        };
-        places.map(sample).collect()
+/// The contact of `pair` at the mesh position `eta` that is `shared` so under `load`. All forces act along the theoretical line of contact.
+fn contact(pair: &GearPair, eta: f64, shared: &Shared, load: f64) -> MeshContact {
+    let number = |offset: i32| i64::from(offset) + eta.floor() as i64;
+    let pairs = shared.loaded().map(|(offset, force)| PairContact {
+        pair: number(offset),
+        share: force / load,
+        clearance: None,
+        tip_corner: None,
+        fillet: None,
+    });
+    let heaviest = number(shared.peak_offset);
+    let s = pair.roll_length_of(eta - heaviest as f64);
+    MeshContact {
+        transmission_error: shared.transmission_error,
+        stiffness: shared.stiffness,
+        driving_load: load,
+        pairs: pairs.collect(),
+        peak_pressure: Some(shared.peak_pressure),
+        peak_place: Some(PeakPlace {
+            pair: heaviest,
+            roll_lengths: [s, pair.line_of_action() - s],
+            z: None,
+            // The pressure is Hertz's of unmodified flanks.
+            half_width: 0.0,
+        }),
+        equilibrium: shared.residual,
+        complementarity: 0.0,
+        penetration: 0.0,
+        iterations: 0,
     }
 }
 
@@ -130,65 +108,4 @@ pub(super) fn light(formulas: &PairFormulas, eta: f64) -> Result<MeshContact, An
     let pair = |offset: i32| (i64::from(offset) + eta.floor() as i64, None);
     let touching = offsets.into_iter().map(pair).collect();
     Ok(MeshContact::unloaded(transmission_error, touching))
-}
-
-fn curve_parts(
-    case: &Case,
-    (positions, found): (&[f64], Found),
-    sections: Sections,
-    load: f64,
-) -> CurveParts {
-    let Found {
-        contacts,
-        stiffness,
-    } = found;
-    let all = |value: fn(&Shared) -> f64| case.repeated(contacts.iter().map(value));
-    let pairs_in_contact = contacts
-        .iter()
-        .map(|contact| contact.loaded().count() as u32);
-    let pressures = contacts.iter().map(|contact| Some(contact.peak_pressure));
-    let largest = positions.iter().zip(&contacts).map(|(eta, contact)| {
-        let n = i64::from(contact.peak_offset) + eta.floor() as i64;
-        let s = case.pair.roll_length_of(eta - n as f64);
-        let place = PeakPlace {
-            pair: n,
-            roll_lengths: [s, case.pair.line_of_action() - s],
-            z: None,
-            // The pressure is Hertz's of unmodified flanks.
-            half_width: 0.0,
-        };
-        (*eta, Some(contact.peak_pressure), Some(place))
-    });
-    CurveParts {
-        transmission_error: all(|contact| contact.transmission_error),
-        stiffness: case.repeated(stiffness.into_iter()),
-        sections,
-        // All forces act along the theoretical line of contact.
-        driving_load: case.repeated(contacts.iter().map(|_| load)),
-        peak_contact_pressure: case.repeated(pressures),
-        pairs_in_contact: case.repeated(pairs_in_contact),
-        largest_pressure: LargestPressure::of(largest),
-        load_shares: load_shares(case, &contacts, load),
-        decomposition: None,
-        stresses: None,
-        face: None,
-    }
-}
-
-fn load_shares(case: &Case, contacts: &[Shared], load: f64) -> Vec<LoadShare> {
-    let mut offsets: Vec<i32> = contacts
-        .iter()
-        .flat_map(|contact| contact.loaded().map(|force| force.0))
-        .collect();
-    offsets.sort_unstable();
-    offsets.dedup();
-    let share_of = |pair_offset: i32| LoadShare {
-        pair_offset,
-        share: case.repeated(
-            contacts
-                .iter()
-                .map(|contact| contact.share(pair_offset, load)),
-        ),
-    };
-    offsets.into_iter().map(share_of).collect()
 }

@@ -1,14 +1,22 @@
 //! From a pair to its curves: the methods, their results and spectra.
 //!
-//! Read in this order: [`case`] (what is asked), `plan` (what will be computed of it), `setup` (what the methods work with), `flexible`, `pair_contacts`,
-//! `decomposition`, `projected`, `three_dimensional` and `load_distribution` (the methods), `first_order` (what holes change, in the plane and along faces), `light` (torque 0, alike for all), [`stress`] (at roots and holes; along faces `face_stress`) and [`fields`] (everywhere; along faces [`face_fields`]), [`contact_pattern`] (over the flanks), `between` (a curve between its positions), `curve_parts` and [`curve`] with its `statistics`, [`largest_where`] (where its largest values stand), [`evidence`], [`warning`],
-//! [`error`], [`spectrum`] and [`single_flank`] (what comes out), `answer` (all of it); `analyze` (who carries out the plan), `estimate` (what it costs); [`forces`] (tables of force), [`at_speed`] (motion).
+//! Read in this order:
+//! - [`case`] (what is asked), `plan` (what is computed of it), `analyze` (who carries out the plan), `estimate` (what it costs);
+//! - `under_load` (what all methods do alike, torque by torque), `found` (what each finds at some positions), `setup` and `pair_contacts` (what methods by
+//!   finite elements work with);
+//! - `flexible`, `decomposition`, `projected`, `three_dimensional` and `load_distribution` (the methods), `first_order` (what holes change, in the plane and
+//!   along faces) and `checks` (where that is compared with exact solutions), `light` (torque 0, alike for all);
+//! - [`stress`] (at roots and holes; along faces `face_stress`), [`fields`] (everywhere; along faces [`face_fields`]), [`contact_pattern`] (over the flanks);
+//! - `between` (a curve between its positions), `curve_parts` and [`curve`] with its `statistics`, [`largest_where`] (where its largest values stand),
+//!   [`spectrum`] and [`single_flank`];
+//! - [`evidence`], [`warning`], [`error`] and `answer` (all that comes out); [`forces`] (tables of force), [`at_speed`] (motion).
 
 mod analyze;
 mod answer;
 pub mod at_speed;
 mod between;
 pub mod case;
+mod checks;
 pub mod contact_pattern;
 pub mod curve;
 mod curve_parts;
@@ -22,6 +30,7 @@ pub mod fields;
 mod first_order;
 mod flexible;
 pub mod forces;
+mod found;
 pub mod largest_where;
 mod light;
 mod load_distribution;
@@ -35,6 +44,7 @@ pub mod spectrum;
 mod statistics;
 pub mod stress;
 mod three_dimensional;
+mod under_load;
 pub mod warning;
 
 pub use analyze::{analyze, pair_model};

@@ -3,8 +3,11 @@
 use std::sync::Arc;
 
 use super::AnalysisError;
+use super::found::Found;
+use super::plan::Sweep;
 use super::setup::Setup;
 use crate::assembly::{Blanks, ContactsSpec, PairSpec};
+use crate::contact::positions::contacts;
 use crate::contact::{MeshContact, PairModel};
 
 /// A pair as a method models it.
@@ -45,5 +48,31 @@ impl<'a> ModeledPair<'a> {
             .setup
             .parts
             .contacts(&spec, &self.model, self.setup.run)?)
+    }
+
+    /// What is found by `sweep` under `load`. Contacts of a drawn pair are asked for once: all members of a population are made to one drawing, and no two
+    /// of them alike.
+    pub(super) fn found<K>(&self, load: f64, sweep: &Sweep) -> Result<Found<K>, AnalysisError> {
+        let Setup {
+            case,
+            deviations,
+            run,
+            ..
+        } = self.setup;
+        let at = |load: f64| -> Result<Vec<MeshContact>, AnalysisError> {
+            if case.pair.is_as_drawn() {
+                return Ok(self.contacts(load, &sweep.positions)?.to_vec());
+            }
+            let made = self.model.deviating(deviations);
+            Ok(contacts(made, load, &sweep.positions, run)?)
+        };
+        let contacts = at(load)?;
+        let stiffness = sweep.stiffness(load, &contacts, at)?;
+        Ok(Found::of_contacts(
+            (case, sweep),
+            contacts,
+            &stiffness,
+            Vec::new(),
+        ))
     }
 }

@@ -3,10 +3,11 @@
 
 use super::AnalysisError;
 use super::between::{Refinement, Sample, Sections, most_further};
-use super::case::{Case, Method, StiffnessRule};
+use super::case::{Case, Method, Place, StiffnessRule};
 use super::case::{FaceHoles, Model, SectionHoles};
-use super::first_order::Checks;
+use super::checks::Checks;
 use crate::assembly::Blanks;
+use crate::contact::MeshContact;
 use crate::contact::positions::stages;
 use crate::gear::{Member, SpurGear};
 use crate::grid::GridLevel;
@@ -21,16 +22,14 @@ const TRIED: usize = 8;
 /// What is computed of a case.
 pub(super) struct Plan {
     /// What is asked.
-    pub(super) asked: Case,
-    /// The same without its torques of zero, in whose curves nothing is elastic.
-    pub(super) loaded: Case,
-    /// Whether curves are looked at between their positions.
-    pub(super) is_refined: bool,
-    /// The pass that answers, and a second one that tells the discretization error of it. There is none without load.
+    pub(super) case: Case,
+    /// The contacts under torque 0.
+    pub(super) light: Sweep,
+    /// The pass behind the curves, and a second one at another level for their discretization error. There is none without load.
     pub(super) passes: Vec<Pass>,
 }
 
-/// The level that tells the error of one along faces: the next coarser, which differs by more than a finer one would and costs less; the next finer of the
+/// The level with which one along faces is compared for its error: the next coarser, which differs by more than a finer one would and costs less; the next finer of the
 /// coarsest.
 fn compared_along_faces(level: GridLevel) -> GridLevel {
     match level {
@@ -42,9 +41,9 @@ fn compared_along_faces(level: GridLevel) -> GridLevel {
 /// What is computed at one grid level, under each torque.
 pub(super) struct Pass {
     pub(super) level: GridLevel,
-    /// The contacts of which the curves tell.
-    pub(super) told: Sweep,
-    /// Those on rigid blanks that are told beside them.
+    /// The contacts behind the curves.
+    pub(super) curve: Sweep,
+    /// Those on rigid blanks, which the curves have beside.
     pub(super) rigid: Sweep,
     /// Those that show how a holed blank turns: with it flexible, and once more with all holed blanks rigid.
     pub(super) samples: Vec<(Member, Sweep)>,
@@ -64,17 +63,32 @@ pub(super) struct Sweep {
     pub(super) positions: Vec<f64>,
     /// The step of the torque to either side, over the torque, by which the stiffness is found; `None` where it is that of the contacts.
     pub(super) step: Option<f64>,
-    /// Positions between these that may be solved further, where they tell most of the curve.
-    pub(super) further: usize,
+    /// The mesh periods after which the contacts at these positions repeat.
+    repeats_after: u32,
+    pub(super) further: Further,
+}
+
+/// Positions between those of a sweep that may be solved further, where the curve is least known.
+#[derive(Clone, Copy)]
+pub(super) struct Further {
+    /// How many at most.
+    pub(super) most: usize,
+    /// The mesh periods after which the contacts at them repeat.
+    repeats_after: u32,
+}
+
+impl Further {
+    const NONE: Self = Self {
+        most: 0,
+        repeats_after: 1,
+    };
 }
 
 impl Plan {
     pub(super) fn of(case: &Case) -> Self {
-        let mut loaded = case.clone();
-        loaded.output_torques.retain(|torque| *torque != 0.0);
         let level = case.resolution.grid;
         let mut levels = Vec::new();
-        if !loaded.output_torques.is_empty() {
+        if case.loaded_torques().next().is_some() {
             levels.push(level);
             // Formulas have no grid to refine.
             if case.resolution.error_estimate && case.method() != Method::LoadDistribution {
@@ -85,23 +99,20 @@ impl Plan {
                 });
             }
         }
-        let pass = |level| Pass::of(&loaded, level);
+        let pass = |level| Pass::of(case, level);
         Self {
-            asked: case.clone(),
-            is_refined: true,
+            case: case.clone(),
+            light: Sweep::repeating(case, Blanks::HoledRigid, None),
             passes: levels.into_iter().map(pass).collect(),
-            loaded,
         }
     }
 
-    /// The plan for the rows of a table, which are told at their positions alone.
+    /// The plan for the rows of a table, which are known at their positions alone.
     pub(super) fn of_rows(case: &Case) -> Self {
-        let mut plan = Self {
-            is_refined: false,
-            ..Self::of(case)
-        };
+        let mut plan = Self::of(case);
+        plan.light.further = Further::NONE;
         for pass in &mut plan.passes {
-            pass.told.further = 0;
+            pass.curve.further = Further::NONE;
         }
         plan
     }
@@ -109,7 +120,7 @@ impl Plan {
     /// The contact solutions under all torques.
     pub(super) fn solutions(&self) -> u64 {
         let under_each: u64 = self.passes.iter().map(Pass::solutions).sum();
-        under_each * self.loaded.output_torques.len() as u64
+        under_each * self.case.loaded_torques().count() as u64
     }
 }
 
@@ -120,24 +131,16 @@ impl Pass {
             StiffnessRule::Tangent => None,
             StiffnessRule::TorqueStep { fraction } => Some(fraction),
         };
-        let (blanks, positions, step) = match case.model {
+        let curve = match case.model {
             Model::Section(SectionHoles::Whole) | Model::Faces(_, FaceHoles::Whole) => {
-                (Blanks::Flexible, case.mesh_positions(), by_rule)
+                Sweep::whole(case, by_rule)
             }
-            Model::Section(SectionHoles::Fitted) => (
-                Blanks::HoledRigid,
-                case.repeating_positions(),
-                by_rule.or(Some(TORQUE_STEP)),
-            ),
+            Model::Section(SectionHoles::Fitted) => {
+                Sweep::repeating(case, Blanks::HoledRigid, by_rule.or(Some(TORQUE_STEP)))
+            }
             Model::Section(SectionHoles::FirstOrder)
             | Model::Faces(_, FaceHoles::FirstOrder)
-            | Model::Formulas(_) => (Blanks::Flexible, case.repeating_positions(), by_rule),
-        };
-        let told = Sweep {
-            blanks,
-            further: most_further(positions.len()),
-            positions,
-            step,
+            | Model::Formulas(_) => Sweep::repeating(case, Blanks::Flexible, by_rule),
         };
         let is_cured = answers && case.faces().is_some_and(|faces| faces.cure);
         Self {
@@ -145,15 +148,16 @@ impl Pass {
             rigid: Sweep {
                 blanks: Blanks::HoledRigid,
                 positions: if case.model == Model::Section(SectionHoles::FirstOrder) {
-                    told.positions.clone()
+                    curve.positions.clone()
                 } else {
                     Vec::new()
                 },
                 step: None,
-                further: 0,
+                repeats_after: curve.repeats_after,
+                further: Further::NONE,
             },
             samples: if case.model == Model::Section(SectionHoles::Fitted) {
-                let of = |member| (member, samples(case, member, told.step));
+                let of = |member| (member, samples(case, member, curve.step));
                 case.holed().into_iter().map(of).collect()
             } else {
                 Vec::new()
@@ -164,12 +168,12 @@ impl Pass {
                 Checks::NONE
             },
             evened: if is_cured {
-                spread(&told.positions, case.resolution.positions_per_mesh_period)
+                spread(&curve.positions, case.resolution.positions_per_mesh_period)
             } else {
                 Vec::new()
             },
             stress: answers && case.stress && case.method().tells_stress(),
-            told,
+            curve,
         }
     }
 
@@ -186,53 +190,85 @@ impl Pass {
     /// `count` over all sweeps.
     fn each(&self, count: fn(&Sweep) -> u64) -> u64 {
         let samples: u64 = self.samples.iter().map(|(_, of)| 2 * count(of)).sum();
-        count(&self.told) + count(&self.rigid) + samples
+        count(&self.curve) + count(&self.rigid) + samples
     }
 
     /// Whether holed blanks also stand as rigid ones.
     pub(super) fn has_rigid_blanks(&self) -> bool {
-        self.told.blanks == Blanks::HoledRigid || !self.rigid.positions.is_empty()
+        self.curve.blanks == Blanks::HoledRigid || !self.rigid.positions.is_empty()
     }
 }
 
 impl Sweep {
+    /// Every position of the curves of `case`.
+    fn whole(case: &Case, step: Option<f64>) -> Self {
+        let positions = case.mesh_positions();
+        Self {
+            blanks: Blanks::Flexible,
+            further: Further {
+                most: most_further(positions.len()),
+                repeats_after: case.curves_repeat_after(),
+            },
+            positions,
+            repeats_after: case.span(),
+            step,
+        }
+    }
+
+    /// The positions of `case` after which contact on blanks that are alike all around repeats.
+    fn repeating(case: &Case, blanks: Blanks, step: Option<f64>) -> Self {
+        let (positions, repeats_after) = (case.repeating_positions(), case.contacts_repeat_after());
+        Self {
+            blanks,
+            further: Further {
+                most: most_further(positions.len()),
+                repeats_after,
+            },
+            positions,
+            repeats_after,
+            step,
+        }
+    }
+
+    /// The places in the curve of `case` at which its contacts stand.
+    pub(super) fn places(&self, case: &Case) -> Vec<Place> {
+        case.places(&self.positions, self.repeats_after)
+    }
+
     /// Solutions at each position.
     fn at_each(&self) -> u64 {
         if self.step.is_some() { 3 } else { 1 }
     }
 
     fn solutions(&self) -> u64 {
-        self.at_each() * (self.positions.len() + self.further) as u64
+        self.at_each() * (self.positions.len() + self.further.most) as u64
     }
 
     fn first_solutions(&self) -> u64 {
-        self.at_each() * (stages(&self.positions).len() + self.further) as u64
+        self.at_each() * (stages(&self.positions).len() + self.further.most) as u64
     }
 
-    /// The same at other `positions`.
+    /// The same at `positions` between these.
     pub(super) fn at(&self, positions: &[f64]) -> Self {
         Self {
             blanks: self.blanks,
             positions: positions.to_vec(),
             step: self.step,
-            further: 0,
+            repeats_after: self.further.repeats_after,
+            further: Further::NONE,
         }
     }
 
-    /// The curve of `case` through `samples` at these positions, and through those that `solve` finds further, which repeat `after` so many mesh
-    /// periods.
+    /// The curve of `case` through `samples` at these positions, and through those that `solve` finds further.
     pub(super) fn sections(
         &self,
-        (case, after): (&Case, u32),
+        case: &Case,
         samples: Vec<Sample>,
         run: &Run,
         mut solve: impl FnMut(&Self) -> Result<Vec<Sample>, AnalysisError>,
     ) -> Result<Sections, AnalysisError> {
-        if self.further == 0 {
-            return Ok(Sections::of(case, &samples));
-        }
-        let refinement = Refinement::of(case, after, self.positions.len());
-        let mut left = self.further;
+        let refinement = Refinement::of(case, self.further.repeats_after, self.positions.len());
+        let mut left = self.further.most;
         let sections = refinement.sections(samples, |positions| {
             left -= positions.len();
             solve(&self.at(positions))
@@ -242,19 +278,33 @@ impl Sweep {
         Ok(sections)
     }
 
-    /// The stiffness under `load`: that of its contacts, or by a central difference of what δ is `at` a smaller and a larger one.
+    /// The stiffness under `load`: that of its `contacts`, or by a central difference of δ between those `at` a smaller and a larger one.
     pub(super) fn stiffness(
         &self,
         load: f64,
-        of_contacts: impl FnOnce() -> Vec<f64>,
-        at: impl Fn(f64) -> Result<Vec<f64>, AnalysisError>,
+        contacts: &[MeshContact],
+        at: impl Fn(f64) -> Result<Vec<MeshContact>, AnalysisError>,
     ) -> Result<Vec<f64>, AnalysisError> {
+        let deltas = |load: f64| {
+            let contacts = at(load)?.into_iter();
+            Ok(contacts.map(|contact| contact.transmission_error).collect())
+        };
+        let rise = self.stiffness_by_step(load, deltas)?;
+        Ok(rise.unwrap_or_else(|| contacts.iter().map(|contact| contact.stiffness).collect()))
+    }
+
+    /// The stiffness under `load` by a central difference of what δ is `at` a smaller and a larger one; `None` where it is that of contacts.
+    pub(super) fn stiffness_by_step(
+        &self,
+        load: f64,
+        at: impl Fn(f64) -> Result<Vec<f64>, AnalysisError>,
+    ) -> Result<Option<Vec<f64>>, AnalysisError> {
         let Some(step) = self.step else {
-            return Ok(of_contacts());
+            return Ok(None);
         };
         let (below, above) = (at(load * (1.0 - step))?, at(load * (1.0 + step))?);
         let rises = below.iter().zip(&above).map(|(below, above)| above - below);
-        Ok(rises.map(|rise| 2.0 * step * load / rise).collect())
+        Ok(Some(rises.map(|rise| 2.0 * step * load / rise).collect()))
     }
 }
 
@@ -274,7 +324,8 @@ fn samples(case: &Case, member: Member, step: Option<f64>) -> Sweep {
             .map(|j| f64::from(j) * period / f64::from(count))
             .collect(),
         step,
-        further: 0,
+        repeats_after: 1,
+        further: Further::NONE,
     }
 }
 

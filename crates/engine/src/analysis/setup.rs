@@ -1,8 +1,10 @@
 //! What every method by finite elements works with.
 
+use super::plan::Sweep;
 use super::{AnalysisError, Case};
 use crate::assembly::{Blanks, Modeling, PairSpec, Parts};
-use crate::contact::PairModel;
+use crate::contact::positions::{contacts, contacts_keeping};
+use crate::contact::{ContactCells, ContactSolution, MeshContact, PairModel};
 use crate::gear::PairDeviations;
 use crate::grid::GridLevel;
 use crate::run::Run;
@@ -50,5 +52,22 @@ impl<'a> Setup<'a> {
     /// Its model, and the unknowns of it before condensation.
     pub(super) fn model(&self, blanks: Blanks) -> Result<(PairModel, u64), AnalysisError> {
         Ok(self.spec(blanks).model(self.parts, self.run)?)
+    }
+
+    /// The contacts of `model` at the positions of `sweep` under `load`, what `keep` takes of each, and the stiffness there.
+    pub(super) fn solved<T: Send>(
+        &self,
+        model: &PairModel,
+        load: f64,
+        sweep: &Sweep,
+        keep: impl Fn(&ContactCells<'_>, &ContactSolution) -> T + Sync,
+    ) -> Result<(Vec<MeshContact>, Vec<T>, Vec<f64>), AnalysisError> {
+        let made = model.deviating(self.deviations);
+        let middle = contacts_keeping(made, load, &sweep.positions, self.run, keep)?;
+        let (found, kept): (Vec<MeshContact>, Vec<T>) = middle.into_iter().unzip();
+        let stiffness = sweep.stiffness(load, &found, |load| {
+            Ok(contacts(made, load, &sweep.positions, self.run)?)
+        })?;
+        Ok((found, kept, stiffness))
     }
 }

@@ -1,117 +1,86 @@
 //! The methods that see the faces: both whole gears in three dimensions, contact along moving lines; at every position, or over one mesh
 //! period with what holes change added at first order.
 
-use super::case::FaceHoles;
 use std::sync::Arc;
 
 use faer::Mat;
 
-use super::between::{Sample, Sections};
-use super::case::{Faces, Place};
+use super::case::{Case, FaceHoles, Faces};
 use super::curve::{FaceLoad, LeadCure};
-use super::curve_parts::CurveParts;
-use super::evidence::Evidence;
 use super::face_stress::FaceStressModel;
-use super::first_order::{OnRound, with_holes};
+use super::first_order::with_holes;
+use super::found::Found;
 use super::plan::{Pass, Sweep};
-use super::warning::{warn_of_corner, warn_of_projection, warn_of_tips, warnings};
-use super::{Analysis, AnalysisError, Case};
+use super::under_load::curves;
+use super::warning::warn_of_corner;
+use super::{Analysis, AnalysisError};
 use crate::assembly::{FaceYield, FaceYieldSpec, Parts};
-use crate::contact::MeshContact;
-use crate::contact::face::even::{EvenLead, STRIPS, face_load_factor};
+use crate::contact::face::even::{STRIPS, face_load_factor};
 use crate::contact::face::{FaceContact, FaceModel, FlankYield};
+use crate::contact::{MeshContact, PairLoads};
 use crate::gear::Member;
 use crate::run::Run;
 
-/// A tip corner is told of from this part of the load: one of many slices touches nearly always.
-const TOLD: f64 = 0.005;
+/// There is a warning of a tip corner from this part of the load: one of many slices touches nearly always.
+const WARNED_OF: f64 = 0.005;
 
-/// Computes `case` along its faces at the grid level of `plan`.
+/// Computes `case` along its faces at the grid level of `pass`.
 pub(super) fn solve(
     (case, asked, holes): (&Case, &Faces, FaceHoles),
-    plan: &Pass,
+    pass: &Pass,
     parts: &dyn Parts,
     run: &Run,
 ) -> Result<Analysis, AnalysisError> {
-    let faces = &asked.at(plan.level);
+    let faces = &asked.at(pass.level);
     let yields = yields(faces, parts, run)?;
-    let degrees_of_freedom = yields.iter().map(|of| of.degrees_of_freedom()).sum();
-    let mut evidence = Evidence::new(degrees_of_freedom);
-    let mut warnings = warnings(case);
-    let mut curves = Vec::with_capacity(case.output_torques.len());
-    let pair = OfFaces::new((case, faces), plan, &yields, run);
-    let stress = plan
+    let unknowns = yields.iter().map(|of| of.degrees_of_freedom()).sum();
+    let stress = pass
         .stress
         .then(|| FaceStressModel::new(faces, &yields, parts, run));
     let stress = stress.transpose()?;
-    for &output_torque in &case.output_torques {
-        let load = case.pair.load(output_torque);
-        let solved = match holes {
-            FaceHoles::FirstOrder => {
-                let solved = pair.projected(load, &plan.told)?;
-                pair.checked(load, solved)?
-            }
-            FaceHoles::Whole => pair.whole(load, &plan.told)?,
-        };
-        let is_projected = holes == FaceHoles::FirstOrder;
-        let after = if is_projected {
-            case.contacts_repeat_after()
-        } else {
-            case.curves_repeat_after()
-        };
-        let samples = solved.samples(&case.places_after(
-            &plan.told.positions,
-            if is_projected { after } else { case.span() },
-        ));
-        let sections = plan.told.sections((case, after), samples, run, |sweep| {
-            let further = if is_projected {
-                pair.projected(load, sweep)?
-            } else {
-                pair.whole(load, sweep)?
-            };
-            evidence.gather(&further.meshes(), load);
-            Ok(further.samples(&case.places_after(&sweep.positions, after)))
-        })?;
-        evidence.gather(&solved.meshes(), load);
-        warn_of_tips(&mut warnings, &solved.meshes());
+    let pair = OfFaces::new((case, faces), &yields, run);
+    let find = |load: f64, sweep: &Sweep| match holes {
+        FaceHoles::FirstOrder => pair.projected(load, sweep),
+        FaceHoles::Whole => pair.whole(load, sweep),
+    };
+    curves((case, pass), unknowns, run, |under| {
+        let load = under.load;
+        let found = find(load, &pass.curve)?;
+        let mut parts = under.parts(&found, &[], |sweep, _| find(load, sweep))?;
         for member in Member::BOTH {
-            let shares = solved.contacts.iter();
+            let shares = found.kept.iter();
             let shares = shares.map(|contact| contact.corner_shares[member.index()]);
             let largest = shares.fold(0.0, f64::max);
-            if largest > TOLD {
-                warn_of_corner(&mut warnings, member, largest);
+            if largest > WARNED_OF {
+                warn_of_corner(under.warnings, member, largest);
             }
         }
-        let stresses = stress
-            .as_ref()
-            .map(|model| model.under(&solved.contacts, run));
-        let stresses = stresses.transpose()?;
-        let error = solved.error;
-        let even = pair.even_lead(load, &solved)?;
-        let mut parts = solved.into_parts(case, asked, sections);
-        parts.stresses = stresses;
-        if let Some(face) = &mut parts.face {
-            face.cure = even.map(|lead| LeadCure::of(lead, face.face_load_factor));
+        let stresses = stress.as_ref().map(|model| model.under(&found.kept, run));
+        parts.stresses = stresses.transpose()?;
+        let solved = match holes {
+            FaceHoles::FirstOrder => &pair.round,
+            FaceHoles::Whole => &pair.whole,
+        };
+        if holes == FaceHoles::FirstOrder {
+            under.check(&found, |positions| {
+                let exact = pair.whole.contacts(load, positions, run)?.into_iter();
+                Ok(exact.map(|each| each.mesh.transmission_error).collect())
+            })?;
         }
-        let curve = parts.into_curve(case, output_torque);
-        if let Some(error) = error {
-            let known = evidence.projection_error.unwrap_or(0.0);
-            evidence.projection_error = Some(error.max(known));
-            warn_of_projection(&mut warnings, error, &curve.transmission_error_statistics);
-        }
-        curves.push(curve);
-    }
-    Ok(Analysis {
-        curves,
-        evidence,
-        warnings,
+        let deltas = found.contacts.iter();
+        let deltas = deltas.map(|contact| contact.transmission_error);
+        let farthest = deltas.fold(f64::NEG_INFINITY, f64::max);
+        let even = solved.even_lead(load, &pass.evened, farthest, run)?;
+        let mut face = face_load(case, asked, &found.kept);
+        face.cure = even.map(|lead| LeadCure::of(lead, face.face_load_factor));
+        parts.face = Some(face);
+        Ok(parts)
     })
 }
 
 /// The models of a pair along its faces.
 struct OfFaces<'a> {
     case: &'a Case,
-    plan: &'a Pass,
     run: &'a Run,
     /// Both gears as drawn.
     whole: FaceModel,
@@ -121,29 +90,12 @@ struct OfFaces<'a> {
     uneven: Vec<Member>,
 }
 
-/// What was found under one load.
-struct Solved {
-    /// At every position, or at the repeating ones.
-    contacts: Vec<FaceContact>,
-    /// At every position.
-    transmission_error: Vec<f64>,
-    stiffness: Vec<f64>,
-    /// The largest difference to an exact solution, of those that were looked at.
-    error: Option<f64>,
-}
-
 impl<'a> OfFaces<'a> {
-    fn new(
-        (case, faces): (&'a Case, &Faces),
-        plan: &'a Pass,
-        yields: &[Arc<FaceYield>; 2],
-        run: &'a Run,
-    ) -> Self {
+    fn new((case, faces): (&'a Case, &Faces), yields: &[Arc<FaceYield>; 2], run: &'a Run) -> Self {
         let round = yields.each_ref().map(|of| Arc::new(of.round_average()));
         let uneven = |member: &Member| yields[member.index()].repeats_after() > 1;
         Self {
             case,
-            plan,
             run,
             whole: face_model(faces, yields),
             round: face_model(faces, &round),
@@ -152,125 +104,47 @@ impl<'a> OfFaces<'a> {
     }
 
     /// By a contact of the whole gears at every position.
-    fn whole(&self, load: f64, sweep: &Sweep) -> Result<Solved, AnalysisError> {
-        let (contacts, stiffness) = self.contacts(&self.whole, load, sweep)?;
-        let each = contacts.iter();
-        Ok(Solved {
-            transmission_error: each.map(|each| each.mesh.transmission_error).collect(),
-            contacts,
-            stiffness,
-            error: None,
-        })
+    fn whole(&self, load: f64, sweep: &Sweep) -> Result<Found<FaceContact>, AnalysisError> {
+        let solved = self.contacts(&self.whole, load, sweep)?;
+        let (contacts, faces, stiffness) = solved;
+        let task = (self.case, sweep);
+        Ok(Found::of_contacts(task, contacts, &stiffness, faces))
     }
 
     /// By the contacts of gears that are alike all around, and what holes change of them at first order.
-    fn projected(&self, load: f64, sweep: &Sweep) -> Result<Solved, AnalysisError> {
-        let (contacts, stiffness) = self.contacts(&self.round, load, sweep)?;
-        let loads: Vec<_> = contacts.iter().map(|each| self.round.loads(each)).collect();
-        let yielded = |model: &FaceModel, at: usize, periods: i64| {
+    fn projected(&self, load: f64, sweep: &Sweep) -> Result<Found<FaceContact>, AnalysisError> {
+        let (contacts, faces, stiffness) = self.contacts(&self.round, load, sweep)?;
+        let loads: Vec<_> = faces.iter().map(|each| self.round.loads(each)).collect();
+        let yielded = |model: &FaceModel, loads: &[PairLoads], periods: i64| {
             let of = self.uneven.iter();
-            of.map(|&member| model.yielded(member, &loads[at], periods))
+            of.map(|&member| model.yielded(member, loads, periods))
                 .fold([0.0; 2], |sum, of| [sum[0] + of[0], sum[1] + of[1]])
         };
-        let round: Vec<OnRound> = (0..contacts.len())
-            .map(|at| OnRound {
-                transmission_error: contacts[at].mesh.transmission_error,
-                stiffness: stiffness[at],
-                yielded: yielded(&self.round, at, 0),
-            })
-            .collect();
-        let found = with_holes(&self.case.places(&sweep.positions), &round, |place| {
-            yielded(&self.whole, place.contact, place.later)
-        });
-        Ok(Solved {
-            error: None,
-            contacts,
-            transmission_error: found.transmission_error,
-            stiffness: found.stiffness,
-        })
+        let found = with_holes(
+            (self.case, sweep),
+            (contacts, &stiffness),
+            loads,
+            |loads| yielded(&self.round, loads, 0),
+            |loads, place| yielded(&self.whole, loads, place.later),
+        );
+        Ok(found.keeping(faces))
     }
 
-    /// What was `solved` by projection, held against exact solutions.
-    fn checked(&self, load: f64, solved: Solved) -> Result<Solved, AnalysisError> {
-        let round = solved.contacts.iter().map(|each| each.mesh.stiffness);
-        let round: Vec<f64> = round.collect();
-        let places = self.plan.checks.places(self.case, &round);
-        let all = self.case.mesh_positions();
-        let positions: Vec<f64> = places.iter().map(|&place| all[place]).collect();
-        let exact = self.whole.contacts(load, &positions, self.run)?;
-        let apart = places.iter().zip(&exact).map(|(&place, exact)| {
-            (solved.transmission_error[place] - exact.mesh.transmission_error).abs()
-        });
-        Ok(Solved {
-            error: Some(apart.fold(0.0, f64::max)),
-            ..solved
-        })
-    }
-
-    /// The lead that evens the load on the pair that was `solved` for, where it is looked for.
-    fn even_lead(&self, load: f64, solved: &Solved) -> Result<Option<EvenLead>, AnalysisError> {
-        let model = if self.case.method().is_projected() {
-            &self.round
-        } else {
-            &self.whole
-        };
-        let deltas = solved.contacts.iter();
-        let deltas = deltas.map(|contact| contact.mesh.transmission_error);
-        let farthest = deltas.fold(f64::NEG_INFINITY, f64::max);
-        Ok(model.even_lead(load, &self.plan.evened, farthest, self.run)?)
-    }
-
-    /// The contacts of `model` of which the curves tell, and its stiffness there.
+    /// The contacts of `model` at the positions of `sweep`, their slices, and the stiffness there.
     fn contacts(
         &self,
         model: &FaceModel,
         load: f64,
         sweep: &Sweep,
-    ) -> Result<(Vec<FaceContact>, Vec<f64>), AnalysisError> {
+    ) -> Result<(Vec<MeshContact>, Vec<FaceContact>, Vec<f64>), AnalysisError> {
         let at = |load: f64| model.contacts(load, &sweep.positions, self.run);
-        let contacts = at(load)?;
-        let of_contacts = || contacts.iter().map(|each| each.mesh.stiffness).collect();
-        let stiffness = sweep.stiffness(load, of_contacts, |load| {
-            let contacts = at(load)?.into_iter();
-            Ok(contacts.map(|each| each.mesh.transmission_error).collect())
-        })?;
-        Ok((contacts, stiffness))
-    }
-}
-
-impl Solved {
-    fn meshes(&self) -> Vec<MeshContact> {
-        let each = self.contacts.iter();
-        each.map(|contact| contact.mesh.clone()).collect()
-    }
-
-    /// What is known at the `places` that they tell of.
-    fn samples(&self, places: &[Place]) -> Vec<Sample> {
-        // δ and k are known at each of them, or alike at all that a contact tells of.
-        let at = |of: &[f64]| -> Vec<f64> {
-            let each = places.iter().enumerate();
-            let own = of.len() == places.len();
-            each.map(|(i, place)| of[if own { i } else { place.contact }])
-                .collect()
+        let meshes = |faces: &[FaceContact]| -> Vec<MeshContact> {
+            faces.iter().map(|contact| contact.mesh.clone()).collect()
         };
-        let (delta, stiffness) = (at(&self.transmission_error), at(&self.stiffness));
-        Sample::of(places, &self.meshes(), &delta, &stiffness)
-    }
-
-    fn into_parts(self, case: &Case, faces: &Faces, sections: Sections) -> CurveParts {
-        let meshes = self.meshes();
-        let face = Some(face_load(case, faces, &self.contacts));
-        let told = if meshes.len() == case.positions() {
-            CurveParts::of_contacts(case, &meshes, Vec::new(), sections)
-        } else {
-            CurveParts::of_repeating(case, &meshes, sections)
-        };
-        CurveParts {
-            transmission_error: self.transmission_error,
-            stiffness: self.stiffness,
-            face,
-            ..told
-        }
+        let faces = at(load)?;
+        let contacts = meshes(&faces);
+        let stiffness = sweep.stiffness(load, &contacts, |load| Ok(meshes(&at(load)?)))?;
+        Ok((contacts, faces, stiffness))
     }
 }
 

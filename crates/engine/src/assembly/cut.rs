@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Carrier, GearSpec, PartError, Parts, Teeth};
+use super::{BlankUnderTeeth, GearSpec, PartError, Parts, Teeth};
 use crate::contact::FlankLoad;
 use crate::fem::FemError;
 use crate::ring::annulus::{Annulus, Imposed};
@@ -32,9 +32,9 @@ impl CutGear {
     ///
     /// [`PartError`].
     pub fn new(spec: &GearSpec, parts: &dyn Parts, run: &Run) -> Result<Self, PartError> {
-        let blank = spec.carrier.as_ref().map(|carrier| {
-            let blank = parts.blank(&carrier.blank, run)?;
-            CutBlank::new(carrier, blank, parts, run)
+        let blank = spec.blank.as_ref().map(|under| {
+            let blank = parts.blank(&under.spec, run)?;
+            CutBlank::new(under, blank, parts, run)
         });
         Ok(Self {
             teeth: parts.teeth(&spec.teeth, run)?,
@@ -83,16 +83,16 @@ impl CutGear {
 
 impl CutBlank {
     pub(super) fn new(
-        carrier: &Carrier,
+        under: &BlankUnderTeeth,
         blank: Arc<BlankSubstructure>,
         parts: &dyn Parts,
         run: &Run,
     ) -> Result<Self, PartError> {
-        let solid = carrier.solid().map(|solid| parts.blank(&solid, run));
+        let solid = under.solid().map(|solid| parts.blank(&solid, run));
         Ok(Self {
             blank,
             solid: solid.transpose()?,
-            hole_angle: carrier.hole_angle,
+            hole_angle: under.hole_angle,
         })
     }
 }

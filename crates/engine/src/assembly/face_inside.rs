@@ -10,9 +10,9 @@ use std::sync::Arc;
 use faer::{Mat, c64};
 use rayon::prelude::*;
 
-use super::carrier::Stack;
 use super::flank_forces::{FlankForces, PressedFlank};
 use super::holed::{HoledSection, block};
+use super::stack::Stack;
 use super::{FaceYield, FaceYieldSpec, PartError, Parts, PlainFace};
 use crate::fem::FemError;
 use crate::fem::axial::AxialBasis;
@@ -181,10 +181,15 @@ impl FaceInside {
             let force = on_web?.get(order.unsigned_abs() as usize)?;
             Some(self.plain.web()?.on_interface(order, force))
         };
-        let classes = forced(&tooth, self.plain.carriers(), (on_flank, on_order), run)?;
+        let classes = forced(
+            &tooth,
+            self.plain.stiffness_below(),
+            (on_flank, on_order),
+            run,
+        )?;
         let mut moved = MovedTeeth {
             interfaces: vec![Vec::new(); z],
-            circle: vec![Mat::zeros(sector.size, 1); self.plain.carriers().len()],
+            circle: vec![Mat::zeros(sector.size, 1); self.plain.stiffness_below().len()],
         };
         for class in &classes {
             let motion = &class.motion * faer::Scale(c64::new(1.0 / z as f64, 0.0));

@@ -5,10 +5,10 @@
 
 use faer::Mat;
 
-use super::carrier::Stack;
 use super::flank_fit::{FlankFit, smoothed_rows};
 use super::flank_forces::{FlankForces, PressedFlank};
 use super::flank_polynomials::OTHER_DEGREE;
+use super::stack::Stack;
 use super::{FaceResolution, FaceYield, PartError, PlainFace};
 use crate::fem::axial::AxialBasis;
 use crate::fem::dense::entries;
@@ -70,7 +70,7 @@ impl FaceRoots {
         let (tooth, rows) = SolidTooth::with_nodes(gear, &grid, &stack.face, &fillets.nodes())?;
         run.check()?;
         let seen = plain.web().map(|web| web.largest());
-        let classes = motions(&tooth, plain.carriers(), seen, run)?;
+        let classes = motions(&tooth, plain.stiffness_below(), seen, run)?;
         let (sector, z, m) = (&tooth.sector, tooth.sector.count, stack.face.len());
 
         let by_flank = classes

@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use faer::{Mat, c64};
 
-use super::carrier::{Carrier, Stack};
 use super::flank_ends::FlankEnds;
 use super::flank_fit::{FlankFit, smoothed, smoothed_rows};
 use super::flank_polynomials::{OWN_DEGREE, up_the_flank};
 use super::holed::{HoledChange, SeenWeb, condensed_unknowns};
+use super::stack::{Stack, StackStiffness};
 use super::{FaceResolution, PartError};
 use crate::fem::axial::AxialBasis;
 use crate::fem::dense::{entries, symmetrize};
@@ -36,7 +36,7 @@ pub struct PlainFace {
     /// What tooth d yields to tooth 0, d = 0 … [`farthest`], or half way around.
     blocks: Vec<Mat<f64>>,
     /// The stiffness of each order of the interface circle.
-    carriers: Vec<Mat<c64>>,
+    stiffness_below: Vec<Mat<c64>>,
     web: Option<SeenWeb>,
     degrees_of_freedom: u64,
 }
@@ -127,15 +127,15 @@ impl PlainFace {
         let section = gear.section().without_blank();
         let grid = ToothGrid::of_prism(&section, stack.interface_radius, stack.sections)?;
         run.check()?;
-        let (tooth, carrier) = rayon::join(
+        let (tooth, below) = rayon::join(
             || SolidTooth::new(gear, &grid, &stack.face),
-            || Carrier::new(stack, run),
+            || StackStiffness::new(stack, run),
         );
-        let (tooth, carrier) = (tooth?, carrier?);
-        let seen = carrier.web.as_ref().map(|web| web.largest);
-        let classes = answers(&tooth, &carrier.stiffness, seen, run)?;
+        let (tooth, below) = (tooth?, below?);
+        let seen = below.web.as_ref().map(|web| web.largest);
+        let classes = answers(&tooth, &below.stiffness, seen, run)?;
         let flank = FlankFit::new(gear, &stack.face, &tooth.roll_lengths);
-        let web = carrier.web.map(|web| {
+        let web = below.web.map(|web| {
             let smoothing = flank.smoothing();
             let onto = |answers: &Mat<c64>| {
                 smoothed_rows(
@@ -151,7 +151,7 @@ impl PlainFace {
             squares: flank.squares,
             ends: FlankEnds::new(gear),
             blocks: blocks(&tooth, &classes, &flank, farthest(gear)),
-            carriers: carrier.stiffness,
+            stiffness_below: below.stiffness,
             web,
             degrees_of_freedom: (own * tooth.sector.size * tooth.sector.count) as u64,
         })
@@ -160,17 +160,17 @@ impl PlainFace {
     /// The number of entries, for the books of a cache.
     pub fn entries(&self) -> usize {
         let blocks: usize = self.blocks.iter().map(entries).sum();
-        let carriers: usize = self
-            .carriers
+        let stiffness_below: usize = self
+            .stiffness_below
             .iter()
             .map(|of| 2 * of.nrows() * of.ncols())
             .sum();
-        blocks + carriers + self.web.as_ref().map_or(0, SeenWeb::entries)
+        blocks + stiffness_below + self.web.as_ref().map_or(0, SeenWeb::entries)
     }
 
     /// The stiffness of each order of the interface circle, without holes.
-    pub(crate) fn carriers(&self) -> &[Mat<c64>] {
-        &self.carriers
+    pub(crate) fn stiffness_below(&self) -> &[Mat<c64>] {
+        &self.stiffness_below
     }
 
     /// The web as the teeth see it, where it has holes.
@@ -211,7 +211,7 @@ impl FaceYield {
             squares: flank.squares,
             ends: FlankEnds::new(gear),
             blocks: vec![flank.own(&compliance)],
-            carriers: Vec::new(),
+            stiffness_below: Vec::new(),
             web: None,
             degrees_of_freedom: degrees_of_freedom as u64,
         };

@@ -1,4 +1,4 @@
-//! Whole gears: the teeth of each joined with what carries them.
+//! Whole gears: the teeth of each joined with the blank under them.
 
 use std::sync::Arc;
 
@@ -15,15 +15,15 @@ use crate::run::Run;
 pub struct GearSpec {
     /// Its teeth.
     pub teeth: TeethSpec,
-    /// What carries them; `None` for a blank that does not give way, so that the interface circle is held (paper: wh).
-    pub carrier: Option<Carrier>,
+    /// The blank under them; `None` for one that does not give way, so that the interface circle is held (paper: wh).
+    pub blank: Option<BlankUnderTeeth>,
 }
 
 /// A flexible blank under the teeth of a gear.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Carrier {
-    /// The blank.
-    pub blank: BlankSpec,
+pub struct BlankUnderTeeth {
+    /// The blank by itself.
+    pub spec: BlankSpec,
     /// The angle of its hole 0 in radians.
     pub hole_angle: f64,
     /// How far apart, in teeth, loaded teeth are coupled.
@@ -62,7 +62,7 @@ impl GearSpec {
     pub fn on_rigid_blank(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Self {
         Self {
             teeth: TeethSpec::new(gear, interface_radius, level),
-            carrier: None,
+            blank: None,
         }
     }
 
@@ -75,8 +75,8 @@ impl GearSpec {
     ) -> Self {
         Self {
             teeth: TeethSpec::new(gear, interface_radius, level),
-            carrier: Some(Carrier {
-                blank: BlankSpec::new(gear, interface_radius, level),
+            blank: Some(BlankUnderTeeth {
+                spec: BlankSpec::new(gear, interface_radius, level),
                 hole_angle: gear.hole_angle(),
                 farthest,
             }),
@@ -89,7 +89,7 @@ impl GearSpec {
     ///
     /// [`PartError`].
     pub fn grids(&self) -> Result<GearGrids, PartError> {
-        let blank = self.carrier.as_ref().map(|carrier| carrier.blank.grid());
+        let blank = self.blank.as_ref().map(|blank| blank.spec.grid());
         Ok(GearGrids {
             tooth: self.teeth.grid()?,
             blank: blank.transpose()?,
@@ -98,11 +98,11 @@ impl GearSpec {
 
     /// The blanks of which it is made: its own, and the solid one that its highest orders find, where they do.
     pub(super) fn blanks(&self) -> Vec<BlankSpec> {
-        let Some(carrier) = &self.carrier else {
+        let Some(blank) = &self.blank else {
             return Vec::new();
         };
-        let own = carrier.blank.clone();
-        [own].into_iter().chain(carrier.solid()).collect()
+        let own = blank.spec.clone();
+        [own].into_iter().chain(blank.solid()).collect()
     }
 
     /// Joins `teeth` with the `blanks` of [`GearSpec::blanks`].
@@ -112,9 +112,9 @@ impl GearSpec {
         blanks: &[Arc<BlankSubstructure>],
         run: &Run,
     ) -> Result<Gear, PartError> {
-        let (coupling, blank_nodes) = match (&self.carrier, blanks) {
-            (Some(carrier), [blank, solid @ ..]) => {
-                (carrier.couple(teeth, blank, solid, run)?, blank.grid_nodes)
+        let (coupling, blank_nodes) = match (&self.blank, blanks) {
+            (Some(under), [blank, solid @ ..]) => {
+                (under.couple(teeth, blank, solid, run)?, blank.grid_nodes)
             }
             _ => (teeth.on_rigid_blank.clone(), 0),
         };
@@ -128,11 +128,11 @@ impl GearSpec {
     }
 }
 
-impl Carrier {
+impl BlankUnderTeeth {
     /// The solid blank that the orders above those of its own find, if there are any.
     pub(super) fn solid(&self) -> Option<BlankSpec> {
-        let solid = self.blank.solid();
-        (self.blank.orders() != solid.orders()).then_some(solid)
+        let solid = self.spec.solid();
+        (self.spec.orders() != solid.orders()).then_some(solid)
     }
 
     /// How `teeth` move each other on `blank`, of which orders above its own find the `solid` one, if there are any.

@@ -9,7 +9,7 @@ use faer::linalg::solvers::Solve as _;
 use faer::{Mat, c64};
 
 use super::PartError;
-use super::carrier::{Stack, WebPorts};
+use super::stack::{Stack, WebPorts};
 use crate::fem::FemError;
 use crate::fem::axial::AxialBasis;
 use crate::fem::dense::entries;

@@ -65,10 +65,10 @@ impl Inside {
         let (tooth, rows) = ToothSubstructure::with_recovery(gear, &grids.tooth, &probes.in_tooth)?;
         run.check()?;
         let in_tooth = TeethRecovery::new(&tooth, &rows, teeth.ring.harmonics, run)?;
-        let carried = spec.carrier.as_ref().zip(grids.blank.as_ref());
-        let made = carried.map(|(carrier, grid)| {
-            let (blank, recovery) = carrier.blank.make_with(grid, &probes.in_blank, run)?;
-            let cut = CutBlank::new(carrier, Arc::new(blank), parts, run)?;
+        let blank = spec.blank.as_ref().zip(grids.blank.as_ref());
+        let made = blank.map(|(under, grid)| {
+            let (blank, recovery) = under.spec.make_with(grid, &probes.in_blank, run)?;
+            let cut = CutBlank::new(under, Arc::new(blank), parts, run)?;
             Ok::<_, PartError>((cut, recovery))
         });
         let (blank, in_blank) = made.transpose()?.unzip();

@@ -1,15 +1,14 @@
 //! From the drawings of two gears to a pair that is ready for contact.
 //!
 //! In reading order: [`interface`] (the circle on which teeth and blank meet), [`teeth`] (all teeth of a gear down to it),
-//! [`blank`] (what carries them), [`gear`] (both joined), [`pair_spec`] and `pair` (two gears and the rules of their contact);
-//! along faces [`face_yield`] (what carries the teeth and what holes change: `carrier`, `holed`; how it becomes polynomials: `flank_fit`, `half_space`, `flank_ends`), [`face_roots`] and [`face_holes`] (how it is stressed at its roots and at its holes), [`face_inside`] (how all of it moves);
+//! [`blank`] (what they stand on), [`gear`] (both joined), [`pair_spec`] and `pair` (two gears and the rules of their contact);
+//! along faces [`face_yield`] (the parts under the teeth, and what holes change: `stack`, `holed`; how it becomes polynomials: `flank_fit`, `half_space`, `flank_ends`), [`face_roots`] and [`face_holes`] (how it is stressed at its roots and at its holes), [`face_inside`] (how all of it moves);
 //! beside them [`cut`] (a gear parted at that circle again) and [`inside`] (what goes on in a gear whose flanks are loaded).
 //!
 //! Each part is a pure function of its *spec*, a value that says all that the part depends on. Equal specs are equal parts;
 //! who makes them, and whether anyone keeps them, is asked of [`Parts`].
 
 pub mod blank;
-mod carrier;
 pub mod cut;
 mod error;
 pub mod face_holes;
@@ -29,10 +28,10 @@ pub mod interface;
 mod pair;
 pub mod pair_spec;
 mod parts;
+mod stack;
 pub mod teeth;
 
 pub use blank::BlankSpec;
-pub use carrier::Stack;
 pub use cut::CutGear;
 pub use error::{AssemblyError, PartError};
 pub use face_holes::FaceHoles;
@@ -41,8 +40,9 @@ pub use face_resolution::FaceResolution;
 pub use face_roots::FaceRoots;
 pub use face_yield::{FaceYield, FaceYieldSpec, PlainFace};
 pub use flank_forces::FlankForces;
-pub use gear::{Carrier, Gear, GearGrids, GearSpec, WantedGear};
+pub use gear::{BlankUnderTeeth, Gear, GearGrids, GearSpec, WantedGear};
 pub use inside::{Inside, Probes};
 pub use pair_spec::{Blanks, ContactsSpec, FlanksSpec, Modeling, PairSpec};
 pub use parts::{MakeAll, Parts, make_gears};
+pub use stack::Stack;
 pub use teeth::{Teeth, TeethSpec};

@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::carrier::Stack;
 use super::face_holes::FaceHoles;
 use super::face_roots::FaceRoots;
 use super::face_yield::{FaceYield, FaceYieldSpec, PlainFace};
 use super::pair_spec::{ContactsSpec, FlanksSpec, PairSpec};
+use super::stack::Stack;
 use super::{AssemblyError, BlankSpec, Gear, PartError, Teeth, TeethSpec, WantedGear};
 
 use crate::contact::compliances::Compliances;
@@ -118,7 +118,7 @@ pub trait Parts: Sync {
         model: &PairModel,
         run: &Run,
     ) -> Result<Arc<Vec<MeshContact>>, PositionsError> {
-        let made = model.made(&spec.deviations);
+        let made = model.deviating(&spec.deviations);
         contacts(made, spec.load, &spec.positions, run).map(Arc::new)
     }
 }

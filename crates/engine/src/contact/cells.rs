@@ -3,10 +3,10 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, Par};
+use faer::Mat;
 
 use super::compliances::Known;
+use super::coupled::{Touching, add_coupled, mirror};
 use super::drawn::DrawnPair;
 use super::facing::RangeEnd;
 use super::facings::Near;
@@ -16,7 +16,9 @@ use super::meeting::Standing;
 use super::mesh_contact::{
     FlankLoad, MeshCells, MeshContact, PairContact, PairInfluence, PairLoads,
 };
-use super::model::{ContactSolver, MadePair, PositionError, WarmPair, WarmStart};
+use super::model::{
+    ContactSolver, DeviatingPair, MeshPosition, PositionError, WarmPair, WarmStart,
+};
 use super::pair_cells::PairCells;
 use super::patch::Extent;
 use super::wide::{Loops, wide};
@@ -49,18 +51,16 @@ pub(super) enum Want {
 ///
 /// Cells are numbered pair after pair, pairs from the reference pair of the period.
 pub struct ContactCells<'a> {
-    made: MadePair<'a>,
-    /// Of the mesh period.
-    fraction: f64,
-    pub(super) period: i64,
-    pub(super) laid: Vec<Laid>,
+    deviating: DeviatingPair<'a>,
+    pub(super) at: MeshPosition,
+    pub(super) placed: Vec<PlacedCells>,
     /// Where the cells of each pair begin.
     starts: Vec<usize>,
 }
 
 /// The cells of one pair with the deviations of the teeth that stand there.
 #[derive(Debug, Clone)]
-pub(super) struct Laid {
+pub(super) struct PlacedCells {
     /// From the reference pair of the mesh period.
     pub(super) pair: i64,
     pub(super) drawn: DrawnPair,
@@ -74,7 +74,7 @@ pub(super) struct Laid {
     pub(super) lag: f64,
 }
 
-impl Laid {
+impl PlacedCells {
     /// `cells` on the pair `near` as it is `standing` with a driven gear that lags by `lag`; `None` where there are none.
     pub(super) fn new(
         near: &Near,
@@ -139,47 +139,46 @@ impl Laid {
     /// Its cells.
     pub(super) fn cells(&self) -> &PairCells {
         // There is none without.
-        Option::as_ref(&self.cells).expect("cells that were laid")
+        Option::as_ref(&self.cells).expect("cells that were placed")
     }
 }
 
 impl<'a> ContactCells<'a> {
-    /// Those of `laid`, at the `fraction` of mesh period `period` of `made`.
+    /// Those of `placed`, at a mesh position of `deviating`.
     ///
     /// # Errors
     ///
     /// [`PositionError::TooFarApart`] if the model does not couple all of their teeth.
     pub(super) fn new(
-        made: MadePair<'a>,
-        (fraction, period): (f64, i64),
-        mut laid: Vec<Laid>,
+        deviating: DeviatingPair<'a>,
+        at: MeshPosition,
+        mut placed: Vec<PlacedCells>,
     ) -> Result<Self, PositionError> {
-        laid.sort_by_key(|laid| laid.pair);
-        let (Some(first), Some(last)) = (laid.first(), laid.last()) else {
+        placed.sort_by_key(|placed| placed.pair);
+        let (Some(first), Some(last)) = (placed.first(), placed.last()) else {
             return Err(PositionError::NoContact);
         };
         let apart = last.pair.abs_diff(first.pair) as usize;
-        let coupled = made.model.coupled_teeth();
+        let coupled = deviating.model.coupled_teeth();
         if apart > coupled {
             return Err(PositionError::TooFarApart { apart, coupled });
         }
         let mut starts = vec![0];
-        for laid in &laid {
-            starts.push(starts[starts.len() - 1] + laid.gaps.len());
+        for placed in &placed {
+            starts.push(starts[starts.len() - 1] + placed.gaps.len());
         }
         Ok(Self {
-            made,
-            fraction,
-            period,
-            laid,
+            deviating,
+            at,
+            placed,
             starts,
         })
     }
 
     /// The pairs, and the cells of each.
-    pub(super) fn ranges(&self) -> impl Iterator<Item = (&Laid, Range<usize>)> {
+    pub(super) fn ranges(&self) -> impl Iterator<Item = (&PlacedCells, Range<usize>)> {
         let ranges = self.starts.windows(2).map(|range| range[0]..range[1]);
-        self.laid.iter().zip(ranges)
+        self.placed.iter().zip(ranges)
     }
 
     /// How the interfaces of each pair move under the `forces` on all cells: that of the driving gear, and behind it that of the driven one.
@@ -193,20 +192,20 @@ impl<'a> ContactCells<'a> {
     /// What the compliance of these cells depends on beside the cells themselves: how the blanks stand under their teeth.
     pub(super) fn teeth_like(&self) -> [usize; 2] {
         Member::BOTH.map(|member| {
-            let coupling = &self.made.model.gears[member.index()].coupling;
-            coupling.like(self.made.model.pair.tooth(member, self.period))
+            let coupling = &self.deviating.model.gears[member.index()].coupling;
+            coupling.like(self.deviating.model.pair.tooth(member, self.at.period))
         })
     }
 
     /// The problem on these cells, whose compliance is `known`.
     pub(super) fn problem(&self, known: &Known) -> Result<ContactProblem, PositionError> {
-        let each = self.laid.iter();
+        let each = self.placed.iter();
         let gaps = each
             .clone()
-            .flat_map(|laid| laid.gaps.iter().copied())
+            .flat_map(|placed| placed.gaps.iter().copied())
             .collect();
         let arms = each
-            .flat_map(|laid| laid.arms.iter().map(|arms| arms[1]))
+            .flat_map(|placed| placed.arms.iter().map(|arms| arms[1]))
             .collect();
         Ok(ContactProblem::of_known(known, gaps, arms)?)
     }
@@ -218,7 +217,7 @@ impl<'a> ContactCells<'a> {
         load: f64,
         warm: &WarmStart,
     ) -> Result<ContactSolution, PositionError> {
-        Ok(match self.made.model.solver {
+        Ok(match self.deviating.model.solver {
             ContactSolver::ActiveSet => {
                 solve_active_set(problem, load, self.touching(warm, load).as_deref())?
             }
@@ -227,58 +226,38 @@ impl<'a> ContactCells<'a> {
                 gap_tolerance,
             } => {
                 let settings = AugmentedLagrangian {
-                    penalty: penalty.unwrap_or_else(|| default_penalty(&self.made.model.pair)),
+                    penalty: penalty.unwrap_or_else(|| default_penalty(&self.deviating.model.pair)),
                     gap_tolerance,
                     max_iterations: MULTIPLIER_UPDATES,
                 };
-                solve_augmented_lagrangian(problem, load, &settings, &self.made.model.run)?
+                solve_augmented_lagrangian(problem, load, &settings, &self.deviating.model.run)?
             }
         })
     }
 
     /// H of both gears with these teeth.
     pub(super) fn compliance(&self) -> Mat<f64> {
-        let model = self.made.model;
-        let count = self.starts[self.laid.len()];
+        let model = self.deviating.model;
+        let count = self.starts[self.placed.len()];
         let mut h = Mat::zeros(count, count);
-        for (laid, range) in self.ranges() {
+        for (placed, range) in self.ranges() {
             let here = range.len();
             h.as_mut()
                 .submatrix_mut(range.start, range.start, here, here)
-                .copy_from(&laid.cells().held);
+                .copy_from(&placed.cells().held);
         }
         for member in Member::BOTH {
-            let gear = member.index();
-            for (b, other) in self.laid.iter().enumerate() {
-                let of_other = other.cells().shapes[gear].transpose();
-                for (a, laid) in self.laid.iter().enumerate().skip(b) {
-                    let (x, transposed) = model.gears[gear].coupling.block(
-                        model.pair.tooth(member, self.period + laid.pair),
-                        teeth_on(member, other.pair - laid.pair),
-                    );
-                    let half = if transposed {
-                        x.transpose() * of_other
-                    } else {
-                        x * of_other
-                    };
-                    let (rows, columns) = (laid.gaps.len(), other.gaps.len());
-                    matmul(
-                        h.as_mut()
-                            .submatrix_mut(self.starts[a], self.starts[b], rows, columns),
-                        Accum::Add,
-                        &laid.cells().shapes[gear],
-                        half,
-                        1.0,
-                        Par::Seq,
-                    );
-                }
-            }
+            let pairs = self.ranges().map(|(placed, range)| Touching {
+                pair: placed.pair,
+                start: range.start,
+                shapes: placed.cells().shapes[member.index()].as_ref(),
+            });
+            let pairs: Vec<Touching<'_>> = pairs.collect();
+            add_coupled(&mut h, &pairs, |a, b| {
+                model.coupling(member, self.at.period, [a, b])
+            });
         }
-        for column in 1..count {
-            for row in 0..column {
-                h[(row, column)] = h[(column, row)];
-            }
-        }
+        mirror(&mut h);
         h
     }
 
@@ -288,16 +267,16 @@ impl<'a> ContactCells<'a> {
         solution: &ContactSolution,
         found: &Found,
     ) -> MeshContact {
-        let width = self.made.model.pair.common_face_width();
+        let width = self.deviating.model.pair.common_face_width();
         let mut peak_pressure = Some(0.0_f64);
         let mut peak_place = None;
         let pairs = self
             .ranges()
-            .map(|(laid, range)| {
-                let patch = &laid.cells().patch;
+            .map(|(placed, range)| {
+                let patch = &placed.cells().patch;
                 let forces = &solution.forces[range.clone()];
                 let active = &solution.active[range.clone()];
-                let carried = laid.arms.iter().zip(forces);
+                let carried = placed.arms.iter().zip(forces);
                 let share = carried.map(|(arms, p)| arms[1] * p).sum::<f64>() / load;
                 let ended = patch.ended_by(active);
                 let at_corner = ended
@@ -310,7 +289,7 @@ impl<'a> ContactCells<'a> {
                         let pressure = p / (cell.width * width);
                         if pressure > peak {
                             peak_place = Some(PeakPlace {
-                                pair: self.period + laid.pair,
+                                pair: self.at.period + placed.pair,
                                 roll_lengths: cell.roll_lengths,
                                 z: None,
                                 half_width: patch.half_width_about(i, active),
@@ -319,10 +298,10 @@ impl<'a> ContactCells<'a> {
                         peak.max(pressure)
                     })
                 });
-                let clearance = laid.arms.iter().zip(&solution.gaps[range]);
+                let clearance = placed.arms.iter().zip(&solution.gaps[range]);
                 let clearance = clearance.map(|(arms, gap)| gap / arms[1]);
                 PairContact {
-                    pair: self.period + laid.pair,
+                    pair: self.at.period + placed.pair,
                     share,
                     clearance: (share <= 0.0).then(|| clearance.fold(f64::INFINITY, f64::min)),
                     tip_corner: (patch.off_path && share > 0.0).then_some(patch.seat),
@@ -336,16 +315,16 @@ impl<'a> ContactCells<'a> {
                         .or_else(|| {
                             let mut fillets = found.fillets.iter();
                             fillets
-                                .find(|(pair, _)| *pair == laid.pair)
+                                .find(|(pair, _)| *pair == placed.pair)
                                 .map(|(_, gear)| *gear)
                         }),
                 }
             })
             .collect();
         let driving_arms = self
-            .laid
+            .placed
             .iter()
-            .flat_map(|laid| &laid.arms)
+            .flat_map(|placed| &placed.arms)
             .map(|arms| arms[0]);
         let driving_load = driving_arms.zip(&solution.forces).map(|(w, p)| w * p).sum();
         let complementarity = solution
@@ -374,10 +353,10 @@ impl<'a> ContactCells<'a> {
         problem: ContactProblem,
         solution: ContactSolution,
     ) -> MeshCells {
-        let patches = self.laid.iter();
+        let patches = self.placed.iter();
         MeshCells {
             patches: patches
-                .map(|laid| (self.period + laid.pair, laid.cells().patch.clone()))
+                .map(|placed| (self.at.period + placed.pair, placed.cells().patch.clone()))
                 .collect(),
             problem,
             solution,
@@ -391,13 +370,13 @@ impl<'a> ContactCells<'a> {
     pub fn influences(&self, solution: &ContactSolution) -> Vec<PairInfluence> {
         /// Far above the rounding of gaps, far below any length over which they curve.
         const STEP: f64 = 1e-7;
-        let pair = &self.made.model.pair;
+        let pair = &self.deviating.model.pair;
         let delta = solution.transmission_error;
-        let of_pair = |laid: &Laid, range: Range<usize>| {
-            let (eta, n) = (self.fraction + self.period as f64, self.period + laid.pair);
-            let patch = &laid.cells().patch;
-            let place = (patch.seat, laid.drawn.phase);
-            let standing = self.made.standing(eta, n, laid.lag, place);
+        let of_pair = |placed: &PlacedCells, range: Range<usize>| {
+            let (eta, n) = (self.at.eta(), self.at.period + placed.pair);
+            let patch = &placed.cells().patch;
+            let place = (patch.seat, placed.drawn.phase);
+            let standing = self.deviating.standing(eta, n, placed.lag, place);
             let (q, p) = (
                 &solution.load_derivative[range.clone()],
                 &solution.forces[range],
@@ -412,7 +391,7 @@ impl<'a> ContactCells<'a> {
                 let each = touching.map(|((more, less), (q, p))| {
                     let opens = more.gap - less.gap;
                     let arm = more.arms[1] - less.arms[1];
-                    q * (opens - (delta - laid.lag) * arm) - p * arm / solution.stiffness
+                    q * (opens - (delta - placed.lag) * arm) - p * arm / solution.stiffness
                 });
                 each.sum::<f64>() / (2.0 * STEP)
             };
@@ -432,19 +411,19 @@ impl<'a> ContactCells<'a> {
             }
         };
         self.ranges()
-            .map(|(laid, range)| of_pair(laid, range))
+            .map(|(placed, range)| of_pair(placed, range))
             .collect()
     }
 
     /// What the `forces` on all cells load the interfaces of each pair with, one column each.
     pub fn loads(&self, forces: &[&[f64]]) -> Vec<PairLoads> {
         self.ranges()
-            .map(|(laid, range)| {
+            .map(|(placed, range)| {
                 let forces =
                     Mat::from_fn(range.len(), forces.len(), |i, j| forces[j][range.start + i]);
-                let shapes = &laid.cells().shapes;
+                let shapes = &placed.cells().shapes;
                 PairLoads {
-                    pair: laid.pair,
+                    pair: placed.pair,
                     loads: std::array::from_fn(|gear| shapes[gear].transpose() * &forces),
                 }
             })
@@ -453,14 +432,14 @@ impl<'a> ContactCells<'a> {
 
     /// What the `forces` on all cells are on the flanks of `member`, tooth by tooth of those that carry any.
     pub fn flank_loads(&self, member: Member, forces: &[f64]) -> Vec<FlankLoad> {
-        let (gear, pair) = (member.index(), &self.made.model.pair);
-        let flank = &self.made.model.gears[gear].flank;
+        let (gear, pair) = (member.index(), &self.deviating.model.pair);
+        let flank = &self.deviating.model.gears[gear].flank;
         self.ranges()
-            .map(|(laid, range)| (laid, &forces[range]))
+            .map(|(placed, range)| (placed, &forces[range]))
             .filter(|(_, forces)| forces.iter().any(|force| *force > 0.0))
-            .map(|(laid, forces)| FlankLoad {
-                tooth: pair.tooth(member, self.period + laid.pair),
-                forces: laid.cells().nodal_forces(flank, gear, forces),
+            .map(|(placed, forces)| FlankLoad {
+                tooth: pair.tooth(member, self.at.period + placed.pair),
+                forces: placed.cells().nodal_forces(flank, gear, forces),
             })
             .collect()
     }
@@ -471,9 +450,9 @@ impl<'a> ContactCells<'a> {
     /// carries it touches wherever its gap is no deeper than such a force closed before.
     fn touching(&self, warm: &WarmStart, load: f64) -> Option<Vec<bool>> {
         let known: Vec<&WarmPair> = self
-            .laid
+            .placed
             .iter()
-            .filter_map(|laid| warm.pairs.iter().find(|pair| pair.pair == laid.pair))
+            .filter_map(|placed| warm.pairs.iter().find(|pair| pair.pair == placed.pair))
             .collect();
         if known.is_empty() {
             return None;
@@ -485,12 +464,12 @@ impl<'a> ContactCells<'a> {
             mean(|pair| pair.stiffness),
             [mean(|pair| pair.closed[0]), mean(|pair| pair.closed[1])],
         );
-        let spring = |laid: &Laid| {
-            let known = warm.pairs.iter().find(|pair| pair.pair == laid.pair);
+        let spring = |placed: &PlacedCells| {
+            let known = warm.pairs.iter().find(|pair| pair.pair == placed.pair);
             let known = known.map(|pair| (pair.stiffness, pair.closed));
-            (laid.first(), known.unwrap_or(usual))
+            (placed.first(), known.unwrap_or(usual))
         };
-        let springs: Vec<_> = self.laid.iter().map(spring).collect();
+        let springs: Vec<_> = self.placed.iter().map(spring).collect();
         let mut rising: Vec<(f64, f64)> = springs
             .iter()
             .map(|&((_, touch), (spring, _))| (touch, spring))
@@ -506,14 +485,18 @@ impl<'a> ContactCells<'a> {
             moment += spring * touch;
             delta = (load + moment) / stiffness;
         }
-        let touching = self.laid.iter().zip(&springs).flat_map(|(laid, spring)| {
-            let &((first, touch), (stiffness, closed)) = spring;
-            let force = stiffness * (delta - touch);
-            let cells = laid.gaps.iter().zip(&laid.arms).enumerate();
-            cells.map(move |(cell, (gap, arms))| {
-                gap / arms[1] - touch <= force * closed[usize::from(cell > first)]
-            })
-        });
+        let touching = self
+            .placed
+            .iter()
+            .zip(&springs)
+            .flat_map(|(placed, spring)| {
+                let &((first, touch), (stiffness, closed)) = spring;
+                let force = stiffness * (delta - touch);
+                let cells = placed.gaps.iter().zip(&placed.arms).enumerate();
+                cells.map(move |(cell, (gap, arms))| {
+                    gap / arms[1] - touch <= force * closed[usize::from(cell > first)]
+                })
+            });
         Some(touching.collect())
     }
 
@@ -525,25 +508,26 @@ impl<'a> ContactCells<'a> {
         found: &Found,
         deep: f64,
     ) -> Vec<(i64, Want)> {
-        let room = self.ranges().filter_map(|(laid, range)| {
-            let patch = &laid.cells().patch;
+        let room = self.ranges().filter_map(|(placed, range)| {
+            let patch = &placed.cells().patch;
             let active = &solution.active[range];
-            let beside = found.beside.contains(&laid.pair);
+            let beside = found.beside.contains(&placed.pair);
             let wants = patch.can_widen() && (beside || patch.overflows(active));
             let moved = patch.off_middle(active);
-            wants.then_some((laid.pair, Want::Room { moved }))
+            wants.then_some((placed.pair, Want::Room { moved }))
         });
         let room: Vec<(i64, Want)> = room.collect();
         if !room.is_empty() {
             return room;
         }
-        let deepest = |laid: &Laid| found.between.get(&laid.pair).copied().unwrap_or(0.0);
-        let halves = self.laid.iter().filter(|laid| {
-            laid.extent.halved < MOST_HALVED
-                && laid.cells().patch.cells.len() <= MOST_TO_HALVE
-                && deepest(laid) > deep
+        let deepest =
+            |placed: &PlacedCells| found.between.get(&placed.pair).copied().unwrap_or(0.0);
+        let halves = self.placed.iter().filter(|placed| {
+            placed.extent.halved < MOST_HALVED
+                && placed.cells().patch.cells.len() <= MOST_TO_HALVE
+                && deepest(placed) > deep
         });
-        halves.map(|laid| (laid.pair, Want::Halves)).collect()
+        halves.map(|placed| (placed.pair, Want::Halves)).collect()
     }
 
     /// What a force in the middle of one pair yields in the middle of the next, in the mean.
@@ -558,7 +542,7 @@ impl<'a> ContactCells<'a> {
         (count > 0).then(|| yields.sum::<f64>() / count as f64)
     }
 
-    /// What this contact under `load` tells of others near it, of which the `last` was one.
+    /// The start of contacts near this one under `load`; the `last` started this.
     pub(super) fn warm_start(
         &self,
         problem: &ContactProblem,
@@ -570,15 +554,17 @@ impl<'a> ContactCells<'a> {
         let between = self.between(problem).unwrap_or(last.between);
         // What all pairs move together, whoever of them carries.
         let shared = between * load;
-        let pairs = self.ranges().filter_map(|(laid, range)| {
+        let pairs = self.ranges().filter_map(|(placed, range)| {
             let forces = &solution.forces[range];
-            let carried = laid.arms.iter().zip(forces);
+            let carried = placed.arms.iter().zip(forces);
             let force: f64 = carried.map(|(arms, force)| arms[1] * force).sum();
-            let (first, touch) = laid.first();
+            let (first, touch) = placed.first();
             (force > 0.0).then(|| WarmPair {
-                pair: laid.pair,
+                pair: placed.pair,
                 stiffness: force / (delta - touch - shared).max(OWN * (delta - touch)),
-                closed: laid.closed(first, touch, forces).map(|depth| depth / force),
+                closed: placed
+                    .closed(first, touch, forces)
+                    .map(|depth| depth / force),
             })
         });
         WarmStart {
@@ -601,15 +587,15 @@ impl Loops for InterfacesMoved<'_> {
     #[inline(always)]
     fn call(self) -> Self::Output {
         let cells = self.cells;
-        let mut loads = Vec::with_capacity(cells.laid.len());
-        for (laid, range) in cells.ranges() {
-            loads.push(laid.cells().loads(&self.forces[range]));
+        let mut loads = Vec::with_capacity(cells.placed.len());
+        for (placed, range) in cells.ranges() {
+            loads.push(placed.cells().loads(&self.forces[range]));
         }
-        let mut all_moved = Vec::with_capacity(cells.laid.len());
-        for laid in &cells.laid {
+        let mut all_moved = Vec::with_capacity(cells.placed.len());
+        for placed in &cells.placed {
             let mut moved = Vec::new();
             for member in Member::BOTH {
-                cells.move_interface(&mut moved, member, laid.pair, &loads);
+                cells.move_interface(&mut moved, member, placed.pair, &loads);
             }
             all_moved.push(moved);
         }
@@ -627,14 +613,14 @@ impl ContactCells<'_> {
         pair: i64,
         loads: &[[Vec<f64>; 2]],
     ) {
-        let model = self.made.model;
+        let model = self.deviating.model;
         let coupling = &model.gears[member.index()].coupling;
         let start = moved.len();
         moved.resize(start + coupling.shape_count(), 0.0);
         let moved = &mut moved[start..];
-        for (other, load) in self.laid.iter().zip(loads) {
+        for (other, load) in self.placed.iter().zip(loads) {
             let (x, transposed) = coupling.block(
-                model.pair.tooth(member, self.period + pair),
+                model.pair.tooth(member, self.at.period + pair),
                 teeth_on(member, other.pair - pair),
             );
             let load = &load[member.index()];

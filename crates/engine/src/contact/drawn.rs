@@ -27,7 +27,7 @@ const LEAST_REACH: f64 = 1e-9;
 
 /// What cells depend on: the bits of the phase, the gear on whose flank they lie, the bits of the load, the cells on a core, how far they are laid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-struct Laid {
+struct PlacedCells {
     phase: u64,
     seat: Member,
     load: u64,
@@ -39,8 +39,8 @@ struct Laid {
 #[derive(Debug)]
 pub struct DrawnFlanks {
     facings: Memo<(u64, Member), Option<Facing>>,
-    cells: Memo<Laid, Option<PairCells>>,
-    looks: Memo<(Laid, i32, Carrying), Looks>,
+    cells: Memo<PlacedCells, Option<PairCells>>,
+    looks: Memo<(PlacedCells, i32, Carrying), Looks>,
 }
 
 impl Default for DrawnFlanks {
@@ -62,7 +62,7 @@ impl Default for DrawnFlanks {
 pub(super) struct DrawnPair {
     /// How many mesh periods ago it passed the pitch point.
     pub(super) phase: f64,
-    /// The gear on whose flank it is told.
+    /// The gear from whose flank it is seen.
     pub(super) seat: Member,
     facing: Arc<Option<Facing>>,
 }
@@ -80,12 +80,12 @@ impl DrawnFlanks {
         size_of::<Self>() + self.facings.bytes() + self.cells.bytes() + self.looks.bytes()
     }
 
-    /// The pair of `flanks` at `phase`, told on the gear whose tip is nearer.
+    /// The pair of `flanks` at `phase`, seen from the gear whose tip is nearer.
     pub(super) fn pair(&self, flanks: &PairFlanks<'_>, phase: f64) -> DrawnPair {
         self.pair_on(flanks, phase, nearer_tip(flanks.pair, phase))
     }
 
-    /// The pair of `flanks` at `phase`, told on the flank of `seat`.
+    /// The pair of `flanks` at `phase`, seen from the flank of `seat`.
     pub(super) fn pair_on(&self, flanks: &PairFlanks<'_>, phase: f64, seat: Member) -> DrawnPair {
         let facing = self.facings.get((phase.to_bits(), seat), |_| {
             Facing::drawn_on(flanks.pair, phase, seat)
@@ -137,8 +137,8 @@ impl DrawnFlanks {
     }
 }
 
-fn laid(flanks: &PairFlanks<'_>, pair: &DrawnPair, load: f64, extent: Extent) -> Laid {
-    Laid {
+fn laid(flanks: &PairFlanks<'_>, pair: &DrawnPair, load: f64, extent: Extent) -> PlacedCells {
+    PlacedCells {
         phase: pair.phase.to_bits(),
         seat: pair.seat,
         load: load.to_bits(),

@@ -34,7 +34,7 @@ pub struct FlankRange {
 
 /// A place at which the gap is less than on either side of it.
 #[derive(Debug, Clone, Copy)]
-pub struct Hollow {
+pub struct GapMinimum {
     /// By arc length on the seat's flank.
     pub arc: f64,
     /// The δ at which the flanks touch there.
@@ -49,16 +49,16 @@ pub struct Hollow {
 
 /// Two flanks that face each other.
 ///
-/// One of them is looked at from the other: points are told by their arc length on the flank of `seat`, the gear whose
+/// One of them is looked at from the other: points are given by their arc length on the flank of `seat`, the gear whose
 /// tip is nearer to the contact, so that the stretch may end at its tip corner.
 #[derive(Debug, Clone)]
 pub struct Facing {
-    /// The gear on whose flank points are told.
+    /// The gear on whose flank points are given.
     pub seat: Member,
     /// The part of its flank that faces the other.
     pub range: FlankRange,
     /// Where the gap is least, the first to touch first; never empty.
-    pub hollows: Vec<Hollow>,
+    pub minima: Vec<GapMinimum>,
     /// Rising places within the range at which either flank has a kink.
     pub kinks: Vec<f64>,
     /// Those of them at which a flank ends in the corner of its undercut.
@@ -82,13 +82,13 @@ pub(super) struct FacingPoint {
 }
 
 impl Facing {
-    /// How the flanks of a pair of `gears` as drawn face each other, `phase` mesh periods after it passed the pitch point, told on the gear
+    /// How the flanks of a pair of `gears` as drawn face each other, `phase` mesh periods after it passed the pitch point, seen from the gear
     /// whose tip is nearer; `None` where they do not.
     pub fn drawn(gears: &GearPair, phase: f64) -> Option<Self> {
         Self::drawn_on(gears, phase, nearer_tip(gears, phase))
     }
 
-    /// As [`Facing::drawn`], told on the flank of `seat`.
+    /// As [`Facing::drawn`], seen from the flank of `seat`.
     pub fn drawn_on(gears: &GearPair, phase: f64, seat: Member) -> Option<Self> {
         let placement = Placement::drawn(gears, phase);
         View { placement, seat }.facing(phase)
@@ -107,7 +107,7 @@ impl Facing {
         Self::real_on((gears, deviations), eta, n, lag, seat)
     }
 
-    /// As [`Facing::real`], told on the flank of `seat`.
+    /// As [`Facing::real`], seen from the flank of `seat`.
     pub(super) fn real_on(
         (gears, deviations): (&GearPair, &PairDeviations),
         eta: f64,
@@ -121,19 +121,19 @@ impl Facing {
 
     /// About how much memory it takes beside itself, in bytes.
     pub(super) fn bytes(&self) -> usize {
-        size_of_val(self.hollows.as_slice())
+        size_of_val(self.minima.as_slice())
             + size_of_val(self.kinks.as_slice())
             + size_of_val(self.corners.as_slice())
     }
 
     /// The δ at which the flanks touch first.
     pub fn touch(&self) -> f64 {
-        self.hollows[0].touch
+        self.minima[0].touch
     }
 
     /// Whether it is the tip corner of the other gear that touches first.
     pub(super) fn is_at_mate_tip(&self) -> bool {
-        let arc = self.hollows[0].arc;
+        let arc = self.minima[0].arc;
         let FlankRange { from, to, ends } = self.range;
         [from, to]
             .into_iter()
@@ -146,7 +146,7 @@ impl Facing {
 pub(super) fn nearer_tip(gears: &GearPair, phase: f64) -> Member {
     let (s_a, s_e) = gears.path_of_contact();
     // Past the middle of the path of contact the contact is nearer to the driving tip, which leaves it at E. A pair that stands
-    // just there is told alike however its numbers are rounded.
+    // just there is found alike however its numbers are rounded.
     let middle = f64::midpoint(s_a, s_e) + 1e-9 * (s_e - s_a);
     if gears.roll_length_of(phase) > middle {
         Member::Driving
@@ -184,15 +184,16 @@ impl<'a> View<'a> {
         let range = self.range()?;
         let (kinks, corners) = (self.kinks(&range), self.corners(&range));
         let places = self.hollow_places(&range, &kinks).into_iter();
-        let mut hollows: Vec<Hollow> = places.filter_map(|arc| self.hollow(arc, &range)).collect();
-        hollows.sort_by(|a, b| a.touch.total_cmp(&b.touch));
-        let first = hollows.first()?.arc;
+        let mut minima: Vec<GapMinimum> =
+            places.filter_map(|arc| self.minimum(arc, &range)).collect();
+        minima.sort_by(|a, b| a.touch.total_cmp(&b.touch));
+        let first = minima.first()?.arc;
         Some(Facing {
             seat: self.seat,
             range,
             off_path: nominal > gears.gear(self.seat).tip_form_roll_length()
                 && !corners.contains(&first),
-            hollows,
+            minima,
             kinks,
             corners,
         })
@@ -332,7 +333,7 @@ impl<'a> View<'a> {
     /// Where the gap has a least place.
     ///
     /// It is a parabola about the nominal contact plus reliefs that grow towards either tip: convex, and least where its slope
-    /// changes sign, or at an end. Modifications of other kinds may give it several hollows; between kinks each is found in the same way.
+    /// changes sign, or at an end. Modifications of other kinds may give it several minima; between kinks each is found in the same way.
     fn hollow_places(&self, range: &FlankRange, kinks: &[f64]) -> Vec<f64> {
         let FlankRange { from, to, .. } = *range;
         let falls = |arc: f64| self.slope(arc) < 0.0;
@@ -370,7 +371,7 @@ impl<'a> View<'a> {
         found
     }
 
-    fn hollow(&self, arc: f64, range: &FlankRange) -> Option<Hollow> {
+    fn minimum(&self, arc: f64, range: &FlankRange) -> Option<GapMinimum> {
         let point = self.point(arc)?;
         let meeting = self.meeting(&point);
         let beside = 1e-6 * (range.to - range.from);
@@ -378,7 +379,7 @@ impl<'a> View<'a> {
             let inside = range.from <= place && place <= range.to;
             inside.then(|| (sign * self.slope(place)).max(0.0))
         };
-        Some(Hollow {
+        Some(GapMinimum {
             arc,
             touch: meeting.gap / meeting.arms[1],
             roll_lengths: self.on_both(point.roll_length, point.sight.roll_length),
@@ -482,7 +483,7 @@ pub(crate) mod tests {
             let facing = Facing::drawn(&pair, periods(s)).expect("they face each other");
             assert_eq!((facing.seat, facing.off_path), (seat, off_path));
             assert_eq!(
-                facing.hollows[0].arc == facing.range.to,
+                facing.minima[0].arc == facing.range.to,
                 off_path,
                 "a corner is nearest"
             );
@@ -540,7 +541,7 @@ pub(crate) mod tests {
         ] {
             let phase = (s * 1e-3 - pair.pitch_roll_length()) / pair.base_pitch();
             let facing = Facing::drawn(&pair, phase).expect("they face each other");
-            let first = &facing.hollows[0];
+            let first = &facing.minima[0];
             assert!(
                 (first.touch * 1e6 - gap).abs() < 0.01 * gap,
                 "{s}: {}",
@@ -599,7 +600,7 @@ pub(crate) mod tests {
                     .filter_map(|k| view.point(from + (to - from) * f64::from(k) / 2000.0))
                     .map(|point| point.sight.gap)
                     .fold(f64::INFINITY, f64::min);
-                let nearest = view.point(facing.hollows[0].arc).expect("it is seen");
+                let nearest = view.point(facing.minima[0].arc).expect("it is seen");
                 // Samples stand 2.2 µm apart: half of that times the slope of the relief, where a kink is nearest.
                 assert!(
                     (-1e-15..4e-9).contains(&(least - nearest.sight.gap)),

@@ -1,9 +1,9 @@
 //! All pairs whose flanks face each other at one mesh position, and which of them come near.
 
 use super::drawn::DrawnPair;
-use super::facing::{Facing, Hollow, RangeEnd, nearer_tip};
+use super::facing::{Facing, GapMinimum, RangeEnd, nearer_tip};
 use super::meeting::Standing;
-use super::model::MadePair;
+use super::model::{DeviatingPair, MeshPosition};
 use super::patch::Extent;
 use super::placement;
 use crate::gear::Member;
@@ -18,7 +18,7 @@ const PHASES: f64 = 64.0;
 /// the most.
 const MOST_RUNOUT: f64 = 2.0;
 
-/// Where eccentricities come to more than this part of a phase together, pairs are looked at as they stand: what the hollow of a pair as laid tells
+/// Where eccentricities come to more than this part of a phase together, pairs are looked at as they stand: what the minimum of a pair as laid says
 /// of its touch is off by the square of the way from there, and by much more across a kink or beside a corner.
 const LOOKED_AT: f64 = 0.25;
 
@@ -28,7 +28,7 @@ const MOST_TURNS: u32 = 4;
 /// The pairs whose flanks face each other at one fraction of the mesh period; numbered from the reference pair of the
 /// period. They are looked for outward from the path of contact, as far as is asked.
 pub(super) struct Facings<'a> {
-    made: MadePair<'a>,
+    deviating: DeviatingPair<'a>,
     fraction: f64,
     /// Whether nothing deviates.
     as_drawn: bool,
@@ -57,9 +57,9 @@ pub(super) struct Near {
     pub(super) drawn: DrawnPair,
     /// By how many mesh periods farther it has gone on than it is laid.
     ahead: f64,
-    /// How far from its first hollow as laid, towards the seat's tip, that hollow is found as it stands; `None` where it was not looked for.
+    /// How far from its first minimum as laid, towards the seat's tip, that minimum is found as it stands; `None` where it was not looked for.
     away: Option<f64>,
-    /// The δ at which each of its hollows touches.
+    /// The δ at which each of its minima touches.
     touches: Vec<f64>,
 }
 
@@ -69,40 +69,43 @@ impl Near {
         self.touches.iter().copied().fold(f64::INFINITY, f64::min)
     }
 
-    /// Its hollows up to the last that touches before δ is `reach`.
-    pub(super) fn hollows_within(&self, reach: f64) -> usize {
+    /// Its minima up to the last that touches before δ is `reach`.
+    pub(super) fn minima_within(&self, reach: f64) -> usize {
         let last = self.touches.iter().rposition(|touch| *touch <= reach);
         1 + last.unwrap_or(0)
     }
 
-    /// How far the deviations of its teeth move the contact under `load` in mesh period `period` of `made` ([`Extent`]).
-    pub(super) fn moved(&self, made: MadePair<'_>, (period, load): (i64, f64)) -> i32 {
-        let pair = &made.model.pair;
+    /// How far the deviations of its teeth move the contact under `load` in mesh period `period` of `deviating` ([`Extent`]).
+    pub(super) fn moved(&self, deviating: DeviatingPair<'_>, (period, load): (i64, f64)) -> i32 {
+        let pair = &deviating.model.pair;
         let Some(facing) = self.drawn.facing() else {
             return 0;
         };
-        let hollow = &facing.hollows[0];
+        let minimum = &facing.minima[0];
         if let Some(away) = self.away {
-            return Extent::moved(pair, hollow, load, (away, 0.0));
+            return Extent::moved(pair, minimum, load, (away, 0.0));
         }
-        let (along, inclined) = self.displaced(made, period, facing);
-        Extent::moved(pair, hollow, load, (along, inclined))
+        let (along, inclined) = self.displaced(deviating, period, facing);
+        Extent::moved(pair, minimum, load, (along, inclined))
     }
 
-    /// How far along its `facing` as laid, towards the seat's tip, the flanks touch in mesh period `period` of `made`, and how far the slopes of its teeth
+    /// How far along its `facing` as laid, towards the seat's tip, the flanks touch in mesh period `period` of `deviating`, and how far the slopes of its teeth
     /// incline them for each length along.
-    fn displaced(&self, made: MadePair<'_>, period: i64, facing: &Facing) -> (f64, f64) {
-        let pair = &made.model.pair;
+    fn displaced(&self, deviating: DeviatingPair<'_>, period: i64, facing: &Facing) -> (f64, f64) {
+        let pair = &deviating.model.pair;
         let teeth = pair.teeth(period + self.pair);
-        let hollow = &facing.hollows[0];
+        let minimum = &facing.minima[0];
         // Arc over roll length.
         let growth = |member: Member| {
             let r_b = pair.gear(member).base_radius();
-            (hollow.roll_lengths[member.index()] / r_b).max(1e-9)
+            (minimum.roll_lengths[member.index()] / r_b).max(1e-9)
         };
         // Towards the tip of one is towards the root of the other.
         let inclination = |member: Member| {
-            let slope = made.deviations.of_gear(member).slope(teeth[member.index()]);
+            let slope = deviating
+                .deviations
+                .of_gear(member)
+                .slope(teeth[member.index()]);
             slope / growth(member)
         };
         let (seat, mate) = (facing.seat, facing.seat.other());
@@ -114,37 +117,36 @@ impl Near {
         (along, inclination(seat) - inclination(mate))
     }
 
-    /// Whether the slopes of its teeth in mesh period `period` of `made` take the contact as far as the tip of the seat's mate.
-    fn is_inclined_to_mate_tip(&self, made: MadePair<'_>, period: i64) -> bool {
+    /// Whether the slopes of its teeth in mesh period `period` of `deviating` take the contact as far as the tip of the seat's mate.
+    fn is_inclined_to_mate_tip(&self, deviating: DeviatingPair<'_>, period: i64) -> bool {
         let Some(facing) = self.drawn.facing() else {
             return false;
         };
-        let (along, inclined) = self.displaced(made, period, facing);
-        let hollow = &facing.hollows[0];
-        let [s_1, s_2] = hollow.roll_lengths;
+        let (along, inclined) = self.displaced(deviating, period, facing);
+        let minimum = &facing.minima[0];
+        let [s_1, s_2] = minimum.roll_lengths;
         // An angle moves the least place of a parabola by its radius.
-        let arc = hollow.arc + along + inclined * s_1 * s_2 / (s_1 + s_2);
+        let arc = minimum.arc + along + inclined * s_1 * s_2 / (s_1 + s_2);
         inclined != 0.0 && arc < facing.range.from && facing.range.ends[0] == RangeEnd::MateTip
     }
 
-    /// How it stands in mesh period `period` of `made`, with a driven gear that lags by `lag`.
+    /// How it stands at a mesh position of `deviating`, with a driven gear that lags by `lag`.
     pub(super) fn standing<'a>(
         &self,
-        made: MadePair<'a>,
-        (fraction, period): (f64, i64),
+        deviating: DeviatingPair<'a>,
+        at: MeshPosition,
         lag: f64,
     ) -> Option<Standing<'a>> {
-        let n = period + self.pair;
+        let n = at.period + self.pair;
         let seat = self.drawn.facing()?.seat;
-        let eta = fraction + period as f64;
-        Some(made.standing(eta, n, lag, (seat, self.drawn.phase)))
+        Some(deviating.standing(at.eta(), n, lag, (seat, self.drawn.phase)))
     }
 }
 
 impl<'a> Facings<'a> {
     /// The pairs on the path of contact and those beside it; `None` if no flanks face each other at all.
-    pub(super) fn new(made: MadePair<'a>, fraction: f64) -> Option<Self> {
-        let gears = &made.model.pair;
+    pub(super) fn new(deviating: DeviatingPair<'a>, fraction: f64) -> Option<Self> {
+        let gears = &deviating.model.pair;
         let (s_a, s_e) = gears.path_of_contact();
         // Pair n touches at the roll length of η − n periods.
         let periods = |s: f64| (s - gears.roll_length_of(0.0)) / gears.base_pitch();
@@ -156,13 +158,13 @@ impl<'a> Facings<'a> {
             last: f64::NEG_INFINITY,
         };
         let runout: f64 = Member::BOTH
-            .map(|member| made.deviations.of_gear(member).eccentricity())
+            .map(|member| deviating.deviations.of_gear(member).eccentricity())
             .iter()
             .sum();
         let mut facings = Self {
-            made,
+            deviating,
             fraction,
-            as_drawn: made.deviations.are_none(),
+            as_drawn: deviating.deviations.are_none(),
             runout: runout / gears.base_pitch() * PHASES,
             found: Vec::new(),
             frontier: [frontier(first - 1, -1), frontier(last + 1, 1)],
@@ -184,7 +186,7 @@ impl<'a> Facings<'a> {
 
     /// Looks at pair `n` as drawn; the δ at which it touches, without end where flanks do not face each other.
     fn look_at(&mut self, n: i64) -> f64 {
-        let model = self.made.model;
+        let model = self.deviating.model;
         let drawn = model.drawn_pair(self.fraction - n as f64);
         let touch = drawn.facing().map_or(f64::INFINITY, Facing::touch);
         if touch < f64::INFINITY {
@@ -193,9 +195,12 @@ impl<'a> Facings<'a> {
         touch
     }
 
-    /// The fraction of the mesh period.
-    pub(super) fn fraction(&self) -> f64 {
-        self.fraction
+    /// The mesh position in mesh period `period`.
+    pub(super) fn at(&self, period: i64) -> MeshPosition {
+        MeshPosition {
+            fraction: self.fraction,
+            period,
+        }
     }
 
     /// Whether nothing deviates.
@@ -205,7 +210,7 @@ impl<'a> Facings<'a> {
 
     /// How far deviations may bring flanks nearer.
     pub(super) fn nearer(&self) -> f64 {
-        self.made.deviations.nearest()
+        self.deviating.deviations.nearest()
     }
 
     /// The δ at which the first pair touches as drawn.
@@ -245,12 +250,12 @@ impl<'a> Facings<'a> {
 
     /// Pair `n` of mesh period `period`.
     fn near(&self, n: i64, period: i64) -> Option<Near> {
-        let model = self.made.model;
+        let model = self.deviating.model;
         let phase = self.fraction - n as f64;
         if self.as_drawn {
             let drawn = model.drawn_pair(phase);
-            let hollows = &drawn.facing()?.hollows;
-            let touches = hollows.iter().map(|hollow| hollow.touch).collect();
+            let minima = &drawn.facing()?.minima;
+            let touches = minima.iter().map(|minimum| minimum.touch).collect();
             return Some(Near {
                 pair: n,
                 ahead: 0.0,
@@ -259,7 +264,7 @@ impl<'a> Facings<'a> {
                 drawn,
             });
         }
-        let shifts = Shifts::of(self.made, phase, period + n);
+        let shifts = Shifts::of(self.deviating, phase, period + n);
         // Along a curve a tooth keeps its own deviation, and so what was laid for it. A gear that runs out far stands elsewhere at every position.
         let (seat, shift, laid) = if MOST_RUNOUT * self.runout > 1.0 {
             let seat = shifts.nearer_tip;
@@ -278,25 +283,25 @@ impl<'a> Facings<'a> {
             drawn: model.drawn_pair_on(phase + laid, seat),
         };
         self.find_touches(&mut near, period)?;
-        if self.runout > LOOKED_AT || near.is_inclined_to_mate_tip(self.made, period) {
+        if self.runout > LOOKED_AT || near.is_inclined_to_mate_tip(self.deviating, period) {
             self.look_at_real(&mut near, period);
         }
         Some(near)
     }
 
-    /// Finds when the hollows of `near` touch in mesh period `period`.
+    /// Finds when the minima of `near` touch in mesh period `period`.
     fn find_touches(&self, near: &mut Near, period: i64) -> Option<()> {
-        let at = |lag: f64| near.standing(self.made, (self.fraction, period), lag);
+        let at = |lag: f64| near.standing(self.deviating, self.at(period), lag);
         let as_laid = at(0.0)?;
-        let further = |standing: &Standing<'_>, hollow: &Hollow| {
-            let meeting = standing.meeting(&hollow.probe);
+        let further = |standing: &Standing<'_>, minimum: &GapMinimum| {
+            let meeting = standing.meeting(&minimum.probe);
             meeting.gap / meeting.arms[1]
         };
-        let touch = |hollow: &Hollow| {
+        let touch = |minimum: &GapMinimum| {
             // A corner pushes in another direction than it moves: what it is said to go on by is a few percent too much or too little.
-            let mut lag = further(&as_laid, hollow);
+            let mut lag = further(&as_laid, minimum);
             for _ in 0..MOST_TURNS {
-                let step = at(lag).map_or(0.0, |standing| further(&standing, hollow));
+                let step = at(lag).map_or(0.0, |standing| further(&standing, minimum));
                 lag += step;
                 if step.abs() < ROUNDING {
                     break;
@@ -304,7 +309,7 @@ impl<'a> Facings<'a> {
             }
             lag
         };
-        near.touches = near.drawn.facing()?.hollows.iter().map(touch).collect();
+        near.touches = near.drawn.facing()?.minima.iter().map(touch).collect();
         Some(())
     }
 
@@ -313,7 +318,7 @@ impl<'a> Facings<'a> {
         let (mut delta, mut real) = self.real(near, period)?;
         if real.is_at_mate_tip() {
             // On its own flank a gear's tip is where cells end, however the gears stand.
-            let model = self.made.model;
+            let model = self.deviating.model;
             let seat = near.drawn.seat.other();
             let mut on_other = Near {
                 drawn: model.drawn_pair_on(near.drawn.phase, seat),
@@ -326,23 +331,23 @@ impl<'a> Facings<'a> {
                 (delta, real) = found;
             }
         }
-        let first = &real.hollows[0];
-        let away = |hollow: &Hollow| first.arc - hollow.arc;
-        let hollows = &near.drawn.facing()?.hollows;
-        let nearest = |a: &&Hollow, b: &&Hollow| away(a).abs().total_cmp(&away(b).abs());
-        let (i, hollow) = hollows
+        let first = &real.minima[0];
+        let away = |minimum: &GapMinimum| first.arc - minimum.arc;
+        let minima = &near.drawn.facing()?.minima;
+        let nearest = |a: &&GapMinimum, b: &&GapMinimum| away(a).abs().total_cmp(&away(b).abs());
+        let (i, minimum) = minima
             .iter()
             .enumerate()
             .min_by(|a, b| nearest(&a.1, &b.1))?;
         near.touches[i] = delta;
-        near.away = (i == 0).then(|| away(hollow));
+        near.away = (i == 0).then(|| away(minimum));
         Some(())
     }
 
     /// The δ at which the flanks of `near` touch first in mesh period `period`, and how they face each other there.
     fn real(&self, near: &Near, period: i64) -> Option<(f64, Facing)> {
-        let pair = (&self.made.model.pair, self.made.deviations);
-        let (eta, n) = (self.fraction + period as f64, period + near.pair);
+        let pair = (&self.deviating.model.pair, self.deviating.deviations);
+        let (eta, n) = (self.at(period).eta(), period + near.pair);
         let at = |lag: f64| Facing::real_on(pair, eta, n, lag, near.drawn.seat);
         // Seen from afar a corner touches elsewhere than it does: by the square of the way.
         let mut lag = 0.0;
@@ -379,7 +384,7 @@ impl<'a> Facings<'a> {
 struct Shifts {
     /// By the deviations of its teeth alone.
     by_tooth: f64,
-    /// With gears that run out, told by where on the driving and where on the driven flank that is: not alike, because the line of action is as long as the
+    /// With gears that run out, given by where on the driving and where on the driven flank that is: not alike, because the line of action is as long as the
     /// axes are apart.
     on_flanks: [f64; 2],
     /// The gear whose tip is nearer to the contact then.
@@ -388,7 +393,7 @@ struct Shifts {
 
 impl Shifts {
     /// Those of pair `n` from `phase` on: the driving flank touches where the common tangent of both base circles meets it.
-    fn of(MadePair { model, deviations }: MadePair<'_>, phase: f64, n: i64) -> Self {
+    fn of(DeviatingPair { model, deviations }: DeviatingPair<'_>, phase: f64, n: i64) -> Self {
         let gears = &model.pair;
         let angles = placement::angles(gears, phase);
         let centers = placement::centers(gears, deviations, n, angles);

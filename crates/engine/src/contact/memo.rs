@@ -22,7 +22,7 @@ struct Kept<S, P> {
 }
 
 impl<S: Hash + Eq + Clone, P> Memo<S, P> {
-    /// A store of at most `capacity` bytes of parts whose sizes `bytes_of` tells.
+    /// A store of at most `capacity` bytes of parts of the size `bytes_of`.
     pub(super) fn new(capacity: usize, bytes_of: fn(&P) -> usize) -> Self {
         let kept = Kept {
             parts: HashMap::new(),

@@ -1,4 +1,4 @@
-//! What a solved contact tells: of the mesh, of each pair, and cell by cell.
+//! The summary of a solved contact: of the mesh, of each pair, and cell by cell.
 
 use faer::Mat;
 

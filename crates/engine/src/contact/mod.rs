@@ -6,12 +6,13 @@
 //! - [`flank_table`], [`half_plane`] and `corner`: the compliance of the cells, smooth part, logarithm, and near a sharp tip,
 //! - [`pair_cells`]: the cells of one pair, as drawn,
 //! - [`drawn`] and `memo`: what flanks as drawn have alike whatever carries their teeth, kept,
+//! - `coupled`: what teeth yield together, on cells and on slices,
 //! - [`compliances`] and `factor`: what pairs made to one drawing have alike however their teeth deviate, kept,
 //! - `facings` and [`cells`]: which pairs come near with the deviations of the teeth that stand there, and the cells of all of them; H on
 //!   them, and what their solution says of the mesh,
 //! - [`stage`]: one fraction of the mesh period, from laying the cells to a solution that nothing penetrates,
 //! - `light`: what is left of it as the load vanishes,
-//! - `peak`: where flanks press hardest; [`mesh_contact`]: what a solved contact tells,
+//! - `peak`: where flanks press hardest; [`mesh_contact`]: the summary of a solved contact,
 //! - `looks` and `penetration`: the look over the whole flanks that proves that nothing penetrates,
 //! - [`positions`]: many positions of one load, in parallel,
 //! - [`face`]: the same along faces of helical, misaligned or uneven gears, slice by slice,
@@ -38,6 +39,7 @@ mod augmented_lagrangian;
 pub mod cells;
 pub mod compliances;
 mod corner;
+mod coupled;
 pub mod drawn;
 pub mod face;
 pub mod facing;
@@ -65,9 +67,10 @@ pub use active_set::solve_active_set;
 pub use augmented_lagrangian::{AugmentedLagrangian, default_penalty, solve_augmented_lagrangian};
 pub use cells::ContactCells;
 pub(crate) use corner::tip_softness;
+pub(crate) use coupled::add_yielded;
 pub use light::light_contact;
 pub use mesh_contact::{FlankLoad, MeshCells, MeshContact, PairContact, PairInfluence, PairLoads};
-pub use model::{ContactSolver, GearModel, MadePair, PairModel, PositionError, WarmStart};
+pub use model::{ContactSolver, DeviatingPair, GearModel, PairModel, PositionError, WarmStart};
 pub use peak::PeakPlace;
 pub use problem::{ContactError, ContactProblem, ContactQuantity, ContactSolution};
 pub use stage::Stage;

@@ -2,13 +2,15 @@
 
 use std::sync::Arc;
 
+use faer::MatRef;
+
 use super::compliances::Compliances;
 use super::drawn::{DrawnFlanks, DrawnPair};
 use super::flank_table::FlankTable;
 use super::meeting::Standing;
 use super::pair_cells::PairFlanks;
 use super::problem::ContactError;
-use crate::gear::{GearPair, Member, PairDeviations};
+use crate::gear::{GearPair, Member, PairDeviations, teeth_on};
 use crate::ring::body::Coupling;
 use crate::run::Run;
 
@@ -38,7 +40,7 @@ pub struct GearModel {
 /// A pair ready for contact at any position and load.
 #[derive(Debug, Clone)]
 pub struct PairModel {
-    /// The pair as drawn: deviations are those of a [`MadePair`].
+    /// The pair as drawn: deviations are those of a [`DeviatingPair`].
     pub pair: GearPair,
     /// Driving and driven gear.
     pub gears: [GearModel; 2],
@@ -77,6 +79,20 @@ pub(super) struct WarmPair {
     pub(super) closed: [f64; 2],
 }
 
+/// A mesh position: a fraction of the mesh period, and the whole periods before it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct MeshPosition {
+    pub(super) fraction: f64,
+    pub(super) period: i64,
+}
+
+impl MeshPosition {
+    /// η.
+    pub(super) fn eta(self) -> f64 {
+        self.fraction + self.period as f64
+    }
+}
+
 /// Why a position has no solution.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PositionError {
@@ -100,14 +116,14 @@ pub enum PositionError {
 
 /// One pair made to the drawings of a model: what its teeth deviate by beside what it shares with all others.
 #[derive(Debug, Clone, Copy)]
-pub struct MadePair<'a> {
+pub struct DeviatingPair<'a> {
     /// The drawn pair.
     pub model: &'a PairModel,
     /// What its teeth deviate by.
     pub deviations: &'a PairDeviations,
 }
 
-impl<'a> MadePair<'a> {
+impl<'a> DeviatingPair<'a> {
     /// How its pair `n` stands at the mesh position `eta`, the driven gear lagging by `lag`, from where a pair of a phase was laid on a seat.
     pub(super) fn standing(self, eta: f64, n: i64, lag: f64, laid: (Member, f64)) -> Standing<'a> {
         Standing::new((&self.model.pair, self.deviations), eta, n, lag, laid)
@@ -116,14 +132,14 @@ impl<'a> MadePair<'a> {
 
 impl PairModel {
     /// A pair that is just as drawn.
-    pub fn as_drawn(&self) -> MadePair<'_> {
+    pub fn as_drawn(&self) -> DeviatingPair<'_> {
         static NONE: PairDeviations = PairDeviations::NONE;
-        self.made(&NONE)
+        self.deviating(&NONE)
     }
 
     /// A pair whose teeth deviate by `deviations`: these change gaps, arms and the places where flanks meet, and never a compliance.
-    pub fn made<'a>(&'a self, deviations: &'a PairDeviations) -> MadePair<'a> {
-        MadePair {
+    pub fn deviating<'a>(&'a self, deviations: &'a PairDeviations) -> DeviatingPair<'a> {
+        DeviatingPair {
             model: self,
             deviations,
         }
@@ -154,14 +170,29 @@ impl PairModel {
         }
     }
 
-    /// Its pair at `phase`, told on the gear whose tip is nearer.
+    /// Its pair at `phase`, seen from the gear whose tip is nearer.
     pub(super) fn drawn_pair(&self, phase: f64) -> DrawnPair {
         self.drawn.pair(&self.flanks(), phase)
     }
 
-    /// Its pair at `phase`, told on the flank of `seat`.
+    /// Its pair at `phase`, seen from the flank of `seat`.
     pub(super) fn drawn_pair_on(&self, phase: f64, seat: Member) -> DrawnPair {
         self.drawn.pair_on(&self.flanks(), phase, seat)
+    }
+
+    /// X between the teeth of `member` in two pairs, which are numbered from the reference pair of the mesh period `period`.
+    pub(crate) fn coupling(
+        &self,
+        member: Member,
+        period: i64,
+        [a, b]: [i64; 2],
+    ) -> MatRef<'_, f64> {
+        let coupling = &self.gears[member.index()].coupling;
+        let tooth = self.pair.tooth(member, period + a);
+        match coupling.block(tooth, teeth_on(member, b - a)) {
+            (x, false) => x.as_ref(),
+            (x, true) => x.transpose(),
+        }
     }
 
     /// How far apart coupled teeth of either gear stand at most.

@@ -4,13 +4,13 @@
 //! theoretical normal; elsewhere, where a relief inclines a flank or a tip corner digs into the other one, the normal is tilted and its
 //! arms about the centers are not the base radii.
 
-use super::facing::{Facing, Hollow, RangeEnd, View};
+use super::facing::{Facing, GapMinimum, RangeEnd, View};
 use super::half_plane::{NearField, logarithm_factor};
 use super::meeting::{Probe, Probes};
 use crate::gear::{GearPair, Member, Vector};
 use crate::root_finding::bisect;
 
-/// How far cells are laid to either side of a hollow, in half-widths of the contact under the whole load: the contact and a quarter beside
+/// How far cells are laid to either side of a minimum, in half-widths of the contact under the whole load: the contact and a quarter beside
 /// it, so that one that a relief shifts still fits.
 const CORE: f64 = 1.25;
 
@@ -24,7 +24,7 @@ const MANY_KINKS: usize = 4;
 const MOST_REFINED: usize = 4;
 
 /// So many cells lie on the cores of a pair at most. Under a light load the core of a corner may be thousands of times as narrow as that of another
-/// hollow, which is not covered as densely then.
+/// minimum, which is not covered as densely then.
 const MOST_ON_CORES: f64 = 2048.0;
 
 /// By how much each cell beside the core is wider than the one before.
@@ -85,11 +85,11 @@ pub(super) struct Stretch {
     pub(super) more: f64,
 }
 
-/// How far about its hollows a pair is covered with cells, and how densely.
+/// How far about its minima a pair is covered with cells, and how densely.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub(super) struct Extent {
-    /// The hollows that are covered, of those that touch first.
-    pub(super) hollows: usize,
+    /// The minima that are covered, of those that touch first.
+    pub(super) minima: usize,
     /// How often cells were added on all open sides.
     pub(super) widened: usize,
     /// How often all cells were halved.
@@ -99,16 +99,16 @@ pub(super) struct Extent {
 }
 
 impl Extent {
-    /// How far the contact at `hollow` under `load` moves where the flanks touch `along` farther towards the tip and are inclined by
+    /// How far the contact at `minimum` under `load` moves where the flanks touch `along` farther towards the tip and are inclined by
     /// `inclination` for each length along them: an angle moves the least place of a parabola by its radius.
     pub(super) fn moved(
         gears: &GearPair,
-        hollow: &Hollow,
+        minimum: &GapMinimum,
         load: f64,
         (along, inclination): (f64, f64),
     ) -> i32 {
-        let [down, up] = hollow.openings;
-        let (indentation, radius) = indentation(gears, hollow, load);
+        let [down, up] = minimum.openings;
+        let (indentation, radius) = indentation(gears, minimum, load);
         let half = 0.5 * contact_width(indentation, radius, 0.0);
         // A corner stays where it is.
         if down.max(up) * radius > half {
@@ -119,7 +119,7 @@ impl Extent {
 }
 
 impl Patch {
-    /// Lays cells about the hollows of `facing`, which is seen by `view`: `count` on that which touches first, in a core wide enough for
+    /// Lays cells about the minima of `facing`, which is seen by `view`: `count` on that which touches first, in a core wide enough for
     /// `load`, and as dense ones about the others.
     ///
     /// Cells end where the flanks cease to face each other, so that they move with the contact and close up smoothly towards a corner,
@@ -133,7 +133,7 @@ impl Patch {
     ) -> Self {
         let gears = view.gears();
         let width = gears.common_face_width();
-        let covered = &facing.hollows[..extent.hollows.min(facing.hollows.len())];
+        let covered = &facing.minima[..extent.minima.min(facing.minima.len())];
         let chains = chains(view, facing, covered, load, count, extent);
         let mut patch = Self {
             seat: facing.seat,
@@ -146,7 +146,7 @@ impl Patch {
             ],
             corners: facing.corners.clone(),
             near_fields: Member::BOTH.map(|member| {
-                let s = facing.hollows[0].roll_lengths[member.index()];
+                let s = facing.minima[0].roll_lengths[member.index()];
                 NearField::new(gears.gear(member), s, width)
             }),
             off_path: facing.off_path,
@@ -369,7 +369,7 @@ fn mean_gap(view: &View<'_>, kinks: &[f64], from: f64, to: f64) -> Option<f64> {
 fn chains(
     view: &View<'_>,
     facing: &Facing,
-    covered: &[Hollow],
+    covered: &[GapMinimum],
     load: f64,
     count: usize,
     extent: Extent,
@@ -377,10 +377,10 @@ fn chains(
     let range = &facing.range;
     let cores = covered
         .iter()
-        .map(|hollow| core(view, hollow, load, facing));
+        .map(|minimum| core(view, minimum, load, facing));
     let cores: Vec<[f64; 2]> = cores.collect();
     let [from, to] = cores[0];
-    // A profile as it was measured has many hollows, and a contact in each.
+    // A profile as it was measured has many minima, and a contact in each.
     let inside = |kink: &&f64| from < **kink && **kink < to;
     let kinks = facing.kinks.iter().filter(inside).count();
     let count = if kinks < MANY_KINKS {
@@ -440,29 +440,29 @@ fn covered_by(cores: &[[f64; 2]]) -> f64 {
     lengths.sum()
 }
 
-/// The stretch about `hollow` that the contact may take under the whole load, and a quarter beside it.
-fn core(view: &View<'_>, hollow: &Hollow, load: f64, facing: &Facing) -> [f64; 2] {
+/// The stretch about `minimum` that the contact may take under the whole load, and a quarter beside it.
+fn core(view: &View<'_>, minimum: &GapMinimum, load: f64, facing: &Facing) -> [f64; 2] {
     let Facing { range, kinks, .. } = facing;
-    let (indentation, radius) = indentation(view.gears(), hollow, load);
-    let ways = hollow
+    let (indentation, radius) = indentation(view.gears(), minimum, load);
+    let ways = minimum
         .openings
         .map(|angle| CORE * contact_width(indentation, radius, angle));
     let [down, up] = ways;
-    let (low, high) = (hollow.arc - down, hollow.arc + up);
+    let (low, high) = (minimum.arc - down, minimum.arc + up);
     let gap = |arc: f64| {
         view.point(arc)
             .map_or(f64::INFINITY, |point| point.sight.gap)
     };
-    let least = gap(hollow.arc);
+    let least = gap(minimum.arc);
     let outside = |arc: f64| gap(arc) - least < MOST_RISE * indentation;
     // Beyond a kink the gap may open faster than the parabola does.
     let bent = |from: f64, to: f64| kinks.iter().any(|kink| from < *kink && *kink < to);
-    let convex = facing.hollows.len() == 1;
+    let convex = facing.minima.len() == 1;
     let to = |end: f64| {
-        let (from, to) = (end.min(hollow.arc), end.max(hollow.arc));
+        let (from, to) = (end.min(minimum.arc), end.max(minimum.arc));
         let end = end.clamp(range.from, range.to);
         if convex && bent(from, to) && !outside(end) {
-            bisect(hollow.arc, end, outside)
+            bisect(minimum.arc, end, outside)
         } else {
             end
         }
@@ -470,14 +470,14 @@ fn core(view: &View<'_>, hollow: &Hollow, load: f64, facing: &Facing) -> [f64; 2
     [to(low), to(high)]
 }
 
-/// c F, the depth that goes with the logarithm of both bodies under `load`, and the radius of the gap's parabola at `hollow`.
-fn indentation(gears: &GearPair, hollow: &Hollow, load: f64) -> (f64, f64) {
+/// c F, the depth that goes with the logarithm of both bodies under `load`, and the radius of the gap's parabola at `minimum`.
+fn indentation(gears: &GearPair, minimum: &GapMinimum, load: f64) -> (f64, f64) {
     let width = gears.common_face_width();
     let factors: f64 = Member::BOTH
         .map(|member| logarithm_factor(gears.gear(member).material().youngs_modulus, width))
         .into_iter()
         .sum();
-    let [s_1, s_2] = hollow.roll_lengths;
+    let [s_1, s_2] = minimum.roll_lengths;
     // Near a base circle the involute is as sharp as one likes; a tenth of the other radius is as small as the patch goes.
     let least = 0.1 * s_1.max(s_2);
     let [rho_1, rho_2] = [s_1, s_2].map(|radius| radius.max(least));
@@ -523,11 +523,11 @@ fn ending_at_kinks([from, to]: [f64; 2], width: f64, facing: &Facing) -> Vec<f64
         // Kinks denser than cells lie inside of them.
         if last != Some(before) && before < count {
             last = Some(before);
-            let digs_in = |hollow: &Hollow| {
-                let [down, up] = hollow.openings;
-                hollow.arc == *kink && down.min(up) > 0.0 && down + up > SHALLOW
+            let digs_in = |minimum: &GapMinimum| {
+                let [down, up] = minimum.openings;
+                minimum.arc == *kink && down.min(up) > 0.0 && down + up > SHALLOW
             };
-            let corner = facing.hollows.iter().any(digs_in);
+            let corner = facing.minima.iter().any(digs_in);
             towards.push((*kink, if corner { AT_CORNER } else { AT_KINK }));
         }
     }
@@ -724,7 +724,7 @@ mod tests {
             seat: facing.seat,
         };
         let extent = Extent {
-            hollows: 1,
+            minima: 1,
             widened: 0,
             moved: 0,
             halved: 0,
@@ -752,7 +752,7 @@ mod tests {
                 seat: facing.seat,
             };
             let extent = Extent {
-                hollows: facing.hollows.len(),
+                minima: facing.minima.len(),
                 widened: 1,
                 moved: 0,
                 halved: 0,

@@ -6,11 +6,11 @@
 use std::sync::Arc;
 
 use super::ContactSolution;
-use super::cells::{ContactCells, Laid};
+use super::cells::{ContactCells, PlacedCells};
 use super::factor::dot;
 use super::looks::{Found, Looked, Looks, Place};
 use super::meeting::Meeting;
-use super::model::MadePair;
+use super::model::{DeviatingPair, MeshPosition};
 use super::wide::wide;
 
 /// The looks at one pair as it stands.
@@ -21,21 +21,21 @@ pub(super) struct Look {
 }
 
 impl Look {
-    /// The `looks` at the pair `laid` in mesh period `period`.
+    /// The `looks` at the pair `placed` at a mesh position of `deviating`.
     pub(super) fn new(
         looks: Arc<Looks>,
-        laid: &Laid,
-        made: MadePair<'_>,
-        (fraction, period): (f64, i64),
+        placed: &PlacedCells,
+        deviating: DeviatingPair<'_>,
+        at: MeshPosition,
     ) -> Self {
-        let seat = laid.cells().patch.seat;
+        let seat = placed.cells().patch.seat;
         let met = [seat, seat.other()].map(|from| {
             let probes = &looks.probes[usize::from(from != seat)];
             if probes.is_empty() {
                 return Vec::new();
             }
-            let (eta, n) = (fraction + period as f64, period + laid.pair);
-            let standing = made.standing(eta, n, laid.lag, (from, laid.drawn.phase));
+            let n = at.period + placed.pair;
+            let standing = deviating.standing(at.eta(), n, placed.lag, (from, placed.drawn.phase));
             standing.meetings(probes)
         });
         Self { looks, met }
@@ -45,10 +45,10 @@ impl Look {
     /// do so too, but for a kink.
     fn gaps<'a>(
         &'a self,
-        laid: &'a Laid,
+        placed: &'a PlacedCells,
         active: &'a [bool],
     ) -> impl Iterator<Item = Option<(f64, f64)>> + 'a {
-        let patch = &laid.cells().patch;
+        let patch = &placed.cells().patch;
         let mut met = self.met.each_ref().map(|met| met.iter());
         let gap = move |looked: &Looked| match looked.place {
             Place::Across { at: i, kink } => {
@@ -59,15 +59,15 @@ impl Look {
                 };
                 closes.then(|| {
                     (
-                        between(laid.gaps[i], laid.gaps[i + 1]),
-                        between(laid.arms[i][1], laid.arms[i + 1][1]),
+                        between(placed.gaps[i], placed.gaps[i + 1]),
+                        between(placed.arms[i][1], placed.arms[i + 1][1]),
                     )
                 })
             }
             place => {
                 let from_mate = place.seen_from(patch.seat) != Some(patch.seat);
                 let meeting = met[usize::from(from_mate)].next()?;
-                Some((meeting.gap + laid.lag * meeting.arms[1], meeting.arms[1]))
+                Some((meeting.gap + placed.lag * meeting.arms[1], meeting.arms[1]))
             }
         };
         let mut gap = gap;
@@ -83,7 +83,7 @@ pub(super) fn found(cells: &ContactCells<'_>, looks: &[Look], solution: &Contact
     let mut found = Found::default();
     let interfaces = cells.interfaces_moved(&solution.forces);
     let pairs = cells.ranges().zip(interfaces);
-    for (look, ((laid, range), moved)) in looks.iter().zip(pairs) {
+    for (look, ((placed, range), moved)) in looks.iter().zip(pairs) {
         let looks = &look.looks;
         if looks.looked.is_empty() {
             continue;
@@ -92,7 +92,7 @@ pub(super) fn found(cells: &ContactCells<'_>, looks: &[Look], solution: &Contact
         let mut yielding = solution.forces[range.clone()].to_vec();
         yielding.extend(moved);
         let rows = looks.yields.chunks_exact(yielding.len());
-        let gaps = look.gaps(laid, &solution.active[range]);
+        let gaps = look.gaps(placed, &solution.active[range]);
         for ((looked, row), gap) in looks.looked.iter().zip(rows).zip(gaps) {
             let Some((gap, arm)) = gap else {
                 continue;
@@ -107,11 +107,13 @@ pub(super) fn found(cells: &ContactCells<'_>, looks: &[Look], solution: &Contact
             }
             found.largest = found.largest.max(depth);
             match looked.place {
-                Place::Fillet(member) => found.fillets.push((laid.pair, member)),
-                Place::Beside if !found.beside.contains(&laid.pair) => found.beside.push(laid.pair),
+                Place::Fillet(member) => found.fillets.push((placed.pair, member)),
+                Place::Beside if !found.beside.contains(&placed.pair) => {
+                    found.beside.push(placed.pair)
+                }
                 Place::Beside => {}
                 Place::Across { .. } | Place::Kink => {
-                    let deepest = found.between.entry(laid.pair).or_default();
+                    let deepest = found.between.entry(placed.pair).or_default();
                     *deepest = depth.max(*deepest);
                 }
             }

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::{
-    ContactCells, ContactSolution, MadePair, MeshContact, PairModel, PositionError, Stage,
+    ContactCells, ContactSolution, DeviatingPair, MeshContact, PairModel, PositionError, Stage,
     WarmStart,
 };
 use crate::gear::PairDeviations;
@@ -38,18 +38,18 @@ pub enum PositionsError {
     Stopped(#[from] Stopped),
 }
 
-/// The contact of `made` at each of `positions` under `load`.
+/// The contact of `deviating` at each of `positions` under `load`.
 ///
 /// # Errors
 ///
 /// [`PositionsError`].
 pub fn contacts(
-    made: MadePair<'_>,
+    deviating: DeviatingPair<'_>,
     load: f64,
     positions: &[f64],
     run: &Run,
 ) -> Result<Vec<MeshContact>, PositionsError> {
-    contacts_keeping(made, load, positions, run, |_, _| ())
+    contacts_keeping(deviating, load, positions, run, |_, _| ())
         .map(|contacts| contacts.into_iter().map(|(contact, ())| contact).collect())
 }
 
@@ -59,7 +59,7 @@ pub fn contacts(
 ///
 /// As [`contacts`].
 pub fn contacts_keeping<T: Send>(
-    made: MadePair<'_>,
+    deviating: DeviatingPair<'_>,
     load: f64,
     positions: &[f64],
     run: &Run,
@@ -71,7 +71,7 @@ pub fn contacts_keeping<T: Send>(
         .map(|chunk| {
             let mut contacts = Vec::new();
             chunk_of(
-                made,
+                deviating,
                 load,
                 positions,
                 chunk,
@@ -123,10 +123,17 @@ pub fn contacts_of_many<T: Send>(
             let members = members.iter().enumerate().skip(first).take(PAIRS);
             let solved = members.map(|(number, deviations)| {
                 let mut kept = Vec::new();
-                let made = model.made(deviations);
-                let solved = chunk_of(made, load, positions, chunk, run, |place, contact, _, _| {
-                    kept.push((place, keep(&contact)));
-                });
+                let deviating = model.deviating(deviations);
+                let solved = chunk_of(
+                    deviating,
+                    load,
+                    positions,
+                    chunk,
+                    run,
+                    |place, contact, _, _| {
+                        kept.push((place, keep(&contact)));
+                    },
+                );
                 match solved {
                     Err(PositionsError::Stopped(stopped)) => Err(stopped),
                     solved => Ok((number, solved.map(|()| kept))),
@@ -152,14 +159,14 @@ pub fn contacts_of_many<T: Send>(
     Ok(answers.map(|answer| answer.map(in_order)).collect())
 }
 
-/// The contacts of `made` on a chunk of stages, each told to `tell` with the place of its position.
+/// The contacts of `deviating` on a chunk of stages. Each is handed to `each`, with the place of its position.
 fn chunk_of(
-    made: MadePair<'_>,
+    deviating: DeviatingPair<'_>,
     load: f64,
     positions: &[f64],
     chunk: &[Places],
     run: &Run,
-    mut tell: impl FnMut(usize, MeshContact, &ContactCells<'_>, &ContactSolution),
+    mut each: impl FnMut(usize, MeshContact, &ContactCells<'_>, &ContactSolution),
 ) -> Result<(), PositionsError> {
     let mut first = WarmStart::default();
     for (fraction, places) in chunk {
@@ -168,16 +175,16 @@ fn chunk_of(
             mesh_position,
             error,
         };
-        let mut stage =
-            Stage::new(made, *fraction, load).map_err(|error| at(error, positions[places[0]]))?;
+        let mut stage = Stage::new(deviating, *fraction, load)
+            .map_err(|error| at(error, positions[places[0]]))?;
         let mut warm = first.clone();
         for &place in places {
             let eta = positions[place];
             let period = (eta - fraction).round() as i64;
-            let told = stage.contact_with(period, &mut warm, |contact, cells, solution| {
-                tell(place, contact, cells, solution);
+            let solved = stage.contact_with(period, &mut warm, |contact, cells, solution| {
+                each(place, contact, cells, solution);
             });
-            told.map_err(|error| at(error, eta))?;
+            solved.map_err(|error| at(error, eta))?;
             run.reached(1)?;
             if place == places[0] {
                 first = warm.clone();

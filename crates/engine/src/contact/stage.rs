@@ -4,16 +4,16 @@
 //! differs is which teeth they belong to, and so how the blanks under them yield and how the teeth deviate. Cells and the compliance of the
 //! teeth themselves are therefore found once for a fraction of the mesh period, and each period adds W V X Vᵀ Wᵀ.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::BTreeMap;
 
-use super::cells::{ContactCells, Laid, Want};
-use super::compliances::{Known, StatedCells};
+use super::cells::{ContactCells, PlacedCells, Want};
+use super::compliances::StatedCells;
 use super::drawn::DrawnPair;
 use super::facings::{Facings, Near};
 use super::looks::Found;
 use super::meeting::Standing;
 use super::mesh_contact::{MeshCells, MeshContact};
-use super::model::{MadePair, PositionError, WarmStart};
+use super::model::{DeviatingPair, PositionError, WarmStart};
 use super::patch::Extent;
 use super::penetration::{Look, found};
 use super::{ContactProblem, ContactSolution};
@@ -21,36 +21,33 @@ use super::{ContactProblem, ContactSolution};
 /// Pairs are solved together whose gap is within this much of what load brings together: a little more than touch.
 const REACH: f64 = 1.1;
 
-/// Compliances that a stage has at hand: those of a gear with as many unlike teeth as a hole pattern usually leaves, on a few sets of pairs.
-const MOST_STATED: usize = 64;
-
 /// What a guess of the reach leaves for the solution to move.
 const GUESS: f64 = 1.2;
 
 /// The mesh at one fraction of its period, under one load.
 pub struct Stage<'a> {
-    made: MadePair<'a>,
+    deviating: DeviatingPair<'a>,
     load: f64,
     facings: Facings<'a>,
-    /// The compliances met last.
-    stated: VecDeque<Stated>,
     /// The pairs laid last, where every mesh period has the same.
-    laid: Vec<Laid>,
-}
-
-/// A compliance, and what it depends on.
-struct Stated {
-    cells: StatedCells,
-    known: Known,
+    placed: Vec<PlacedCells>,
 }
 
 /// Flanks may penetrate between cells by so much of what load brings them together.
 const DEEP: f64 = 1e-3;
 
+/// The flanks that touch in a mesh period before δ is `delta`. The first of them do at `touch`.
+#[derive(Clone, Copy)]
+struct Reach {
+    period: i64,
+    touch: f64,
+    delta: f64,
+}
+
 /// What pairs want beside the cells that they are given at first.
 type Wanted = BTreeMap<i64, Extent>;
 
-impl MadePair<'_> {
+impl DeviatingPair<'_> {
     /// The contact at mesh position `eta` under `load`, summed up pair by pair.
     ///
     /// # Errors
@@ -83,19 +80,18 @@ impl MadePair<'_> {
 }
 
 impl<'a> Stage<'a> {
-    /// The mesh of `made` at the mesh position `eta` and whole mesh periods from there, under `load`.
+    /// The mesh of `deviating` at the mesh position `eta` and whole mesh periods from there, under `load`.
     ///
     /// # Errors
     ///
     /// [`PositionError::NoContact`] if no flanks face each other.
-    pub fn new(made: MadePair<'a>, eta: f64, load: f64) -> Result<Self, PositionError> {
-        let facings = Facings::new(made, eta - eta.floor());
+    pub fn new(deviating: DeviatingPair<'a>, eta: f64, load: f64) -> Result<Self, PositionError> {
+        let facings = Facings::new(deviating, eta - eta.floor());
         Ok(Self {
-            made,
+            deviating,
             load,
             facings: facings.ok_or(PositionError::NoContact)?,
-            stated: VecDeque::new(),
-            laid: Vec::new(),
+            placed: Vec::new(),
         })
     }
 
@@ -115,16 +111,16 @@ impl<'a> Stage<'a> {
         })
     }
 
-    /// What `tell` makes of the contact in mesh period `period`, of its cells and their solution.
+    /// What `summary` makes of the contact in mesh period `period`, of its cells and their solution.
     pub(super) fn contact_with<T>(
         &mut self,
         period: i64,
         warm: &mut WarmStart,
-        tell: impl FnOnce(MeshContact, &ContactCells<'_>, &ContactSolution) -> T,
+        summary: impl FnOnce(MeshContact, &ContactCells<'_>, &ContactSolution) -> T,
     ) -> Result<T, PositionError> {
         let load = self.load;
         self.solved(period, warm, |cells, _, solution, found| {
-            tell(
+            summary(
                 cells.mesh_contact(load, &solution, &found),
                 cells,
                 &solution,
@@ -145,7 +141,7 @@ impl<'a> Stage<'a> {
 
     /// Solves mesh period `period` and lets `answer` see the cells, the problem stated on them, its solution, and what penetrates.
     ///
-    /// Gaps are those of flanks that just touch. Cells are laid on more pairs and about more hollows as far as the load brings them together,
+    /// Gaps are those of flanks that just touch. Cells are laid on more pairs and about more minima as far as the load brings them together,
     /// and on more of each flank, until nothing that faces penetrates beside them; and they are halved where it penetrates between them.
     fn solved<T>(
         &mut self,
@@ -155,18 +151,22 @@ impl<'a> Stage<'a> {
     ) -> Result<T, PositionError> {
         let touch = self.facings.touch(period);
         let beyond = |delta: f64, factor: f64| touch + factor * (delta - touch).max(0.0);
-        let mut reach = beyond(warm.transmission_error.unwrap_or(touch), GUESS);
+        let mut reach = Reach {
+            period,
+            touch,
+            delta: beyond(warm.transmission_error.unwrap_or(touch), GUESS),
+        };
         let mut wanted = Wanted::new();
         loop {
-            let near = self.facings.within(period, reach);
-            let cells = self.lay(&near, &wanted, (period, touch, reach))?;
+            let near = self.facings.within(period, reach.delta);
+            let cells = self.lay(&near, &wanted, reach)?;
             let problem = self.state(&cells)?;
             let solution = cells.solve(&problem, self.load, warm)?;
             let delta = solution.transmission_error;
 
             let needed = beyond(delta, REACH);
-            if self.reaches_more(&near, period, (reach, needed)) {
-                reach = beyond(delta, GUESS);
+            if self.reaches_more(&near, reach, needed) {
+                reach.delta = beyond(delta, GUESS);
                 continue;
             }
             let found = self.look(&cells, &solution);
@@ -188,101 +188,87 @@ impl<'a> Stage<'a> {
         }
     }
 
-    /// Cells on the pairs `near`, with the gaps of flanks of which the driven one lags by `touch`.
+    /// Cells on the pairs `near`, with the gaps of flanks that just touch.
     fn lay(
         &mut self,
         near: &[Near],
         wanted: &Wanted,
-        (period, touch, reach): (i64, f64, f64),
+        reach: Reach,
     ) -> Result<ContactCells<'a>, PositionError> {
         let mut pairs = Vec::with_capacity(near.len());
         for near in near {
             let wanted = wanted.get(&near.pair).copied().unwrap_or_default();
             let extent = Extent {
-                hollows: near.hollows_within(reach),
-                moved: near.moved(self.made, (period, self.load)) + wanted.moved,
+                minima: near.minima_within(reach.delta),
+                moved: near.moved(self.deviating, (reach.period, self.load)) + wanted.moved,
                 ..wanted
             };
-            let known = |laid: &&Laid| (laid.pair, laid.extent) == (near.pair, extent);
-            let laid = match self.laid.iter().find(known) {
-                Some(laid) => Some(laid.clone()),
-                None => self.laid_at(near, extent, (period, touch)),
+            let known = |placed: &&PlacedCells| (placed.pair, placed.extent) == (near.pair, extent);
+            let placed = match self.placed.iter().find(known) {
+                Some(placed) => Some(placed.clone()),
+                None => self.place(near, extent, reach),
             };
-            pairs.extend(laid);
+            pairs.extend(placed);
         }
-        ContactCells::new(self.made, (self.facings.fraction(), period), pairs)
+        ContactCells::new(self.deviating, self.facings.at(reach.period), pairs)
     }
 
-    fn laid_at(
-        &mut self,
-        near: &Near,
-        extent: Extent,
-        (period, touch): (i64, f64),
-    ) -> Option<Laid> {
-        let model = self.made.model;
-        let place = (self.facings.fraction(), period);
-        let standing: Standing<'_> = near.standing(self.made, place, touch)?;
+    fn place(&mut self, near: &Near, extent: Extent, reach: Reach) -> Option<PlacedCells> {
+        let model = self.deviating.model;
+        let at = self.facings.at(reach.period);
+        let standing: Standing<'_> = near.standing(self.deviating, at, reach.touch)?;
         let cells = model
             .drawn
             .cells(&model.flanks(), &near.drawn, self.load, extent);
-        let laid = Laid::new(near, extent, cells, &standing, touch)?;
+        let placed = PlacedCells::new(near, extent, cells, &standing, reach.touch)?;
         if self.facings.are_as_drawn() {
-            self.laid.push(laid.clone());
+            self.placed.push(placed.clone());
         }
-        Some(laid)
+        Some(placed)
     }
 
-    /// Whether `needed` reaches pairs or hollows beyond those `near` within `reach`.
-    fn reaches_more(&mut self, near: &[Near], period: i64, (reach, needed): (f64, f64)) -> bool {
-        let more = self.facings.within(period, needed);
+    /// Whether a δ of `needed` reaches pairs or minima beyond those `near` within `reach`.
+    fn reaches_more(&mut self, near: &[Near], reach: Reach, needed: f64) -> bool {
+        let more = self.facings.within(reach.period, needed);
         more.len() > near.len()
             || more.iter().any(|more| {
                 let known = near.iter().find(|near| near.pair == more.pair);
-                known.is_none_or(|near| more.hollows_within(needed) > near.hollows_within(reach))
+                known
+                    .is_none_or(|near| more.minima_within(needed) > near.minima_within(reach.delta))
             })
     }
 
     /// The problem on `cells`. A compliance that was met before is not stated anew.
-    fn state(&mut self, cells: &ContactCells<'_>) -> Result<ContactProblem, PositionError> {
-        let pairs = cells.laid.iter();
-        let pairs = pairs.map(|laid| {
-            let DrawnPair { phase, seat, .. } = laid.drawn;
-            (laid.pair, phase.to_bits(), seat, laid.extent)
+    fn state(&self, cells: &ContactCells<'_>) -> Result<ContactProblem, PositionError> {
+        let pairs = cells.placed.iter();
+        let pairs = pairs.map(|placed| {
+            let DrawnPair { phase, seat, .. } = placed.drawn;
+            (placed.pair, phase.to_bits(), seat, placed.extent)
         });
         let spec = StatedCells {
             load: self.load.to_bits(),
             pairs: pairs.collect(),
             teeth_like: cells.teeth_like(),
         };
-        if let Some(stated) = self.stated.iter().find(|stated| stated.cells == spec) {
-            return cells.problem(&stated.known);
-        }
-        let compliances = &self.made.model.compliances;
-        let known = compliances.get(spec.clone(), || cells.compliance());
-        let problem = cells.problem(&known)?;
-        if self.stated.len() == MOST_STATED {
-            self.stated.pop_front();
-        }
-        self.stated.push_back(Stated { cells: spec, known });
-        Ok(problem)
+        let compliances = &self.deviating.model.compliances;
+        cells.problem(&compliances.get(spec, || cells.compliance()))
     }
 
     /// What penetrates under `solution` on `cells`.
     fn look(&self, cells: &ContactCells<'_>, solution: &ContactSolution) -> Found {
-        let model = self.made.model;
+        let model = self.deviating.model;
         let delta = solution.transmission_error;
         let as_drawn = (self.facings.least(), delta + self.facings.nearer());
         let looks: Vec<Look> = cells
             .ranges()
-            .filter_map(|(laid, range)| {
-                let drawn = (laid.cells(), self.load, laid.extent);
-                let pair = (&laid.drawn, laid.drawn.facing()?);
+            .filter_map(|(placed, range)| {
+                let drawn = (placed.cells(), self.load, placed.extent);
+                let pair = (&placed.drawn, placed.drawn.facing()?);
                 let carrying = &solution.active[range];
                 let looks = model
                     .drawn
                     .looks(&model.flanks(), pair, (drawn, carrying), as_drawn);
-                let place = (self.facings.fraction(), cells.period);
-                Some(Look::new(looks, laid, self.made, place))
+                Some(Look::new(looks, placed, self.deviating, cells.at))
             })
             .collect();
         found(cells, &looks, solution)

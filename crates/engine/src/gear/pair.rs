@@ -200,10 +200,10 @@ impl GearPair {
     }
 
     /// Slices of the flanks of both gears, one meter long, in plane strain: what a contact is near a line of it.
-    pub(crate) fn long_slices(&self) -> Self {
+    pub(crate) fn plane_strain(&self) -> Self {
         Self {
-            driving: self.driving.long_slice(),
-            driven: self.driven.long_slice(),
+            driving: self.driving.plane_strain(),
+            driven: self.driven.plane_strain(),
             ..*self
         }
     }

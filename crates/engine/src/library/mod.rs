@@ -183,7 +183,7 @@ impl Parts for Library {
             return Ok(known);
         }
         let made = Arc::new(contacts(
-            model.made(&spec.deviations),
+            model.deviating(&spec.deviations),
             spec.load,
             &spec.positions,
             run,

@@ -134,7 +134,7 @@ impl Made {
 
     /// From a cold start.
     pub(crate) fn contact(&self, eta: f64, load: f64) -> Result<MeshContact, PositionError> {
-        let made = self.model.made(&self.deviations);
+        let made = self.model.deviating(&self.deviations);
         made.contact(eta, load, &mut WarmStart::default())
     }
 }

@@ -1,10 +1,10 @@
 //! The linear part of the compliance between slices: the smooth yield of both gears, and the half space along each line.
 
-use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, Par};
+use faer::Mat;
 
 use super::FaceModel;
 use super::slice::Slice;
+use crate::contact::coupled::{Touching, add_coupled, mirror};
 use crate::gear::Member;
 
 /// H between `slices` without their own springs, in m/N.
@@ -16,36 +16,17 @@ pub(super) fn compliance(model: &FaceModel, slices: &[Slice]) -> Mat<f64> {
     }
     add_half_space(slices, &mut h);
     add_ends(model, slices, &mut h);
-    // What is above the diagonal mirrors what is below.
-    for column in 1..count {
-        for row in 0..column {
-            h[(row, column)] = h[(column, row)];
-        }
-    }
+    mirror(&mut h);
     h
-}
-
-/// Where each pair's slices begin and end, with its pair.
-fn lines(slices: &[Slice]) -> Vec<(i64, [usize; 2])> {
-    let mut lines: Vec<(i64, [usize; 2])> = Vec::new();
-    for (i, slice) in slices.iter().enumerate() {
-        match lines.last_mut() {
-            Some((pair, ends)) if *pair == slice.pair => ends[1] = i + 1,
-            _ => lines.push((slice.pair, [i, i + 1])),
-        }
-    }
-    lines
 }
 
 /// Adds Φ R Φᵀ of the gear `member`, below the diagonal blocks and on them.
 fn add_smooth(model: &FaceModel, member: Member, slices: &[Slice], h: &mut Mat<f64>) {
-    let lines = lines(slices);
     let (first, last) = (slices[0].pair, slices[slices.len() - 1].pair);
     let smooth = model.smooth(member, first, 1 + (last - first) as usize);
     let flank = &model.yields[member.index()];
-    let size = flank.basis_len();
     // One column a slice.
-    let mut basis = Mat::<f64>::zeros(size, slices.len());
+    let mut basis = Mat::<f64>::zeros(flank.basis_len(), slices.len());
     for (i, slice) in slices.iter().enumerate() {
         let z = model.pair.own_height(member, slice.z);
         flank.basis(
@@ -54,25 +35,19 @@ fn add_smooth(model: &FaceModel, member: Member, slices: &[Slice], h: &mut Mat<f
             basis.col_as_slice_mut(i),
         );
     }
-    for (pair, [from, to]) in &lines {
-        let loaded = basis.as_ref().subcols(*from, to - from);
-        let column = (pair - first) as usize * size;
-        for (other, [begin, end]) in lines.iter().filter(|(other, _)| other >= pair) {
-            let row = (other - first) as usize * size;
-            let block = Mat::as_ref(&smooth).submatrix(row, column, size, size);
-            let moved = block * loaded;
-            let seen = basis.as_ref().subcols(*begin, end - begin);
-            matmul(
-                h.as_mut()
-                    .submatrix_mut(*begin, *from, end - begin, to - from),
-                Accum::Add,
-                seen.transpose(),
-                moved,
-                1.0,
-                Par::Seq,
-            );
+    let mut start = 0;
+    let lines = slices.chunk_by(|one, next| one.pair == next.pair);
+    let lines = lines.map(|line| {
+        let from = start;
+        start += line.len();
+        Touching {
+            pair: line[0].pair,
+            start: from,
+            shapes: basis.as_ref().subcols(from, line.len()).transpose(),
         }
-    }
+    });
+    let lines: Vec<Touching<'_>> = lines.collect();
+    add_coupled(h, &lines, |a, b| smooth.block(a, b));
 }
 
 /// Adds how slices move under others of their line.

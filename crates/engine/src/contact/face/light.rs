@@ -49,7 +49,7 @@ impl FaceModel {
         let straight = (self.pair.advance() == 0.0).then(|| self.faced(eta, n, 0.0));
         let touch = |z: f64| {
             let facing = straight.clone().unwrap_or_else(|| self.faced(eta, n, z))?;
-            let opening = self.opening(n, z, facing.hollows[0].roll_lengths);
+            let opening = self.opening(n, z, facing.minima[0].roll_lengths);
             let section = FirstTouch::of(n, &facing);
             Some(FirstTouch {
                 delta: section.delta + opening,
@@ -66,8 +66,8 @@ impl FaceModel {
     /// to `step`.
     pub(super) fn nearest_phases(&self, [from, to]: [f64; 2], step: f64) -> Vec<f64> {
         let touch = |phase: f64| {
-            let facing = Facing::drawn(&self.long, phase);
-            let facing = facing.filter(|facing| drives(&self.long, phase, facing));
+            let facing = Facing::drawn(&self.plane_strain, phase);
+            let facing = facing.filter(|facing| drives(&self.plane_strain, phase, facing));
             facing.map_or(f64::INFINITY, |facing| facing.touch())
         };
         let count = ((to - from) / step).ceil() as usize;
@@ -78,7 +78,8 @@ impl FaceModel {
     /// How the flanks of pair `n` as drawn face each other at `z`, where a force between them drives on.
     fn faced(&self, eta: f64, n: i64, z: f64) -> Option<Facing> {
         let phase = self.pair.phase(eta, n, z);
-        Facing::drawn(&self.long, phase).filter(|facing| drives(&self.long, phase, facing))
+        Facing::drawn(&self.plane_strain, phase)
+            .filter(|facing| drives(&self.plane_strain, phase, facing))
     }
 
     /// By how much leads, axes and deviations open pair `n` at `z`, along the base tangent.

@@ -24,6 +24,7 @@ pub mod spring;
 use faer::Mat;
 use rayon::prelude::*;
 
+use super::coupled::add_yielded;
 use super::facing::Facing;
 use super::positions::PositionsError;
 use super::{ContactError, MeshContact, PairContact, PairLoads, PeakPlace, PositionError};
@@ -269,7 +270,8 @@ impl FaceModel {
 
     /// The δ up to which flanks are looked at under `load`: a little more than δ is at the position `eta`, where the first of them `touch`.
     fn first_reach(&self, eta: f64, load: f64, touch: f64) -> Result<f64, PositionError> {
-        let moduli = Member::BOTH.map(|member| self.long.gear(member).material().youngs_modulus);
+        let moduli =
+            Member::BOTH.map(|member| self.plane_strain.gear(member).material().youngs_modulus);
         // Solid gears yield by about half of this.
         let stiffness = 0.05 * moduli[0].min(moduli[1]) * self.pair.common_face_width();
         let mut reach = touch + load / stiffness;
@@ -307,8 +309,8 @@ impl FaceModel {
         const STEP: f64 = 1.0 / 32.0;
         let limit = reach + self.nearer();
         let touches = |phase: f64| {
-            Facing::drawn(&self.long, phase).is_some_and(|facing| {
-                facing.touch() <= limit && slice::drives(&self.long, phase, &facing)
+            Facing::drawn(&self.plane_strain, phase).is_some_and(|facing| {
+                facing.touch() <= limit && slice::drives(&self.plane_strain, phase, &facing)
             })
         };
         let (s_a, s_e) = self.pair.section().path_of_contact();
@@ -451,20 +453,12 @@ impl FaceModel {
         let (Some(first), Some(last)) = (loads.first(), loads.last()) else {
             return [0.0; 2];
         };
-        let g = member.index();
         let count = 1 + (last.pair - first.pair) as usize;
         let smooth = self.smooth(member, first.pair + periods, count);
-        let size = self.yields[g].basis_len();
         let mut sums = [0.0; 2];
-        for a in loads {
-            for b in loads {
-                let [row, column] = [a, b].map(|of| (of.pair - first.pair) as usize * size);
-                let block = Mat::as_ref(&smooth).submatrix(row, column, size, size);
-                let moved = a.loads[g].col(1).transpose() * (block * &b.loads[g]);
-                sums[0] += moved[0];
-                sums[1] += moved[1];
-            }
-        }
+        add_yielded(&mut sums, member.index(), loads, |a, b| {
+            smooth.block(a + periods, b + periods)
+        });
         sums
     }
 

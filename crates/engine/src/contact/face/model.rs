@@ -1,9 +1,11 @@
 //! A pair along its faces, and how its flanks give way.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
-use faer::Mat;
+use faer::{Mat, MatRef};
 
+use crate::contact::memo::Memo;
+use crate::fem::dense::entries;
 use crate::gear::{GearPair, Member, PairDeviations, SolidPair};
 
 /// How the flanks of one gear give way, smoothly, to forces normal to them.
@@ -29,8 +31,8 @@ pub trait FlankYield: Send + Sync {
     fn at_ends(&self, point: (f64, f64), loaded: (f64, f64), along: f64) -> f64;
 }
 
-/// Matrices of smooth yields that are kept.
-const MOST_KEPT: usize = 256;
+/// What matrices of smooth yields may take, in bytes: two hundred and fifty of three teeth.
+const MOST_BYTES: usize = 36 << 20;
 
 /// A profile that turns by less at a place has no kink there.
 const LEAST_TURN: f64 = 1e-6;
@@ -45,10 +47,10 @@ pub struct FaceModel {
     /// How far apart teeth may stand that are loaded together.
     pub(super) coupled: usize,
     /// One meter of the flanks as drawn.
-    pub(super) long: GearPair,
+    pub(super) plane_strain: GearPair,
     /// The kinks of both profiles at which flanks press harder than beside them.
     pub(super) kinks: Vec<Kink>,
-    kept: Mutex<Vec<(Teeth, Arc<Mat<f64>>)>>,
+    smooth: Memo<Teeth, Mat<f64>>,
 }
 
 /// A kink of a profile.
@@ -90,7 +92,7 @@ impl Kink {
 }
 
 /// So many teeth of a gear in the order of their pairs, from `first` on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct Teeth {
     gear: usize,
     first: usize,
@@ -109,12 +111,12 @@ impl FaceModel {
         Self {
             kinks: Kink::all(&pair),
             deviations: pair.section().deviations(),
-            long: pair.section().long_slices(),
+            plane_strain: pair.section().plane_strain(),
             pair,
             yields,
             slices,
             coupled,
-            kept: Mutex::default(),
+            smooth: Memo::new(MOST_BYTES, |smooth| size_of::<f64>() * entries(smooth)),
         }
     }
 
@@ -124,7 +126,7 @@ impl FaceModel {
     }
 
     /// The smooth compliance of the teeth of `member` in the pairs from `first` on.
-    pub(super) fn smooth(&self, member: Member, first: i64, count: usize) -> Arc<Mat<f64>> {
+    pub(super) fn smooth(&self, member: Member, first: i64, count: usize) -> Smooth {
         let z = self.pair.section().gear(member).tooth_count() as usize;
         let alike = self.yields[member.index()].repeats_after();
         let key = Teeth {
@@ -132,18 +134,32 @@ impl FaceModel {
             first: self.pair.section().tooth(member, first) % alike,
             count,
         };
-        let lock = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, known)) = lock().iter().find(|(teeth, _)| *teeth == key) {
-            return Arc::clone(known);
+        let compliance = self.smooth.get(key, |key| {
+            let step = self.pair.section().tooth(member, 1);
+            let teeth: Vec<usize> = (0..count).map(|i| (key.first + i * step) % z).collect();
+            self.yields[member.index()].smooth(&teeth)
+        });
+        Smooth {
+            size: self.yields[member.index()].basis_len(),
+            first,
+            compliance,
         }
-        let step = self.pair.section().tooth(member, 1);
-        let teeth: Vec<usize> = (0..count).map(|i| (key.first + i * step) % z).collect();
-        let made = Arc::new(self.yields[member.index()].smooth(&teeth));
-        let mut kept = lock();
-        if kept.len() == MOST_KEPT {
-            kept.remove(0);
-        }
-        kept.push((key, Arc::clone(&made)));
-        made
+    }
+}
+
+/// The smooth compliance between the teeth of one gear in successive pairs.
+pub(super) struct Smooth {
+    first: i64,
+    /// The functions over a flank.
+    size: usize,
+    compliance: Arc<Mat<f64>>,
+}
+
+impl Smooth {
+    /// That between the teeth in two pairs.
+    pub(super) fn block(&self, a: i64, b: i64) -> MatRef<'_, f64> {
+        let [row, column] = [a, b].map(|pair| (pair - self.first) as usize * self.size);
+        let compliance = Mat::as_ref(&self.compliance);
+        compliance.submatrix(row, column, self.size, self.size)
     }
 }

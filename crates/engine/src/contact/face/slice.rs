@@ -183,7 +183,7 @@ fn view_of<'a>(gears: &'a GearPair, phase: f64, facing: &Facing) -> View<'a> {
 /// The arms about both axes of a force where the gap of `facing` is least.
 fn arms(view: &View<'_>, facing: &Facing) -> [f64; 2] {
     // The place is found wherever flanks face each other.
-    let point = view.point(facing.hollows[0].arc);
+    let point = view.point(facing.minima[0].arc);
     point.map_or([1.0, 1.0], |point| view.meeting(&point).arms)
 }
 
@@ -198,7 +198,7 @@ impl<'a> Slicer<'a> {
         // For each length along a contact line.
         let total = length(&stretches.lines);
         let factors = Member::BOTH.map(|member| {
-            let modulus = model.long.gear(member).material().youngs_modulus;
+            let modulus = model.plane_strain.gear(member).material().youngs_modulus;
             logarithm_factor(modulus, 1.0)
         });
         Self {
@@ -265,7 +265,7 @@ impl<'a> Slicer<'a> {
     /// The place of pair `n` at `z` as drawn, on a slice so long `along` the line; `None` where flanks do not face each other.
     fn drawn(&self, n: i64, z: f64, along: f64) -> Option<Place> {
         let phase = self.model.pair.phase(self.eta, n, z);
-        let facing = Facing::drawn(&self.model.long, phase)?;
+        let facing = Facing::drawn(&self.model.plane_strain, phase)?;
         Some(self.place(phase, &facing, along))
     }
 
@@ -304,11 +304,11 @@ impl<'a> Slicer<'a> {
 
     /// The place of a line where its section faces the other so, as drawn, on a slice so long `along` the line.
     fn place(&self, phase: f64, facing: &Facing, along: f64) -> Place {
-        let view = view_of(&self.model.long, phase, facing);
-        let hollow = &facing.hollows[0];
+        let view = view_of(&self.model.plane_strain, phase, facing);
+        let minimum = &facing.minima[0];
         let weights = arms(&view, facing).map(|arm| arm * self.cosine);
         let radius = {
-            let [one, other] = hollow.roll_lengths.map(|s| s / self.cosine);
+            let [one, other] = minimum.roll_lengths.map(|s| s / self.cosine);
             one * other / (one + other)
         };
         let of = (along, radius, self.factor);
@@ -316,10 +316,10 @@ impl<'a> Slicer<'a> {
             Spring::patch(&view, facing, self.cosine, of, self.densities)
         } else {
             let spring = Spring::hertz(of, self.densities);
-            (spring, hollow.touch * weights[1])
+            (spring, minimum.touch * weights[1])
         };
         Place {
-            roll_lengths: hollow.roll_lengths,
+            roll_lengths: minimum.roll_lengths,
             weights,
             gap,
             spring: Arc::new(spring),
@@ -331,12 +331,12 @@ impl<'a> Slicer<'a> {
         const BESIDE: f64 = 1.1;
         const COMMON_TANGENT: f64 = 0.02;
         let (half_width, _) = hertz(density, radius, self.factor, 1.0);
-        let hollow = &facing.hollows[0];
-        let near = |place: &f64| (place - hollow.arc).abs() < BESIDE * half_width;
+        let minimum = &facing.minima[0];
+        let near = |place: &f64| (place - minimum.arc).abs() < BESIDE * half_width;
         let inclined = |angle: &f64| *angle * radius > COMMON_TANGENT * half_width;
         [facing.range.from, facing.range.to].iter().any(near)
             || facing.kinks.iter().any(near)
-            || hollow.openings.iter().any(inclined)
-            || facing.hollows.len() > 1
+            || minimum.openings.iter().any(inclined)
+            || facing.minima.len() > 1
     }
 }

@@ -39,7 +39,7 @@ pub(super) struct Spring {
     /// The logarithms of the latter and of the factor.
     ln_most: f64,
     ln_factor: f64,
-    /// The part of asinh(h/(2 ρ)) that [`Spring::spread`] tells.
+    /// The part of asinh(h/(2 ρ)) that is [`Spring::spread`].
     spread: f64,
     contact: Contact,
 }
@@ -116,7 +116,7 @@ impl Spring {
         densities: [f64; 2],
     ) -> (Self, f64) {
         let extent = Extent {
-            hollows: facing.hollows.len(),
+            minima: facing.minima.len(),
             widened: 1,
             moved: 0,
             halved: 0,
@@ -147,7 +147,7 @@ impl Spring {
                 (Self::new(of, densities, contact), least)
             }
             // There is no room for a cell.
-            Err(_) => (Self::hertz(of, densities), cosine * facing.hollows[0].touch),
+            Err(_) => (Self::hertz(of, densities), cosine * facing.minima[0].touch),
         }
     }
 
@@ -355,7 +355,7 @@ mod tests {
         let gear = SpurGear::new(paper_gear(50)).expect("the standard gear");
         let modulus = gear.material().plane_modulus(PlaneState::Strain);
         let pair = GearPair::new(gear.clone(), gear, 100.5e-3).expect("meshes");
-        (pair.long_slices(), 2.0 * logarithm_factor(modulus, 1.0))
+        (pair.plane_strain(), 2.0 * logarithm_factor(modulus, 1.0))
     }
 
     fn patch(phase: f64, along: f64) -> (Spring, f64) {
@@ -365,7 +365,7 @@ mod tests {
             placement: Placement::drawn(&pair, phase),
             seat: facing.seat,
         };
-        let [s, other] = facing.hollows[0].roll_lengths.map(|s| s / COSINE);
+        let [s, other] = facing.minima[0].roll_lengths.map(|s| s / COSINE);
         let of = (along, s * other / (s + other), factor);
         Spring::patch(&view, &facing, COSINE, of, [DENSITY, 2.5 * DENSITY])
     }

@@ -179,7 +179,7 @@ impl SpurGear {
     }
 
     /// A slice of the same flanks, one meter long, in a body that cannot yield along its axis: plane strain is plane stress with E/(1 − ν²).
-    pub(in crate::gear) fn long_slice(&self) -> Self {
+    pub(in crate::gear) fn plane_strain(&self) -> Self {
         let plane = self.without_blank().as_drawn();
         let material = Material {
             youngs_modulus: plane.data.material.plane_modulus(PlaneState::Strain),

@@ -28,7 +28,7 @@ pub struct ClassAnswers {
     pub compliance: Mat<c64>,
 }
 
-/// The answers of all classes 0 … Z/2 of a ring of teeth on `carriers`, the stiffness of each order 0 … M.
+/// The answers of all classes 0 … Z/2 of a ring of teeth on `below`, the stiffness of each order 0 … M.
 ///
 /// The answers on the circle are given for the orders up to `wanted` only, in the order of `orders`.
 ///
@@ -37,11 +37,11 @@ pub struct ClassAnswers {
 /// [`FemError`], or [`FemError::Stopped`].
 pub fn answers(
     tooth: &SolidTooth,
-    carriers: &[Mat<c64>],
+    below: &[Mat<c64>],
     wanted: Option<usize>,
     run: &Run,
 ) -> Result<Vec<ClassAnswers>, FemError> {
-    each_class(tooth, carriers, run, |ring, mut half| {
+    each_class(tooth, below, run, |ring, mut half| {
         ring.factor.half_solve_in_place(half.as_mut());
         let flank = half.adjoint() * &half;
         let (orders, mut unit) = ring.units(&tooth.sector, wanted);
@@ -56,10 +56,10 @@ pub fn answers(
     })
 }
 
-/// What `of` makes of each class 0 … Z/2 of a ring of teeth on `carriers`, and of unit forces on the flank of tooth 0.
+/// What `of` makes of each class 0 … Z/2 of a ring of teeth on `below`, and of unit forces on the flank of tooth 0.
 fn each_class<T: Send>(
     tooth: &SolidTooth,
-    carriers: &[Mat<c64>],
+    below: &[Mat<c64>],
     run: &Run,
     of: impl Fn(ClassOfRing, Mat<c64>) -> T + Sync,
 ) -> Result<Vec<T>, FemError> {
@@ -68,7 +68,7 @@ fn each_class<T: Send>(
         .into_par_iter()
         .map(|class| {
             run.check()?;
-            let ring = ClassOfRing::new(sector, carriers, class)?;
+            let ring = ClassOfRing::new(sector, below, class)?;
             let rows = sector.on_class(&tooth.rows, class, &ring.orders);
             Ok(of(ring, rows.adjoint().to_owned()))
         })
@@ -86,13 +86,13 @@ struct ClassOfRing {
 }
 
 impl ClassOfRing {
-    fn new(sector: &SolidSector, carriers: &[Mat<c64>], class: usize) -> Result<Self, FemError> {
-        let orders = sector.orders(class, carriers.len() - 1);
+    fn new(sector: &SolidSector, below: &[Mat<c64>], class: usize) -> Result<Self, FemError> {
+        let orders = sector.orders(class, below.len() - 1);
         let sides = sector.size * sector.side_nodes;
         let mut stiffness = sector.class_stiffness(class, &orders);
         for (k, &order) in orders.iter().enumerate() {
             let share = faer::Scale(c64::new(1.0 / sector.count as f64, 0.0));
-            let share = of_order(carriers, order) * share;
+            let share = of_order(below, order) * share;
             add_block(&mut stiffness, sides + k * sector.size, &share);
         }
         let unknowns = stiffness.nrows();
@@ -143,7 +143,7 @@ pub struct ClassMotion {
     pub by_circle: Mat<c64>,
 }
 
-/// How the interfaces of a ring of teeth on `carriers` move, class by class, under forces on the flank of tooth 0 and on the orders up to
+/// How the interfaces of a ring of teeth on `below` move, class by class, under forces on the flank of tooth 0 and on the orders up to
 /// `wanted` of the interface circle.
 ///
 /// # Errors
@@ -151,11 +151,11 @@ pub struct ClassMotion {
 /// As [`answers`].
 pub fn motions(
     tooth: &SolidTooth,
-    carriers: &[Mat<c64>],
+    below: &[Mat<c64>],
     wanted: Option<usize>,
     run: &Run,
 ) -> Result<Vec<ClassMotion>, FemError> {
-    each_class(tooth, carriers, run, |ring, mut by_flank| {
+    each_class(tooth, below, run, |ring, mut by_flank| {
         ring.factor.solve_in_place(by_flank.as_mut());
         let (wanted, mut by_circle) = ring.units(&tooth.sector, wanted);
         ring.factor.solve_in_place(by_circle.as_mut());
@@ -180,7 +180,7 @@ pub struct ForcedClass {
     pub motion: Mat<c64>,
 }
 
-/// How the interfaces of a ring of teeth on `carriers` move, class by class, under forces on the flank of each class and on the orders of the
+/// How the interfaces of a ring of teeth on `below` move, class by class, under forces on the flank of each class and on the orders of the
 /// interface circle.
 ///
 /// # Errors
@@ -188,7 +188,7 @@ pub struct ForcedClass {
 /// As [`answers`].
 pub fn forced(
     tooth: &SolidTooth,
-    carriers: &[Mat<c64>],
+    below: &[Mat<c64>],
     (on_flank, on_order): (
         impl Fn(usize) -> Mat<c64> + Sync,
         impl Fn(i64) -> Option<Mat<c64>> + Sync,
@@ -199,7 +199,7 @@ pub fn forced(
         tooth.sector.size,
         tooth.sector.size * tooth.sector.side_nodes,
     );
-    each_class(tooth, carriers, run, |ring, by_flank| {
+    each_class(tooth, below, run, |ring, by_flank| {
         let mut motion = by_flank * on_flank(ring.class);
         for (k, &order) in ring.orders.iter().enumerate() {
             if let Some(force) = on_order(order) {

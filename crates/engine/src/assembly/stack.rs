@@ -1,4 +1,4 @@
-//! What carries the teeth of a solid gear: its rim, and below it web and hub, order by order.
+//! The parts under the teeth of a solid gear: its rim, and below it web and hub, order by order.
 
 use faer::{Mat, c64};
 use rayon::prelude::*;
@@ -214,9 +214,9 @@ fn functions_across(
     layers.iter().enumerate().map(of).collect()
 }
 
-/// What carries the teeth.
+/// How the parts under the teeth give way to them.
 #[derive(Debug)]
-pub(crate) struct Carrier {
+pub(crate) struct StackStiffness {
     /// The stiffness of each order 0 … M on the interface circle, without holes.
     pub(crate) stiffness: Vec<Mat<c64>>,
     /// What stands between that circle and the web, where the web has holes.
@@ -243,7 +243,7 @@ pub(crate) struct WebPort {
     pub(crate) held: Mat<c64>,
 }
 
-impl Carrier {
+impl StackStiffness {
     pub(crate) fn new(stack: &Stack, run: &Run) -> Result<Self, PartError> {
         let seen = stack.hole_orders;
         let orders = (0..=stack.orders()).into_par_iter();

@@ -1,0 +1,60 @@
+//! What a method finds at some positions under one load.
+
+use super::between::Sample;
+use super::case::{Case, Place};
+use super::plan::Sweep;
+use crate::contact::MeshContact;
+
+/// What is found at the positions of a sweep under one load.
+pub(super) struct Found<K = ()> {
+    /// The contact at each.
+    pub(super) contacts: Vec<MeshContact>,
+    /// What the method keeps of each beside.
+    pub(super) kept: Vec<K>,
+    /// δ and k at all places in the curve at which these contacts are.
+    pub(super) transmission_error: Vec<f64>,
+    pub(super) stiffness: Vec<f64>,
+}
+
+impl<K> Found<K> {
+    /// That of `contacts` at the positions of `sweep` with this `stiffness`: they are alike in all mesh periods in which they repeat.
+    pub(super) fn of_contacts(
+        (case, sweep): (&Case, &Sweep),
+        contacts: Vec<MeshContact>,
+        stiffness: &[f64],
+        kept: Vec<K>,
+    ) -> Self {
+        let places = sweep.places(case);
+        let delta = |place: &Place| contacts[place.contact].transmission_error;
+        Self {
+            transmission_error: places.iter().map(delta).collect(),
+            stiffness: places
+                .iter()
+                .map(|place| stiffness[place.contact])
+                .collect(),
+            kept,
+            contacts,
+        }
+    }
+
+    /// What is known of the curve at these places.
+    pub(super) fn samples(&self, case: &Case, sweep: &Sweep) -> Vec<Sample> {
+        let places = sweep.places(case);
+        Sample::of(
+            &places,
+            &self.contacts,
+            &self.transmission_error,
+            &self.stiffness,
+        )
+    }
+
+    /// The same with `kept` beside.
+    pub(super) fn keeping<L>(self, kept: Vec<L>) -> Found<L> {
+        Found {
+            contacts: self.contacts,
+            kept,
+            transmission_error: self.transmission_error,
+            stiffness: self.stiffness,
+        }
+    }
+}
