@@ -7,6 +7,8 @@ use std::io;
 
 use pulldown_cmark::{CowStr, Event, Options, Parser, Tag, TagEnd, html};
 
+use crate::Named;
+
 /// In the order in which they are listed.
 const GUIDES: [&str; 14] = [
     "my-first-pair",
@@ -41,7 +43,7 @@ const FIGURES: [&str; 12] = [
 ];
 
 /// The list of the guides, each guide, and their figures: by the names under which they are served, and what they are.
-pub(crate) fn files() -> Result<Vec<(String, Vec<u8>)>, Box<dyn Error>> {
+pub(crate) fn files() -> Result<Vec<Named>, Box<dyn Error>> {
     let (mut files, mut list) = (Vec::new(), String::new());
     for name in GUIDES {
         let text = String::from_utf8(read(&format!("{name}.md"))?)?;

@@ -178,7 +178,7 @@ impl From<JobError> for Problem {
                 error!(error = cause, "the database failed");
                 internal()
             }
-            JobError::Damaged(damage) => damage_problem(&damage),
+            JobError::Damaged(damage) => damage_problem(damage),
         }
     }
 }

@@ -1561,7 +1561,7 @@ export async function benchSteps(service) {
     async (page) => {
       await open(page, service);
       const found = await page.evaluate(async () => {
-        const { follow, json, post } = await import(`${document.baseURI}web/state/api.js`);
+        const { follow, json, post } = await import(new URL("web/state/api.js", document.baseURI).href);
         const gear = { tooth_count: 50, module_mm: 2, face_width_mm: 20, blank: { bore_radius_mm: 16 } };
         const base = {
           method: "load_distribution",

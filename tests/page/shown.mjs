@@ -438,7 +438,9 @@ export async function shownSteps(service) {
       assert.ok(await page.locator("#projected").isHidden(), "a design that comes whole is computed as it says");
       await (await field(page, "/output_torques_n_m")).fill("140");
       await settled(page);
-      assert.deepEqual(asked, ["three_dimensional", "three_dimensional_projected"]);
+      // The page may have asked for its own first design before this one was opened.
+      const along = asked.filter((method) => method !== "flexible");
+      assert.deepEqual(along, ["three_dimensional", "three_dimensional_projected"]);
       assert.match(await page.locator("#projected").innerText(), /Projected/);
       const projected = await answer(page, "p-p");
       await axe(page);
@@ -576,7 +578,7 @@ export async function shownSteps(service) {
   await step("a spectrum has levels, and the shares of pairs have no colors of designs", service, async (page) => {
     await open(page, service);
     const shared = await page.evaluate(async () => {
-      const { looks } = await import(`${document.baseURI}web/draw/charts.js`);
+      const { looks } = await import(new URL("web/draw/charts.js", document.baseURI).href);
       const { series, parts } = looks();
       return parts.filter((color) => Array.from({ length: 12 }, (_, i) => series(i)).includes(color));
     });
@@ -918,7 +920,7 @@ export async function shownSteps(service) {
       assert.ok(await page.locator("#projected").isVisible());
       const { statistics, face } = await page.evaluate(
         async (submission) => {
-          const { resultsOf } = await import(`${document.baseURI}web/state/preview.js`);
+          const { resultsOf } = await import(new URL("web/state/preview.js", document.baseURI).href);
           return (await resultsOf(submission)).curves[0];
         },
         { ...design, method: "three_dimensional_projected" },

@@ -185,7 +185,7 @@ export async function solidSteps(service) {
     assert.doesNotMatch(svg, /Peak contact pressure/);
     // However long the period, it is drawn.
     const right = await page.evaluate(async () => {
-      const { figure } = await import(`${document.baseURI}web/draw/figure.js`);
+      const { figure } = await import(new URL("web/draw/figure.js", document.baseURI).href);
       const cells = Array.from({ length: 60_000 }, (_, i) => ({
         x: i / 120,
         y: 0,
@@ -214,7 +214,7 @@ export async function solidSteps(service) {
       z_mm: z,
       driving,
     } = await page.evaluate(async (submission) => {
-      const { solved, json } = await import(`${document.baseURI}web/state/api.js`);
+      const { solved, json } = await import(new URL("web/state/api.js", document.baseURI).href);
       return json(`v1/jobs/${(await solved(submission)).id}/results/contact-pattern.json`);
     }, HELICAL);
     const all = computed.driving.pressure_mpa.flat();
@@ -388,7 +388,7 @@ export async function solidSteps(service) {
       assert.match(words, /24 and 36 teeth, helical teeth of 20°, the driving gear right-handed/);
       // What the page finds for its lines is what the service computed: which pairs touch, and where along the face.
       const [drawn, told] = await page.evaluate(async (submission) => {
-        const of = (name) => import(`${document.baseURI}web/${name}.js`);
+        const of = (name) => import(new URL(`web/${name}.js`, document.baseURI).href);
         const [{ solved, json, post }, { alongAxis, contactLines }] = await Promise.all([
           of("state/api"),
           of("draw/solid"),
@@ -429,7 +429,7 @@ export async function solidSteps(service) {
   await step("what is seen in space has the mass that was computed, with web, hub and holes", service, async (page) => {
     await openDesign(page, service, HELICAL);
     const ratios = await page.evaluate(async (submission) => {
-      const of = (name) => import(`${document.baseURI}web/${name}.js`);
+      const of = (name) => import(new URL(`web/${name}.js`, document.baseURI).href);
       const [{ post }, { alongAxis, surfaceOf }] = await Promise.all([of("state/api"), of("draw/solid")]);
       const [outline, { pair }] = await Promise.all([post("v1/outline", submission), post("v1/validate", submission)]);
       const along = alongAxis(submission.pair, outline);

@@ -9,6 +9,9 @@ use crate::gear::PairDeviations;
 use crate::grid::GridLevel;
 use crate::run::Run;
 
+/// Contacts at the positions of a sweep, what is kept of each, and the stiffness there.
+pub(super) type Solved<T> = (Vec<MeshContact>, Vec<T>, Vec<f64>);
+
 /// A case, how its pair is modeled, who provides the parts of the model, and the handle of the run.
 #[derive(Clone, Copy)]
 pub(super) struct Setup<'a> {
@@ -61,7 +64,7 @@ impl<'a> Setup<'a> {
         load: f64,
         sweep: &Sweep,
         keep: impl Fn(&ContactCells<'_>, &ContactSolution) -> T + Sync,
-    ) -> Result<(Vec<MeshContact>, Vec<T>, Vec<f64>), AnalysisError> {
+    ) -> Result<Solved<T>, AnalysisError> {
         let made = model.deviating(self.deviations);
         let middle = contacts_keeping(made, load, &sweep.positions, self.run, keep)?;
         let (found, kept): (Vec<MeshContact>, Vec<T>) = middle.into_iter().unzip();

@@ -11,6 +11,7 @@ use super::face_stress::FaceStressModel;
 use super::first_order::with_holes;
 use super::found::Found;
 use super::plan::{Pass, Sweep};
+use super::setup::Solved;
 use super::under_load::curves;
 use super::warning::warn_of_corner;
 use super::{Analysis, AnalysisError};
@@ -136,7 +137,7 @@ impl<'a> OfFaces<'a> {
         model: &FaceModel,
         load: f64,
         sweep: &Sweep,
-    ) -> Result<(Vec<MeshContact>, Vec<FaceContact>, Vec<f64>), AnalysisError> {
+    ) -> Result<Solved<FaceContact>, AnalysisError> {
         let at = |load: f64| model.contacts(load, &sweep.positions, self.run);
         let meshes = |faces: &[FaceContact]| -> Vec<MeshContact> {
             faces.iter().map(|contact| contact.mesh.clone()).collect()
