@@ -1,7 +1,7 @@
 //! Many designs at once: studies, populations and searches, their tables, and the numbers behind them.
 //!
 //! Read in this order. The numbers: [`sample`] (members drawn from laws, and what a sample shows with which confidence) and [`optimum`] (which points of a
-//! cube to compute next); neither knows gears or JSON. Then [`table`], the quantities that designs are compared by. The documents: [`population`], [`search`] and
+//! cube to compute next); neither knows gears or JSON. Then [`table`], the quantities that designs are compared by. The documents: `population`, `search` and
 //! [`study`], which holds one of them or lists its designs. Last what is made of the rows of a study: [`population_results`] and [`searching`]. [`refusals`] counts
 //! the designs without results.
 

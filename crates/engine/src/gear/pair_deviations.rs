@@ -129,7 +129,7 @@ impl GearDeviations {
 
 /// What the teeth of both gears of a pair deviate by: what one pair differs by from others made to the same drawings.
 ///
-/// Contact is solved for a model of the drawn pair and these ([`crate::contact::PairModel::made`]).
+/// Contact is solved for a model of the drawn pair and these ([`crate::contact::PairModel::deviating`]).
 #[derive(Debug, Clone, PartialEq)]
 pub struct PairDeviations {
     gears: [GearDeviations; 2],
