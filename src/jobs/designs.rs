@@ -1,14 +1,14 @@
 //! The designs of a study: the jobs that they become, and the rows in which they stand with what has come of them.
 
 use jiff::Timestamp;
-use meshwright_store::{Damaged, DocumentLine, Kept, NewJob, NewRow, StoredRow};
+use meshwright_store::{Damaged, DocumentLine, Kept, NewJob, NewRow, Status, StoredRow};
 use meshwright_studies::{Design, RowState, Study};
-use meshwright_wire::{Status, memory_above, too_much_memory};
+use meshwright_wire::{memory_above, too_much_memory};
 use uuid::Uuid;
 
 use super::error::JobError;
 use super::queue::{Jobs, new_job, rough_cost};
-use super::shown::kept_by;
+use super::shown::{kept_by, shown_status};
 
 /// So many designs are expanded and written in one transaction. Others write in between.
 pub(super) const CHUNK: usize = 500;
@@ -185,7 +185,7 @@ fn row_state(row: StoredRow) -> Result<RowState, Damaged> {
         label: row.label,
         changes: serde_json::from_str(&row.changes).unwrap_or_default(),
         job: row.job.and_then(|id| id.parse().ok()),
-        status,
+        status: shown_status(status),
         summary: summary.and_then(|text| serde_json::from_str(&text).ok()),
         problem,
     })

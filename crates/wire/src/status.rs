@@ -20,16 +20,7 @@ pub enum Status {
 }
 
 impl Status {
-    /// All states, in the order in which a job meets them.
-    pub const ALL: [Self; 5] = [
-        Self::Accepted,
-        Self::Running,
-        Self::Successful,
-        Self::Failed,
-        Self::Dismissed,
-    ];
-
-    /// The word on the wire and in the database.
+    /// The word on the wire.
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Accepted => "accepted",
@@ -43,10 +34,5 @@ impl Status {
     /// Whether nothing changes any more.
     pub fn has_ended(self) -> bool {
         matches!(self, Self::Successful | Self::Failed | Self::Dismissed)
-    }
-
-    /// The state that a word names.
-    pub fn of_word(word: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|status| status.as_str() == word)
     }
 }

@@ -11,15 +11,15 @@ use crate::gear::Member;
 /// What coordinates may be rounded by, in meters.
 const ROUNDING: f64 = 1e-12;
 
-/// Pairs whose teeth deviate are laid as drawn at the nearest of so many phases a mesh period.
+/// Pairs whose teeth deviate are placed as drawn at the nearest of so many phases a mesh period.
 const PHASES: f64 = 64.0;
 
 /// An eccentricity moves contacts by no more than so many times itself: the common tangent of the base circles turns, and cot α_w is 4 at
 /// the most.
 const MOST_RUNOUT: f64 = 2.0;
 
-/// Where eccentricities come to more than this part of a phase together, pairs are looked at as they stand: what the minimum of a pair as laid says
-/// of its touch is off by the square of the way from there, and by much more across a kink or beside a corner.
+/// If the eccentricities of both gears together exceed this part of a phase, the minimum of the gap is searched on the displaced flanks. The minimum of
+/// the nearest drawn phase is wrong by the square of the distance from it, and by much more across a kink or beside a corner.
 const LOOKED_AT: f64 = 0.25;
 
 /// Turns to the flanks that touch; each squares what is left.
@@ -53,11 +53,11 @@ struct Frontier {
 pub(super) struct Near {
     /// From the reference pair of the mesh period.
     pub(super) pair: i64,
-    /// As it is laid.
+    /// The pair as drawn at its phase.
     pub(super) drawn: DrawnPair,
-    /// By how many mesh periods farther it has gone on than it is laid.
+    /// How many mesh periods it is ahead of the drawn phase.
     ahead: f64,
-    /// How far from its first minimum as laid, towards the seat's tip, that minimum is found as it stands; `None` where it was not looked for.
+    /// The distance from its first drawn minimum to that of the displaced flanks, towards the seat's tip; `None` if it was not searched.
     away: Option<f64>,
     /// The δ at which each of its minima touches.
     touches: Vec<f64>,
@@ -89,8 +89,8 @@ impl Near {
         Extent::moved(pair, minimum, load, (along, inclined))
     }
 
-    /// How far along its `facing` as laid, towards the seat's tip, the flanks touch in mesh period `period` of `deviating`, and how far the slopes of its teeth
-    /// incline them for each length along.
+    /// Where the flanks touch in mesh period `period` of `deviating`, as a distance along the drawn `facing` towards the seat's tip, and the inclination
+    /// that the slopes of its teeth add for each length along it.
     fn displaced(&self, deviating: DeviatingPair<'_>, period: i64, facing: &Facing) -> (f64, f64) {
         let pair = &deviating.model.pair;
         let teeth = pair.teeth(period + self.pair);
@@ -265,22 +265,22 @@ impl<'a> Facings<'a> {
             });
         }
         let shifts = Shifts::of(self.deviating, phase, period + n);
-        // Along a curve a tooth keeps its own deviation, and so what was laid for it. A gear that runs out far stands elsewhere at every position.
-        let (seat, shift, laid) = if MOST_RUNOUT * self.runout > 1.0 {
+        // Along a curve a tooth keeps its own deviation, and so its drawn phase. With a large eccentricity the phase is another at every position.
+        let (seat, shift, drawn) = if MOST_RUNOUT * self.runout > 1.0 {
             let seat = shifts.nearer_tip;
             let shift = shifts.on_flanks[seat.index()];
             (seat, shift, shift)
         } else {
-            let laid = (shifts.by_tooth * PHASES).round() / PHASES;
-            let seat = nearer_tip(&model.pair, phase + laid);
-            (seat, shifts.on_flanks[0], laid)
+            let drawn = (shifts.by_tooth * PHASES).round() / PHASES;
+            let seat = nearer_tip(&model.pair, phase + drawn);
+            (seat, shifts.on_flanks[0], drawn)
         };
         let mut near = Near {
             pair: n,
-            ahead: shift - laid,
+            ahead: shift - drawn,
             away: None,
             touches: Vec::new(),
-            drawn: model.drawn_pair_on(phase + laid, seat),
+            drawn: model.drawn_pair_on(phase + drawn, seat),
         };
         self.find_touches(&mut near, period)?;
         if self.runout > LOOKED_AT || near.is_inclined_to_mate_tip(self.deviating, period) {
@@ -292,14 +292,14 @@ impl<'a> Facings<'a> {
     /// Finds when the minima of `near` touch in mesh period `period`.
     fn find_touches(&self, near: &mut Near, period: i64) -> Option<()> {
         let at = |lag: f64| near.standing(self.deviating, self.at(period), lag);
-        let as_laid = at(0.0)?;
+        let as_drawn = at(0.0)?;
         let further = |standing: &Standing<'_>, minimum: &GapMinimum| {
             let meeting = standing.meeting(&minimum.probe);
             meeting.gap / meeting.arms[1]
         };
         let touch = |minimum: &GapMinimum| {
             // A corner pushes in another direction than it moves: what it is said to go on by is a few percent too much or too little.
-            let mut lag = further(&as_laid, minimum);
+            let mut lag = further(&as_drawn, minimum);
             for _ in 0..MOST_TURNS {
                 let step = at(lag).map_or(0.0, |standing| further(&standing, minimum));
                 lag += step;
@@ -313,7 +313,7 @@ impl<'a> Facings<'a> {
         Some(())
     }
 
-    /// Looks where and when the flanks of `near` touch first in mesh period `period`, as they stand.
+    /// Finds where and when the displaced flanks of `near` touch first in mesh period `period`.
     fn look_at_real(&self, near: &mut Near, period: i64) -> Option<()> {
         let (mut delta, mut real) = self.real(near, period)?;
         if real.is_at_mate_tip() {

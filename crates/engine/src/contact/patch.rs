@@ -10,8 +10,8 @@ use super::meeting::{Probe, Probes};
 use crate::gear::{GearPair, Member, Vector};
 use crate::root_finding::bisect;
 
-/// How far cells are laid to either side of a minimum, in half-widths of the contact under the whole load: the contact and a quarter beside
-/// it, so that one that a relief shifts still fits.
+/// The cells on either side of a minimum, in half-widths of the contact under the whole load: the contact and a quarter more, so that a contact
+/// that a relief shifts still fits.
 const CORE: f64 = 1.25;
 
 /// No core reaches where the gap has risen by more than so many times c F: a parabola has risen by half of that at the end of its contact, a
@@ -490,7 +490,7 @@ const SLIVER: f64 = 1e-3;
 /// Nor narrower than this part of its distance from a kink.
 const NARROW: f64 = 0.2;
 
-/// So many widths about a kink have no other ends than those laid about it.
+/// Within so many widths of a kink, cells end only where the division about the kink says.
 const BESIDE: f64 = 1.3;
 
 /// How often cells are halved towards a kink, where pressure grows with the logarithm of the distance from it.

@@ -29,7 +29,7 @@ pub struct Stage<'a> {
     deviating: DeviatingPair<'a>,
     load: f64,
     facings: Facings<'a>,
-    /// The pairs laid last, where every mesh period has the same.
+    /// The cells placed last, if every mesh period has the same.
     placed: Vec<PlacedCells>,
 }
 
@@ -141,8 +141,8 @@ impl<'a> Stage<'a> {
 
     /// Solves mesh period `period` and lets `answer` see the cells, the problem stated on them, its solution, and what penetrates.
     ///
-    /// Gaps are those of flanks that just touch. Cells are laid on more pairs and about more minima as far as the load brings them together,
-    /// and on more of each flank, until nothing that faces penetrates beside them; and they are halved where it penetrates between them.
+    /// Gaps are those of flanks that just touch. Cells are added on more pairs, about more minima and on more of each flank until no flanks penetrate
+    /// beside them. They are halved where flanks penetrate between them.
     fn solved<T>(
         &mut self,
         period: i64,
@@ -179,7 +179,7 @@ impl<'a> Stage<'a> {
                 let is_first = !wanted.contains_key(&pair);
                 let extent = wanted.entry(pair).or_default();
                 match want {
-                    // A contact that fits is first laid about.
+                    // If the contact fits, its cells are moved before they are widened.
                     Want::Room { moved } if is_first && moved != 0 => extent.moved = moved,
                     Want::Room { .. } => extent.widened += 1,
                     Want::Halves => extent.halved += 1,
