@@ -663,50 +663,6 @@ fn along_faces_a_moved_hole_costs_one_web() {
     );
 }
 
-/// δ over one mesh period of a straight pair with such tip edges, by a method.
-fn with_tip_edges(edge: TipEdge, method: Method) -> Vec<f64> {
-    let mut data = gear(24, 8e-3);
-    data.tip_edge = edge;
-    let gears = [0, 1].map(|_| helical(data.clone(), 0.0, 0.0));
-    let center_distance = 2.0 * gears[0].section().reference_radius() + 0.2e-3;
-    let leads = [Vec::new(), Vec::new()];
-    let pair = SolidPair::new(gears, leads, center_distance, Alignment::default()).expect("meshes");
-    let mut case = if method.sees_faces() {
-        along_faces(pair, COARSE, &[60.0])
-    } else {
-        case(pair.section().clone(), &[60.0])
-    };
-    case.model = model_by(method, &case.model);
-    case.resolution.positions_per_mesh_period = 24;
-    solve_from(&Library::default(), &case)
-        .curves
-        .remove(0)
-        .transmission_error
-}
-
-#[test]
-fn along_faces_contact_ends_at_broken_tip_edges_as_it_does_in_the_plane() {
-    let changed = |method| -> Vec<f64> {
-        let [broken, sharp] =
-            [TipEdge::Chamfered(0.4e-3), TipEdge::Sharp].map(|edge| with_tip_edges(edge, method));
-        broken
-            .iter()
-            .zip(sharp)
-            .map(|(broken, sharp)| broken - sharp)
-            .collect()
-    };
-    let plane = changed(Method::Flexible);
-    let faces = changed(Method::ThreeDimensional);
-    let largest = plane
-        .iter()
-        .fold(0.0_f64, |most, change| most.max(change.abs()));
-    assert!(largest > 1e-6, "edges that matter: {largest}");
-    println!("{plane:?} {faces:?}");
-    for (plane, faces) in plane.iter().zip(faces) {
-        assert!((plane - faces).abs() < 0.1 * largest, "{plane} {faces}");
-    }
-}
-
 fn solve_from(library: &Library, case: &Case) -> Analysis {
     analyze(case, library, &Run::unattended()).expect("a design of the study")
 }

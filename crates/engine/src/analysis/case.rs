@@ -41,7 +41,7 @@ impl Method {
     }
 
     /// Whether it finds stresses at roots and holes.
-    pub fn tells_stress(self) -> bool {
+    pub fn computes_stress(self) -> bool {
         matches!(self, Self::Flexible | Self::ThreeDimensional)
     }
 

@@ -129,7 +129,7 @@ pub struct Curve {
     pub load_shares: Vec<LoadShare>,
     /// Of δ.
     pub transmission_error_statistics: Statistics,
-    /// The parts of δ that single-flank testing tells apart.
+    /// The parts of δ that single-flank testing distinguishes.
     pub single_flank: SingleFlank,
     /// Of the tangent stiffness.
     pub mesh_stiffness_tangent_statistics: Statistics,

@@ -23,7 +23,7 @@ const SECONDS: [f64; 5] = [0.2e-3, 0.05e-3, 0.02e-3, 6e-6, 0.05e-9];
 /// Two patches at the standard level; solutions take the third power of the cells.
 const CELLS: f64 = 80.0;
 
-/// How much longer a first solution takes where load brings more pairs together than the contact ratio: tips dig in, and patches are laid
+/// How much longer a first solution takes where load brings more pairs together than the contact ratio: tips dig in, and patches are placed
 /// again, wider.
 const DIGGING: f64 = 6.0;
 
@@ -53,7 +53,7 @@ pub struct Estimate {
     pub seconds: f64,
 }
 
-/// Estimates what `case` will cost with its `forces`; the grids are laid, nothing is solved. A gear whose grid fails counts as nothing.
+/// Estimates what `case` will cost with its `forces`; the grids are divided, nothing is solved. A gear whose grid fails counts as nothing.
 pub fn estimate(case: &Case, forces: Option<&ForcesRequest>) -> Estimate {
     let plan = Plan::of(case);
     let mut estimate = Estimate {

@@ -30,12 +30,12 @@ pub fn volumes(
     parts: &dyn Parts,
     run: &Run,
 ) -> Result<Option<Fields<Volume>>, AnalysisError> {
-    let told = |moved: &[MovedParts], _: &Faces, _: Member, place: Place| {
+    let field_of = |moved: &[MovedParts], _: &Faces, _: Member, place: Place| {
         let mut volume = Volume::default();
         moved.iter().for_each(|of| of.add_to(&mut volume, place));
         volume
     };
-    of_gears(case, (output_torque, eta), parts, run, told)
+    of_gears(case, (output_torque, eta), parts, run, field_of)
 }
 
 /// The same in the section through the middle of the common face; of parts that end before it, where they end. Stresses are those in the plane, von
@@ -51,22 +51,22 @@ pub fn section(
     parts: &dyn Parts,
     run: &Run,
 ) -> Result<Option<Fields>, AnalysisError> {
-    let told = |moved: &[MovedParts], faces: &Faces, member: Member, place: Place| {
+    let field_of = |moved: &[MovedParts], faces: &Faces, member: Member, place: Place| {
         let mut field = GearField::default();
         let z = faces.pair.own_height(member, 0.0);
         moved.iter().for_each(|of| field.cut(of, z, place));
         field
     };
-    of_gears(case, (output_torque, eta), parts, run, told)
+    of_gears(case, (output_torque, eta), parts, run, field_of)
 }
 
-/// What `told` makes of both gears.
+/// What `field_of` makes of both gears.
 fn of_gears<T: Send>(
     case: &Case,
     (output_torque, eta): (f64, f64),
     parts: &dyn Parts,
     run: &Run,
-    told: impl Fn(&[MovedParts], &Faces, Member, Place) -> T + Sync,
+    field_of: impl Fn(&[MovedParts], &Faces, Member, Place) -> T + Sync,
 ) -> Result<Option<Fields<T>>, AnalysisError> {
     faer::set_global_parallelism(faer::Par::Seq);
     let Some(faces) = &case.faces().map(|faces| faces.at(case.resolution.grid)) else {
@@ -91,7 +91,7 @@ fn of_gears<T: Send>(
         };
         let moved = moved((faces, &yields), member, contact, parts, run)?;
         run.check()?;
-        Ok::<_, AnalysisError>(told(&moved, faces, member, place))
+        Ok::<_, AnalysisError>(field_of(&moved, faces, member, place))
     };
     let (driving, driven) = rayon::join(|| of(Member::Driving), || of(Member::Driven));
     Ok(Some(Fields {

@@ -7,7 +7,9 @@ use rayon::prelude::*;
 
 use super::AnalysisError;
 use super::case::Faces;
-use super::stress::{GearPeaks, GearStresses, PeakStress, PositionPeaks, REACH, largest, smallest};
+use super::stress::{
+    GearPeaks, GearStresses, PeakStress, PositionPeaks, REACH, RootStress, largest, teeth_away,
+};
 use crate::assembly::{FaceHoles, FaceRoots, FaceYield, FaceYieldSpec, PartError, Parts};
 use crate::contact::face::FaceContact;
 use crate::fem::surface::SurfaceStress;
@@ -78,10 +80,7 @@ impl<'a> FaceStressModel<'a> {
             .collect();
         let answer = roots.under(Some(&self.yields[g]), &loads);
         let z = roots.tooth_count();
-        let away = |tooth: usize| {
-            let apart = loads.iter().map(|load| load.tooth().abs_diff(tooth));
-            apart.map(|d| d.min(z - d)).min().unwrap_or(z)
-        };
+        let away = |tooth| teeth_away(tooth, loads.iter().map(|load| load.tooth()), z);
         let at = |tooth: usize, of: &SurfaceStress, stress: f64| PeakStress {
             stress,
             angle: TAU * tooth as f64 / z as f64 + of.angle,
@@ -93,26 +92,16 @@ impl<'a> FaceStressModel<'a> {
             let stresses = answer.stresses();
             largest(stresses.iter().map(|of| at(0, of, of.von_mises())))
         });
-        let (mut in_mesh, mut tension, mut compression) = (Vec::new(), Vec::new(), Vec::new());
-        for tooth in (0..z).filter(|tooth| away(*tooth) <= REACH) {
-            let stresses = answer.stresses(tooth);
-            let beside = stresses.iter().filter(|of| {
+        let reached = (0..z).filter(|tooth| away(*tooth) <= REACH);
+        let roots = reached.flat_map(|tooth| {
+            let stresses = answer.stresses(tooth).into_iter();
+            stresses.map(move |of| RootStress {
+                peak: at(tooth, &of, of.von_mises()),
+                principal: of.principal,
                 // Where it is stretched more than pressed.
-                of.edge == 0 && away(tooth) <= 1 && of.principal[0] > -of.principal[1]
-            });
-            in_mesh.push(largest(beside.map(|of| at(tooth, of, of.von_mises()))));
-            tension.push(largest(
-                stresses.iter().map(|of| at(tooth, of, of.principal[0])),
-            ));
-            compression.push(smallest(
-                stresses.iter().map(|of| at(tooth, of, of.principal[1])),
-            ));
-        }
-        GearPeaks {
-            root: largest(in_mesh.into_iter()),
-            tension: largest(tension.into_iter()),
-            compression: smallest(compression.into_iter()),
-            hole,
-        }
+                in_mesh: of.edge == 0 && away(tooth) <= 1 && of.principal[0] > -of.principal[1],
+            })
+        });
+        GearPeaks::of(&roots.collect::<Vec<_>>(), hole)
     }
 }

@@ -20,19 +20,16 @@ pub(super) fn solve(setup: Setup<'_>, pass: &Pass) -> Result<Analysis, AnalysisE
     curves((case, pass), pair.degrees_of_freedom, run, |under| {
         let load = under.load;
         let found = match &stress {
-            None => pair.found(load, sweep)?,
+            None => pair.found(load, sweep)?.keeping(Vec::new()),
             Some(stress) => {
                 let peaks = |cells: &ContactCells<'_>, solution: &ContactSolution| {
                     stress.peaks(cells, solution)
                 };
                 let (contacts, peaks, stiffness) = setup.solved(&pair.model, load, sweep, peaks)?;
-                Found::of_contacts((case, sweep), contacts, &stiffness, peaks)
+                Found::of_contacts((case, sweep), contacts, &stiffness).keeping(peaks)
             }
         };
-        let parts = under.parts(&found, &[], |further, _| {
-            let further: Found = pair.found(load, further)?;
-            Ok(further)
-        })?;
+        let parts = under.parts(&found, &[], |further, _| pair.found(load, further))?;
         Ok(CurveParts {
             stresses: pass.stress.then(|| GearStresses::of_positions(&found.kept)),
             ..parts

@@ -1,7 +1,7 @@
 //! What a method finds at some positions under one load.
 
 use super::between::Sample;
-use super::case::{Case, Place};
+use super::case::Case;
 use super::plan::Sweep;
 use crate::contact::MeshContact;
 
@@ -16,27 +16,31 @@ pub(super) struct Found<K = ()> {
     pub(super) stiffness: Vec<f64>,
 }
 
-impl<K> Found<K> {
+impl Found {
     /// That of `contacts` at the positions of `sweep` with this `stiffness`: they are alike in all mesh periods in which they repeat.
     pub(super) fn of_contacts(
         (case, sweep): (&Case, &Sweep),
         contacts: Vec<MeshContact>,
         stiffness: &[f64],
-        kept: Vec<K>,
     ) -> Self {
         let places = sweep.places(case);
-        let delta = |place: &Place| contacts[place.contact].transmission_error;
+        let (delta, stiffness) = places
+            .iter()
+            .map(|place| {
+                let contact = &contacts[place.contact];
+                (contact.transmission_error, stiffness[place.contact])
+            })
+            .unzip();
         Self {
-            transmission_error: places.iter().map(delta).collect(),
-            stiffness: places
-                .iter()
-                .map(|place| stiffness[place.contact])
-                .collect(),
-            kept,
+            transmission_error: delta,
+            stiffness,
+            kept: Vec::new(),
             contacts,
         }
     }
+}
 
+impl<K> Found<K> {
     /// What is known of the curve at these places.
     pub(super) fn samples(&self, case: &Case, sweep: &Sweep) -> Vec<Sample> {
         let places = sweep.places(case);

@@ -7,7 +7,7 @@ use super::stress::PeakStress;
 use crate::contact::PeakPlace;
 use crate::gear::{GearPair, Member};
 
-/// Of a kink that turns the flank by less than this part of the angle between the ends of a contact of two cylinders pressure tells little.
+/// Of a kink that turns the flank by less than this part of the angle between the ends of a contact of two cylinders pressure says little.
 const SHARP: f64 = 0.1;
 
 /// The largest pressure of a curve, and where it stands.

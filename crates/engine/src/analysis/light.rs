@@ -10,45 +10,45 @@ use super::found::Found;
 use super::load_distribution::{ends_of_contact, light};
 use super::plan::Sweep;
 use super::under_load::parts_of;
-use crate::contact::face::FaceModel;
-use crate::contact::{MeshContact, light_contact};
+use crate::contact::face::FaceFlanks;
+use crate::contact::{MeshContact, PositionError, light_contact};
 use crate::load_distribution::PairFormulas;
 use crate::run::Run;
 
+/// The contact of a case at a mesh position as its load vanishes.
+type Light<'a> = Box<dyn Fn(f64) -> Result<MeshContact, AnalysisError> + Sync + 'a>;
+
 /// The curve of `case` at torque 0, by contacts at the positions of `sweep`.
 pub(super) fn curve(case: &Case, sweep: &Sweep) -> Result<Curve, AnalysisError> {
-    let deviations = case.pair.deviations();
-    let formulas = match &case.model {
-        Model::Formulas(formulas) => Some(PairFormulas::new(&case.pair, *formulas)),
-        Model::Section(_) | Model::Faces(..) => None,
-    };
-    let rigid = case
-        .faces()
-        .map(|faces| FaceModel::rigid(faces.pair.clone(), faces.at(case.resolution.grid).slices));
-    let contact = |&eta: &f64| -> Result<MeshContact, AnalysisError> {
-        let contact = match (&formulas, &rigid) {
-            (Some(formulas), _) => return light(formulas, eta),
-            (None, Some(rigid)) => rigid.light_contact(eta),
-            (None, None) => light_contact(&case.pair, &deviations, eta),
-        };
+    let mut kinks = Vec::new();
+    let at = |eta, contact: Result<MeshContact, PositionError>| {
         contact.map_err(|error| AnalysisError::at_position(error, eta))
     };
+    let contact: Light<'_> = match &case.model {
+        Model::Section(_) => {
+            let deviations = case.pair.deviations();
+            Box::new(move |eta| at(eta, light_contact(&case.pair, &deviations, eta)))
+        }
+        Model::Faces(faces, _) => {
+            let slices = faces.at(case.resolution.grid).slices;
+            let flanks = FaceFlanks::new(faces.pair.clone(), slices);
+            Box::new(move |eta| at(eta, flanks.light_contact(eta)))
+        }
+        Model::Formulas(formulas) => {
+            let formulas = PairFormulas::new(&case.pair, *formulas);
+            kinks = ends_of_contact(&formulas, case);
+            Box::new(move |eta| light(&formulas, eta))
+        }
+    };
     let find = |sweep: &Sweep| -> Result<Found, AnalysisError> {
-        let contacts: Vec<_> = sweep.positions.par_iter().map(contact).collect();
+        let contacts = sweep.positions.par_iter().map(|&eta| contact(eta));
+        // The error of the first position that has one.
+        let contacts: Vec<_> = contacts.collect();
         let contacts = contacts.into_iter().collect::<Result<Vec<_>, _>>()?;
         let stiffness: Vec<f64> = contacts.iter().map(|contact| contact.stiffness).collect();
-        Ok(Found::of_contacts(
-            (case, sweep),
-            contacts,
-            &stiffness,
-            Vec::new(),
-        ))
+        Ok(Found::of_contacts((case, sweep), contacts, &stiffness))
     };
-    let ends = formulas
-        .as_ref()
-        .map(|formulas| ends_of_contact(formulas, case));
     let (found, run) = (find(sweep)?, Run::unattended());
-    let kinks = ends.unwrap_or_default();
     let parts = parts_of((case, sweep), &found, &kinks, &run, |sweep, _| find(sweep))?;
     Ok(parts.into_curve(case, 0.0))
 }

@@ -61,24 +61,14 @@ fn found(
     })?;
     let of_contacts = || contacts.iter().map(|contact| contact.stiffness).collect();
     let stiffness = by_step.unwrap_or_else(of_contacts);
-    Ok(Found::of_contacts(
-        (case, sweep),
-        contacts,
-        &stiffness,
-        Vec::new(),
-    ))
+    Ok(Found::of_contacts((case, sweep), contacts, &stiffness))
 }
 
 /// The contact of `pair` at the mesh position `eta` that is `shared` so under `load`. All forces act along the theoretical line of contact.
 fn contact(pair: &GearPair, eta: f64, shared: &Shared, load: f64) -> MeshContact {
     let number = |offset: i32| i64::from(offset) + eta.floor() as i64;
-    let pairs = shared.loaded().map(|(offset, force)| PairContact {
-        pair: number(offset),
-        share: force / load,
-        clearance: None,
-        tip_corner: None,
-        fillet: None,
-    });
+    let pairs = shared.loaded();
+    let pairs = pairs.map(|(offset, force)| PairContact::of_share(number(offset), force / load));
     let heaviest = number(shared.peak_offset);
     let s = pair.roll_length_of(eta - heaviest as f64);
     MeshContact {
@@ -95,9 +85,7 @@ fn contact(pair: &GearPair, eta: f64, shared: &Shared, load: f64) -> MeshContact
             half_width: 0.0,
         }),
         equilibrium: shared.residual,
-        complementarity: 0.0,
-        penetration: 0.0,
-        iterations: 0,
+        ..MeshContact::default()
     }
 }
 

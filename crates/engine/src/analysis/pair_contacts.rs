@@ -52,7 +52,7 @@ impl<'a> ModeledPair<'a> {
 
     /// What is found by `sweep` under `load`. Contacts of a drawn pair are asked for once: all members of a population are made to one drawing, and no two
     /// of them alike.
-    pub(super) fn found<K>(&self, load: f64, sweep: &Sweep) -> Result<Found<K>, AnalysisError> {
+    pub(super) fn found(&self, load: f64, sweep: &Sweep) -> Result<Found, AnalysisError> {
         let Setup {
             case,
             deviations,
@@ -68,11 +68,6 @@ impl<'a> ModeledPair<'a> {
         };
         let contacts = at(load)?;
         let stiffness = sweep.stiffness(load, &contacts, at)?;
-        Ok(Found::of_contacts(
-            (case, sweep),
-            contacts,
-            &stiffness,
-            Vec::new(),
-        ))
+        Ok(Found::of_contacts((case, sweep), contacts, &stiffness))
     }
 }

@@ -172,7 +172,7 @@ impl Pass {
             } else {
                 Vec::new()
             },
-            stress: answers && case.stress && case.method().tells_stress(),
+            stress: answers && case.stress && case.method().computes_stress(),
             curve,
         }
     }

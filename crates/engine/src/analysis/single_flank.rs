@@ -1,4 +1,4 @@
-//! What single-flank testing tells of a transmission error, by the words of ISO/TR 10064-1.
+//! What single-flank testing finds of a transmission error, by the words of ISO/TR 10064-1.
 
 use std::collections::VecDeque;
 
@@ -9,7 +9,7 @@ use super::between::Sections;
 /// Places in a mesh period, at least, between which δ is taken as straight.
 const TRACED: usize = 400;
 
-/// The parts of δ by how fast they come and go, in meters. What the span does not tell is `None`: but for the first it takes whole true periods.
+/// The parts of δ by how fast they come and go, in meters. What the span does not show is `None`: but for the first it takes whole true periods.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SingleFlank {
     /// f_i′, the largest range in any stretch of one mesh period.
@@ -146,8 +146,8 @@ mod tests {
     use super::*;
     use crate::analysis::between::{PairState, Sample, Span};
 
-    /// What single-flank testing tells of `curve` over `periods` mesh periods after which it repeats or not.
-    fn told(curve: impl Fn(f64) -> f64, periods: u32, closes: bool) -> SingleFlank {
+    /// What single-flank testing finds of `curve` over `periods` mesh periods after which it repeats or not.
+    fn single_flank(curve: impl Fn(f64) -> f64, periods: u32, closes: bool) -> SingleFlank {
         const PER_PERIOD: u32 = 200;
         let span = Span::new(0.0, periods, PER_PERIOD, closes);
         let samples: Vec<Sample> = (0..periods * PER_PERIOD)
@@ -191,7 +191,7 @@ mod tests {
     fn a_runout_and_a_wave_of_the_mesh_are_told_apart() {
         // Ten mesh periods: A once in all of them, B in each.
         let (a, b) = (3.0, 0.5);
-        let found = told(
+        let found = single_flank(
             |x| 7.0 + a * (TAU * x / 10.0).sin() + b * (TAU * x).cos(),
             10,
             true,
@@ -204,23 +204,23 @@ mod tests {
     #[test]
     fn a_runout_alone_changes_from_tooth_to_tooth_by_its_chord() {
         // sin over a stretch of s about its steepest place: 2 A sin(π s/P).
-        let found = told(|x| 3.0 * (TAU * x / 10.0).sin(), 10, true);
+        let found = single_flank(|x| 3.0 * (TAU * x / 10.0).sin(), 10, true);
         let chord = 6.0 * (TAU / 20.0).sin();
         assert_near(found.tooth_to_tooth, chord, "tooth to tooth");
         assert_near(found.short_wave, 0.0, "short wave");
         assert_near(found.mesh_harmonics_rms, 0.0, "harmonics");
         // The steepest place of this one is where the curve begins and ends.
-        let steep = told(|x| 3.0 * (TAU * (x + 0.25) / 10.0).sin(), 10, true);
+        let steep = single_flank(|x| 3.0 * (TAU * (x + 0.25) / 10.0).sin(), 10, true);
         assert_near(steep.tooth_to_tooth, chord, "over the end");
     }
 
     #[test]
     fn a_wave_of_half_a_cycle_a_mesh_period_is_a_short_one_and_the_next_slower_is_long() {
-        let half = told(|x| (TAU * x / 2.0).sin(), 10, true);
+        let half = single_flank(|x| (TAU * x / 2.0).sin(), 10, true);
         assert_near(half.long_wave, 0.0, "half a cycle");
         assert_near(half.short_wave, 2.0, "half a cycle");
         assert_near(half.tooth_to_tooth, 2.0, "from crest to trough in a period");
-        let slower = told(|x| (TAU * 4.0 * x / 10.0).sin(), 10, true);
+        let slower = single_flank(|x| (TAU * 4.0 * x / 10.0).sin(), 10, true);
         assert_near(slower.long_wave, 2.0, "four tenths");
         assert_near(slower.short_wave, 0.0, "four tenths");
         assert_near(slower.mesh_harmonics_rms, 0.0, "four tenths");
@@ -228,7 +228,7 @@ mod tests {
 
     #[test]
     fn a_curve_that_repeats_with_the_mesh_is_short_and_all_of_it_is_tooth_to_tooth() {
-        let found = told(|x| (TAU * x).sin() + 0.25 * (2.0 * TAU * x).cos(), 1, true);
+        let found = single_flank(|x| (TAU * x).sin() + 0.25 * (2.0 * TAU * x).cos(), 1, true);
         // Crests where cos x (1 − sin x) = 0: from −1.25 at 3π/2 to 0.75 at π/2.
         assert_near(found.tooth_to_tooth, 2.0, "tooth to tooth");
         assert_eq!(found.long_wave, Some(0.0));
@@ -239,7 +239,7 @@ mod tests {
 
     #[test]
     fn a_part_of_a_true_period_tells_ranges_within_a_mesh_period_alone() {
-        let found = told(|x| 3.0 * (TAU * (x + 2.0) / 10.0).sin(), 3, false);
+        let found = single_flank(|x| 3.0 * (TAU * (x + 2.0) / 10.0).sin(), 3, false);
         // From 2 to 5: the steepest stretch is the last, about the zero at 5, of which half is beyond the end.
         let part = |x: f64| 3.0 * (TAU * x / 10.0).sin();
         let last = 5.0 - 1.0 / 200.0;

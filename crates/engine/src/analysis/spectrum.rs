@@ -44,7 +44,7 @@ pub struct Spectrum {
 }
 
 /// Places in a mesh period, at least, at which a curve is read for its spectrum: with kinks and jumps in it, lines fall so slowly that those
-/// beyond the last one told would add a percent to it.
+/// beyond the last one given would add a percent to it.
 const RESAMPLED: usize = 400;
 
 /// Lines that get a name because they stand out, and the least part of the largest line that does.
@@ -59,7 +59,7 @@ impl Spectrum {
     }
 
     /// The spectrum of a curve that was [resampled](Self::resampled) over the span of `case`, which is whole true periods: as many orders as its
-    /// positions tell.
+    /// positions show.
     pub(super) fn of(case: &Case, resampled: [Vec<f64>; 2]) -> Self {
         let lines = resampled.map(|values| {
             let mut lines = harmonics(&values);

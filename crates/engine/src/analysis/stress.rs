@@ -153,38 +153,63 @@ impl LoadedPair<'_> {
             let loads = cells.flank_loads(member, &solution.forces);
             let answer = loaded.under(&loads);
             let roots = gear.roots(&loads, &answer);
-            let all = || roots.iter().map(|root| root.peak);
-            let loaded_sides = roots.iter().filter(|root| root.in_mesh);
             let sectors = gear.sector_angles.iter().enumerate();
             let holes = sectors.flat_map(|(sector, &turn)| {
                 let along = answer.in_blank(sector).into_iter().zip(&gear.edges);
                 along.map(move |(stress, place)| in_plane(stress.abs(), turn, *place))
             });
-            GearPeaks {
-                root: largest(loaded_sides.map(|root| root.peak)),
-                tension: largest(all()),
-                compression: smallest(all()),
-                hole: (!gear.edges.is_empty()).then(|| largest(holes)),
-            }
+            let hole = (!gear.edges.is_empty()).then(|| largest(holes));
+            GearPeaks::of(&roots, hole)
         })
     }
 }
 
-/// The stress along a fillet at one of its nodes.
-struct RootStress {
-    peak: PeakStress,
+/// The stress at one place of a root.
+pub(super) struct RootStress {
+    /// The place, with the stress that is compared beside the loaded flanks.
+    pub(super) peak: PeakStress,
+    /// The first principal stress, and the smallest one.
+    pub(super) principal: [f64; 2],
     /// Whether it is beside the loaded flank of a loaded tooth or of its neighbor.
-    in_mesh: bool,
+    pub(super) in_mesh: bool,
+}
+
+impl GearPeaks {
+    /// Those of all `roots` that are reached, and the largest of its holes.
+    pub(super) fn of(roots: &[RootStress], hole: Option<PeakStress>) -> Self {
+        let principal = |i: usize| {
+            let each = roots.iter();
+            each.map(move |root| PeakStress {
+                stress: root.principal[i],
+                ..root.peak
+            })
+        };
+        let in_mesh = roots.iter().filter(|root| root.in_mesh);
+        Self {
+            root: largest(in_mesh.map(|root| root.peak)),
+            tension: largest(principal(0)),
+            compression: smallest(principal(1)),
+            hole,
+        }
+    }
+}
+
+/// How many of `tooth_count` teeth `tooth` is away from the nearest of the `loaded` ones.
+pub(super) fn teeth_away(
+    tooth: usize,
+    loaded: impl Iterator<Item = usize>,
+    tooth_count: usize,
+) -> usize {
+    let apart = loaded.map(|loaded| loaded.abs_diff(tooth));
+    let apart = apart.map(|d| d.min(tooth_count - d));
+    apart.min().unwrap_or(tooth_count)
 }
 
 impl StressedGear {
     /// The stresses at the roots of all teeth that `loads` reach, tooth by tooth.
     fn roots(&self, loads: &[FlankLoad], answer: &Answer<'_>) -> Vec<RootStress> {
         let z = self.tooth_count;
-        let away = |tooth: usize| {
-            let apart = loads.iter().map(|load| load.tooth.abs_diff(tooth));
-            apart.map(|d| d.min(z - d)).min().unwrap_or(z)
-        };
+        let away = |tooth| teeth_away(tooth, loads.iter().map(|load| load.tooth), z);
         let reached = (0..z).filter(|tooth| away(*tooth) <= REACH);
         let of_tooth = |tooth: usize| {
             let turn = TAU * tooth as f64 / z as f64;
@@ -193,6 +218,8 @@ impl StressedGear {
                 .enumerate()
                 .map(move |(i, (stress, place))| RootStress {
                     peak: in_plane(stress, turn, *place),
+                    // Nothing presses on a free edge.
+                    principal: [stress; 2],
                     in_mesh: i < self.beside_loaded && away(tooth) <= 1,
                 })
         };

@@ -109,7 +109,7 @@ impl<'a> OfFaces<'a> {
         let solved = self.contacts(&self.whole, load, sweep)?;
         let (contacts, faces, stiffness) = solved;
         let task = (self.case, sweep);
-        Ok(Found::of_contacts(task, contacts, &stiffness, faces))
+        Ok(Found::of_contacts(task, contacts, &stiffness).keeping(faces))
     }
 
     /// By the contacts of gears that are alike all around, and what holes change of them at first order.

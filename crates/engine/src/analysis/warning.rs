@@ -11,10 +11,10 @@ use crate::load_distribution::{FormulaRange, out_of_range};
 /// Backlash below this, in modules, counts as none.
 const NO_BACKLASH: f64 = 1e-6;
 
-/// Tip clearances below this, in modules, are told: racks leave 0.2 to 0.3.
+/// There is a warning of tip clearances below this, in modules: racks leave 0.2 to 0.3.
 const LEAST_TIP_CLEARANCE: f64 = 0.1;
 
-/// Beyond this ratio of the face widths a plane model is told to be doubtful: the load spreads over the wider gear's width by bending it, which
+/// Beyond this ratio of the face widths there is a warning of plane models: the load spreads over the wider gear's width by bending it, which
 /// a plane does not see.
 const LIKE_WIDTHS: f64 = 1.5;
 
@@ -22,17 +22,17 @@ const LIKE_WIDTHS: f64 = 1.5;
 /// their curve at two.
 const ELASTIC_STRAIN: f64 = 0.02;
 
-/// Beyond these parts of the mean and of the peak-to-peak the error of the projected decomposition is told. Who asks for it asks what
+/// Beyond these parts of the mean and of the peak-to-peak there is a warning of the error of the projected decomposition. Who asks for it asks what
 /// holes do to the fluctuation; at single positions case 1 of the paper is 4 % of it off, in its statistics 0.1 %.
 const DOUBTFUL_PROJECTION: [f64; 2] = [0.01, 0.05];
 
-/// Below so many positions a mesh period orders are told with a warning: each tells half as many mesh harmonics, and the upper ones badly.
+/// Below so many positions a mesh period there is a warning of orders: each position gives half a mesh harmonic, and the upper ones badly.
 pub const FEW_POSITIONS: u32 = 20;
 
-/// Forces beyond this part of the largest load of a table are told; up to it they are it but for rounding.
+/// There is a warning of forces beyond this part of the largest load of a table; up to it they are it but for rounding.
 const BEYOND: f64 = 1.0 + 1e-9;
 
-/// From this part on by which the natural frequency is another with the inertia of rims and teeth where it is, that is told: the estimate is as good.
+/// From this part on by which the natural frequency is another with the inertia of rims and teeth where it is, there is a warning: the estimate is as good.
 const RIMS_MATTER: f64 = 0.05;
 
 /// A curve that fluctuates by a smaller part of its mean counts as one that fluctuates by so much: less is no concern of anyone.
@@ -139,7 +139,7 @@ pub enum Warning {
         /// The pressure in Pa.
         pressure: f64,
     },
-    /// So few positions a mesh period tell the orders of its higher multiples wrongly.
+    /// So few positions a mesh period give the orders of its higher multiples wrongly.
     FewPositions {
         /// The positions.
         positions: u32,
@@ -340,7 +340,7 @@ pub(super) fn warn_of_pressures(warnings: &mut Vec<Warning>, case: &Case, curves
     );
 }
 
-/// Tells of speeds at which the motion grows without bound or loads the mesh beyond its `table`, whose loads are those of the base radius `driven`, and of
+/// Warns of speeds at which the motion grows without bound or loads the mesh beyond its `table`, whose loads are those of the base radius `driven`, and of
 /// inertia that stands elsewhere than the motion has it.
 pub(super) fn warn_of_motions(
     warnings: &mut Vec<Warning>,
@@ -353,21 +353,19 @@ pub(super) fn warn_of_motions(
         branches.flat_map(|branch| {
             let seen = branch.runs_away.iter().zip(&branch.largest_force);
             seen.zip(&of.speeds)
-                .map(|((runs_away, force), speed)| (*runs_away, force / largest, *speed))
+                .map(|((runs_away, force), speed)| (*speed, (!runs_away).then(|| force / largest)))
         })
     });
-    let seen: Vec<(bool, f64, f64)> = seen.collect();
-    let unbounded = seen.iter().filter(|(runs_away, ..)| *runs_away);
-    let found = ends(unbounded.map(|(.., speed)| *speed));
+    // Speeds, and what of the largest load of the table the force comes to; `None` where the motion is not bounded.
+    let seen: Vec<(f64, Option<f64>)> = seen.collect();
+    let unbounded = seen.iter().filter(|(_, ratio)| ratio.is_none());
+    let found = ends(unbounded.map(|(speed, _)| *speed));
     warnings.extend(found.map(|speeds| Warning::MotionUnbounded { speeds }));
-    let beyond = || {
-        seen.iter()
-            .filter(|(runs_away, ratio, _)| !runs_away && *ratio > BEYOND)
-    };
-    let found = ends(beyond().map(|(.., speed)| *speed));
+    let beyond = || seen.iter().filter(|(_, ratio)| *ratio > Some(BEYOND));
+    let found = ends(beyond().map(|(speed, _)| *speed));
     warnings.extend(found.map(|speeds| Warning::LoadBeyondForceTable {
         speeds,
-        ratio: beyond().map(|(_, ratio, _)| *ratio).fold(0.0, f64::max),
+        ratio: beyond().filter_map(|(_, ratio)| *ratio).fold(0.0, f64::max),
         largest_output_torque: largest * driven,
     }));
     let off = dynamics.iter().filter_map(|of| {

@@ -5,22 +5,23 @@ use std::sync::Arc;
 
 use faer::Mat;
 
+use super::checked::Penetration;
 use super::compliances::Known;
 use super::coupled::{Touching, add_coupled, mirror};
 use super::drawn::DrawnPair;
-use super::facing::RangeEnd;
 use super::facings::Near;
 use super::factor::{add, dot};
-use super::looks::Found;
 use super::meeting::Standing;
 use super::mesh_contact::{
-    FlankLoad, MeshCells, MeshContact, PairContact, PairInfluence, PairLoads,
+    FlankLoad, MeshCells, MeshContact, PairContact, PairInfluence, PairLoads, Spot,
 };
 use super::model::{
     ContactSolver, DeviatingPair, MeshPosition, PositionError, WarmPair, WarmStart,
 };
 use super::pair_cells::PairCells;
 use super::patch::Extent;
+use super::peak::Peak;
+use super::problem::first_of;
 use super::wide::{Loops, wide};
 use super::{
     AugmentedLagrangian, ContactProblem, ContactSolution, PeakPlace, default_penalty,
@@ -38,12 +39,12 @@ const MULTIPLIER_UPDATES: u32 = 2000;
 const MOST_HALVED: u32 = 3;
 const MOST_TO_HALVE: usize = 128;
 
-/// What a pair wants beside the cells that it has.
+/// What the cells of a pair lack.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Want {
-    /// More of them; or the same, moved so far ([`Extent::moved`]) that a contact narrower than they reach lies among them.
+pub(super) enum Lack {
+    /// More cells; or the same, moved so far ([`Extent::moved`]) that a contact narrower than they reach lies among them.
     Room { moved: i32 },
-    /// Each in two.
+    /// Half the width.
     Halves,
 }
 
@@ -103,11 +104,8 @@ impl PlacedCells {
 
     /// The first of its cells to touch, and the δ at which it does.
     fn first(&self) -> (usize, f64) {
-        let touches = self.gaps.iter().zip(&self.arms).enumerate();
-        let touches = touches.map(|(cell, (gap, arms))| (cell, gap / arms[1]));
-        touches.fold((0, f64::INFINITY), |first, next| {
-            if next.1 < first.1 { next } else { first }
-        })
+        let cells = self.gaps.iter().zip(&self.arms);
+        first_of(cells.map(|(gap, arms)| gap / arms[1]))
     }
 
     /// How deep beyond the `touch` of the cell `first` the contact under `forces` ends on either side: the square of a pressure falls to zero
@@ -134,6 +132,29 @@ impl PlacedCells {
             end((0..=first).find(presses), 1),
             end((first..forces.len()).rev().find(presses), -1),
         ]
+    }
+
+    /// The largest pressure of the pair `n` under `forces`, of which that on one cell at least presses, on a face so wide.
+    fn peak(&self, n: i64, forces: &[f64], active: &[bool], width: f64) -> Peak {
+        let patch = &self.cells().patch;
+        let pressures = patch.cells.iter().zip(forces);
+        let pressures = pressures.map(|(cell, force)| force / (cell.width * width));
+        let (i, pressure) =
+            pressures.enumerate().fold(
+                (0, 0.0),
+                |most, next| {
+                    if next.1 > most.1 { next } else { most }
+                },
+            );
+        Peak {
+            pressure,
+            place: PeakPlace {
+                pair: n,
+                roll_lengths: patch.cells[i].roll_lengths,
+                z: None,
+                half_width: patch.half_width_about(i, active),
+            },
+        }
     }
 
     /// Its cells.
@@ -265,85 +286,53 @@ impl<'a> ContactCells<'a> {
         &self,
         load: f64,
         solution: &ContactSolution,
-        found: &Found,
+        penetration: &Penetration,
     ) -> MeshContact {
         let width = self.deviating.model.pair.common_face_width();
-        let mut peak_pressure = Some(0.0_f64);
-        let mut peak_place = None;
-        let pairs = self
-            .ranges()
-            .map(|(placed, range)| {
-                let patch = &placed.cells().patch;
-                let forces = &solution.forces[range.clone()];
-                let active = &solution.active[range.clone()];
-                let carried = placed.arms.iter().zip(forces);
-                let share = carried.map(|(arms, p)| arms[1] * p).sum::<f64>() / load;
-                let ended = patch.ended_by(active);
-                let at_corner = ended
+        let (mut peak, mut at_corner) = (None, false);
+        let pairs = self.ranges().map(|(placed, range)| {
+            let (pair, patch) = (self.at.period + placed.pair, &placed.cells().patch);
+            let forces = &solution.forces[range.clone()];
+            let active = &solution.active[range.clone()];
+            at_corner |= patch.corner_carries(active, [true; 2]);
+            let carried = placed.arms.iter().zip(forces);
+            let share = carried.map(|(arms, p)| arms[1] * p).sum::<f64>() / load;
+            if share > 0.0 {
+                let largest = placed.peak(pair, forces, active, width);
+                peak = Some(peak.map_or(largest, |peak: Peak| peak.larger(largest)));
+            }
+            let clearance = placed.arms.iter().zip(&solution.gaps[range]);
+            let clearance = clearance.map(|(arms, gap)| gap / arms[1]);
+            let pressed = || {
+                penetration
+                    .fillets
                     .iter()
-                    .any(|end| matches!(end, RangeEnd::Tip | RangeEnd::MateTip))
-                    || patch.presses_corner(active);
-                let cells = patch.cells.iter().zip(forces).enumerate();
-                peak_pressure = peak_pressure.filter(|_| !at_corner).map(|peak| {
-                    cells.fold(peak, |peak, (i, (cell, p))| {
-                        let pressure = p / (cell.width * width);
-                        if pressure > peak {
-                            peak_place = Some(PeakPlace {
-                                pair: self.at.period + placed.pair,
-                                roll_lengths: cell.roll_lengths,
-                                z: None,
-                                half_width: patch.half_width_about(i, active),
-                            });
-                        }
-                        peak.max(pressure)
-                    })
-                });
-                let clearance = placed.arms.iter().zip(&solution.gaps[range]);
-                let clearance = clearance.map(|(arms, gap)| gap / arms[1]);
-                PairContact {
-                    pair: self.at.period + placed.pair,
-                    share,
-                    clearance: (share <= 0.0).then(|| clearance.fold(f64::INFINITY, f64::min)),
-                    tip_corner: (patch.off_path && share > 0.0).then_some(patch.seat),
-                    fillet: ended
-                        .iter()
-                        .find_map(|end| match end {
-                            RangeEnd::Fillet => Some(patch.seat),
-                            RangeEnd::MateFillet => Some(patch.seat.other()),
-                            _ => None,
-                        })
-                        .or_else(|| {
-                            let mut fillets = found.fillets.iter();
-                            fillets
-                                .find(|(pair, _)| *pair == placed.pair)
-                                .map(|(_, gear)| *gear)
-                        }),
-                }
-            })
-            .collect();
-        let driving_arms = self
-            .placed
-            .iter()
-            .flat_map(|placed| &placed.arms)
-            .map(|arms| arms[0]);
-        let driving_load = driving_arms.zip(&solution.forces).map(|(w, p)| w * p).sum();
-        let complementarity = solution
-            .forces
-            .iter()
-            .zip(&solution.gaps)
-            .map(|(p, g)| (p * g).abs())
-            .fold(0.0, f64::max);
+                    .find(|(pair, _)| *pair == placed.pair)
+            };
+            PairContact {
+                clearance: (share <= 0.0).then(|| clearance.fold(f64::INFINITY, f64::min)),
+                tip_corner: (patch.off_path && share > 0.0).then_some(patch.seat),
+                fillet: patch
+                    .reached_fillet(active)
+                    .or_else(|| pressed().map(|(_, gear)| *gear)),
+                ..PairContact::of_share(pair, share)
+            }
+        });
+        let pairs = pairs.collect();
+        let arms = self.placed.iter().flat_map(|placed| &placed.arms);
+        let spots = arms.zip(solution.forces.iter().zip(&solution.gaps));
+        let spots = spots.map(|(arms, (&force, &gap))| Spot {
+            force,
+            gap,
+            moments: arms.map(|arm| arm * force),
+        });
         MeshContact {
             transmission_error: solution.transmission_error,
             stiffness: solution.stiffness,
-            driving_load,
             pairs,
-            peak_pressure,
-            peak_place: peak_place.filter(|_| peak_pressure.is_some()),
-            equilibrium: solution.load_residual,
-            complementarity,
-            penetration: found.largest,
+            penetration: penetration.largest,
             iterations: solution.iterations,
+            ..MeshContact::of_spots(load, spots, peak.filter(|_| !at_corner))
         }
     }
 
@@ -500,34 +489,39 @@ impl<'a> ContactCells<'a> {
         Some(touching.collect())
     }
 
-    /// What pairs want: room, if their contact reaches beyond their cells or they penetrate beside them, and there is room for more; and where none
-    /// does, halves, if they penetrate deeper than `deep` between their cells.
-    pub(super) fn wants(
+    /// What the cells of pairs lack: room, if the contact reaches beyond them or flanks penetrate beside them, and there is room for more; if no pair lacks
+    /// room, half the width, if flanks penetrate deeper than `deep` between cells.
+    pub(super) fn lacks(
         &self,
         solution: &ContactSolution,
-        found: &Found,
+        penetration: &Penetration,
         deep: f64,
-    ) -> Vec<(i64, Want)> {
+    ) -> Vec<(i64, Lack)> {
         let room = self.ranges().filter_map(|(placed, range)| {
             let patch = &placed.cells().patch;
             let active = &solution.active[range];
-            let beside = found.beside.contains(&placed.pair);
-            let wants = patch.can_widen() && (beside || patch.overflows(active));
+            let beside = penetration.beside.contains(&placed.pair);
+            let lacks = patch.can_widen() && (beside || patch.overflows(active));
             let moved = patch.off_middle(active);
-            wants.then_some((placed.pair, Want::Room { moved }))
+            lacks.then_some((placed.pair, Lack::Room { moved }))
         });
-        let room: Vec<(i64, Want)> = room.collect();
+        let room: Vec<(i64, Lack)> = room.collect();
         if !room.is_empty() {
             return room;
         }
-        let deepest =
-            |placed: &PlacedCells| found.between.get(&placed.pair).copied().unwrap_or(0.0);
+        let deepest = |placed: &PlacedCells| {
+            penetration
+                .between
+                .get(&placed.pair)
+                .copied()
+                .unwrap_or(0.0)
+        };
         let halves = self.placed.iter().filter(|placed| {
             placed.extent.halved < MOST_HALVED
                 && placed.cells().patch.cells.len() <= MOST_TO_HALVE
                 && deepest(placed) > deep
         });
-        halves.map(|placed| (placed.pair, Want::Halves)).collect()
+        halves.map(|placed| (placed.pair, Lack::Halves)).collect()
     }
 
     /// What a force in the middle of one pair yields in the middle of the next, in the mean.

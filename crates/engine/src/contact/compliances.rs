@@ -7,9 +7,8 @@ use faer::Mat;
 
 use super::factor::{Core, Factor, core_of};
 use super::memo::Memo;
-use super::patch::Extent;
+use super::pair_cells::CellsSpec;
 use crate::fem::dense::entries;
-use crate::gear::Member;
 
 /// What compliances may take, in bytes: two hundred of eighty cells.
 const MOST_BYTES: usize = 10 << 20;
@@ -20,10 +19,8 @@ const MOST_CORE_BYTES: usize = 36 << 20;
 /// What the compliance of the cells of a model depends on.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(super) struct StatedCells {
-    /// The bits of the load.
-    pub(super) load: u64,
-    /// The pairs from the reference pair of the mesh period, the bits of the phase at which each is laid, on which gear, and how far.
-    pub(super) pairs: Vec<(i64, u64, Member, Extent)>,
+    /// The pairs, numbered from the reference pair of the mesh period, and their cells.
+    pub(super) pairs: Vec<(i64, CellsSpec)>,
     /// How the blanks stand under their teeth.
     pub(super) teeth_like: [usize; 2],
 }

@@ -63,11 +63,11 @@ impl Corner {
     }
 
     /// Whether [`Corner::compliance`] knows of the point at an arc length, with any other one.
-    pub(super) fn may_tell(&self, arc: f64) -> bool {
+    pub(super) fn may_know(&self, arc: f64) -> bool {
         self.tip - arc < 2.0 * self.trusted
     }
 
-    /// R between the points at two arc lengths, if they are nearer to the corner than the table can tell.
+    /// R between the points at two arc lengths, if they are nearer to the corner than the table knows.
     pub(super) fn compliance(&self, one: f64, other: f64) -> Option<[[f64; 2]; 2]> {
         let (x, y) = (self.tip - one, self.tip - other);
         let mean = f64::midpoint(x, y);
@@ -82,15 +82,15 @@ impl Corner {
         let rest = 1.0 - mean / self.trusted;
         // From d on inward by the wedge's law, and what departs from that law between 2 d and d goes on in proportion.
         let grown = (self.trusted / mean).ln() - rest * LN_2;
-        let mut told = self.growth.map(|row| row.map(|growth| grown * growth));
+        let mut compliance = self.growth.map(|row| row.map(|growth| grown * growth));
         for ((near, far), weight) in near.iter().zip(far).zip(weights) {
-            for (a, row) in told.iter_mut().enumerate() {
+            for (a, row) in compliance.iter_mut().enumerate() {
                 for (b, entry) in row.iter_mut().enumerate() {
                     *entry += weight * (near[a][b] + rest * (near[a][b] - far[a][b]));
                 }
             }
         }
-        Some(told)
+        Some(compliance)
     }
 }
 

@@ -5,7 +5,7 @@ use super::placement::{FlankPlace, Placement, Sight};
 use crate::gear::{GearPair, Member, PairDeviations, SpurGear};
 use crate::root_finding::bisect;
 
-/// Places besides kinks between which the gap of flanks that are not convex is looked at.
+/// Places besides kinks between which minima of the gap are searched on flanks that are not convex.
 const PLACES: u32 = 64;
 
 /// What ends the part of a flank from which the other flank is seen.
@@ -49,7 +49,7 @@ pub struct GapMinimum {
 
 /// Two flanks that face each other.
 ///
-/// One of them is looked at from the other: points are given by their arc length on the flank of `seat`, the gear whose
+/// One of them is seen from the other: points are given by their arc length on the flank of `seat`, the gear whose
 /// tip is nearer to the contact, so that the stretch may end at its tip corner.
 #[derive(Debug, Clone)]
 pub struct Facing {
@@ -67,7 +67,7 @@ pub struct Facing {
     pub off_path: bool,
 }
 
-/// Two flanks as they are placed, looked at from the seat's.
+/// Two flanks as they are placed, seen from the seat's.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct View<'a> {
     pub(super) placement: Placement<'a>,
@@ -156,7 +156,7 @@ pub(super) fn nearer_tip(gears: &GearPair, phase: f64) -> Member {
 }
 
 impl<'a> View<'a> {
-    /// The same flanks, looked at from the other gear.
+    /// The same flanks, seen from the other gear.
     pub(super) fn seen_from_mate(&self) -> Self {
         Self {
             seat: self.seat.other(),
@@ -183,7 +183,7 @@ impl<'a> View<'a> {
         let [nominal, _] = self.on_both(s_1, gears.line_of_action() - s_1);
         let range = self.range()?;
         let (kinks, corners) = (self.kinks(&range), self.corners(&range));
-        let places = self.hollow_places(&range, &kinks).into_iter();
+        let places = self.least_places(&range, &kinks).into_iter();
         let mut minima: Vec<GapMinimum> =
             places.filter_map(|arc| self.minimum(arc, &range)).collect();
         minima.sort_by(|a, b| a.touch.total_cmp(&b.touch));
@@ -302,8 +302,8 @@ impl<'a> View<'a> {
         places
     }
 
-    /// The arc that sees the roll length `wanted` of the other flank, within `range` where that is undercut.
-    fn arc_that_sees(&self, wanted: f64, range: &FlankRange) -> Option<f64> {
+    /// The arc that sees the roll length `sought` of the other flank, within `range` where that is undercut.
+    fn arc_that_sees(&self, sought: f64, range: &FlankRange) -> Option<f64> {
         const STEPS: u32 = 12;
         let (gear, mate) = (
             self.gears().gear(self.seat),
@@ -311,16 +311,16 @@ impl<'a> View<'a> {
         );
         // The corner of an undercut flank touches far off the line of action, and beside it the mate passes the base circle.
         if mate.is_undercut() {
-            let sees = |arc: f64| self.seen_from(arc) >= wanted;
+            let sees = |arc: f64| self.seen_from(arc) >= sought;
             let within = sees(range.from) && !sees(range.to);
             return within.then(|| bisect(range.from, range.to, sees));
         }
         // Flanks that touch share the line of action.
-        let opposite = self.gears().line_of_action() - wanted;
+        let opposite = self.gears().line_of_action() - sought;
         let mut arc = gear.flank().arc_length(opposite.max(0.0));
         for _ in 0..STEPS {
             let point = self.point(arc)?;
-            let missed = wanted - point.sight.roll_length;
+            let missed = sought - point.sight.roll_length;
             if missed.abs() <= 1e-15 * mate.base_radius() {
                 break;
             }
@@ -330,11 +330,11 @@ impl<'a> View<'a> {
         Some(arc)
     }
 
-    /// Where the gap has a least place.
+    /// Where the gap has minima.
     ///
     /// It is a parabola about the nominal contact plus reliefs that grow towards either tip: convex, and least where its slope
     /// changes sign, or at an end. Modifications of other kinds may give it several minima; between kinks each is found in the same way.
-    fn hollow_places(&self, range: &FlankRange, kinks: &[f64]) -> Vec<f64> {
+    fn least_places(&self, range: &FlankRange, kinks: &[f64]) -> Vec<f64> {
         let FlankRange { from, to, .. } = *range;
         let falls = |arc: f64| self.slope(arc) < 0.0;
         let least = |low: f64, high: f64| match (falls(low), falls(high)) {

@@ -20,13 +20,13 @@ const MOST_RUNOUT: f64 = 2.0;
 
 /// If the eccentricities of both gears together exceed this part of a phase, the minimum of the gap is searched on the displaced flanks. The minimum of
 /// the nearest drawn phase is wrong by the square of the distance from it, and by much more across a kink or beside a corner.
-const LOOKED_AT: f64 = 0.25;
+const DISPLACED: f64 = 0.25;
 
 /// Turns to the flanks that touch; each squares what is left.
 const MOST_TURNS: u32 = 4;
 
 /// The pairs whose flanks face each other at one fraction of the mesh period; numbered from the reference pair of the
-/// period. They are looked for outward from the path of contact, as far as is asked.
+/// period. They are found outward from the path of contact, as far as is asked.
 pub(super) struct Facings<'a> {
     deviating: DeviatingPair<'a>,
     fraction: f64,
@@ -34,14 +34,14 @@ pub(super) struct Facings<'a> {
     as_drawn: bool,
     /// How far the gears run out together, in phases.
     runout: f64,
-    /// Every pair looked at, and the δ at which it touches as drawn.
+    /// Every pair found, and the δ at which it touches as drawn.
     found: Vec<(i64, f64)>,
     frontier: [Frontier; 2],
     /// The mesh period asked about last, and the pairs known there.
     known: (i64, Vec<Near>),
 }
 
-/// The next pair to look at on one side, and the touch of the last one there.
+/// The next pair on one side, and the touch of the last one found there.
 struct Frontier {
     next: i64,
     step: i64,
@@ -171,7 +171,7 @@ impl<'a> Facings<'a> {
             known: (0, Vec::new()),
         };
         for n in first..=last {
-            facings.look_at(n);
+            facings.add(n);
         }
         let touch = |n: i64| {
             let found = facings.found.iter().find(|(pair, _)| *pair == n);
@@ -184,8 +184,8 @@ impl<'a> Facings<'a> {
         (!facings.found.is_empty()).then_some(facings)
     }
 
-    /// Looks at pair `n` as drawn; the δ at which it touches, without end where flanks do not face each other.
-    fn look_at(&mut self, n: i64) -> f64 {
+    /// Adds pair `n` as drawn; the δ at which it touches, without end where flanks do not face each other.
+    fn add(&mut self, n: i64) -> f64 {
         let model = self.deviating.model;
         let drawn = model.drawn_pair(self.fraction - n as f64);
         let touch = drawn.facing().map_or(f64::INFINITY, Facing::touch);
@@ -232,7 +232,7 @@ impl<'a> Facings<'a> {
     /// The pairs that touch in mesh period `period` before δ is `reach`; at least the one that touches first.
     pub(super) fn within(&mut self, period: i64, reach: f64) -> Vec<Near> {
         let as_drawn = reach + self.nearer() + ROUNDING;
-        self.look_as_far_as(as_drawn);
+        self.find_within(as_drawn);
         if self.known.0 != period {
             self.known = (period, Vec::new());
         }
@@ -283,8 +283,8 @@ impl<'a> Facings<'a> {
             drawn: model.drawn_pair_on(phase + drawn, seat),
         };
         self.find_touches(&mut near, period)?;
-        if self.runout > LOOKED_AT || near.is_inclined_to_mate_tip(self.deviating, period) {
-            self.look_at_real(&mut near, period);
+        if self.runout > DISPLACED || near.is_inclined_to_mate_tip(self.deviating, period) {
+            self.find_on_displaced(&mut near, period);
         }
         Some(near)
     }
@@ -298,7 +298,7 @@ impl<'a> Facings<'a> {
             meeting.gap / meeting.arms[1]
         };
         let touch = |minimum: &GapMinimum| {
-            // A corner pushes in another direction than it moves: what it is said to go on by is a few percent too much or too little.
+            // A corner pushes in another direction than it moves: the step to its touch is a few percent too long or too short.
             let mut lag = further(&as_drawn, minimum);
             for _ in 0..MOST_TURNS {
                 let step = at(lag).map_or(0.0, |standing| further(&standing, minimum));
@@ -314,7 +314,7 @@ impl<'a> Facings<'a> {
     }
 
     /// Finds where and when the displaced flanks of `near` touch first in mesh period `period`.
-    fn look_at_real(&self, near: &mut Near, period: i64) -> Option<()> {
+    fn find_on_displaced(&self, near: &mut Near, period: i64) -> Option<()> {
         let (mut delta, mut real) = self.real(near, period)?;
         if real.is_at_mate_tip() {
             // On its own flank a gear's tip is where cells end, however the gears stand.
@@ -364,12 +364,12 @@ impl<'a> Facings<'a> {
     }
 
     /// Finds the pairs that touch as drawn before δ is `reach`.
-    fn look_as_far_as(&mut self, reach: f64) {
+    fn find_within(&mut self, reach: f64) {
         // Beyond the path of contact gaps grow from pair to pair.
         for side in 0..2 {
             while self.frontier[side].last <= reach {
                 let Frontier { next, step, .. } = self.frontier[side];
-                let last = self.look_at(next);
+                let last = self.add(next);
                 self.frontier[side] = Frontier {
                     next: next + step,
                     step,
@@ -380,12 +380,12 @@ impl<'a> Facings<'a> {
     }
 }
 
-/// By how many mesh periods a pair touches as if it had gone on.
+/// How far deviations move the place where a pair touches, as a change of its phase in mesh periods.
 struct Shifts {
     /// By the deviations of its teeth alone.
     by_tooth: f64,
-    /// With gears that run out, given by where on the driving and where on the driven flank that is: not alike, because the line of action is as long as the
-    /// axes are apart.
+    /// With the eccentricities too, by the place on the driving and by that on the driven flank. These differ, because the line of action is longer or
+    /// shorter as the axes are farther apart or nearer.
     on_flanks: [f64; 2],
     /// The gear whose tip is nearer to the contact then.
     nearer_tip: Member,

@@ -1,7 +1,7 @@
 //! The Cholesky factor of the compliance of the points that touch, most of it kept from sets that differ at their ends.
 //!
-//! A set is told as its core, all blocks of [`BLOCK`] points that it holds whole, and the points beside. The factor of a core and what
-//! each point beside adds to it are found once. The result hangs on the set alone, whatever was kept.
+//! A set is given as its core, all blocks of [`BLOCK`] points that it holds whole, and the points beside. The factor of a core and what
+//! each point beside adds to it are found once. The result depends on the set alone, whatever was kept.
 
 use std::sync::{Arc, OnceLock};
 
@@ -392,10 +392,13 @@ mod tests {
                 let [mut x, mut y] = sides.clone();
                 factor.solve([&mut x, &mut y]);
                 for (solution, side) in [x, y].iter().zip(&sides) {
-                    for (row, wanted) in set.iter().zip(side) {
+                    for (row, expected) in set.iter().zip(side) {
                         let each = set.iter().zip(solution);
                         let found: f64 = each.map(|(j, x)| compliance[(*row, *j)] * x).sum();
-                        assert!((found - wanted).abs() < 1e-13, "{size}: {found} {wanted}");
+                        assert!(
+                            (found - expected).abs() < 1e-13,
+                            "{size}: {found} {expected}"
+                        );
                     }
                 }
             }

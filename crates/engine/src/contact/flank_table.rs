@@ -27,7 +27,7 @@ pub struct FlankTable {
     /// V on the same unknowns.
     modes: Mat<f64>,
     flank: Involute,
-    /// `None` where the edge at the tip is broken: it bends so little that the table tells all of it.
+    /// `None` where the edge at the tip is broken: it bends so little that the table knows all of it.
     corner: Option<Corner>,
 }
 
@@ -133,7 +133,7 @@ impl FlankTable {
         let Some(corner) = &self.corner else {
             return compliance;
         };
-        let near = |(_, point): &(usize, &FlankPoint)| corner.may_tell(point.arc);
+        let near = |(_, point): &(usize, &FlankPoint)| corner.may_know(point.arc);
         for (j, load) in loaded.iter().enumerate().filter(near) {
             let points = points.iter().enumerate().skip(entries.first(j));
             for (i, point) in points.filter(near) {

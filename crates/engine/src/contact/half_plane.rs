@@ -73,7 +73,7 @@ impl NearField {
     }
 }
 
-/// The entries of a compliance that somebody wants.
+/// The entries of a compliance that are asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Entries {
     /// All of them.
@@ -83,7 +83,7 @@ pub enum Entries {
 }
 
 impl Entries {
-    /// The first row wanted of column `j`.
+    /// The first row asked for of column `j`.
     pub(super) fn first(self, j: usize) -> usize {
         if self == Self::Lower { j } else { 0 }
     }

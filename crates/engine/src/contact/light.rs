@@ -7,7 +7,8 @@ use super::mesh_contact::{MeshContact, PairContact};
 use super::model::PositionError;
 use crate::gear::{GearPair, Member, PairDeviations};
 
-/// Gaps that differ by less than this part of the module close together: rounding of coordinates.
+/// Gaps that differ by less than this part of the module are taken as equal, which is the rounding of coordinates. It decides which pairs count as
+/// touching; δ moves by less.
 pub(super) const TOGETHER: f64 = 1e-9;
 
 /// Steps to the touching flanks; each squares what is left.
@@ -75,23 +76,14 @@ impl MeshContact {
     pub fn unloaded(transmission_error: f64, touching: Vec<(i64, Option<Member>)>) -> Self {
         let share = 1.0 / touching.len() as f64;
         let pairs = touching.into_iter().map(|(pair, tip_corner)| PairContact {
-            pair,
-            share,
-            clearance: None,
             tip_corner,
-            fillet: None,
+            ..PairContact::of_share(pair, share)
         });
         Self {
             transmission_error,
-            stiffness: 0.0,
-            driving_load: 0.0,
             pairs: pairs.collect(),
             peak_pressure: Some(0.0),
-            peak_place: None,
-            equilibrium: 0.0,
-            complementarity: 0.0,
-            penetration: 0.0,
-            iterations: 0,
+            ..Self::default()
         }
     }
 
@@ -135,7 +127,7 @@ pub(super) fn on_path(pair: &GearPair, eta: f64, beside: f64) -> RangeInclusive<
     first..=last
 }
 
-/// Where the pairs `on_path` and those beside them touch, as `touch` tells, rising by pair: all that come within `apart` and a tenth of δ of the first.
+/// Where the pairs `on_path` and those beside them touch by `touch`, rising by pair: all that come within `apart` and a tenth of δ of the first.
 /// The teeth of two pairs deviate from each other by at most `apart`.
 pub(super) fn touching_near(
     on_path: RangeInclusive<i64>,

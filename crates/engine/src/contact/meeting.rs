@@ -9,7 +9,7 @@ use super::placement::{self, FlankPlace, Placement, Sight, inclined, quarter_tur
 use super::wide::{Loops, Numbers, wide};
 use crate::gear::{GearPair, Member, PairDeviations, SpurGear, Vector};
 
-/// The square of an angle below which a few terms tell its sine and cosine.
+/// The square of an angle below which a few terms give its sine and cosine to the last bit.
 const SMALL_TURN: f64 = 1e-4;
 
 /// What contact needs of a point at which two flanks face each other, or of several.
@@ -102,11 +102,11 @@ impl<T: Numbers> Push<T> {
     }
 }
 
-/// A point of the seat's flank as drawn and as laid, with all that is needed to tell how it meets the other flank once both gears have turned
-/// on a little and their teeth deviate: the same as [`placement::Placement`] tells, without an angle to be taken.
+/// A point of the seat's flank as drawn and as placed, with all that is needed to say how it meets the other flank once both gears have turned
+/// on a little and their teeth deviate: the same as [`placement::Placement`] says, without an angle to be taken.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Probe<T = f64> {
-    /// The roll length on the seat, as laid.
+    /// The roll length on the seat, as placed.
     roll_length: T,
     /// From the center of the seat.
     point: Vector2<T>,
@@ -125,7 +125,7 @@ pub(super) struct Probes {
     fours: Vec<Probe<WideF64x4>>,
 }
 
-/// How the flanks of one pair stand, from how they were laid.
+/// How the flanks of one pair stand, from how they were placed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Standing<'a> {
     pair: &'a GearPair,
@@ -239,7 +239,7 @@ fn turned<T: Numbers>([cosine, sine]: [T; 2], v: Vector2<T>) -> Vector2<T> {
 }
 
 impl<'a> Standing<'a> {
-    /// Pair `n` with these `deviations` at the mesh position `eta`, the driven gear lagging by `lag`, from where a pair of `phase` was laid on
+    /// Pair `n` with these `deviations` at the mesh position `eta`, the driven gear lagging by `lag`, from where a pair of `phase` was placed on
     /// `seat`.
     pub(super) fn new(
         (pair, deviations): (&'a GearPair, &PairDeviations),
@@ -312,7 +312,7 @@ impl<'a> Standing<'a> {
         }
         let point = self.centers[seat].map(number) + turned(self.turns[seat].map(number), place);
 
-        // As the other gear sees it in the frame in which it was laid.
+        // As the other gear sees it in the frame in which it was placed.
         let [cosine, sine] = self.turns[mate].map(number);
         let d = turned([cosine, -sine], point - self.centers[mate].map(number));
         let r_b = number(other.base_radius());
@@ -429,8 +429,8 @@ mod tests {
                 let mut probes = Probes::default();
                 alone.iter().for_each(|probe| probes.push(probe));
 
-                let (eta, laid) = (3.0 + phase, (facing.seat, phase));
-                let standing = Standing::new((&pair, &deviations), eta, 3, 2e-6, laid);
+                let (eta, placed) = (3.0 + phase, (facing.seat, phase));
+                let standing = Standing::new((&pair, &deviations), eta, 3, 2e-6, placed);
                 let expected: Vec<Meeting> =
                     alone.iter().map(|probe| standing.meeting(probe)).collect();
                 assert_eq!(standing.meetings(&probes), expected);

@@ -3,7 +3,7 @@
 use faer::Mat;
 
 use super::patch::Patch;
-use super::peak::PeakPlace;
+use super::peak::{Peak, PeakPlace};
 use super::problem::{ContactProblem, ContactSolution};
 use crate::gear::Member;
 
@@ -24,7 +24,7 @@ pub struct PairContact {
 }
 
 /// The contact of the whole mesh at one position and load.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct MeshContact {
     /// δ in meters.
     pub transmission_error: f64,
@@ -93,7 +93,51 @@ pub struct FlankLoad {
     pub forces: Vec<f64>,
 }
 
+/// What carries load: a cell in the plane, a slice along faces.
+pub(super) struct Spot {
+    /// The force p in N, and the gap g that is left under it.
+    pub(super) force: f64,
+    pub(super) gap: f64,
+    /// The force times its arms about the driving and the driven axis.
+    pub(super) moments: [f64; 2],
+}
+
+impl PairContact {
+    /// A pair with this share of the load, of which nothing else is known.
+    pub(crate) fn of_share(pair: i64, share: f64) -> Self {
+        Self {
+            pair,
+            share,
+            clearance: None,
+            tip_corner: None,
+            fillet: None,
+        }
+    }
+}
+
 impl MeshContact {
+    /// What `spots` that carry `load` say of their contact; `peak` is `None` where a sharp corner carries.
+    pub(super) fn of_spots(
+        load: f64,
+        spots: impl Iterator<Item = Spot>,
+        peak: Option<Peak>,
+    ) -> Self {
+        let (mut moments, mut complementarity) = ([0.0; 2], 0.0_f64);
+        for spot in spots {
+            moments = [0, 1].map(|gear| moments[gear] + spot.moments[gear]);
+            complementarity = complementarity.max((spot.force * spot.gap).abs());
+        }
+        let [driving_load, carried] = moments;
+        Self {
+            driving_load,
+            peak_pressure: peak.map(|peak| peak.pressure),
+            peak_place: peak.map(|peak| peak.place),
+            equilibrium: (carried - load).abs() / load,
+            complementarity,
+            ..Self::default()
+        }
+    }
+
     /// About how much memory it holds.
     pub fn bytes(&self) -> usize {
         size_of::<Self>() + self.pairs.len() * size_of::<PairContact>()

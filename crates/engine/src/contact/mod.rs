@@ -10,10 +10,10 @@
 //! - [`compliances`] and `factor`: what pairs made to one drawing have alike however their teeth deviate, kept,
 //! - `facings` and [`cells`]: which pairs come near with the deviations of the teeth that stand there, and the cells of all of them; H on
 //!   them, and what their solution says of the mesh,
-//! - [`stage`]: one fraction of the mesh period, from laying the cells to a solution that nothing penetrates,
+//! - [`stage`]: one fraction of the mesh period, from placing the cells to a solution that nothing penetrates,
 //! - `light`: what is left of it as the load vanishes,
 //! - `peak`: where flanks press hardest; [`mesh_contact`]: the summary of a solved contact,
-//! - `looks` and `penetration`: the look over the whole flanks that proves that nothing penetrates,
+//! - `checked` and `penetration`: the check of the whole flanks that proves that nothing penetrates,
 //! - [`positions`]: many positions of one load, in parallel,
 //! - [`face`]: the same along faces of helical, misaligned or uneven gears, slice by slice,
 //! - [`model`]: what all of this is asked of,
@@ -37,6 +37,7 @@
 mod active_set;
 mod augmented_lagrangian;
 pub mod cells;
+mod checked;
 pub mod compliances;
 mod corner;
 mod coupled;
@@ -48,7 +49,6 @@ mod factor;
 pub mod flank_table;
 pub mod half_plane;
 mod light;
-mod looks;
 mod meeting;
 mod memo;
 pub mod mesh_contact;

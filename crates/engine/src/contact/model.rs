@@ -48,7 +48,7 @@ pub struct PairModel {
     pub cells_per_patch: usize,
     /// The solver.
     pub solver: ContactSolver,
-    /// Whom a solver that takes many steps asks whether to go on.
+    /// By which a solver of many steps is stopped.
     pub run: Run,
     /// What is known of its flanks as drawn.
     pub drawn: Arc<DrawnFlanks>,
@@ -124,9 +124,15 @@ pub struct DeviatingPair<'a> {
 }
 
 impl<'a> DeviatingPair<'a> {
-    /// How its pair `n` stands at the mesh position `eta`, the driven gear lagging by `lag`, from where a pair of a phase was laid on a seat.
-    pub(super) fn standing(self, eta: f64, n: i64, lag: f64, laid: (Member, f64)) -> Standing<'a> {
-        Standing::new((&self.model.pair, self.deviations), eta, n, lag, laid)
+    /// How its pair `n` stands at the mesh position `eta`, the driven gear lagging by `lag`, from where a pair of a phase was placed on a seat.
+    pub(super) fn standing(
+        self,
+        eta: f64,
+        n: i64,
+        lag: f64,
+        placed: (Member, f64),
+    ) -> Standing<'a> {
+        Standing::new((&self.model.pair, self.deviations), eta, n, lag, placed)
     }
 }
 

@@ -8,9 +8,9 @@ use super::flank_table::{FlankPoint, FlankTable};
 use super::half_plane::{Entries, near_compliance};
 use super::patch::{Cell, Extent, Patch};
 use crate::fem::dense;
-use crate::gear::GearPair;
+use crate::gear::{GearPair, Member};
 
-/// The flanks of a pair as drawn, and what cells are laid on.
+/// The flanks of a pair as drawn, on which cells are placed.
 #[derive(Clone, Copy)]
 pub(super) struct PairFlanks<'a> {
     pub(super) pair: &'a GearPair,
@@ -20,9 +20,21 @@ pub(super) struct PairFlanks<'a> {
     pub(super) cells_per_patch: usize,
 }
 
+/// What the cells of one pair of a model depend on; numbers by their bits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) struct CellsSpec {
+    pub(super) phase: u64,
+    /// The gear on whose flank they lie.
+    pub(super) seat: Member,
+    pub(super) load: u64,
+    pub(super) cells_per_patch: usize,
+    pub(super) extent: Extent,
+}
+
 /// The cells of one pair as drawn, some part of a mesh period after it passed the pitch point.
 #[derive(Debug)]
 pub struct PairCells {
+    pub(super) spec: CellsSpec,
     /// Where they lie.
     pub(super) patch: Patch,
     /// The compliance of both teeth with their interfaces held; its lower triangle.
@@ -32,21 +44,22 @@ pub struct PairCells {
 }
 
 impl PairCells {
-    /// Lays cells on the flanks of `facing` for `load`; `None` where there is no room for one.
+    /// Places cells on the flanks of `facing`; `None` where there is no room for one.
     pub(super) fn new(
         flanks: &PairFlanks<'_>,
         view: &View<'_>,
         facing: &Facing,
-        load: f64,
-        extent: Extent,
+        spec: CellsSpec,
     ) -> Option<Self> {
-        let patch = Patch::new(view, facing, load, flanks.cells_per_patch, extent);
+        let (load, count) = (f64::from_bits(spec.load), spec.cells_per_patch);
+        let patch = Patch::new(view, facing, load, count, spec.extent);
         if patch.cells.is_empty() {
             return None;
         }
         let stretches: Vec<[f64; 2]> = patch.stretches().collect();
         let (held, shapes) = compliance(flanks, &patch, (&patch.cells, &stretches), Entries::Lower);
         Some(Self {
+            spec,
             patch,
             held,
             shapes,

@@ -119,7 +119,7 @@ impl Extent {
 }
 
 impl Patch {
-    /// Lays cells about the minima of `facing`, which is seen by `view`: `count` on that which touches first, in a core wide enough for
+    /// Places cells about the minima of `facing`, which is seen by `view`: `count` on that which touches first, in a core wide enough for
     /// `load`, and as dense ones about the others.
     ///
     /// Cells end where the flanks cease to face each other, so that they move with the contact and close up smoothly towards a corner,
@@ -164,15 +164,15 @@ impl Patch {
                 last = Some(here);
                 patch.ends_along.push([arc, along]);
                 if i > 0 {
-                    patch.lay(view, facing);
+                    patch.place(view, facing);
                 }
             }
         }
         patch
     }
 
-    /// Lays the cell between the last two ends.
-    fn lay(&mut self, view: &View<'_>, facing: &Facing) {
+    /// Places the cell between the last two ends.
+    fn place(&mut self, view: &View<'_>, facing: &Facing) {
         let place = self.ends_along.len() - 2;
         let ([from, _], [to, _]) = (self.ends_along[place], self.ends_along[place + 1]);
         if let Some(stretch) = self.stretch_between(view, &facing.kinks, from, to) {
@@ -331,22 +331,37 @@ impl Patch {
         0.5 * cells.iter().map(|cell| cell.width).sum::<f64>()
     }
 
-    /// Whether a cell of the `active` ones lies at the corner of an undercut flank.
-    pub(super) fn presses_corner(&self, active: &[bool]) -> bool {
+    /// Whether the contact of the `active` cells reaches a corner: the tip edge of a gear whose edge is `sharp`, or that of an undercut flank.
+    pub(super) fn corner_carries(&self, active: &[bool], sharp: [bool; 2]) -> bool {
+        let at_tip = self.ended_by(active).any(|end| match end {
+            RangeEnd::Tip => sharp[self.seat.index()],
+            RangeEnd::MateTip => sharp[self.seat.other().index()],
+            RangeEnd::Fillet | RangeEnd::MateFillet => false,
+        });
         let cells = self.cells.iter().zip(active);
         let mut carrying = cells.filter(|(_, active)| **active);
-        carrying.any(|(cell, _)| {
-            let [from, to] = [0, 1].map(|end| self.ends_along[cell.stretch + end][0]);
-            let mut corners = self.corners.iter();
-            corners.any(|corner| (from..=to).contains(corner))
+        at_tip
+            || carrying.any(|(cell, _)| {
+                let [from, to] = [0, 1].map(|end| self.ends_along[cell.stretch + end][0]);
+                let mut corners = self.corners.iter();
+                corners.any(|corner| (from..=to).contains(corner))
+            })
+    }
+
+    /// The gear whose fillet the contact of the `active` cells reaches.
+    pub(super) fn reached_fillet(&self, active: &[bool]) -> Option<Member> {
+        self.ended_by(active).find_map(|end| match end {
+            RangeEnd::Fillet => Some(self.seat),
+            RangeEnd::MateFillet => Some(self.seat.other()),
+            RangeEnd::Tip | RangeEnd::MateTip => None,
         })
     }
 
     /// What ends the contact of the `active` cells where it reaches an end of the flanks.
-    pub fn ended_by(&self, active: &[bool]) -> Vec<RangeEnd> {
+    fn ended_by(&self, active: &[bool]) -> impl Iterator<Item = RangeEnd> {
         let first = self.ends[0].filter(|_| active.first() == Some(&true));
         let last = self.ends[1].filter(|_| active.last() == Some(&true));
-        first.into_iter().chain(last).collect()
+        first.into_iter().chain(last)
     }
 }
 
@@ -504,7 +519,7 @@ const SHALLOW: f64 = 0.05;
 const AT_CORNER: u32 = 4;
 
 /// The ends of cells of about `width` over a stretch of the flank of `facing`. A kink ends one and stands among narrower cells, at distances from it
-/// that do not hang on the other ends: nothing steps as cells move over it.
+/// that do not depend on the other ends: nothing steps as cells move over it.
 fn ending_at_kinks([from, to]: [f64; 2], width: f64, facing: &Facing) -> Vec<f64> {
     let Facing { range, kinks, .. } = facing;
     let count = ((to - from) / width).round().max(1.0) as usize;
@@ -625,7 +640,7 @@ fn widen(chains: &mut Vec<Vec<f64>>, facing: &Facing, width: f64, times: usize) 
     *chains = joined;
 }
 
-/// Lays `ends` anew about a `kink` among them, as [`ending_at_kinks`] does.
+/// Places `ends` anew about a `kink` among them, as [`ending_at_kinks`] does.
 fn narrow_towards(kink: f64, ends: &mut Vec<f64>, width: f64) {
     let (first, last) = (ends[0], ends[ends.len() - 1]);
     let inside = |end: f64| first < end && end < last;

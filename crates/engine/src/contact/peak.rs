@@ -1,4 +1,4 @@
-//! Where flanks press hardest on each other.
+//! How hard flanks press on each other at most, and where.
 
 /// The place of the largest pressure of a mesh at one position. Lengths are in meters.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -11,4 +11,22 @@ pub struct PeakPlace {
     pub z: Option<f64>,
     /// Half the width of the contact there along the flank; 0 where no kink of a flank is seen.
     pub half_width: f64,
+}
+
+/// The largest pressure in Pa, and its place.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Peak {
+    pub(super) pressure: f64,
+    pub(super) place: PeakPlace,
+}
+
+impl Peak {
+    /// The larger of two; the first of two that are the same.
+    pub(super) fn larger(self, other: Self) -> Self {
+        if other.pressure > self.pressure {
+            other
+        } else {
+            self
+        }
+    }
 }

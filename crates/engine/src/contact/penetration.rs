@@ -1,36 +1,36 @@
-//! Whether anything penetrates after the solution: a look at the whole flanks of all pairs in reach, cells or not.
+//! Whether anything penetrates under a solution: the whole flanks of all pairs in reach are checked, cells or not.
 //!
-//! The solver knows only the cells that were laid. This asks wherever else [`Looks`] look for the gap under the forces found: g = g_0 − δ w + u. Elastic
+//! The solver knows only the cells that were placed. On all [`CheckedStretches`] this takes the gap under the forces found: g = g_0 − δ w + u. Elastic
 //! bodies give way where they are pressed, so that a stretch with g_0 > δ w stays open; of the others u is taken from the model.
 
 use std::sync::Arc;
 
 use super::ContactSolution;
 use super::cells::{ContactCells, PlacedCells};
+use super::checked::{CheckedStretch, CheckedStretches, Penetration, Place};
 use super::factor::dot;
-use super::looks::{Found, Looked, Looks, Place};
 use super::meeting::Meeting;
 use super::model::{DeviatingPair, MeshPosition};
 use super::wide::wide;
 
-/// The looks at one pair as it stands.
-pub(super) struct Look {
-    looks: Arc<Looks>,
+/// The checked stretches of one pair as it stands.
+pub(super) struct PlacedStretches {
+    checked: Arc<CheckedStretches>,
     /// How flanks meet at the probes.
     met: [Vec<Meeting>; 2],
 }
 
-impl Look {
-    /// The `looks` at the pair `placed` at a mesh position of `deviating`.
+impl PlacedStretches {
+    /// Those `checked` of the pair `placed` at a mesh position of `deviating`.
     pub(super) fn new(
-        looks: Arc<Looks>,
+        checked: Arc<CheckedStretches>,
         placed: &PlacedCells,
         deviating: DeviatingPair<'_>,
         at: MeshPosition,
     ) -> Self {
         let seat = placed.cells().patch.seat;
         let met = [seat, seat.other()].map(|from| {
-            let probes = &looks.probes[usize::from(from != seat)];
+            let probes = &checked.probes[usize::from(from != seat)];
             if probes.is_empty() {
                 return Vec::new();
             }
@@ -38,7 +38,7 @@ impl Look {
             let standing = deviating.standing(at.eta(), n, placed.lag, (from, placed.drawn.phase));
             standing.meetings(probes)
         });
-        Self { looks, met }
+        Self { checked, met }
     }
 
     /// The stretches that may be closed, with their gap under no load and its arm about the driven axis. Between two cells that stay open flanks
@@ -50,7 +50,7 @@ impl Look {
     ) -> impl Iterator<Item = Option<(f64, f64)>> + 'a {
         let patch = &placed.cells().patch;
         let mut met = self.met.each_ref().map(|met| met.iter());
-        let gap = move |looked: &Looked| match looked.place {
+        let gap = move |checked: &CheckedStretch| match checked.place {
             Place::Across { at: i, kink } => {
                 let closes = active[i] || active[i + 1] || kink;
                 let [one, other] = [i, i + 1].map(|i| patch.cells[i].width);
@@ -71,29 +71,31 @@ impl Look {
             }
         };
         let mut gap = gap;
-        self.looks
-            .looked
-            .iter()
-            .map(move |looked| gap(looked).map(|(gap, arm)| (gap + looked.more, arm)))
+        let stretches = self.checked.stretches.iter();
+        stretches.map(move |checked| gap(checked).map(|(gap, arm)| (gap + checked.more, arm)))
     }
 }
 
-/// What penetrates under the forces of `solution` on `cells`, by their `looks`, pair by pair.
-pub(super) fn found(cells: &ContactCells<'_>, looks: &[Look], solution: &ContactSolution) -> Found {
-    let mut found = Found::default();
+/// What penetrates under the forces of `solution` on `cells`, of the stretches that are `checked` pair by pair.
+pub(super) fn penetration(
+    cells: &ContactCells<'_>,
+    checked: &[PlacedStretches],
+    solution: &ContactSolution,
+) -> Penetration {
+    let mut found = Penetration::default();
     let interfaces = cells.interfaces_moved(&solution.forces);
     let pairs = cells.ranges().zip(interfaces);
-    for (look, ((placed, range), moved)) in looks.iter().zip(pairs) {
-        let looks = &look.looks;
-        if looks.looked.is_empty() {
+    for (of_pair, ((placed, range), moved)) in checked.iter().zip(pairs) {
+        let checked = &of_pair.checked;
+        if checked.stretches.is_empty() {
             continue;
         }
         // What the forces are, and how the interfaces move under them.
         let mut yielding = solution.forces[range.clone()].to_vec();
         yielding.extend(moved);
-        let rows = looks.yields.chunks_exact(yielding.len());
-        let gaps = look.gaps(placed, &solution.active[range]);
-        for ((looked, row), gap) in looks.looked.iter().zip(rows).zip(gaps) {
+        let rows = checked.yields.chunks_exact(yielding.len());
+        let gaps = of_pair.gaps(placed, &solution.active[range]);
+        for ((stretch, row), gap) in checked.stretches.iter().zip(rows).zip(gaps) {
             let Some((gap, arm)) = gap else {
                 continue;
             };
@@ -106,7 +108,7 @@ pub(super) fn found(cells: &ContactCells<'_>, looks: &[Look], solution: &Contact
                 continue;
             }
             found.largest = found.largest.max(depth);
-            match looked.place {
+            match stretch.place {
                 Place::Fillet(member) => found.fillets.push((placed.pair, member)),
                 Place::Beside if !found.beside.contains(&placed.pair) => {
                     found.beside.push(placed.pair)

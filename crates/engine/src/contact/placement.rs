@@ -89,7 +89,7 @@ pub(super) fn quarter_turned<T: Numbers>(v: Vector2<T>) -> Vector2<T> {
     Vector2::new(-v.y, v.x)
 }
 
-/// The mesh position at which the teeth of a pair that has `phase` are turned as they are: the angle of each tooth's centerline.
+/// The angle of the centerline of each tooth of a pair at `phase`.
 pub(super) fn angles(pair: &GearPair, phase: f64) -> [f64; 2] {
     let alpha_w = pair.working_pressure_angle();
     let s_1 = pair.roll_length_of(phase);
@@ -102,11 +102,11 @@ pub(super) fn angles(pair: &GearPair, phase: f64) -> [f64; 2] {
     ]
 }
 
-/// How much the normals of the driving and of the driven flank of a pair of `phase` count in the direction in which they push: alike, but for the corner of an
-/// undercut flank. That pushes along the normal of the smooth flank on which it stands, whichever way its own sides lie.
+/// The weights of the normals of the driving and of the driven flank of a pair at `phase` in the direction in which they push: equal, but for the corner
+/// of an undercut flank, which pushes along the normal of the smooth flank that it touches.
 pub(super) fn weights(pair: &GearPair, phase: f64) -> [f64; 2] {
-    /// The part of the roll length of the corner over which one goes over into the other as the nominal contact passes it.
-    const GOES_OVER: f64 = 0.1;
+    /// The part of the roll length of the corner over which the weights change as the nominal contact passes it.
+    const CHANGES_OVER: f64 = 0.1;
     let s_1 = pair.roll_length_of(phase);
     let rolls = [s_1, pair.line_of_action() - s_1];
     let mut weights = [1.0; 2];
@@ -114,7 +114,7 @@ pub(super) fn weights(pair: &GearPair, phase: f64) -> [f64; 2] {
         let (gear, g) = (pair.gear(member), member.index());
         let corner = gear.form_roll_length();
         if gear.is_undercut() && rolls[g] < corner {
-            let beyond = ((corner - rolls[g]) / (GOES_OVER * corner)).min(1.0);
+            let beyond = ((corner - rolls[g]) / (CHANGES_OVER * corner)).min(1.0);
             weights[g] -= beyond;
             weights[member.other().index()] += beyond;
         }

@@ -150,11 +150,15 @@ impl ContactProblem {
 
     /// The point that touches first, and the delta = min_j g_0j / w_j at which it does, in m.
     pub fn first_touch(&self) -> (usize, f64) {
-        let touches = self.gaps.iter().zip(&self.arms).map(|(gap, arm)| gap / arm);
-        touches.enumerate().fold((0, f64::INFINITY), |first, next| {
-            if next.1 < first.1 { next } else { first }
-        })
+        first_of(self.gaps.iter().zip(&self.arms).map(|(gap, arm)| gap / arm))
     }
+}
+
+/// The first of the least of `touches`, and which it is.
+pub(super) fn first_of(touches: impl Iterator<Item = f64>) -> (usize, f64) {
+    touches.enumerate().fold((0, f64::INFINITY), |first, next| {
+        if next.1 < first.1 { next } else { first }
+    })
 }
 
 struct Opening<'a, F> {

@@ -6,16 +6,15 @@
 
 use std::collections::BTreeMap;
 
-use super::cells::{ContactCells, PlacedCells, Want};
+use super::cells::{ContactCells, Lack, PlacedCells};
+use super::checked::Penetration;
 use super::compliances::StatedCells;
-use super::drawn::DrawnPair;
 use super::facings::{Facings, Near};
-use super::looks::Found;
 use super::meeting::Standing;
 use super::mesh_contact::{MeshCells, MeshContact};
 use super::model::{DeviatingPair, PositionError, WarmStart};
 use super::patch::Extent;
-use super::penetration::{Look, found};
+use super::penetration::{PlacedStretches, penetration};
 use super::{ContactProblem, ContactSolution};
 
 /// Pairs are solved together whose gap is within this much of what load brings together: a little more than touch.
@@ -44,8 +43,8 @@ struct Reach {
     delta: f64,
 }
 
-/// What pairs want beside the cells that they are given at first.
-type Wanted = BTreeMap<i64, Extent>;
+/// How far the cells of pairs reach beyond those that they are given at first.
+type Extents = BTreeMap<i64, Extent>;
 
 impl DeviatingPair<'_> {
     /// The contact at mesh position `eta` under `load`, summed up pair by pair.
@@ -119,9 +118,9 @@ impl<'a> Stage<'a> {
         summary: impl FnOnce(MeshContact, &ContactCells<'_>, &ContactSolution) -> T,
     ) -> Result<T, PositionError> {
         let load = self.load;
-        self.solved(period, warm, |cells, _, solution, found| {
+        self.solved(period, warm, |cells, _, solution, penetration| {
             summary(
-                cells.mesh_contact(load, &solution, &found),
+                cells.mesh_contact(load, &solution, &penetration),
                 cells,
                 &solution,
             )
@@ -147,7 +146,7 @@ impl<'a> Stage<'a> {
         &mut self,
         period: i64,
         warm: &mut WarmStart,
-        answer: impl FnOnce(&ContactCells<'_>, ContactProblem, ContactSolution, Found) -> T,
+        answer: impl FnOnce(&ContactCells<'_>, ContactProblem, ContactSolution, Penetration) -> T,
     ) -> Result<T, PositionError> {
         let touch = self.facings.touch(period);
         let beyond = |delta: f64, factor: f64| touch + factor * (delta - touch).max(0.0);
@@ -156,10 +155,10 @@ impl<'a> Stage<'a> {
             touch,
             delta: beyond(warm.transmission_error.unwrap_or(touch), GUESS),
         };
-        let mut wanted = Wanted::new();
+        let mut extents = Extents::new();
         loop {
             let near = self.facings.within(period, reach.delta);
-            let cells = self.lay(&near, &wanted, reach)?;
+            let cells = self.place_all(&near, &extents, reach)?;
             let problem = self.state(&cells)?;
             let solution = cells.solve(&problem, self.load, warm)?;
             let delta = solution.transmission_error;
@@ -169,39 +168,39 @@ impl<'a> Stage<'a> {
                 reach.delta = beyond(delta, GUESS);
                 continue;
             }
-            let found = self.look(&cells, &solution);
-            let wants = cells.wants(&solution, &found, DEEP * (delta - touch));
-            if wants.is_empty() {
+            let penetration = self.penetration(&cells, &solution);
+            let lacks = cells.lacks(&solution, &penetration, DEEP * (delta - touch));
+            if lacks.is_empty() {
                 *warm = cells.warm_start(&problem, &solution, self.load, warm);
-                return Ok(answer(&cells, problem, solution, found));
+                return Ok(answer(&cells, problem, solution, penetration));
             }
-            for (pair, want) in wants {
-                let is_first = !wanted.contains_key(&pair);
-                let extent = wanted.entry(pair).or_default();
-                match want {
+            for (pair, lack) in lacks {
+                let is_first = !extents.contains_key(&pair);
+                let extent = extents.entry(pair).or_default();
+                match lack {
                     // If the contact fits, its cells are moved before they are widened.
-                    Want::Room { moved } if is_first && moved != 0 => extent.moved = moved,
-                    Want::Room { .. } => extent.widened += 1,
-                    Want::Halves => extent.halved += 1,
+                    Lack::Room { moved } if is_first && moved != 0 => extent.moved = moved,
+                    Lack::Room { .. } => extent.widened += 1,
+                    Lack::Halves => extent.halved += 1,
                 }
             }
         }
     }
 
     /// Cells on the pairs `near`, with the gaps of flanks that just touch.
-    fn lay(
+    fn place_all(
         &mut self,
         near: &[Near],
-        wanted: &Wanted,
+        extents: &Extents,
         reach: Reach,
     ) -> Result<ContactCells<'a>, PositionError> {
         let mut pairs = Vec::with_capacity(near.len());
         for near in near {
-            let wanted = wanted.get(&near.pair).copied().unwrap_or_default();
+            let asked = extents.get(&near.pair).copied().unwrap_or_default();
             let extent = Extent {
                 minima: near.minima_within(reach.delta),
-                moved: near.moved(self.deviating, (reach.period, self.load)) + wanted.moved,
-                ..wanted
+                moved: near.moved(self.deviating, (reach.period, self.load)) + asked.moved,
+                ..asked
             };
             let known = |placed: &&PlacedCells| (placed.pair, placed.extent) == (near.pair, extent);
             let placed = match self.placed.iter().find(known) {
@@ -241,13 +240,10 @@ impl<'a> Stage<'a> {
     /// The problem on `cells`. A compliance that was met before is not stated anew.
     fn state(&self, cells: &ContactCells<'_>) -> Result<ContactProblem, PositionError> {
         let pairs = cells.placed.iter();
-        let pairs = pairs.map(|placed| {
-            let DrawnPair { phase, seat, .. } = placed.drawn;
-            (placed.pair, phase.to_bits(), seat, placed.extent)
-        });
         let spec = StatedCells {
-            load: self.load.to_bits(),
-            pairs: pairs.collect(),
+            pairs: pairs
+                .map(|placed| (placed.pair, placed.cells().spec))
+                .collect(),
             teeth_like: cells.teeth_like(),
         };
         let compliances = &self.deviating.model.compliances;
@@ -255,22 +251,23 @@ impl<'a> Stage<'a> {
     }
 
     /// What penetrates under `solution` on `cells`.
-    fn look(&self, cells: &ContactCells<'_>, solution: &ContactSolution) -> Found {
+    fn penetration(&self, cells: &ContactCells<'_>, solution: &ContactSolution) -> Penetration {
         let model = self.deviating.model;
         let delta = solution.transmission_error;
-        let as_drawn = (self.facings.least(), delta + self.facings.nearer());
-        let looks: Vec<Look> = cells
-            .ranges()
-            .filter_map(|(placed, range)| {
-                let drawn = (placed.cells(), self.load, placed.extent);
-                let pair = (&placed.drawn, placed.drawn.facing()?);
-                let carrying = &solution.active[range];
-                let looks = model
-                    .drawn
-                    .looks(&model.flanks(), pair, (drawn, carrying), as_drawn);
-                Some(Look::new(looks, placed, self.deviating, cells.at))
-            })
-            .collect();
-        found(cells, &looks, solution)
+        let as_drawn = [self.facings.least(), delta + self.facings.nearer()];
+        let checked = cells.ranges().filter_map(|(placed, range)| {
+            let (drawn, active) = (&placed.drawn, &solution.active[range]);
+            let flanks = model.flanks();
+            let checked = model
+                .drawn
+                .checked(&flanks, drawn, placed.cells(), active, as_drawn);
+            Some(PlacedStretches::new(
+                checked?,
+                placed,
+                self.deviating,
+                cells.at,
+            ))
+        });
+        penetration(cells, &checked.collect::<Vec<_>>(), solution)
     }
 }

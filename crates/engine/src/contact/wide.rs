@@ -3,7 +3,7 @@
 use nalgebra::SimdRealField;
 pub(super) use pulp::NullaryFnOnce as Loops;
 
-/// A number, or several side by side; what is told of it is told of each of them, to the bit as of it alone.
+/// A number, or several side by side; what is computed of it is computed of each of them, to the bit as of it alone.
 pub(super) trait Numbers: SimdRealField<Element = f64> + Copy {}
 
 impl<T: SimdRealField<Element = f64> + Copy> Numbers for T {}

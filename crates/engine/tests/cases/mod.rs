@@ -2,21 +2,25 @@
 
 #![allow(dead_code, reason = "each test and benchmark uses some of these")]
 
+pub(crate) mod departures;
+
 use std::sync::Arc;
 
+use meshwright_engine::analysis::stress::GearStresses;
 use meshwright_engine::analysis::{
-    BodyFormula, Case, ContactSolver, FaceHoles, Faces, Formulas, Method, Model, PlaneState,
-    Resolution, SectionHoles, StiffnessRule, ToothFormula,
+    BodyFormula, Case, ContactSolver, Curve, FaceHoles, Faces, Formulas, Method, Model, PlaneState,
+    Resolution, SectionHoles, StiffnessRule, ToothFormula, analyze,
 };
 use meshwright_engine::assembly::{FaceResolution, FaceYield};
-use meshwright_engine::contact::face::{FaceModel, FlankYield};
+use meshwright_engine::contact::face::{FaceModel, FlankYield, SLICES};
 use meshwright_engine::contact::{MeshContact, PairModel, PositionError, WarmStart};
 use meshwright_engine::gear::{
-    Alignment, BlankRegion, GearData, GearPair, Helix, HolePattern, LeadModification, Material,
-    Member, ModificationData, PairDeviations, Rack, ReliefData, ReliefShape, ReliefStart,
+    Alignment, BlankRegion, FaceEnds, GearData, GearPair, Helix, HolePattern, LeadModification,
+    Material, Member, ModificationData, PairDeviations, Rack, ReliefData, ReliefShape, ReliefStart,
     SolidGear, SolidPair, SpurGear, TipEdge, ToothDeviations,
 };
 use meshwright_engine::grid::GridLevel;
+use meshwright_engine::library::Library;
 use meshwright_engine::ring::teeth::FARTHEST_COUPLED;
 use meshwright_engine::run::Run;
 
@@ -311,4 +315,34 @@ pub(crate) fn helical_pair(seed: u64) -> (SolidPair, f64) {
     let pair = pair.expect("meshes");
     let torque = width * between(50e3, 200e3) / pair.section().load(1.0);
     (pair, torque)
+}
+
+/// The curve of `case`, with the stresses of both gears.
+pub(crate) fn stressed(case: &Case) -> (Curve, [GearStresses; 2]) {
+    let asked = Case {
+        stress: true,
+        ..case.clone()
+    };
+    let analysis = analyze(&asked, &Library::default(), &Run::unattended());
+    let curve = analysis.expect("solves").curves.remove(0);
+    let stresses = curve.stresses.clone().expect("were asked for");
+    (curve, stresses)
+}
+
+/// A gear on its image, in six positions of one mesh period.
+pub(crate) fn alike(data: GearData, beta: f64, relieved: Option<FaceEnds>, torque: f64) -> Case {
+    let gears = [beta, -beta].map(|beta| helical(data.clone(), beta, 0.0));
+    let a = 2.0 * gears[0].section().reference_radius() + 0.5e-3;
+    // All along the face.
+    let relief = relieved.map(|ends| LeadModification::EndRelief {
+        amount: 25e-6,
+        length: data.face_width,
+        ends,
+    });
+    let leads = [Vec::new(), relief.into_iter().collect()];
+    let pair = SolidPair::new(gears, leads, a, Alignment::default()).expect("meshes");
+    let mut case = along_faces(pair, (FaceResolution::DRAFT, SLICES), &[torque]);
+    case.resolution.positions_per_mesh_period = 6;
+    case.resolution.span_mesh_periods = Some(1);
+    case
 }

@@ -347,7 +347,7 @@ macro_rules! stresses {
 
 /// What stresses need.
 const STRESS: &[Needs] = &[
-    Needs::Method(Method::tells_stress),
+    Needs::Method(Method::computes_stress),
     Needs::Stress,
     Needs::Load,
 ];

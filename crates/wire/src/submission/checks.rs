@@ -32,11 +32,11 @@ impl SubmissionDocument {
 
     /// Refuses stresses that the method does not tell.
     pub(super) fn check_stress(&self, errors: &Errors) {
-        if self.stress && !self.method.tells_stress() {
+        if self.stress && !self.method.computes_stress() {
             let pointer = format!("/{}", Self::stress.name);
             let methods = Method::OPTIONS.iter();
             let methods: Vec<&str> = methods
-                .filter(|(_, method, _)| method.tells_stress())
+                .filter(|(_, method, _)| method.computes_stress())
                 .map(|(word, ..)| *word)
                 .collect();
             let detail = format!(

@@ -8,7 +8,7 @@ const TOGETHER: f64 = 1e-3;
 /// The part of the way between two positions over which an event is looked for from one of them alone.
 const FARTHEST: f64 = 0.6;
 
-/// What the samples on both sides of an event tell of its place.
+/// What the samples on both sides of an event say of its place.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
     pub(super) at: f64,

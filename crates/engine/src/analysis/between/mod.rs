@@ -2,7 +2,7 @@
 //!
 //! δ and k are known at equal steps. Between them a pair takes up or leaves the load, contact reaches the start of a relief or a tip edge, and
 //! the extremes of a curve often stand there. So the curve is divided where the loaded pairs change ([`events`]), a polynomial stands between
-//! two neighboring positions or events ([`sections`]), and the contact is solved at some more positions, where it tells most of the extremes
+//! two neighboring positions or events ([`sections`]), and the contact is solved at some more positions, where it says most of the extremes
 //! and then of the rest. The arrays of a curve stay on the equal steps; its statistics and its spectrum are those of the sections.
 
 mod cubic;
@@ -39,7 +39,7 @@ pub(super) struct PairState {
 }
 
 impl Sample {
-    /// Those at `places` of a curve, of the `contacts` that tell of them and of δ and k there.
+    /// Those at `places` of a curve, with the `contacts`, δ and k there.
     pub(super) fn of(
         places: &[Place],
         contacts: &[MeshContact],

@@ -1,4 +1,4 @@
-//! Further positions, where they tell most of a curve.
+//! Further positions, where a curve is least known.
 
 use super::sections::{Section, Sections, tolerance};
 use super::{Sample, Span};
@@ -29,7 +29,7 @@ pub(in crate::analysis) struct Refinement {
     span: Span,
     /// Positions that may be solved further.
     most: usize,
-    /// The mesh periods after which contact repeats: a position solved in the first of them tells of all later ones.
+    /// The mesh periods after which contact repeats: a position solved in the first of them is solved in all later ones.
     repeats_after: u32,
 }
 
@@ -38,8 +38,8 @@ pub(in crate::analysis) fn most_further(positions: usize) -> usize {
     FURTHER.0.max((FURTHER.1 * positions as f64) as usize)
 }
 
-/// A position that is worth to be solved.
-struct Wanted {
+/// A position at which the curve is little known.
+struct Candidate {
     position: f64,
     priority: f64,
 }
@@ -79,7 +79,7 @@ impl Refinement {
         let mut sections = Sections::new(self.span, &samples);
         for part in ROUNDS {
             let most = (part * left as f64).ceil() as usize;
-            let positions = self.chosen(wanted(&sections), &samples, most);
+            let positions = self.chosen(candidates(&sections), &samples, most);
             if positions.is_empty() {
                 break;
             }
@@ -91,16 +91,16 @@ impl Refinement {
         Ok(sections)
     }
 
-    /// At most `most` of the `wanted` positions, the most urgent first, none of them beside a sample.
-    fn chosen(&self, mut wanted: Vec<Wanted>, samples: &[Sample], most: usize) -> Vec<f64> {
-        wanted.sort_by(|a, b| {
+    /// At most `most` of the `candidates`, the most urgent first, none of them beside a sample.
+    fn chosen(&self, mut candidates: Vec<Candidate>, samples: &[Sample], most: usize) -> Vec<f64> {
+        candidates.sort_by(|a, b| {
             let urgent = b.priority.total_cmp(&a.priority);
             urgent.then(a.position.total_cmp(&b.position))
         });
         let (first, step) = (self.span.first, self.span.step());
         let mut fractions: Vec<f64> = Vec::new();
         let mut chosen: Vec<f64> = Vec::new();
-        for Wanted { position, .. } in wanted {
+        for Candidate { position, .. } in candidates {
             if chosen.len() == most {
                 break;
             }
@@ -130,11 +130,11 @@ impl Refinement {
 }
 
 /// Where the curve of `sections` leaves most open.
-fn wanted(sections: &Sections) -> Vec<Wanted> {
+fn candidates(sections: &Sections) -> Vec<Candidate> {
     let delta = |section: &Section| section.delta;
     let [(low, _), (high, _)] = sections.extremes(delta);
     let tolerance = tolerance(high - low);
-    let mut wanted = Vec::new();
+    let mut candidates = Vec::new();
     for (i, section) in sections.sections.iter().enumerate() {
         let urgency = section.error / tolerance;
         let extremes = section.extremes(delta);
@@ -149,26 +149,26 @@ fn wanted(sections: &Sections) -> Vec<Wanted> {
             };
             if (doubted || urgency > 0.5) && beyond + 2.0 * section.error + slack >= 0.0 {
                 is_extreme = true;
-                wanted.push(Wanted {
+                candidates.push(Candidate {
                     position: section.look(place),
                     priority: 1e3 + urgency,
                 });
             }
         }
         if !is_extreme && urgency > ELSEWHERE {
-            wanted.push(Wanted {
+            candidates.push(Candidate {
                 position: section.look(section.middle()),
                 priority: urgency * (section.to - section.from) / sections.span.step(),
             });
         }
     }
-    wanted.extend(wanted_of_stiffness(sections));
-    wanted
+    candidates.extend(candidates_for_stiffness(sections));
+    candidates
 }
 
 /// Where the extremes of k are read off a line that goes on to an event from far away, and between two events without a position, where other pairs carry
 /// and nothing is known of k.
-fn wanted_of_stiffness(sections: &Sections) -> Vec<Wanted> {
+fn candidates_for_stiffness(sections: &Sections) -> Vec<Candidate> {
     let stiffness = |section: &Section| section.stiffness;
     let known = sections.extremes(stiffness);
     let far = 2.0 * BELIEVED.0 * sections.span.step();
@@ -190,7 +190,7 @@ fn wanted_of_stiffness(sections: &Sections) -> Vec<Wanted> {
             _ => section.to - away,
         }
     };
-    open.map(|section| Wanted {
+    open.map(|section| Candidate {
         position: beside(section),
         priority: 1e2,
     })
@@ -342,7 +342,7 @@ mod tests {
     #[test]
     fn an_event_of_which_no_pair_tells_stands_where_both_sides_of_it_meet() {
         // Before it δ rises on a line; behind it it falls on a parabola, on which a second pair takes up the load so that a line through two of its shares
-        // tells nothing.
+        // says nothing.
         let event = 0.32;
         let curve = |x: f64| {
             let behind = (x - event).max(0.0);

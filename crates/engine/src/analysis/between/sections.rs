@@ -25,11 +25,11 @@ const JUMP: f64 = 1e-5;
 /// Both sides of an event meet within twice this part of the way between its neighbors, if they are near enough to be believed.
 const NEARBY: f64 = 0.1;
 
-/// An event of which no pair tells the place stands where both sides meet, anywhere between neighbors that are nearer to each other than this part of
+/// An event whose place no pair gives stands where both sides meet, anywhere between neighbors that are nearer to each other than this part of
 /// a step.
 const CLOSE: f64 = 1.0 / 8.0;
 
-/// What the positions between are to tell of δ: its extremes to this part of its peak-to-peak, and no better than so many meters.
+/// How well δ is to be known between positions: its extremes to this part of its peak-to-peak, and no better than so many meters.
 const TOLERANCE: (f64, f64) = (1e-3, 5e-10);
 
 /// The tolerance for this peak-to-peak.
@@ -202,7 +202,7 @@ impl Sections {
         traced
     }
 
-    /// By how much what is told of δ may be off because it is known at some positions only.
+    /// By how much what is known of δ may be off because it is known at some positions only.
     pub(in crate::analysis) fn error(&self) -> SamplingError {
         let known = self.extremes(|section| section.delta);
         // Of all sections that may hold an extreme the one that leaves it open most.
@@ -324,8 +324,8 @@ impl Event {
 struct Side {
     /// Through the nearest of them.
     curve: Cubic,
-    /// What it is worth: by how many it goes through.
-    worth: f64,
+    /// How far it is to be relied on: by how many it goes through.
+    reliability: f64,
     /// How far from the event the nearest is.
     distance: f64,
 }
@@ -333,10 +333,10 @@ struct Side {
 impl Side {
     /// That of `samples`, the nearest to `place` first.
     fn of<'a>(samples: impl Iterator<Item = &'a Sample>, place: f64) -> Option<Self> {
-        const WORTH: [f64; 3] = [0.03, 0.3, 1.0];
-        let mut nodes: Vec<(f64, f64)> = Vec::with_capacity(WORTH.len());
+        const RELIABILITIES: [f64; 3] = [0.03, 0.3, 1.0];
+        let mut nodes: Vec<(f64, f64)> = Vec::with_capacity(RELIABILITIES.len());
         for sample in samples {
-            // Those that stand close together would tell more of their rounding than of the curve.
+            // Those that stand close together would say more of their rounding than of the curve.
             let apart = match (nodes.first(), nodes.last()) {
                 (Some(first), Some(last)) => {
                     (sample.position - last.0).abs() >= 0.5 * (first.0 - place).abs()
@@ -346,20 +346,20 @@ impl Side {
             if apart {
                 nodes.push((sample.position, sample.transmission_error));
             }
-            if nodes.len() == WORTH.len() {
+            if nodes.len() == RELIABILITIES.len() {
                 break;
             }
         }
         Some(Self {
             distance: (nodes.first()?.0 - place).abs(),
-            worth: WORTH[nodes.len() - 1],
+            reliability: RELIABILITIES[nodes.len() - 1],
             curve: Cubic::through(&nodes),
         })
     }
 
     /// How much it counts beside the other side.
     fn weight(&self) -> f64 {
-        self.worth / self.distance.max(1e-9).powi(2)
+        self.reliability / self.distance.max(1e-9).powi(2)
     }
 }
 

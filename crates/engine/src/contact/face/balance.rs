@@ -24,7 +24,7 @@ use crate::fem::dense::Cholesky;
 const MOST_STEPS: u32 = 100;
 
 /// Evaluations of the energy's slope along one step, at most.
-const MOST_LOOKS: u32 = 40;
+const MOST_EVALUATIONS: u32 = 40;
 
 /// By how much more slices yield, in K q, until their compliance is positive definite. Beside a slice that is about as short as its contact is wide,
 /// the half space of a line without width yields too much: equal and opposite forces would gain energy from it.
@@ -204,8 +204,8 @@ impl Problem<'_> {
             let is_short = longest <= NO_WAY * (state.delta - touch).abs();
             let (mut part, mut end) = (1.0, at(1.0));
             let (mut low, mut high) = ([0.0, fall], [1.0, end.2]);
-            let mut looks = 0;
-            while !is_short && end.2 > 0.5 * fall.abs() && looks < MOST_LOOKS {
+            let mut evaluations = 0;
+            while !is_short && end.2 > 0.5 * fall.abs() && evaluations < MOST_EVALUATIONS {
                 // The function is convex: its slope vanishes in between.
                 let secant = low[1] / (low[1] - high[1]);
                 part = low[0] + (high[0] - low[0]) * secant.clamp(0.1, 0.9);
@@ -215,7 +215,7 @@ impl Problem<'_> {
                 } else {
                     low = [part, end.2];
                 }
-                looks += 1;
+                evaluations += 1;
             }
             (state, points) = (end.0, end.1);
             if part == 1.0 && is_short {
@@ -260,19 +260,17 @@ impl Problem<'_> {
     /// The places that are loaded at `state`.
     fn points(&self, state: &State) -> Vec<Point> {
         let mut points = Vec::with_capacity(4 * self.slices.len());
-        let pressed = |gap: f64, weight: f64, opened: f64| state.delta * weight - gap - opened;
         for (i, slice) in self.slices.iter().enumerate() {
-            let middle = pressed(slice.middle.gap, slice.middle.weights[1], state.opened[i]);
             for (end, edge) in slice.ends.iter().enumerate() {
                 let beside = beside(self.slices, i, end);
-                let opened = 0.5 * (state.opened[i] + state.opened[beside]);
-                let outer = pressed(edge.gap, edge.weights[1], opened);
-                let turn = middle / (middle - outer);
-                let ([from, to], rule) = match (middle > 0.0, outer > 0.0) {
-                    (true, true) => ([0.0, 1.0], &WHOLE[..]),
-                    (true, false) => ([0.0, turn], &PART[..]),
-                    (false, true) => ([turn, 1.0], &PART[..]),
-                    (false, false) => continue,
+                let [middle, outer] = self.depths(state, i, end);
+                let Some([from, to]) = loaded_part(middle, outer) else {
+                    continue;
+                };
+                let rule = if middle > 0.0 && outer > 0.0 {
+                    &WHOLE[..]
+                } else {
+                    &PART[..]
                 };
                 for &[gauss, weight] in rule {
                     let place = from + (to - from) * gauss;
@@ -297,6 +295,14 @@ impl Problem<'_> {
             }
         }
         points
+    }
+
+    /// How far flanks are pressed together at `state` in the middle of slice `i` and at one of its ends.
+    fn depths(&self, state: &State, i: usize, end: usize) -> [f64; 2] {
+        let (slice, beside) = (&self.slices[i], beside(self.slices, i, end));
+        let outer = 0.5 * (state.opened[i] + state.opened[beside]);
+        [(&slice.middle, state.opened[i]), (&slice.ends[end], outer)]
+            .map(|(place, opened)| state.delta * place.weights[1] - place.gap - opened)
     }
 
     /// y − Lᵀ N, and what the load is more than that of `points`.
@@ -398,21 +404,13 @@ impl Problem<'_> {
             of.weighed += point.weight * point.force;
         }
         let mut gaps = Vec::with_capacity(size);
-        for (i, slice) in self.slices.iter().enumerate() {
-            let middle = state.delta * slice.middle.weights[1] - slice.middle.gap - state.opened[i];
-            gaps.push(-middle);
-            for (end, edge) in slice.ends.iter().enumerate() {
-                let sign = 2.0 * end as f64 - 1.0;
-                let opened = 0.5 * (state.opened[i] + state.opened[beside(self.slices, i, end)]);
-                let outer = state.delta * edge.weights[1] - edge.gap - opened;
-                let turn = sign * middle / (middle - outer);
+        for i in 0..size {
+            gaps.push(-self.depths(&state, i, 0)[0]);
+            for (end, sign) in [-1.0, 1.0].into_iter().enumerate() {
+                let [middle, outer] = self.depths(&state, i, end);
                 let [low, high] = &mut carried[i].part;
-                let mut take = |place: f64| (*low, *high) = (low.min(place), high.max(place));
-                match (middle > 0.0, outer > 0.0) {
-                    (true, true) => [0.0, sign].into_iter().for_each(&mut take),
-                    (true, false) => [0.0, turn].into_iter().for_each(&mut take),
-                    (false, true) => [turn, sign].into_iter().for_each(&mut take),
-                    (false, false) => {}
+                for place in loaded_part(middle, outer).into_iter().flatten() {
+                    (*low, *high) = (low.min(sign * place), high.max(sign * place));
                 }
             }
         }
@@ -495,6 +493,17 @@ impl Balance {
             changes[point.slice] += point.weight * point.growth * pressed;
         }
         changes
+    }
+}
+
+/// From where to where half a slice is loaded whose flanks are pressed so far together in the middle of the slice (0) and at its end (1).
+fn loaded_part(middle: f64, outer: f64) -> Option<[f64; 2]> {
+    let turn = middle / (middle - outer);
+    match (middle > 0.0, outer > 0.0) {
+        (true, true) => Some([0.0, 1.0]),
+        (true, false) => Some([0.0, turn]),
+        (false, true) => Some([turn, 1.0]),
+        (false, false) => None,
     }
 }
 

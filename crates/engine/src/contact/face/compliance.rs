@@ -28,7 +28,7 @@ fn add_smooth(model: &FaceModel, member: Member, slices: &[Slice], h: &mut Mat<f
     // One column a slice.
     let mut basis = Mat::<f64>::zeros(flank.basis_len(), slices.len());
     for (i, slice) in slices.iter().enumerate() {
-        let z = model.pair.own_height(member, slice.z);
+        let z = model.pair().own_height(member, slice.z);
         flank.basis(
             slice.middle.roll_lengths[member.index()],
             z,
@@ -65,7 +65,7 @@ fn add_ends(model: &FaceModel, slices: &[Slice], h: &mut Mat<f64>) {
     for member in Member::BOTH {
         let yields = &model.yields[member.index()];
         let place = |slice: &Slice| {
-            let z = model.pair.own_height(member, slice.z);
+            let z = model.pair().own_height(member, slice.z);
             (slice.middle.roll_lengths[member.index()], z)
         };
         for (column, one) in slices.iter().enumerate() {

@@ -19,8 +19,8 @@ pub const STRIPS: usize = 10;
 /// The most balances at each of them.
 const TRIES: u32 = 16;
 
-/// By how much of the factor a further step has to promise to lower it.
-const WORTH: f64 = 1e-3;
+/// A further step has to promise to lower the heaviest strip by this part.
+const LEAST_GAIN: f64 = 1e-3;
 
 /// The lead that evens the load.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,7 +63,7 @@ struct Strips {
 
 impl FaceModel {
     /// The slope and the crowning of the driving leads that make the heaviest strip of the face lightest under `load` in the mean over
-    /// `positions`, of which δ is at most `farthest`. They do not make a flank hollow that is not. None where the contacts have no balance.
+    /// `positions`, of which δ is at most `farthest`. They take away no more crowning than these leads have. `None` where the contacts have no balance.
     ///
     /// # Errors
     ///
@@ -75,11 +75,13 @@ impl FaceModel {
         farthest: f64,
         run: &Run,
     ) -> Result<Option<EvenLead>, Stopped> {
-        let first = positions.first().and_then(|eta| self.least_touch(*eta));
+        let first = positions
+            .first()
+            .and_then(|eta| self.flanks.least_touch(*eta));
         let Some(touch) = first else {
             return Ok(None);
         };
-        let phases = self.phases_within(beyond(farthest, touch));
+        let phases = self.flanks.phases_within(beyond(farthest, touch));
         let stands: Option<Vec<Stand>> = positions
             .par_iter()
             .map(|&eta| self.stand(eta, load, phases))
@@ -97,14 +99,16 @@ impl FaceModel {
         };
         let before = first.heaviest();
         // What closes the flanks is what a lead has to be compared with.
-        let touch = positions.first().and_then(|eta| self.least_touch(*eta));
+        let touch = positions
+            .first()
+            .and_then(|eta| self.flanks.least_touch(*eta));
         let mut step = (first.delta - touch.unwrap_or(0.0)).abs();
         let least = -self.crowning();
         let (mut lead, mut known) = ([0.0; 2], first);
         for _ in 0..TRIES {
             let (way, hoped) = known.lightest(step, least - lead[1]);
             let promised = known.heaviest() - hoped;
-            if promised < WORTH * known.heaviest() {
+            if promised < LEAST_GAIN * known.heaviest() {
                 break;
             }
             let aim = [lead[0] + way[0], lead[1] + way[1]];
@@ -131,7 +135,7 @@ impl FaceModel {
 
     /// The crowning that the driving leads have already.
     fn crowning(&self) -> f64 {
-        let leads = self.pair.leads(Member::Driving).iter();
+        let leads = self.pair().leads(Member::Driving).iter();
         let amounts = leads.map(|lead| match lead {
             LeadModification::Crowning { amount } => *amount,
             _ => 0.0,
@@ -147,7 +151,7 @@ impl FaceModel {
         } = self
             .balanced(eta, load, &Stretches::whole(self, eta, phases))
             .ok()?;
-        let width = self.pair.gear(Member::Driving).face_width();
+        let width = self.pair().gear(Member::Driving).face_width();
         let opened = |lead: &LeadModification| -> Vec<[f64; 3]> {
             let removed = slices.iter().map(|slice| {
                 let weights = [
@@ -157,7 +161,7 @@ impl FaceModel {
                 ];
                 std::array::from_fn(|i| {
                     let z = slice.z + 0.5 * (i as f64 - 1.0) * slice.length;
-                    let z = self.pair.own_height(Member::Driving, z);
+                    let z = self.pair().own_height(Member::Driving, z);
                     weights[i] * lead.removed(z, width)
                 })
             });
@@ -177,7 +181,7 @@ impl FaceModel {
 
     /// The strips of the face in the mean over `stands` with a further `lead`.
     fn strips(&self, stands: &mut [Stand], lead: Lead, load: f64) -> Option<Strips> {
-        let width = self.pair.common_face_width();
+        let width = self.pair().common_face_width();
         let each: Option<Vec<Strips>> = stands
             .par_iter_mut()
             .map(|stand| stand.strips(lead, load, width))
@@ -215,7 +219,7 @@ impl Stand {
                     let z = slice.z + 0.25 * (from + to) * slice.length;
                     let length = 0.5 * (to - from) * slice.length;
                     let force = force * STRIPS as f64 / load;
-                    add_to_strips(&mut strips, width, (z, length, force));
+                    add_to_strips(&mut strips, width, z, length, force);
                 }
             }
             strips

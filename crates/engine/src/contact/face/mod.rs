@@ -16,7 +16,7 @@
 mod balance;
 mod compliance;
 pub mod even;
-mod light;
+mod flanks;
 mod model;
 mod slice;
 pub mod spring;
@@ -25,13 +25,15 @@ use faer::Mat;
 use rayon::prelude::*;
 
 use super::coupled::add_yielded;
-use super::facing::Facing;
+use super::mesh_contact::Spot;
+use super::peak::Peak;
 use super::positions::PositionsError;
 use super::{ContactError, MeshContact, PairContact, PairLoads, PeakPlace, PositionError};
 use crate::gear::{Member, SolidPair};
 use crate::run::Run;
 use balance::{Balance, balance, softened_balance};
 use compliance::compliance;
+pub use flanks::FaceFlanks;
 pub use model::{FaceModel, FlankYield};
 use slice::{Loading, Place, Slice, Slicer, Stretches};
 
@@ -58,9 +60,9 @@ struct Balanced<'a> {
 }
 
 impl Balanced<'_> {
-    /// The largest pressure on slice `i` and its place: that `in_middle` of its loaded part, or one where a kink stands in the middle of the contact.
-    fn largest_pressure(&self, i: usize, in_middle: (f64, PeakPlace)) -> (f64, PeakPlace) {
-        let (part, half_width) = (self.balance.carried[i].part, in_middle.1.half_width);
+    /// The largest pressure on slice `i`: that `in_middle` of its loaded part, or one where a kink stands in the middle of the contact.
+    fn peak_of(&self, i: usize, in_middle: Peak) -> Peak {
+        let (part, half_width) = (self.balance.carried[i].part, in_middle.place.half_width);
         let kinks = self.slicer.at_kinks(&self.slices[i], part, half_width);
         let at_kinks = kinks.iter().filter_map(|within| {
             let depth = self.balance.depth(&self.slices, i, within);
@@ -73,15 +75,17 @@ impl Balanced<'_> {
                 ..
             } = &within.place;
             let pressed = spring.pressed(spring.load(depth)[0]);
-            let place = PeakPlace {
-                roll_lengths: *roll_lengths,
-                z: Some(within.z),
-                half_width: pressed.half_width,
-                ..in_middle.1
-            };
-            Some((pressed.pressure?, place))
+            Some(Peak {
+                pressure: pressed.pressure?,
+                place: PeakPlace {
+                    roll_lengths: *roll_lengths,
+                    z: Some(within.z),
+                    half_width: pressed.half_width,
+                    ..in_middle.place
+                },
+            })
         });
-        at_kinks.fold(in_middle, larger)
+        at_kinks.fold(in_middle, Peak::larger)
     }
 
     /// The loaded part of each line of `of`, whose slices these are, if together they are less than half a face: they are cut finer then.
@@ -92,29 +96,6 @@ impl Balanced<'_> {
             .map(|(carried, gap)| if carried.force > 0.0 { 0.0 } else { *gap })
             .collect();
         of.loaded(model, &self.slices, &gaps)
-    }
-}
-
-/// What is found among the flanks that touch before δ is as large as was assumed.
-enum Reached {
-    Contact(FaceContact),
-    /// None touches: the first of them do at this δ.
-    Touch(f64),
-}
-
-impl Reached {
-    fn delta(&self) -> f64 {
-        match self {
-            Self::Contact(contact) => contact.mesh.transmission_error,
-            Self::Touch(touch) => *touch,
-        }
-    }
-
-    fn contact(self) -> Option<FaceContact> {
-        match self {
-            Self::Contact(contact) => Some(contact),
-            Self::Touch(_) => None,
-        }
     }
 }
 
@@ -196,7 +177,7 @@ impl FaceContact {
     pub fn strips(&self, width: f64, count: usize) -> Vec<f64> {
         let mut strips = vec![0.0; count];
         for slice in &self.slices {
-            add_to_strips(&mut strips, width, (slice.z, slice.length, slice.force));
+            add_to_strips(&mut strips, width, slice.z, slice.length, slice.force);
         }
         strips
     }
@@ -224,15 +205,15 @@ impl FaceModel {
         // Slices lie where lines end, and lines end where flanks touch before δ is as large as `reach`. That starts from one position, whichever
         // are asked for, so that a position which is solved by itself has the same slices as among all.
         const LOOKED_FROM: f64 = 0.0;
-        let touch = self.least_touch(LOOKED_FROM);
+        let touch = self.flanks.least_touch(LOOKED_FROM);
         let touch = touch.ok_or_else(|| at(PositionError::NoContact, LOOKED_FROM))?;
         let mut reach = self
             .first_reach(LOOKED_FROM, load, touch)
             .map_err(|error| at(error, LOOKED_FROM))?;
         let mut is_counted = false;
         loop {
-            let phases = self.phases_within(reach);
-            let solved: Result<Vec<Reached>, PositionsError> = positions
+            let phases = self.flanks.phases_within(reach);
+            let solved: Result<Vec<_>, PositionsError> = positions
                 .par_iter()
                 .map(|&eta| {
                     let reached = self.reached(eta, load, phases, reach);
@@ -242,102 +223,48 @@ impl FaceModel {
                 .collect();
             let solved = solved?;
             is_counted = true;
-            let farthest = solved.iter().map(Reached::delta).fold(reach, f64::max);
+            let farthest = solved.iter().map(|(delta, _)| *delta);
+            let farthest = farthest.fold(reach, f64::max);
             if farthest == reach {
-                let contacts = solved.into_iter().filter_map(Reached::contact);
+                let contacts = solved.into_iter().filter_map(|(_, contact)| contact);
                 return Ok(contacts.collect());
             }
             reach = beyond(farthest, touch);
         }
     }
 
-    /// The contact at the position `eta` under `load` among the flanks that touch before δ is `reach`, or the δ at which the first of them touch.
+    /// δ at the position `eta` under `load`, and the contact among the flanks that touch before δ is `reach`. If there is none, δ is where the first of them
+    /// touch.
     fn reached(
         &self,
         eta: f64,
         load: f64,
         phases: [f64; 2],
         reach: f64,
-    ) -> Result<Reached, PositionError> {
+    ) -> Result<(f64, Option<FaceContact>), PositionError> {
         match self.contact_within(eta, load, phases) {
-            Err(PositionError::NoContact) => match self.least_touch(eta) {
-                Some(touch) if touch > reach => Ok(Reached::Touch(touch)),
+            Err(PositionError::NoContact) => match self.flanks.least_touch(eta) {
+                Some(touch) if touch > reach => Ok((touch, None)),
                 _ => Err(PositionError::NoContact),
             },
-            contact => Ok(Reached::Contact(contact?)),
+            contact => contact.map(|contact| (contact.mesh.transmission_error, Some(contact))),
         }
     }
 
     /// The δ up to which flanks are looked at under `load`: a little more than δ is at the position `eta`, where the first of them `touch`.
     fn first_reach(&self, eta: f64, load: f64, touch: f64) -> Result<f64, PositionError> {
-        let moduli =
-            Member::BOTH.map(|member| self.plane_strain.gear(member).material().youngs_modulus);
+        let moduli = self.flanks.moduli();
         // Solid gears yield by about half of this.
-        let stiffness = 0.05 * moduli[0].min(moduli[1]) * self.pair.common_face_width();
+        let stiffness = 0.05 * moduli[0].min(moduli[1]) * self.pair().common_face_width();
         let mut reach = touch + load / stiffness;
         loop {
-            let contact = self.contact_within(eta, load, self.phases_within(reach))?;
+            let contact = self.contact_within(eta, load, self.flanks.phases_within(reach))?;
             let delta = contact.mesh.transmission_error;
             if delta <= reach {
                 return Ok(beyond(delta, touch));
             }
             reach = beyond(delta, touch);
         }
-    }
-
-    /// How far leads, deviations and the axes may bring flanks nearer to each other than their sections are.
-    fn nearer(&self) -> f64 {
-        const PLACES: usize = 33;
-        let half = 0.5 * self.pair.common_face_width();
-        let at = |i: usize| half * (2.0 * i as f64 / (PLACES - 1) as f64 - 1.0);
-        let counts = Member::BOTH.map(|member| self.pair.section().gear(member).tooth_count());
-        let pairs = counts[0].max(counts[1]) as usize;
-        let pairs = if self.deviations.are_none() { 1 } else { pairs };
-        let least = (0..pairs).map(|pair| {
-            let teeth = counts.map(|count| pair % count as usize);
-            let gaps: [f64; PLACES] =
-                std::array::from_fn(|i| self.pair.lead_gap(&self.deviations, teeth, at(i)));
-            // Between two places a gap is less than at both by no more than they differ somewhere.
-            let steps = gaps.windows(2).map(|gaps| (gaps[1] - gaps[0]).abs());
-            gaps.into_iter().fold(f64::INFINITY, f64::min) - steps.fold(0.0, f64::max)
-        });
-        self.deviations.nearest() - least.fold(f64::INFINITY, f64::min)
-    }
-
-    /// The phases between which sections may touch before δ is `reach`.
-    fn phases_within(&self, reach: f64) -> [f64; 2] {
-        const STEP: f64 = 1.0 / 32.0;
-        let limit = reach + self.nearer();
-        let touches = |phase: f64| {
-            Facing::drawn(&self.plane_strain, phase).is_some_and(|facing| {
-                facing.touch() <= limit && slice::drives(&self.plane_strain, phase, &facing)
-            })
-        };
-        let (s_a, s_e) = self.pair.section().path_of_contact();
-        let ends = [s_a, s_e].map(|s| self.pair.phase_at(s));
-        let nearest = self.nearest_phases(ends, STEP);
-        let outermost = |end: f64, way: f64, other: f64| {
-            let mut out = end + way;
-            while touches(out) {
-                out += way;
-            }
-            let (mut outside, mut inside) = (out, out);
-            while !touches(inside) && (inside - other) * way > 0.0 {
-                outside = inside;
-                inside -= way * STEP;
-                // A range of phases that touch may be narrower than a step: the phase in it at which flanks are nearest is not stepped over.
-                let first = |a: f64, b: f64| if (b - a) * way > 0.0 { b } else { a };
-                let ahead = nearest
-                    .iter()
-                    .filter(|phase| (outside - **phase) * way > 0.0);
-                inside = ahead.copied().fold(inside, first);
-            }
-            crate::root_finding::bisect(inside, outside, touches)
-        };
-        [
-            outermost(ends[0], -1.0, ends[1]),
-            outermost(ends[1], 1.0, ends[0]),
-        ]
     }
 
     /// The contact at the position `eta` under `load` of sections in `phases`.
@@ -436,7 +363,7 @@ impl FaceModel {
         let mut row = vec![0.0; flank.basis_len()];
         let mut load = Mat::zeros(row.len(), 2);
         for slice in line {
-            let z = self.pair.own_height(member, slice.z);
+            let z = self.pair().own_height(member, slice.z);
             flank.basis(slice.roll_lengths[member.index()], z, &mut row);
             for (column, force) in slice.normal.into_iter().enumerate() {
                 for (sum, value) in load.col_as_slice_mut(column).iter_mut().zip(&row) {
@@ -468,20 +395,13 @@ impl FaceModel {
             slices, balance, ..
         } = balanced;
         let mut pairs: Vec<PairContact> = Vec::new();
-        let mut peak: Option<(f64, PeakPlace)> = None;
+        let mut peak: Option<Peak> = None;
         let mut at_sharp_edge = false;
         let mut corner_shares = [0.0; 2];
         let mut loads = Vec::new();
-        let mut driving_load = 0.0;
         for (i, (slice, carried)) in slices.iter().zip(&balance.carried).enumerate() {
             if pairs.last().is_none_or(|pair| pair.pair != slice.pair) {
-                pairs.push(PairContact {
-                    pair: slice.pair,
-                    share: 0.0,
-                    clearance: None,
-                    tip_corner: None,
-                    fillet: None,
-                });
+                pairs.push(PairContact::of_share(slice.pair, 0.0));
             }
             if carried.force <= 0.0 {
                 continue;
@@ -499,7 +419,6 @@ impl FaceModel {
             if let Some(member) = pressed.tip_corner {
                 corner_shares[member.index()] += carried.weighed / load;
             }
-            driving_load += slice.middle.weights[0] * carried.force;
             at_sharp_edge |= pressed.at_sharp_edge;
             let edge = &slice.ends[usize::from(middle > 0.0)].roll_lengths;
             let z = slice.z + 0.5 * middle * slice.length;
@@ -507,17 +426,16 @@ impl FaceModel {
                 let at = slice.middle.roll_lengths[g];
                 at + (edge[g] - at) * middle.abs()
             });
-            let in_middle = PeakPlace {
+            let place = PeakPlace {
                 pair: slice.pair,
                 roll_lengths,
                 z: Some(z),
                 half_width: pressed.half_width,
             };
-            let largest = pressed.pressure;
-            let largest =
-                largest.map(|pressure| balanced.largest_pressure(i, (pressure, in_middle)));
+            let largest = pressed.pressure.map(|pressure| Peak { pressure, place });
+            let largest = largest.map(|in_middle| balanced.peak_of(i, in_middle));
             peak = match (peak, largest) {
-                (Some(one), Some(other)) => Some(larger(one, other)),
+                (Some(one), Some(other)) => Some(one.larger(other)),
                 (one, other) => one.or(other),
             };
             loads.push(SliceLoad {
@@ -526,7 +444,7 @@ impl FaceModel {
                 length: part * slice.length,
                 force: carried.weighed,
                 roll_lengths,
-                pressure: largest.map(|(pressure, _)| pressure),
+                pressure: largest.map(|peak| peak.pressure),
                 at_sharp_edge: pressed.at_sharp_edge,
                 half_width: pressed.half_width,
                 normal: [carried.force, carried.rise],
@@ -543,22 +461,20 @@ impl FaceModel {
             roll_lengths: slice.middle.roll_lengths,
             normal: [force, rise],
         });
-        let sum: f64 = balance.carried.iter().map(|carried| carried.weighed).sum();
-        let carried = balance.carried.iter().zip(&balance.gaps);
-        let complementarity = carried.map(|(carried, gap)| (carried.force * gap).abs());
-        let peak = peak.filter(|_| !at_sharp_edge);
+        let spots = slices.iter().zip(balance.carried.iter().zip(&balance.gaps));
+        let spots = spots.map(|(slice, (carried, &gap))| Spot {
+            force: carried.force,
+            gap,
+            moments: [slice.middle.weights[0] * carried.force, carried.weighed],
+        });
         FaceContact {
             mesh: MeshContact {
                 transmission_error: balance.transmission_error,
                 stiffness: balance.stiffness,
-                driving_load,
                 pairs,
-                peak_pressure: peak.map(|(pressure, _)| pressure),
-                peak_place: peak.map(|(_, place)| place),
-                equilibrium: (sum - load).abs() / load,
-                complementarity: complementarity.fold(0.0, f64::max),
                 penetration: balance.penetration(slices),
                 iterations: balance.iterations,
+                ..MeshContact::of_spots(load, spots, peak.filter(|_| !at_sharp_edge))
             },
             slices: loads,
             middles: middles.collect(),
@@ -567,8 +483,8 @@ impl FaceModel {
     }
 }
 
-/// Adds the force on a piece of a common face of `width` to the equal strips that it lies in.
-fn add_to_strips(strips: &mut [f64], width: f64, (z, length, force): (f64, f64, f64)) {
+/// Adds the `force` on a piece of a common face of `width`, so long about `z`, to the equal strips that it lies in.
+fn add_to_strips(strips: &mut [f64], width: f64, z: f64, length: f64, force: f64) {
     let strip = width / strips.len() as f64;
     let from = (z - 0.5 * length + 0.5 * width) / strip;
     let to = from + length / strip;
@@ -586,11 +502,6 @@ fn add_to_strips(strips: &mut [f64], width: f64, (z, length, force): (f64, f64, 
 /// A reach somewhat beyond `delta` of flanks that `touch` before.
 fn beyond(delta: f64, touch: f64) -> f64 {
     delta + BEYOND * (delta - touch).abs()
-}
-
-/// The larger of two pressures, each with its place; the first of two that are the same.
-fn larger(one: (f64, PeakPlace), other: (f64, PeakPlace)) -> (f64, PeakPlace) {
-    if other.0 > one.0 { other } else { one }
 }
 
 #[cfg(test)]
@@ -632,9 +543,9 @@ mod tests {
             let contacts: Vec<FaceContact> = (0..16)
                 .map(|i| {
                     let eta = f64::from(i) / 16.0;
-                    let section = model.pair.section();
+                    let section = model.pair().section();
                     let (s_a, s_e) = section.path_of_contact();
-                    let phases = [s_a, s_e].map(|s| model.pair.phase_at(s));
+                    let phases = [s_a, s_e].map(|s| model.pair().phase_at(s));
                     let lines = Stretches::whole(&model, eta, phases);
                     let heavier = HEAVIER;
                     let slicer = Slicer::new(&model, eta, &lines, Loading { load, heavier });
@@ -816,7 +727,7 @@ mod tests {
         };
         let (round, whole) = (model(0.0), model(1.0));
         // As far as both reach, so that all have the same slices.
-        let phases = whole.phases_within(30e-6);
+        let phases = whole.flanks.phases_within(30e-6);
         let step = 1e-4;
         let (below, above) = (model(-step), model(step));
         for eta in [0.05, 0.3, 0.55, 0.9] {

@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use faer::{Mat, MatRef};
 
+use super::flanks::FaceFlanks;
 use crate::contact::memo::Memo;
 use crate::fem::dense::entries;
-use crate::gear::{GearPair, Member, PairDeviations, SolidPair};
+use crate::gear::{Member, SolidPair};
 
 /// How the flanks of one gear give way, smoothly, to forces normal to them.
 ///
@@ -39,15 +40,10 @@ const LEAST_TURN: f64 = 1e-6;
 
 /// Two gears with an extent along their axes, ready for contact.
 pub struct FaceModel {
-    pub(super) pair: SolidPair,
-    pub(super) deviations: PairDeviations,
+    pub(super) flanks: FaceFlanks,
     pub(super) yields: [Arc<dyn FlankYield>; 2],
-    /// Slices of the whole face.
-    pub(super) slices: usize,
     /// How far apart teeth may stand that are loaded together.
     pub(super) coupled: usize,
-    /// One meter of the flanks as drawn.
-    pub(super) plane_strain: GearPair,
     /// The kinks of both profiles at which flanks press harder than beside them.
     pub(super) kinks: Vec<Kink>,
     smooth: Memo<Teeth, Mat<f64>>,
@@ -110,11 +106,8 @@ impl FaceModel {
     ) -> Self {
         Self {
             kinks: Kink::all(&pair),
-            deviations: pair.section().deviations(),
-            plane_strain: pair.section().plane_strain(),
-            pair,
+            flanks: FaceFlanks::new(pair, slices),
             yields,
-            slices,
             coupled,
             smooth: Memo::new(MOST_BYTES, |smooth| size_of::<f64>() * entries(smooth)),
         }
@@ -122,20 +115,25 @@ impl FaceModel {
 
     /// The pair.
     pub fn pair(&self) -> &SolidPair {
-        &self.pair
+        &self.flanks.pair
+    }
+
+    /// Its flanks before they yield.
+    pub fn flanks(&self) -> &FaceFlanks {
+        &self.flanks
     }
 
     /// The smooth compliance of the teeth of `member` in the pairs from `first` on.
     pub(super) fn smooth(&self, member: Member, first: i64, count: usize) -> Smooth {
-        let z = self.pair.section().gear(member).tooth_count() as usize;
+        let z = self.pair().section().gear(member).tooth_count() as usize;
         let alike = self.yields[member.index()].repeats_after();
         let key = Teeth {
             gear: member.index(),
-            first: self.pair.section().tooth(member, first) % alike,
+            first: self.pair().section().tooth(member, first) % alike,
             count,
         };
         let compliance = self.smooth.get(key, |key| {
-            let step = self.pair.section().tooth(member, 1);
+            let step = self.pair().section().tooth(member, 1);
             let teeth: Vec<usize> = (0..count).map(|i| (key.first + i * step) % z).collect();
             self.yields[member.index()].smooth(&teeth)
         });

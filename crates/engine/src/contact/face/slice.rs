@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use super::FaceModel;
-use super::spring::Spring;
-use crate::contact::facing::{Facing, View};
+use super::flanks::{arms, view_of};
+use super::spring::{Line, Spring};
+use crate::contact::facing::Facing;
 use crate::contact::half_plane::{hertz, logarithm_factor};
-use crate::contact::placement::Placement;
-use crate::gear::{ContactLine, GearPair, Member};
+use crate::gear::ContactLine;
 
 /// No slice is shorter than so many half-widths of its contact: a line that short is none.
 const SHORTEST: f64 = 2.0;
@@ -81,12 +81,12 @@ pub(super) struct Stretches {
 impl Stretches {
     /// All lines of `model` at the position `eta` on which sections are in `phases`.
     pub(super) fn whole(model: &FaceModel, eta: f64, phases: [f64; 2]) -> Self {
-        let width = model.pair.common_face_width();
-        let longest = width / model.slices as f64;
+        let width = model.pair().common_face_width();
+        let longest = width / model.flanks.slices as f64;
         // As many slices on a line while it grows and shrinks, so that nothing steps.
-        let across = (phases[1] - phases[0]) / model.pair.advance().abs();
+        let across = (phases[1] - phases[0]) / model.pair().advance().abs();
         Self {
-            lines: model.pair.lines(eta, phases),
+            lines: model.pair().lines(eta, phases),
             longest,
             least: (width.min(across) / longest - 1e-9).ceil(),
         }
@@ -119,7 +119,7 @@ impl Stretches {
                 ],
             });
         }
-        let longest = length(&lines) / model.slices as f64;
+        let longest = length(&lines) / model.flanks.slices as f64;
         (longest <= 0.5 * self.longest).then_some(Self {
             lines,
             longest,
@@ -167,26 +167,6 @@ pub(super) struct Slicer<'a> {
     densities: [f64; 2],
 }
 
-/// Whether a force between the flanks of `facing` at `phase` drives the driven gear on. Far off the path of contact it may turn it back; flanks
-/// touch elsewhere long before they do there.
-pub(super) fn drives(gears: &GearPair, phase: f64, facing: &Facing) -> bool {
-    arms(&view_of(gears, phase, facing), facing)[1] > 0.0
-}
-
-fn view_of<'a>(gears: &'a GearPair, phase: f64, facing: &Facing) -> View<'a> {
-    View {
-        placement: Placement::drawn(gears, phase),
-        seat: facing.seat,
-    }
-}
-
-/// The arms about both axes of a force where the gap of `facing` is least.
-fn arms(view: &View<'_>, facing: &Facing) -> [f64; 2] {
-    // The place is found wherever flanks face each other.
-    let point = view.point(facing.minima[0].arc);
-    point.map_or([1.0, 1.0], |point| view.meeting(&point).arms)
-}
-
 impl<'a> Slicer<'a> {
     /// Of `stretches` of `model` at the position `eta`, with springs for a load.
     pub(super) fn new(
@@ -197,14 +177,12 @@ impl<'a> Slicer<'a> {
     ) -> Self {
         // For each length along a contact line.
         let total = length(&stretches.lines);
-        let factors = Member::BOTH.map(|member| {
-            let modulus = model.plane_strain.gear(member).material().youngs_modulus;
-            logarithm_factor(modulus, 1.0)
-        });
+        let moduli = model.flanks.moduli();
+        let factors = moduli.map(|modulus| logarithm_factor(modulus, 1.0));
         Self {
             model,
             eta,
-            cosine: model.pair.base_helix_angle().cos(),
+            cosine: model.pair().base_helix_angle().cos(),
             factor: factors[0] + factors[1],
             densities: [1.0, heavier].map(|times| times * load / total),
         }
@@ -218,7 +196,7 @@ impl<'a> Slicer<'a> {
 
     fn line(&self, stretches: &Stretches, line: &ContactLine) -> Vec<Slice> {
         let [from, to] = line.heights;
-        let pair = &self.model.pair;
+        let pair = self.model.pair();
         let radius = 0.25 * pair.section().line_of_action() / self.cosine;
         let half_width = hertz(self.densities[1], radius, self.factor, 1.0).0;
         let longest = ((to - from) / stretches.longest - 1e-9)
@@ -264,14 +242,14 @@ impl<'a> Slicer<'a> {
 
     /// The place of pair `n` at `z` as drawn, on a slice so long `along` the line; `None` where flanks do not face each other.
     fn drawn(&self, n: i64, z: f64, along: f64) -> Option<Place> {
-        let phase = self.model.pair.phase(self.eta, n, z);
-        let facing = Facing::drawn(&self.model.plane_strain, phase)?;
+        let phase = self.model.pair().phase(self.eta, n, z);
+        let facing = Facing::drawn(&self.model.flanks.plane_strain, phase)?;
         Some(self.place(phase, &facing, along))
     }
 
     /// `place`, of pair `n` at `z`, with what leads, axes and deviations open it; `None` where a force would not drive on.
     fn standing(&self, mut place: Place, n: i64, z: f64) -> Option<Place> {
-        place.gap += place.weights[1] * self.model.opening(n, z, place.roll_lengths);
+        place.gap += place.weights[1] * self.model.flanks.opening(n, z, place.roll_lengths);
         (place.weights[1] > 0.0).then_some(place)
     }
 
@@ -283,7 +261,7 @@ impl<'a> Slicer<'a> {
         [from, to]: [f64; 2],
         half_width: f64,
     ) -> Vec<Within> {
-        let (pair, half) = (&self.model.pair, 0.5 * slice.length);
+        let (pair, half) = (self.model.pair(), 0.5 * slice.length);
         let phase = pair.phase(self.eta, slice.pair, slice.z);
         let across = pair.advance() * half;
         let places = self.model.kinks.iter().filter_map(|kink| {
@@ -304,14 +282,18 @@ impl<'a> Slicer<'a> {
 
     /// The place of a line where its section faces the other so, as drawn, on a slice so long `along` the line.
     fn place(&self, phase: f64, facing: &Facing, along: f64) -> Place {
-        let view = view_of(&self.model.plane_strain, phase, facing);
+        let view = view_of(&self.model.flanks.plane_strain, phase, facing);
         let minimum = &facing.minima[0];
         let weights = arms(&view, facing).map(|arm| arm * self.cosine);
         let radius = {
             let [one, other] = minimum.roll_lengths.map(|s| s / self.cosine);
             one * other / (one + other)
         };
-        let of = (along, radius, self.factor);
+        let of = Line {
+            along,
+            radius,
+            factor: self.factor,
+        };
         let (spring, gap) = if self.is_crowded(facing, self.densities[1], radius) {
             Spring::patch(&view, facing, self.cosine, of, self.densities)
         } else {

@@ -7,7 +7,7 @@
 use std::f64::consts::LN_2;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
-use crate::contact::facing::{Facing, RangeEnd, View};
+use crate::contact::facing::{Facing, View};
 use crate::contact::half_plane::{Entries, hertz, near_compliance};
 use crate::contact::patch::{Extent, Patch};
 use crate::contact::{ContactProblem, ContactSolution, solve_active_set};
@@ -28,11 +28,20 @@ const STEP: f64 = 4.0;
 const LIGHTEST: i32 = 5;
 const SOLVED: usize = 8;
 
-/// A spring, and how long its slice is along the contact line.
-pub(super) struct Spring {
-    along: f64,
+/// The slice under a spring.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Line {
+    /// Its length along the contact line.
+    pub(super) along: f64,
+    /// The relative radius of both flanks.
+    pub(super) radius: f64,
     /// Σ 2(1 − ν²)/(πE).
-    factor: f64,
+    pub(super) factor: f64,
+}
+
+/// A spring.
+pub(super) struct Spring {
+    line: Line,
     /// The least load a length for which it is evaluated, and that beyond which it goes on straight.
     least: f64,
     most: f64,
@@ -45,8 +54,8 @@ pub(super) struct Spring {
 }
 
 enum Contact {
-    /// Of two cylinders with this relative radius; and ln ρ under a load a length of one.
-    Hertz { radius: f64, ln_width: f64 },
+    /// Of two cylinders; with ln ρ under a load a length of one.
+    Hertz { ln_width: f64 },
     /// Of any profiles.
     Patch(Box<Cells>),
 }
@@ -65,7 +74,7 @@ struct Cells {
 }
 
 /// What a load does to a slice.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Pressed {
     pub(super) pressure: Option<f64>,
     /// Whether it reaches a sharp tip edge, where pressure has no limit.
@@ -76,35 +85,30 @@ pub(super) struct Pressed {
 }
 
 impl Spring {
-    fn new(
-        (along, radius, factor): (f64, f64, f64),
-        [density, heaviest]: [f64; 2],
-        contact: Contact,
-    ) -> Self {
+    fn new(line: Line, [density, heaviest]: [f64; 2], contact: Contact) -> Self {
         // u = h/(2 ρ) of Hertz's contact is √(q_0/q), and K q asinh u grows with q by K (asinh u − u/(2 √(1 + u²))).
-        let unit = along * along * std::f64::consts::E / (2.0 * radius * factor);
+        let square = line.along * line.along;
+        let unit = square * std::f64::consts::E / (2.0 * line.radius * line.factor);
         let u = (unit / heaviest).sqrt();
         let grown = u.asinh() - 0.5 * u / (1.0 + u * u).sqrt();
         let spread = SPREAD.min(0.75 * grown);
         let narrowest = u.min(0.5 * (1.2 * spread + 0.5).exp());
         Self {
-            along,
-            factor,
+            line,
             least: LEAST * density,
             most: unit / (narrowest * narrowest),
             ln_most: (unit / (narrowest * narrowest)).ln(),
-            ln_factor: factor.ln(),
+            ln_factor: line.factor.ln(),
             spread,
             contact,
         }
     }
 
-    /// Of two cylinders with this relative radius, on a slice so long `along` its line, for a mean and a largest line load.
-    pub(super) fn hertz(of: (f64, f64, f64), densities: [f64; 2]) -> Self {
-        let (_, radius, factor) = of;
+    /// Of two cylinders, for a mean and a largest line load.
+    pub(super) fn hertz(of: Line, densities: [f64; 2]) -> Self {
         // ρ = (a/2) e^(−1/2), a² = 2 q R K.
-        let ln_width = 0.5 * (2.0 * radius * factor).ln() - 0.5 - LN_2;
-        Self::new(of, densities, Contact::Hertz { radius, ln_width })
+        let ln_width = 0.5 * (2.0 * of.radius * of.factor).ln() - 0.5 - LN_2;
+        Self::new(of, densities, Contact::Hertz { ln_width })
     }
 
     /// As [`Spring::hertz`], of the flanks of `facing` as `view` sees them, of slices one meter long; and the normal gap between them.
@@ -112,7 +116,7 @@ impl Spring {
         view: &View<'_>,
         facing: &Facing,
         cosine: f64,
-        of: (f64, f64, f64),
+        of: Line,
         densities: [f64; 2],
     ) -> (Self, f64) {
         let extent = Extent {
@@ -153,7 +157,7 @@ impl Spring {
 
     /// How far a force spread over the slice closes it up besides what [`Spring::load`] says, and so much `more` in K q, in m/N.
     pub(super) fn spread(&self, more: f64) -> f64 {
-        self.factor * (self.spread + more) / self.along
+        self.line.factor * (self.spread + more) / self.line.along
     }
 
     /// Whether it is evaluated under the load `q` a length, and does not go on straight.
@@ -172,12 +176,12 @@ impl Spring {
         // Newton's steps square what is left.
         const SHORT: f64 = 1e-7;
         const USUAL_PART: f64 = 2.0;
-        let wanted = depth.ln() - self.ln_factor;
-        let mut at = (wanted - USUAL_PART.ln()).min(self.ln_most);
+        let sought = depth.ln() - self.ln_factor;
+        let mut at = (sought - USUAL_PART.ln()).min(self.ln_most);
         let mut growth = 1.0;
         for _ in 0..STEPS {
             let [closed, rise] = self.closed(at);
-            let step = (wanted - closed) / rise;
+            let step = (sought - closed) / rise;
             growth = rise;
             if at == self.ln_most && step > 0.0 {
                 // Straight on.
@@ -203,7 +207,7 @@ impl Spring {
     fn closed(&self, ln_q: f64) -> [f64; 2] {
         const FLATTEST: f64 = 0.05;
         let [ln_rho, exponent] = self.width(ln_q);
-        let u = 0.5 * self.along * (-ln_rho).exp();
+        let u = 0.5 * self.line.along * (-ln_rho).exp();
         let root = (1.0 + u * u).sqrt();
         // asinh u.
         let part = (u + root).ln() - self.spread;
@@ -219,30 +223,29 @@ impl Spring {
         if force <= 0.0 {
             return 0.0;
         }
-        let q = (force / self.along).max(self.least);
+        let q = (force / self.line.along).max(self.least);
         let [ln_rho, _] = self.width(q.ln());
-        0.5 * self.factor * force / self.along * (self.along * (-ln_rho).exp()).asinh()
+        0.5 * self.line.factor * force / self.line.along
+            * (self.line.along * (-ln_rho).exp()).asinh()
     }
 
     /// ln ρ under a load a length of this logarithm, and d ln ρ/d ln q.
     fn width(&self, ln_q: f64) -> [f64; 2] {
         match &self.contact {
-            Contact::Hertz { ln_width, .. } => [0.5 * ln_q + ln_width, 0.5],
-            Contact::Patch(cells) => cells.width(ln_q, self.factor),
+            Contact::Hertz { ln_width } => [0.5 * ln_q + ln_width, 0.5],
+            Contact::Patch(cells) => cells.width(ln_q, self.line.factor),
         }
     }
 
     /// What the load `q` a length does beside closing it.
     pub(super) fn pressed(&self, q: f64) -> Pressed {
         match &self.contact {
-            Contact::Hertz { radius, .. } => {
-                let (half_width, pressure) = hertz(q, *radius, self.factor, 1.0);
+            Contact::Hertz { .. } => {
+                let (half_width, pressure) = hertz(q, self.line.radius, self.line.factor, 1.0);
                 Pressed {
                     pressure: Some(pressure),
-                    at_sharp_edge: false,
                     half_width,
-                    tip_corner: None,
-                    fillet: None,
+                    ..Pressed::default()
                 }
             }
             Contact::Patch(cells) => cells.pressed(q),
@@ -300,27 +303,10 @@ impl Cells {
 
     fn pressed(&self, q: f64) -> Pressed {
         let Some(solution) = self.solved(q) else {
-            return Pressed {
-                pressure: None,
-                at_sharp_edge: false,
-                half_width: 0.0,
-                tip_corner: None,
-                fillet: None,
-            };
+            return Pressed::default();
         };
         let patch = &self.patch;
-        let ended = patch.ended_by(&solution.active);
-        let seat = patch.seat;
-        let fillet = ended.iter().find_map(|end| match end {
-            RangeEnd::Fillet => Some(seat),
-            RangeEnd::MateFillet => Some(seat.other()),
-            _ => None,
-        });
-        let at_corner = ended.iter().any(|end| match end {
-            RangeEnd::Tip => self.sharp[seat.index()],
-            RangeEnd::MateTip => self.sharp[seat.other().index()],
-            _ => false,
-        }) || patch.presses_corner(&solution.active);
+        let at_corner = patch.corner_carries(&solution.active, self.sharp);
         let cells = patch.cells.iter().zip(&solution.forces);
         let largest = cells
             .clone()
@@ -334,8 +320,8 @@ impl Cells {
             pressure: (!at_corner).then_some(largest),
             at_sharp_edge: at_corner,
             half_width: 0.5 * width,
-            tip_corner: patch.off_path.then_some(seat),
-            fillet,
+            tip_corner: patch.off_path.then_some(patch.seat),
+            fillet: patch.reached_fillet(&solution.active),
         }
     }
 }
@@ -366,7 +352,11 @@ mod tests {
             seat: facing.seat,
         };
         let [s, other] = facing.minima[0].roll_lengths.map(|s| s / COSINE);
-        let of = (along, s * other / (s + other), factor);
+        let of = Line {
+            along,
+            radius: s * other / (s + other),
+            factor,
+        };
         Spring::patch(&view, &facing, COSINE, of, [DENSITY, 2.5 * DENSITY])
     }
 
@@ -383,14 +373,18 @@ mod tests {
         let (pair, factor) = pair();
         let s = pair.roll_length_of(0.1) / COSINE;
         let other = (pair.line_of_action() / COSINE) - s;
-        let of = (along, s * other / (s + other), factor);
+        let of = Line {
+            along,
+            radius: s * other / (s + other),
+            factor,
+        };
         let hertz = Spring::hertz(of, [DENSITY, 2.5 * DENSITY]);
         for part in [0.2, 0.5, 1.0, 2.0] {
             let q = part * DENSITY;
-            let wanted = depth(&hertz, q);
-            assert!((depth(&cells, q) / wanted - 1.0).abs() < 2e-2, "{part}");
-            let [load, growth] = cells.load(wanted);
-            let [expected, grown] = hertz.load(wanted);
+            let sought = depth(&hertz, q);
+            assert!((depth(&cells, q) / sought - 1.0).abs() < 2e-2, "{part}");
+            let [load, growth] = cells.load(sought);
+            let [expected, grown] = hertz.load(sought);
             assert!((expected / q - 1.0).abs() < 1e-9);
             assert!((load / q - 1.0).abs() < 2e-2, "{part}: {load} {q}");
             assert!((growth / grown - 1.0).abs() < 5e-2, "{part}");
@@ -406,7 +400,14 @@ mod tests {
         let (pair, factor) = pair();
         let (s_a, s_e) = pair.path_of_contact();
         let periods = |s: f64| (s - pair.pitch_roll_length()) / pair.base_pitch();
-        let hertz = Spring::hertz((along, 9e-3, factor), [DENSITY, 2.5 * DENSITY]);
+        let hertz = Spring::hertz(
+            Line {
+                along,
+                radius: 9e-3,
+                factor,
+            },
+            [DENSITY, 2.5 * DENSITY],
+        );
         // Just inside the path of contact, where a tip corner is near, and beyond its end.
         let at_tip = patch(periods(s_e) - 0.01, along).0;
         let beyond = patch(periods(s_a) - 0.05, along).0;

@@ -1,4 +1,4 @@
-//! Where the flanks of one pair as drawn are looked at for penetration.
+//! The stretches of the flanks of one pair as drawn on which penetration is looked for.
 //!
 //! These are stretches across every end of a cell that carries and every kink, others spread over the rest of the flanks, and tips that
 //! stand in a fillet. Stretches are as wide as a cell, since pressures that are even over a cell close gaps in the mean over one.
@@ -15,9 +15,9 @@ use crate::gear::Member;
 /// Stretches spread over the flanks beside the cells.
 const BESIDE: usize = 48;
 
-/// What was found.
+/// What penetrates under a solution.
 #[derive(Default)]
-pub(super) struct Found {
+pub(super) struct Penetration {
     /// The largest penetration, in meters; zero if everything is open.
     pub(super) largest: f64,
     /// Pairs that penetrate beside their cells.
@@ -28,7 +28,7 @@ pub(super) struct Found {
     pub(super) fillets: Vec<(i64, Member)>,
 }
 
-/// Where a stretch lies, and how its gap is told.
+/// Where a stretch lies, which says how its gap is found.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Place {
     /// Across the end of the cell `at` and the beginning of the next, perhaps at a kink: the gap is between theirs.
@@ -42,7 +42,7 @@ pub(super) enum Place {
 }
 
 impl Place {
-    /// The gear from whose flank its gap is told on a pair laid on `seat`; `None` where that is known from cells.
+    /// The gear from whose flank its gap is found in a pair with cells on `seat`; `None` where that is known from cells.
     pub(super) fn seen_from(self, seat: Member) -> Option<Member> {
         match self {
             Self::Across { .. } => None,
@@ -54,17 +54,17 @@ impl Place {
 
 /// A stretch that may penetrate.
 #[derive(Debug)]
-pub(super) struct Looked {
+pub(super) struct CheckedStretch {
     pub(super) place: Place,
-    /// What its mean gap is more than what `place` or its probe tells.
+    /// Its mean gap less that at its `place` or its probe.
     pub(super) more: f64,
 }
 
 /// The stretches of one pair as drawn that may penetrate.
 #[derive(Debug)]
-pub(super) struct Looks {
-    pub(super) looked: Vec<Looked>,
-    /// Those whose gap is told by a probe: as the seat of the pair sees them, and as its mate does.
+pub(super) struct CheckedStretches {
+    pub(super) stretches: Vec<CheckedStretch>,
+    /// The probes of those that have one: as the seat of the pair sees them, and as its mate does.
     pub(super) probes: [Probes; 2],
     /// Row by row what unit forces on the cells of the pair do to each with the interfaces held, and W V of each gear.
     pub(super) yields: Vec<f64>,
@@ -78,7 +78,7 @@ pub(super) struct Carrying {
 }
 
 impl Carrying {
-    /// Looks are shared between contacts that end within as many cells of each other.
+    /// Stretches are shared between contacts that end within as many cells of each other.
     const STEP: usize = 16;
 
     pub(super) fn of(active: &[bool]) -> Self {
@@ -97,7 +97,7 @@ impl Carrying {
     }
 }
 
-impl Looks {
+impl CheckedStretches {
     /// Those at the flanks of `facing`, seen by `view`, whose gap as drawn is within `reach`.
     pub(super) fn new(
         flanks: &PairFlanks<'_>,
@@ -106,9 +106,9 @@ impl Looks {
         (cells, carrying): (&PairCells, Carrying),
         reach: f64,
     ) -> Self {
-        let mut looked: Vec<(Stretch, Place, f64)> = Vec::new();
+        let mut checked: Vec<(Stretch, CheckedStretch)> = Vec::new();
         let patch = &cells.patch;
-        let lay = |from: f64, to: f64| patch.stretch_between(view, &facing.kinks, from, to);
+        let between = |from: f64, to: f64| patch.stretch_between(view, &facing.kinks, from, to);
         let within = |stretch: &Stretch| stretch.cell.gap <= reach;
         for (i, pair) in patch.cells.windows(2).enumerate() {
             let apart = pair[0].stretch + 1 != pair[1].stretch;
@@ -122,25 +122,20 @@ impl Looks {
             }
             let place = Place::Across { at: i, kink };
             let [from, at, to] = [0, 1, 2].map(|end| patch.ends_along[pair[0].stretch + end][0]);
-            let across = lay(f64::midpoint(from, at), f64::midpoint(at, to));
+            let across = between(f64::midpoint(from, at), f64::midpoint(at, to));
             let [one, other] = [pair[0], pair[1]];
-            let between =
-                (one.width * one.gap + other.width * other.gap) / (one.width + other.width);
-            looked.extend(
-                across
-                    .filter(within)
-                    .map(|stretch| (stretch, place, stretch.cell.gap - between)),
-            );
+            let gap = (one.width * one.gap + other.width * other.gap) / (one.width + other.width);
+            checked.extend(across.filter(within).map(|stretch| {
+                let more = stretch.cell.gap - gap;
+                (stretch, CheckedStretch { place, more })
+            }));
         }
         let half = 0.5 * patch.usual_width();
         let range = &facing.range;
         let (low, high) = (range.from + half, range.to - half);
         let about = |arc: f64| {
             let arc = arc.max(low).min(high);
-            lay(arc - half, arc + half).map(|stretch| {
-                let more = stretch.more;
-                (stretch, more)
-            })
+            between(arc - half, arc + half)
         };
         let kinks = facing.kinks.iter().filter(|kink| {
             patch.covers(**kink) && patch.ends_along.iter().all(|end| end[0] != **kink)
@@ -156,8 +151,10 @@ impl Looks {
                 .map(|arc| (arc, Place::Beside)),
         );
         for (arc, place) in places {
-            let stretch = about(arc).filter(|(stretch, _)| within(stretch));
-            looked.extend(stretch.map(|(stretch, more)| (stretch, place, more)));
+            checked.extend(about(arc).filter(within).map(|stretch| {
+                let more = stretch.more;
+                (stretch, CheckedStretch { place, more })
+            }));
         }
         // A tip stands in a fillet where the other flank ends there.
         let mate = view.seen_from_mate();
@@ -166,22 +163,27 @@ impl Looks {
             .flatten();
         for (view, range) in [(*view, Some(*range)), (mate, mates)] {
             let tip = range.and_then(|range| tip_in_fillet(&view, &range, patch, half));
-            looked.extend(tip.filter(|(_, gap)| *gap <= reach).map(|(stretch, gap)| {
-                let told = stretch.cell.gap - stretch.more;
-                (stretch, Place::Fillet(view.seat.other()), gap - told)
+            checked.extend(tip.filter(|(_, gap)| *gap <= reach).map(|(stretch, gap)| {
+                let place = Place::Fillet(view.seat.other());
+                let more = gap - (stretch.cell.gap - stretch.more);
+                (stretch, CheckedStretch { place, more })
             }));
         }
-        Self::at(flanks, cells, looked)
+        Self::at(flanks, cells, checked)
     }
 
-    /// Looks at the stretches `looked` beside `cells`.
-    fn at(flanks: &PairFlanks<'_>, cells: &PairCells, looked: Vec<(Stretch, Place, f64)>) -> Self {
-        let stretches: Vec<[f64; 2]> = looked.iter().map(|(stretch, ..)| stretch.along).collect();
-        let here: Vec<Cell> = looked.iter().map(|(stretch, ..)| stretch.cell).collect();
+    /// Those `checked` beside `cells`.
+    fn at(
+        flanks: &PairFlanks<'_>,
+        cells: &PairCells,
+        checked: Vec<(Stretch, CheckedStretch)>,
+    ) -> Self {
+        let stretches: Vec<[f64; 2]> = checked.iter().map(|(stretch, _)| stretch.along).collect();
+        let here: Vec<Cell> = checked.iter().map(|(stretch, _)| stretch.cell).collect();
         let (held, shapes) = compliance(flanks, &cells.patch, (&here, &stretches), Entries::All);
         let [one, other] = &shapes;
         let width = held.ncols() + one.ncols() + other.ncols();
-        let mut yields = vec![0.0; looked.len() * width];
+        let mut yields = vec![0.0; checked.len() * width];
         let columns =
             [&held, one, other].map(|part| (0..part.ncols()).map(|j| part.col_as_slice(j)));
         for (j, column) in columns.into_iter().flatten().enumerate() {
@@ -190,25 +192,22 @@ impl Looks {
             }
         }
         let mut probes = [Probes::default(), Probes::default()];
-        for (stretch, place, _) in &looked {
-            if let Some(from) = place.seen_from(cells.patch.seat) {
+        for (stretch, of) in &checked {
+            if let Some(from) = of.place.seen_from(cells.patch.seat) {
                 probes[usize::from(from != cells.patch.seat)].push(&stretch.probe);
             }
         }
         Self {
             yields,
             probes,
-            looked: looked
-                .into_iter()
-                .map(|(_, place, more)| Looked { place, more })
-                .collect(),
+            stretches: checked.into_iter().map(|(_, checked)| checked).collect(),
         }
     }
 
     /// About how much memory they take, in bytes.
     pub(super) fn bytes(&self) -> usize {
         let probes: usize = self.probes.iter().map(Probes::bytes).sum();
-        size_of::<Self>() + size_of_val(&*self.looked) + probes + size_of_val(&*self.yields)
+        size_of::<Self>() + size_of_val(&*self.stretches) + probes + size_of_val(&*self.yields)
     }
 }
 

@@ -1,0 +1,185 @@
+//! The flanks of a pair along their faces before they yield: where they touch first, and how far they stand apart.
+
+use crate::contact::facing::{Facing, View};
+use crate::contact::light::{FirstTouch, TOGETHER, first, on_path, touching_near};
+use crate::contact::placement::Placement;
+use crate::contact::{MeshContact, PositionError};
+use crate::gear::{GearPair, Member, PairDeviations, SolidPair};
+use crate::root_finding::{bisect, least_places};
+
+/// The flanks of a pair along their faces.
+pub struct FaceFlanks {
+    pub(super) pair: SolidPair,
+    pub(super) deviations: PairDeviations,
+    /// One meter of the flanks as drawn.
+    pub(super) plane_strain: GearPair,
+    /// Slices of the whole face.
+    pub(super) slices: usize,
+}
+
+impl FaceFlanks {
+    /// Those of `pair`, its face cut into so many `slices`.
+    pub fn new(pair: SolidPair, slices: usize) -> Self {
+        Self {
+            deviations: pair.section().deviations(),
+            plane_strain: pair.section().plane_strain(),
+            pair,
+            slices,
+        }
+    }
+
+    /// The moduli of both gears in plane strain.
+    pub(super) fn moduli(&self) -> [f64; 2] {
+        Member::BOTH.map(|member| self.plane_strain.gear(member).material().youngs_modulus)
+    }
+
+    /// The limit of the contact at the mesh position `eta` as the load goes to zero: δ is that at which the first of the flanks touch.
+    ///
+    /// # Errors
+    ///
+    /// [`PositionError::NoContact`] if no flanks face each other.
+    pub fn light_contact(&self, eta: f64) -> Result<MeshContact, PositionError> {
+        MeshContact::of_first(0.0, &self.touches(eta), self.rounding())
+    }
+
+    /// The δ at which the first flanks touch at the position `eta`, on the path of contact or off it.
+    pub fn least_touch(&self, eta: f64) -> Option<f64> {
+        Some(first(&self.touches(eta))).filter(|touch| touch.is_finite())
+    }
+
+    /// Where each pair touches at the position `eta` that may be the first.
+    fn touches(&self, eta: f64) -> Vec<FirstTouch> {
+        let beside = 0.5 * self.pair.overlap_ratio();
+        let slopes = Member::BOTH.map(|member| self.deviations.of_gear(member).steepest_lead());
+        let apart = 2.0 * (self.deviations.nearest() + slopes[0] + slopes[1]) + self.rounding();
+        let pairs = on_path(self.pair.section(), eta, beside);
+        touching_near(pairs, apart, |n| self.touch_of(eta, n))
+    }
+
+    /// Where pair `n` touches first at the position `eta`: in that of its sections which does.
+    fn touch_of(&self, eta: f64, n: i64) -> Option<FirstTouch> {
+        let half = 0.5 * self.pair.common_face_width();
+        let faced = |z: f64| self.facing(self.pair.phase(eta, n, z));
+        // Straight teeth face each other alike in all sections.
+        let straight = (self.pair.advance() == 0.0).then(|| faced(0.0));
+        let touch = |z: f64| {
+            let facing = straight.clone().unwrap_or_else(|| faced(z))?;
+            let opening = self.opening(n, z, facing.minima[0].roll_lengths);
+            let section = FirstTouch::of(n, &facing);
+            Some(FirstTouch {
+                delta: section.delta + opening,
+                ..section
+            })
+        };
+        let delta = |z: f64| touch(z).map_or(f64::INFINITY, |touch| touch.delta);
+        let places = least_places([-half, half], self.slices, self.rounding(), delta);
+        let touches = places.into_iter().filter_map(|(z, _)| touch(z));
+        touches.min_by(|a, b| a.delta.total_cmp(&b.delta))
+    }
+
+    /// The phases between `from` and `to` at which sections as drawn are nearer to each other than those beside them, rising; looked for from `step`
+    /// to `step`.
+    fn nearest_phases(&self, [from, to]: [f64; 2], step: f64) -> Vec<f64> {
+        let touch = |phase: f64| {
+            let facing = self.facing(phase);
+            facing.map_or(f64::INFINITY, |facing| facing.touch())
+        };
+        let count = ((to - from) / step).ceil() as usize;
+        let found = least_places([from, to], count, self.rounding(), touch);
+        found.into_iter().map(|(phase, _)| phase).collect()
+    }
+
+    /// How far leads, deviations and the axes may bring flanks nearer to each other than their sections are.
+    fn nearer(&self) -> f64 {
+        const PLACES: usize = 33;
+        let half = 0.5 * self.pair.common_face_width();
+        let at = |i: usize| half * (2.0 * i as f64 / (PLACES - 1) as f64 - 1.0);
+        let counts = Member::BOTH.map(|member| self.pair.section().gear(member).tooth_count());
+        let pairs = counts[0].max(counts[1]) as usize;
+        let pairs = if self.deviations.are_none() { 1 } else { pairs };
+        let least = (0..pairs).map(|pair| {
+            let teeth = counts.map(|count| pair % count as usize);
+            let gaps: [f64; PLACES] =
+                std::array::from_fn(|i| self.pair.lead_gap(&self.deviations, teeth, at(i)));
+            // Between two places a gap is less than at both by no more than they differ somewhere.
+            let steps = gaps.windows(2).map(|gaps| (gaps[1] - gaps[0]).abs());
+            gaps.into_iter().fold(f64::INFINITY, f64::min) - steps.fold(0.0, f64::max)
+        });
+        self.deviations.nearest() - least.fold(f64::INFINITY, f64::min)
+    }
+
+    /// The phases between which sections may touch before δ is `reach`.
+    pub(super) fn phases_within(&self, reach: f64) -> [f64; 2] {
+        const STEP: f64 = 1.0 / 32.0;
+        let limit = reach + self.nearer();
+        let touches = |phase: f64| {
+            let facing = self.facing(phase);
+            facing.is_some_and(|facing| facing.touch() <= limit)
+        };
+        let (s_a, s_e) = self.pair.section().path_of_contact();
+        let ends = [s_a, s_e].map(|s| self.pair.phase_at(s));
+        let nearest = self.nearest_phases(ends, STEP);
+        let outermost = |end: f64, way: f64, other: f64| {
+            let mut out = end + way;
+            while touches(out) {
+                out += way;
+            }
+            let (mut outside, mut inside) = (out, out);
+            while !touches(inside) && (inside - other) * way > 0.0 {
+                outside = inside;
+                inside -= way * STEP;
+                // A range of phases that touch may be narrower than a step: the phase in it at which flanks are nearest is not stepped over.
+                let first = |a: f64, b: f64| if (b - a) * way > 0.0 { b } else { a };
+                let ahead = nearest
+                    .iter()
+                    .filter(|phase| (outside - **phase) * way > 0.0);
+                inside = ahead.copied().fold(inside, first);
+            }
+            bisect(inside, outside, touches)
+        };
+        [
+            outermost(ends[0], -1.0, ends[1]),
+            outermost(ends[1], 1.0, ends[0]),
+        ]
+    }
+
+    /// How sections at `phase` as drawn face each other, where a force between them drives the driven gear on. Far off the path of contact it may turn it
+    /// back; flanks touch elsewhere long before they do there.
+    fn facing(&self, phase: f64) -> Option<Facing> {
+        let drives =
+            |facing: &Facing| arms(&view_of(&self.plane_strain, phase, facing), facing)[1] > 0.0;
+        Facing::drawn(&self.plane_strain, phase).filter(drives)
+    }
+
+    /// By how much leads, axes and deviations open pair `n` at `z`, along the base tangent.
+    pub(super) fn opening(&self, n: i64, z: f64, roll_lengths: [f64; 2]) -> f64 {
+        let (pair, deviations) = (&self.pair, &self.deviations);
+        let teeth = pair.section().teeth(n);
+        let out = Member::BOTH.map(|member| {
+            let (g, teeth_of) = (member.index(), deviations.of_gear(member));
+            let (tooth, s) = (teeth[g], roll_lengths[g]);
+            let turn = pair.gear(member).twist() * pair.own_height(member, z);
+            teeth_of.at(tooth, s) + teeth_of.runout(pair.section().gear(member), tooth, s, turn)
+        });
+        pair.lead_gap(deviations, teeth, z) - out[0] - out[1]
+    }
+
+    fn rounding(&self) -> f64 {
+        TOGETHER * self.pair.section().driving().data().rack.module
+    }
+}
+
+/// The view of the flanks of `facing` at `phase`.
+pub(super) fn view_of<'a>(gears: &'a GearPair, phase: f64, facing: &Facing) -> View<'a> {
+    View {
+        placement: Placement::drawn(gears, phase),
+        seat: facing.seat,
+    }
+}
+
+/// The arms about both axes of a force where the gap of `facing` is least.
+pub(super) fn arms(view: &View<'_>, facing: &Facing) -> [f64; 2] {
+    // The place is found wherever flanks face each other.
+    let point = view.point(facing.minima[0].arc);
+    point.map_or([1.0, 1.0], |point| view.meeting(&point).arms)
+}
