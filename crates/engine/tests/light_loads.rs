@@ -12,8 +12,8 @@ use meshwright_engine::analysis::{Case, analyze};
 use meshwright_engine::assembly::FaceResolution;
 use meshwright_engine::gear::{
     Alignment, Eccentricity, FaceEnds, GearData, GearPair, Helix, LeadModification,
-    ModificationData, ReliefData, ReliefShape, ReliefStart, RootReliefData, RootReliefStart,
-    SolidGear, SolidPair, SpurGear, TablePlaces,
+    ModificationData, ReliefData, ReliefShape, ReliefStart, SolidGear, SolidPair, SpurGear,
+    TablePlaces,
 };
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
@@ -153,10 +153,10 @@ fn tip_relief(data: &mut GearData) {
 }
 
 fn root_relief(data: &mut GearData) {
-    data.modifications = vec![ModificationData::RootRelief(RootReliefData {
+    data.modifications = vec![ModificationData::RootRelief(ReliefData {
         amount: 12e-6,
         shape: ReliefShape::Parabolic,
-        start: RootReliefStart::RadialLength(1e-3),
+        start: ReliefStart::RadialLength(1e-3),
     })];
 }
 
