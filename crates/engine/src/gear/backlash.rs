@@ -85,8 +85,8 @@ impl GearPair {
             return found.1;
         }
         // A turn between two places is smooth.
-        let beside = 1.0 / f64::from(PLACES);
-        let around = [found.0 - beside, found.0 + beside];
+        let step = 1.0 / f64::from(PLACES);
+        let around = [found.0 - step, found.0 + step];
         let between = least_between(around, |eta| -self.taken_at(deviations, eta));
         most(found, at(between)).1
     }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use super::{Vector, radial};
 
-/// The gear's own axis beside the axis about which it turns.
+/// The gear's own axis off the axis about which it turns.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Eccentricity {
     /// The distance e of both axes.

@@ -3,6 +3,8 @@
 //! As profile modifications they are measured along the base tangent, in the transverse section; z runs along the axis from the middle
 //! of the gear's own face.
 
+use super::modification::in_table;
+
 /// The ends of a face that something is done to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FaceEnds {
@@ -159,10 +161,8 @@ impl LeadModification {
                 }
             }
             Self::Table { places, removed } => {
-                let after = places.partition_point(|place| *place <= z);
-                let i = after.clamp(1, places.len() - 1) - 1;
-                let part = (z - places[i]) / (places[i + 1] - places[i]);
-                removed[i] + part.clamp(0.0, 1.0) * (removed[i + 1] - removed[i])
+                let (i, part) = in_table(places, z);
+                removed[i] + part * (removed[i + 1] - removed[i])
             }
         }
     }

@@ -42,8 +42,7 @@ pub use lead::{FaceEnds, LeadError, LeadModification};
 pub use material::{Material, PlaneState};
 pub use member::{Member, teeth_on};
 pub use modification::{
-    ModificationData, Relief, ReliefData, ReliefShape, ReliefStart, RootReliefData,
-    RootReliefStart, TablePlaces,
+    ModificationData, Relief, ReliefData, ReliefShape, ReliefStart, TablePlaces,
 };
 pub use pair::{DeviationsError, GearPair, GearPairError};
 pub use pair_deviations::{GearDeviations, PairDeviations};

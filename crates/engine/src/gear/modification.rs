@@ -11,52 +11,28 @@ pub enum ReliefShape {
     Parabolic,
 }
 
-/// Where a tip relief starts, in any of the ways that a drawing may say it.
+/// Where a relief starts: it grows from there towards an end of the flank, at the tip circle or at the form circle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ReliefStart {
-    /// A radial length below the tip circle.
+    /// A radial length from that circle.
     RadialLength(f64),
-    /// A length along the path of contact, back from the tip.
-    RollLengthFromTip(f64),
+    /// A length along the path of contact, from that circle.
+    RollLength(f64),
     /// A diameter.
     Diameter(f64),
     /// A roll angle of the flank, in radians.
     RollAngle(f64),
 }
 
-/// Where a root relief starts: it grows from there towards the form circle.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum RootReliefStart {
-    /// A radial length above the form circle.
-    RadialLength(f64),
-    /// A length along the path of contact, up from the form circle.
-    RollLengthFromForm(f64),
-    /// A diameter.
-    Diameter(f64),
-    /// A roll angle of the flank, in radians.
-    RollAngle(f64),
-}
-
-/// A tip relief as a drawing gives it.
+/// A relief as a drawing gives it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReliefData {
-    /// The amount C_a at the tip.
+    /// The amount at the end of the flank: C_a at the tip, C_f at the form circle.
     pub amount: f64,
-    /// How it grows towards the tip.
+    /// How it grows towards that end.
     pub shape: ReliefShape,
     /// Where it starts.
     pub start: ReliefStart,
-}
-
-/// A root relief as a drawing gives it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RootReliefData {
-    /// The amount C_f at the form circle.
-    pub amount: f64,
-    /// How it grows towards the form circle.
-    pub shape: ReliefShape,
-    /// Where it starts.
-    pub start: RootReliefStart,
 }
 
 /// Where the entries of a profile table stand.
@@ -75,7 +51,7 @@ pub enum ModificationData {
     /// A relief that grows towards the tip circle.
     TipRelief(ReliefData),
     /// A relief that grows towards the form circle.
-    RootRelief(RootReliefData),
+    RootRelief(ReliefData),
     /// A parabola in the roll length: nothing midway between form circle and tip circle, the amount C_α at both.
     Crowning {
         /// C_α.
@@ -127,29 +103,24 @@ impl TablePlaces {
 }
 
 impl ReliefStart {
-    /// The radius r_s at which the relief starts on `flank` under the tip radius r_a.
-    pub fn radius(self, flank: &Involute, tip_radius: f64) -> f64 {
+    /// The radius r_s at which a relief of the tip starts on `flank` under the tip radius r_a.
+    pub fn below_tip(self, flank: &Involute, tip_radius: f64) -> f64 {
+        self.radius(flank, tip_radius, -1.0)
+    }
+
+    /// The radius at which a relief of the root starts on `flank` above the form radius.
+    pub fn above_form(self, flank: &Involute, form_radius: f64) -> f64 {
+        self.radius(flank, form_radius, 1.0)
+    }
+
+    fn radius(self, flank: &Involute, end_radius: f64, outward: f64) -> f64 {
         match self {
-            Self::RadialLength(length) => tip_radius - length,
+            Self::RadialLength(length) => end_radius + outward * length,
             // A length past the base circle leaves the flank: no radius, rather than the mirrored point's.
-            Self::RollLengthFromTip(length) => match flank.roll_length(tip_radius) - length {
+            Self::RollLength(length) => match flank.roll_length(end_radius) + outward * length {
                 s if s < 0.0 => 0.0,
                 s => flank.radius(s),
             },
-            Self::Diameter(diameter) => diameter / 2.0,
-            Self::RollAngle(angle) => flank.radius(flank.base_radius() * angle),
-        }
-    }
-}
-
-impl RootReliefStart {
-    /// The radius at which the relief starts on `flank` above the form radius.
-    pub fn radius(self, flank: &Involute, form_radius: f64) -> f64 {
-        match self {
-            Self::RadialLength(length) => form_radius + length,
-            Self::RollLengthFromForm(length) => {
-                flank.radius(flank.roll_length(form_radius) + length)
-            }
             Self::Diameter(diameter) => diameter / 2.0,
             Self::RollAngle(angle) => flank.radius(flank.base_radius() * angle),
         }
@@ -318,7 +289,7 @@ impl Modification {
 }
 
 /// The interval of the rising `places` that holds `s`, or the nearest one, and the part of it before `s`.
-fn in_table(places: &[f64], s: f64) -> (usize, f64) {
+pub(super) fn in_table(places: &[f64], s: f64) -> (usize, f64) {
     let after = places.partition_point(|place| *place <= s);
     let i = after.clamp(1, places.len() - 1) - 1;
     let part = (s - places[i]) / (places[i + 1] - places[i]);
@@ -339,7 +310,7 @@ mod tests {
     fn a_roll_length_past_the_base_circle_starts_nowhere_on_the_flank() {
         let length = flank().roll_length(52e-3) + 20e-3;
         assert_eq!(
-            ReliefStart::RollLengthFromTip(length).radius(&flank(), 52e-3),
+            ReliefStart::RollLength(length).below_tip(&flank(), 52e-3),
             0.0
         );
     }
@@ -444,20 +415,20 @@ mod tests {
         assert!((s - 17.8187e-3).abs() < 1e-7);
         for start in [
             ReliefStart::RadialLength(1.75e-3),
-            ReliefStart::RollLengthFromTip(flank.roll_length(r_a) - s),
+            ReliefStart::RollLength(flank.roll_length(r_a) - s),
             ReliefStart::Diameter(100.5e-3),
             ReliefStart::RollAngle(s / flank.base_radius()),
         ] {
-            assert!((start.radius(&flank, r_a) - 50.25e-3).abs() < 1e-15);
+            assert!((start.below_tip(&flank, r_a) - 50.25e-3).abs() < 1e-15);
         }
         let r_f = 48.3e-3;
         for start in [
-            RootReliefStart::RadialLength(1.95e-3),
-            RootReliefStart::RollLengthFromForm(s - flank.roll_length(r_f)),
-            RootReliefStart::Diameter(100.5e-3),
-            RootReliefStart::RollAngle(s / flank.base_radius()),
+            ReliefStart::RadialLength(1.95e-3),
+            ReliefStart::RollLength(s - flank.roll_length(r_f)),
+            ReliefStart::Diameter(100.5e-3),
+            ReliefStart::RollAngle(s / flank.base_radius()),
         ] {
-            assert!((start.radius(&flank, r_f) - 50.25e-3).abs() < 1e-15);
+            assert!((start.above_form(&flank, r_f) - 50.25e-3).abs() < 1e-15);
         }
     }
 }

@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn one_value_printed_twice_is_told_from_two_values() {
+    fn one_value_printed_twice_is_distinguished_from_two_values() {
         for (one, other, alike) in [
             (2.1167, 2.116_67, true),
             (2.116_67, 2.1167, true),

@@ -201,9 +201,9 @@ impl Trochoid {
         let gamma = (self.stretch * normal_angle.tan()).atan();
         let (sin, cos) = gamma.sin_cos();
         // Where the protuberance's flank touches the rounding: below the rolling line, and beside the middle of the space.
-        let (beside, below) = (normal_angle.cos(), normal_angle.sin());
+        let (sideways, below) = (normal_angle.cos(), normal_angle.sin());
         let depth = self.center_depth + self.tip_radius * below;
-        let width = self.half_tip_land + self.stretch * self.tip_radius * beside;
+        let width = self.half_tip_land + self.stretch * self.tip_radius * sideways;
         let half_angle = self.space_angle - (width + depth * gamma.tan()) / r;
         let involute = Involute::new(r * cos, half_angle + involute_function(gamma));
         let roll_length = |depth: f64| r * sin - depth / sin;
@@ -296,11 +296,11 @@ impl Trochoid {
         // The place on the rounding, from its center, whose normal is at γ: it passes through the pitch point.
         let longer = stretch * stretch - 1.0;
         let q = (1.0 + longer * cos * cos).sqrt();
-        let (beside, below) = (rho * (stretch * stretch) * cos / q, rho * sin / q);
+        let (sideways, below) = (rho * (stretch * stretch) * cos / q, rho * sin / q);
         // The pitch point of the rolling stands at angle φ of the gear, the rounding's center a length l beside it.
         let l = -d * cos / sin + rho * longer * cos / q;
         let phi = space_angle - (l + e) / r;
-        (r - d - below) * radial(phi) + (l - beside) * tangential(phi)
+        (r - d - below) * radial(phi) + (l - sideways) * tangential(phi)
     }
 }
 
@@ -396,9 +396,9 @@ mod tests {
                     let depth =
                         rack.dedendum - rack.tip_radius - shift + rack.tip_radius * angle.sin();
                     // Beside the pitch point, towards the tooth; the gear turns as the rack passes.
-                    let beside = rack.half_tip_land() + rack.tip_radius * angle.cos() - r * turn;
+                    let sideways = rack.half_tip_land() + rack.tip_radius * angle.cos() - r * turn;
                     let phi = PI / f64::from(z) - turn;
-                    let point = (r - depth) * radial(phi) - beside * tangential(phi);
+                    let point = (r - depth) * radial(phi) - sideways * tangential(phi);
                     let (radius, theta) = (point.norm(), point.y.atan2(point.x));
                     let after = boundary.partition_point(|known| known.0 > radius);
                     if after == 0 && is_undercut {

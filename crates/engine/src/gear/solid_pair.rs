@@ -296,8 +296,8 @@ impl SolidPair {
     /// Where on the common face each pair is in a phase between `first` and `last` at the mesh position `eta`.
     pub fn lines(&self, eta: f64, [first, last]: [f64; 2]) -> Vec<ContactLine> {
         let (half, advance) = (0.5 * self.common_face_width(), self.advance());
-        let beside = half * advance.abs();
-        let pairs = (eta - last - beside).ceil() as i64..=(eta - first + beside).floor() as i64;
+        let reach = half * advance.abs();
+        let pairs = (eta - last - reach).ceil() as i64..=(eta - first + reach).floor() as i64;
         pairs
             .filter_map(|pair| {
                 let [from, to] = [first, last].map(|phase| phase - (eta - pair as f64));

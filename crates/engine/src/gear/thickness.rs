@@ -349,8 +349,8 @@ mod tests {
             let mut place = (teeth.base_radius() * 0.36, 0.0);
             let mut step = 1e-3;
             while step > 1e-10 {
-                let beside = [(step, 0.0), (-step, 0.0), (0.0, step), (0.0, -step)];
-                let better = beside
+                let neighbors = [(step, 0.0), (-step, 0.0), (0.0, step), (0.0, -step)];
+                let better = neighbors
                     .map(|(s, h)| (place.0 + s, place.1 + h))
                     .into_iter()
                     .filter(|(s, _)| *s > 0.0)

@@ -44,10 +44,10 @@ impl BrokenEdge {
             TipEdge::Rounded(radius) => {
                 // The center stands ρ inside the flank, at r_b e_r + (s − ρ) e_t, and ρ inside the tip circle.
                 let inner = (tip_radius - radius).powi(2) - r_b * r_b;
-                let beside = inner.max(0.0).sqrt();
-                let from = radius + beside;
+                let across = inner.max(0.0).sqrt();
+                let from = radius + across;
                 let t = flank.tangent_angle(from);
-                let center = r_b * radial(t) + beside * tangential(t);
+                let center = r_b * radial(t) + across * tangential(t);
                 Some(Self {
                     from,
                     line: EdgeLine::Arc { center, radius },

@@ -6,7 +6,7 @@ use meshwright_engine::analysis::Case;
 use meshwright_engine::assembly::FaceResolution;
 use meshwright_engine::gear::{
     Alignment, Eccentricity, FaceEnds, GearData, GearPair, Helix, LeadModification,
-    ModificationData, ReliefData, ReliefShape, ReliefStart, RootReliefData, RootReliefStart,
+    ModificationData, ReliefData, ReliefShape, ReliefStart,
     SolidGear, SolidPair, SpurGear, TablePlaces, TipEdge,
 };
 use meshwright_engine::grid::GridLevel;
@@ -164,10 +164,10 @@ fn tip_relief(data: &mut GearData) {
 }
 
 fn root_relief(data: &mut GearData) {
-    data.modifications = vec![ModificationData::RootRelief(RootReliefData {
+    data.modifications = vec![ModificationData::RootRelief(ReliefData {
         amount: 12e-6,
         shape: ReliefShape::Parabolic,
-        start: RootReliefStart::RadialLength(0.5 * data.rack.module),
+        start: ReliefStart::RadialLength(0.5 * data.rack.module),
     })];
 }
 

@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use meshwright_engine::gear::{
     BlankRegion, Core, Eccentricity, GearData, GearPair, Hole, HolePattern, HoleShape, Material,
-    Member, ModificationData, Rack, ReliefData, ReliefShape, ReliefStart, RootReliefData,
-    RootReliefStart, SpurGear, TablePlaces, TipEdge, ToothDeviations, Web,
+    Member, ModificationData, Rack, ReliefData, ReliefShape, ReliefStart, SpurGear, TablePlaces,
+    TipEdge, ToothDeviations, Web,
 };
 
 /// A stream of pseudo-random numbers (xorshift*), so that a seed names a draw forever.
@@ -82,7 +82,7 @@ fn tooth_count(draw: &mut Draw) -> u32 {
 fn relief(draw: &mut Draw, module: f64, data: &GearData) -> Option<ReliefData> {
     let start = match draw.one_of(&[0, 1, 2, 3, 4, 4]) {
         0 => ReliefStart::RadialLength(draw.between(0.2, 1.2) * module),
-        1 => ReliefStart::RollLengthFromTip(draw.between(0.3, 2.0) * module),
+        1 => ReliefStart::RollLength(draw.between(0.3, 2.0) * module),
         2 => {
             let r = module * f64::from(data.tooth_count) / 2.0 + data.profile_shift * module;
             ReliefStart::Diameter(2.0 * (r + draw.between(-0.2, 0.8) * module))
@@ -146,12 +146,12 @@ fn as_made(draw: &mut Draw, data: &GearData) -> GearData {
     };
     if draw.chance(0.3) {
         data.modifications
-            .push(ModificationData::RootRelief(RootReliefData {
+            .push(ModificationData::RootRelief(ReliefData {
                 amount: draw.over_decades(1e-3, 6e-3) * module,
                 shape: draw.one_of(&[ReliefShape::Linear, ReliefShape::Parabolic]),
                 start: match draw.one_of(&[0, 1]) {
-                    0 => RootReliefStart::RadialLength(draw.between(0.1, 0.5) * module),
-                    _ => RootReliefStart::RollLengthFromForm(draw.between(0.2, 1.0) * module),
+                    0 => ReliefStart::RadialLength(draw.between(0.1, 0.5) * module),
+                    _ => ReliefStart::RollLength(draw.between(0.2, 1.0) * module),
                 },
             }));
     }

@@ -261,7 +261,7 @@ pub(crate) fn pairs() -> Vec<(&'static str, DrawnPair)> {
                     ),
                     11.479119914172747,
                     ReliefShape::Parabolic,
-                    ReliefStart::RollLengthFromTip(2.3384476223784816e-3),
+                    ReliefStart::RollLength(2.3384476223784816e-3),
                 ),
                 relieved(
                     gear(
@@ -272,7 +272,7 @@ pub(crate) fn pairs() -> Vec<(&'static str, DrawnPair)> {
                     ),
                     20.633076996384663,
                     ReliefShape::Linear,
-                    ReliefStart::RollLengthFromTip(1.6142049283974842e-3),
+                    ReliefStart::RollLength(1.6142049283974842e-3),
                 ),
                 303.08212094964676,
                 0.017874429123753192,
@@ -305,7 +305,7 @@ pub(crate) fn pairs() -> Vec<(&'static str, DrawnPair)> {
                     ),
                     8.882660017710718,
                     ReliefShape::Linear,
-                    ReliefStart::RollLengthFromTip(4.70344196297296e-3),
+                    ReliefStart::RollLength(4.70344196297296e-3),
                 ),
                 gear(
                     rack,
@@ -336,7 +336,7 @@ pub(crate) fn pairs() -> Vec<(&'static str, DrawnPair)> {
                         ),
                         10.926692800999163,
                         ReliefShape::Parabolic,
-                        ReliefStart::RollLengthFromTip(5.421872219429957e-3),
+                        ReliefStart::RollLength(5.421872219429957e-3),
                     ),
                     5,
                     [42.21571659253571, 18.37872773633689, -149.08935500092332],

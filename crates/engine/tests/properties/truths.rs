@@ -9,8 +9,8 @@ use meshwright_engine::analysis::{
 use meshwright_engine::contact::MeshContact;
 use meshwright_engine::contact::half_plane::{hertz, logarithm_factor};
 use meshwright_engine::gear::{
-    GearData, GearPair, HoleShape, Member, ModificationData, ReliefStart, RootReliefStart,
-    SpurGear, TablePlaces, TipEdge, ToothDeviations, Vector,
+    GearData, GearPair, HoleShape, Member, ModificationData, ReliefStart, SpurGear, TablePlaces,
+    TipEdge, ToothDeviations, Vector,
 };
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
@@ -310,22 +310,13 @@ fn scale(data: &mut GearData, s: f64) {
     }
     for modification in &mut data.modifications {
         match modification {
-            ModificationData::TipRelief(relief) => {
+            ModificationData::TipRelief(relief) | ModificationData::RootRelief(relief) => {
                 relief.amount *= s;
                 match &mut relief.start {
                     ReliefStart::RadialLength(length)
-                    | ReliefStart::RollLengthFromTip(length)
+                    | ReliefStart::RollLength(length)
                     | ReliefStart::Diameter(length) => *length *= s,
                     ReliefStart::RollAngle(_) => {}
-                }
-            }
-            ModificationData::RootRelief(relief) => {
-                relief.amount *= s;
-                match &mut relief.start {
-                    RootReliefStart::RadialLength(length)
-                    | RootReliefStart::RollLengthFromForm(length)
-                    | RootReliefStart::Diameter(length) => *length *= s,
-                    RootReliefStart::RollAngle(_) => {}
                 }
             }
             ModificationData::Crowning { amount } | ModificationData::Slope { amount } => {

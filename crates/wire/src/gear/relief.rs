@@ -1,9 +1,6 @@
 //! Reliefs of tip and root: how much, in what shape, and from where.
 
-use meshwright_engine::gear::{
-    ModificationData, ReliefData, ReliefShape, ReliefStart, RootReliefData, RootReliefStart,
-    SpurGear,
-};
+use meshwright_engine::gear::{ModificationData, ReliefData, ReliefShape, ReliefStart, SpurGear};
 use serde::Serializer;
 use serde::ser::SerializeMap;
 use serde_json::{Value, json};
@@ -242,28 +239,19 @@ impl Relief {
         self.amount_um != 0.0
     }
 
-    /// What the engine is told.
+    /// As the engine has it.
     pub(super) fn data(&self) -> ModificationData {
         let (amount, shape) = (from_um(self.amount_um), self.shape);
-        match self.start.data() {
-            Start::Tip(start) => ModificationData::TipRelief(ReliefData {
-                amount,
-                shape,
-                start,
-            }),
-            Start::Root(start) => ModificationData::RootRelief(RootReliefData {
-                amount,
-                shape,
-                start,
-            }),
+        let data = ReliefData {
+            amount,
+            shape,
+            start: self.start.data(),
+        };
+        match self.start.end {
+            ReliefEnd::Tip => ModificationData::TipRelief(data),
+            ReliefEnd::Form => ModificationData::RootRelief(data),
         }
     }
-}
-
-/// Where a relief starts, as the engine is told.
-enum Start {
-    Tip(ReliefStart),
-    Root(RootReliefStart),
 }
 
 impl StartDocument {
@@ -274,27 +262,21 @@ impl StartDocument {
 
     /// The radius in meters at which it starts on the flank of `gear`.
     pub(super) fn radius(self, gear: &SpurGear) -> f64 {
-        match self.data() {
-            Start::Tip(start) => start.radius(gear.flank(), gear.tip_radius()),
-            Start::Root(start) => start.radius(gear.flank(), gear.form_radius()),
+        let start = self.data();
+        match self.end {
+            ReliefEnd::Tip => start.below_tip(gear.flank(), gear.tip_radius()),
+            ReliefEnd::Form => start.above_form(gear.flank(), gear.form_radius()),
         }
     }
 
-    fn data(self) -> Start {
+    /// As the engine has it.
+    fn data(self) -> ReliefStart {
         let (length, angle) = (from_mm(self.value), self.value.to_radians());
-        match self.end {
-            ReliefEnd::Tip => Start::Tip(match self.way {
-                StartWay::RadialLength => ReliefStart::RadialLength(length),
-                StartWay::RollLength => ReliefStart::RollLengthFromTip(length),
-                StartWay::Diameter => ReliefStart::Diameter(length),
-                StartWay::RollAngle => ReliefStart::RollAngle(angle),
-            }),
-            ReliefEnd::Form => Start::Root(match self.way {
-                StartWay::RadialLength => RootReliefStart::RadialLength(length),
-                StartWay::RollLength => RootReliefStart::RollLengthFromForm(length),
-                StartWay::Diameter => RootReliefStart::Diameter(length),
-                StartWay::RollAngle => RootReliefStart::RollAngle(angle),
-            }),
+        match self.way {
+            StartWay::RadialLength => ReliefStart::RadialLength(length),
+            StartWay::RollLength => ReliefStart::RollLength(length),
+            StartWay::Diameter => ReliefStart::Diameter(length),
+            StartWay::RollAngle => ReliefStart::RollAngle(angle),
         }
     }
 }

@@ -324,7 +324,7 @@ impl Side {
     }
 }
 
-/// What prevents a curve from bounding an opening. Sides and corners are told by their places in the list; corner i is where side i begins.
+/// What prevents a curve from bounding an opening. Sides and corners are numbered by their places in the list; corner i is where side i begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ContourFault {
     /// A side ends where it begins.
@@ -592,7 +592,7 @@ pub(super) fn between(one: &[Side], other: &[Side]) -> f64 {
     if meet || depth > 0.0 { -depth } else { least }
 }
 
-/// Refuses what is no simple closed curve, counter-clockwise, beside the axis.
+/// Refuses what is no simple closed curve, counter-clockwise, that leaves the axis outside.
 pub(super) fn check(sides: &[Side]) -> Result<(), ContourFault> {
     let count = sides.len();
     let size = sides

@@ -141,7 +141,7 @@ impl Hole {
 
     /// The least material between this hole and `other`, negative where they overlap.
     ///
-    /// The nearest points of two arcs about one center are at one angle where the arcs stand beside each other, and their
+    /// The nearest points of two arcs about one center are at one angle where the arcs overlap in angle, and their
     /// nearest ends otherwise. Where the arcs meet, this is less the sum of the half widths.
     pub fn ligament_to(&self, other: &Self) -> f64 {
         if self.contour().or(other.contour()).is_some() {

@@ -44,7 +44,7 @@ pub struct BlankRegion {
     pub web: Option<Web>,
 }
 
-/// Where a blank is thinnest in its plane. Holes are told by their places in the list.
+/// Where a blank is thinnest in its plane. Holes are numbered by their places in the list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ligament {
     /// Between two holes.
@@ -157,7 +157,7 @@ impl BlankRegion {
             .reduce(|least, next| if next.1 < least.1 { next } else { least })
     }
 
-    /// The thickness at the distance `radius` from the axis, of a blank as thick as `face_width` beside its web.
+    /// The thickness at the distance `radius` from the axis, of a blank as thick as `face_width` outside its web.
     pub fn thickness_at(&self, radius: f64, face_width: f64) -> f64 {
         match self.web {
             Some(web) if radius > web.inner_radius && radius < web.outer_radius => web.thickness,
@@ -312,7 +312,7 @@ mod tests {
     }
 
     #[test]
-    fn the_thinnest_place_is_told() {
+    fn the_thinnest_place_is_found() {
         let with = |hole| BlankRegion {
             holes: vec![hole],
             ..region(None)

@@ -7,7 +7,7 @@ use crate::gear::data::{
 };
 use crate::gear::modification::{Modification, Relief, TablePlaces};
 use crate::gear::tip::BrokenEdge;
-use crate::gear::{GearError, ModificationData, TipEdge, ToothDeviations};
+use crate::gear::{GearError, ModificationData, ReliefData, TipEdge, ToothDeviations};
 use crate::root_finding::bisect;
 
 impl SpurGear {
@@ -190,31 +190,20 @@ impl SpurGear {
         let mut checked = Vec::new();
         for (index, data) in self.data.modifications.iter().enumerate() {
             checked.push(match data {
+                ModificationData::TipRelief(relief) | ModificationData::RootRelief(relief)
+                    if relief.amount == 0.0 =>
+                {
+                    continue;
+                }
                 ModificationData::TipRelief(relief) => {
-                    let r_s = relief.start.radius(&self.flank, self.tip_radius());
-                    if relief.amount == 0.0 {
-                        continue;
-                    }
-                    self.check_start(index, r_s, self.tip_radius())?;
-                    Modification::Tip(Relief::new(
-                        relief.amount,
-                        relief.shape,
-                        r_s,
-                        self.tip_radius(),
-                    ))
+                    let start = relief.start.below_tip(&self.flank, self.tip_radius());
+                    let ends = [start, self.tip_radius()];
+                    Modification::Tip(self.checked_relief(index, relief, ends)?)
                 }
                 ModificationData::RootRelief(relief) => {
-                    let r_s = relief.start.radius(&self.flank, self.form_radius());
-                    if relief.amount == 0.0 {
-                        continue;
-                    }
-                    self.check_start(index, r_s, self.form_radius())?;
-                    Modification::Root(Relief::new(
-                        relief.amount,
-                        relief.shape,
-                        r_s,
-                        self.form_radius(),
-                    ))
+                    let start = relief.start.above_form(&self.flank, self.form_radius());
+                    let ends = [start, self.form_radius()];
+                    Modification::Root(self.checked_relief(index, relief, ends)?)
                 }
                 ModificationData::Crowning { amount } => Modification::Crowning {
                     amount: *amount,
@@ -234,16 +223,17 @@ impl SpurGear {
         Ok(checked)
     }
 
-    /// Whether a relief that ends at `end_radius` starts elsewhere on the flank.
-    fn check_start(
+    /// The relief between the radii at which it starts and ends, if it starts on the flank and not at its end.
+    fn checked_relief(
         &self,
         modification: usize,
-        start_radius: f64,
-        end_radius: f64,
-    ) -> Result<(), GearError> {
+        data: &ReliefData,
+        [start_radius, end_radius]: [f64; 2],
+    ) -> Result<Relief, GearError> {
         let (form_radius, tip_radius) = (self.form_radius(), self.tip_radius());
         if (form_radius..=tip_radius).contains(&start_radius) && start_radius != end_radius {
-            return Ok(());
+            let ReliefData { amount, shape, .. } = *data;
+            return Ok(Relief::new(amount, shape, start_radius, end_radius));
         }
         Err(GearError::ReliefTooLong {
             modification,

@@ -148,8 +148,8 @@ impl SpurGear {
 
     /// [`SpurGear::removed_slope`] just before and beyond the roll length `s` of a kink.
     pub fn slopes_beside(&self, s: f64) -> [f64; 2] {
-        let beside = 1e-6 * self.data.rack.module;
-        [s - beside, s + beside].map(|s| self.removed_slope(s))
+        let step = 1e-6 * self.data.rack.module;
+        [s - step, s + step].map(|s| self.removed_slope(s))
     }
 
     /// The roll length of the edge at which a chamfer begins.

@@ -27,12 +27,12 @@ impl Hob {
         } = rack.protuberance.expect("a hob with a protuberance");
         let (alpha, rho) = (rack.pressure_angle, rack.tip_radius);
         // A line beside the flank of the rack, by how far it stands out from it.
-        let beside =
+        let across =
             |out: f64, y: f64| PI * rack.module / 4.0 + out / alpha.cos() - y * alpha.tan();
         let deep = rack.dedendum - rho;
-        let center = [beside(amount - grinding_stock - rho, deep), deep];
+        let center = [across(amount - grinding_stock - rho, deep), deep];
         let kink = rack.dedendum - height;
-        let begins = [beside(-grinding_stock, kink), kink];
+        let begins = [across(-grinding_stock, kink), kink];
         // The line from there that touches the rounding.
         let passes_outside = |angle: f64| {
             (begins[0] - center[0]) * angle.cos() + (begins[1] - center[1]) * angle.sin() >= rho
@@ -292,8 +292,8 @@ fn a_hob_that_cannot_be_is_refused_and_the_named_value_cures_it() {
     let GearError::ProtuberanceHeight { least, .. } = refused(hob(10e-6, 0.1e-3, 0.0)) else {
         panic!("within the rounding")
     };
-    let beside = (0.3e-3_f64.powi(2) - 0.29e-3_f64.powi(2)).sqrt();
-    assert!((least - (0.3e-3 - 0.29e-3 * sin + beside * cos)).abs() < 1e-15);
+    let across = (0.3e-3_f64.powi(2) - 0.29e-3_f64.powi(2)).sqrt();
+    assert!((least - (0.3e-3 - 0.29e-3 * sin + across * cos)).abs() < 1e-15);
     assert!(fits(hob(10e-6, least, 0.0)));
     let GearError::ProtuberanceTooLarge { largest, .. } = refused(hob(0.5e-3, 1.4e-3, 60e-6))
     else {

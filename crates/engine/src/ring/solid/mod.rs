@@ -8,7 +8,6 @@
 pub mod gear;
 pub mod joint;
 pub mod revolution;
-pub mod sector;
 pub mod shaft;
 pub mod tooth;
 pub mod web;
