@@ -7,7 +7,7 @@
  * @typedef {[name: string, symbol: string, unit: string, ...values: string[]]} Row
  */
 
-import { h } from "../draw/dom.js";
+import { button, h, note } from "../draw/dom.js";
 import { fixed, number } from "../state/numbers.js";
 
 /** @import { Gear, GearName, NamedDesign, Pair, Results } from "../state/documents.js" */
@@ -101,12 +101,8 @@ export class Geometry {
    */
   constructor(place, { onPrint, onPicture }) {
     this.out = h("div", { className: "columns" });
-    /** @type {(name: string, work: () => void) => HTMLButtonElement} */
-    const button = (name, work) => h("button", { type: "button", on: { click: work } }, name);
     place.append(
-      h(
-        "p",
-        { className: "note" },
+      note(
         "Computed from the true profile, without load. Specific sliding is the sliding velocity over the velocity at which the contact runs along a flank.",
       ),
       this.out,
