@@ -3,7 +3,7 @@
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { axe, changing, designOf, downloaded, ends, field, settled, step, tab } from "./harness.mjs";
+import { axe, changing, designOf, downloaded, ends, field, settled, stepsOn, tab } from "./harness.mjs";
 
 /** Numbers of the guide may be off by so much: its last digit, or what another processor rounds. */
 const TOLERANCE = 0.01;
@@ -40,7 +40,8 @@ function assertAlike(found, said) {
 
 /** @param service the service whose page is used */
 export async function hourSteps(service) {
-  await step("an hour at the bench goes as its guide says, click by click", service, async (page) => {
+  const { step } = stepsOn(service);
+  await step("an hour at the bench goes as its guide says, click by click", async (page) => {
     page.setDefaultTimeout(MINUTES);
     const { answers, names } = guide();
     let seen = "";
