@@ -4,6 +4,7 @@
 import assert from "node:assert/strict";
 import {
   answer,
+  answered,
   axe,
   changed,
   changing,
@@ -21,6 +22,7 @@ import {
   settled,
   stepsOn,
   tab,
+  unfold,
 } from "./harness.mjs";
 import { seenByDeuteranopia } from "./colors.mjs";
 
@@ -345,9 +347,7 @@ export async function benchSteps(service) {
       const list = page
         .locator(`#form fieldset.list`, { has: page.locator("legend", { hasText: /profile modifications/i }) })
         .nth(member === "driving" ? 0 : 1);
-      await list.evaluate((element) => {
-        for (let at = element; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true;
-      });
+      await unfold(list);
       await list.locator(":scope > button").click();
       await settle(`${pointer} added`);
       const kinds = await (await field(page, `${pointer}/0`))
@@ -885,9 +885,7 @@ export async function benchSteps(service) {
     const before = await answer(page, "p-p");
     const tool = async (name) => {
       const found = page.locator(`#deviations-driven-${name}`);
-      await found.evaluate((element) => {
-        for (let at = element; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true;
-      });
+      await unfold(found);
       return found;
     };
     await (await tool("class")).fill("6");
@@ -930,7 +928,7 @@ export async function benchSteps(service) {
 
   await step("a part of a long period has a spectrum, which says what it is", async (page) => {
     await openDesign(page, service, { ...LONG, resolution: { span_mesh_periods: 12 } });
-    await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+    await answered(page);
     await page.locator("#chart-spectrum").scrollIntoViewIfNeeded();
     assert.match(await page.locator("#chart-spectrum .note").innerText(), /periods that were computed/);
   });
@@ -1341,9 +1339,7 @@ export async function benchSteps(service) {
       const list = page
         .locator(`#form fieldset.list`, { has: page.locator("legend", { hasText: /profile modifications/i }) })
         .first();
-      await list.evaluate((element) => {
-        for (let at = element; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true;
-      });
+      await unfold(list);
       await list.locator(":scope > button").click();
       await (await field(page, "/pair/driving/profile_modifications/0")).selectOption({ label: "Crowning" });
       await settled(page);
@@ -1373,9 +1369,7 @@ export async function benchSteps(service) {
     "a population draws its teeth in place of those of the design, at torques of the design, and a search says where it ends",
     async (page) => {
       const drawn = page.locator("#deviations-driven-class");
-      await drawn.evaluate((element) => {
-        for (let at = element; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true;
-      });
+      await unfold(drawn);
       await changing(page, () => page.locator("details.tool[open] button", { hasText: "Draw teeth" }).click());
       await (await field(page, "/output_torques_n_m")).fill("150");
       await settled(page);

@@ -118,7 +118,7 @@ export async function changed(page, id, before) {
 
 export async function open(page, service, fragment = "") {
   await page.goto(service.url + fragment);
-  await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+  await answered(page);
   await page.locator("#form .field").first().waitFor();
   await idle(page);
 }
@@ -127,9 +127,7 @@ export async function open(page, service, fragment = "") {
 export async function field(page, pointer) {
   const found = page.locator(`[id="field-${pointer}"]`);
   await found.waitFor({ state: "attached" });
-  await found.evaluate((element) => {
-    for (let at = element; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true;
-  });
+  await unfold(found);
   return found;
 }
 
@@ -149,6 +147,16 @@ export const settled = (page) =>
   page.waitForFunction(
     () => !document.body.classList.contains("busy") && history.state?.changes === Number(document.body.dataset.changes),
   );
+
+/** Waits until the headline has numbers. */
+export const answered = (page) =>
+  page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+
+/** Opens all that a place is folded away in. */
+export const unfold = (place) =>
+  place.evaluate((element) => {
+    for (let at = element; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true;
+  });
 
 /** Waits until nothing is computed any more. */
 export const idle = (page) => page.waitForFunction(() => !document.body.classList.contains("busy"));

@@ -7,6 +7,7 @@ import { createServer } from "node:http";
 import { benchSteps } from "./bench.mjs";
 import {
   answer,
+  answered,
   axe,
   changed,
   changing,
@@ -46,7 +47,7 @@ const { opened, step } = stepsOn(service);
 await step("case 2 is there at once, with the mean of the reference", async (page) => {
   const begun = Date.now();
   await page.goto(service.url);
-  await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+  await answered(page);
   console.log(`page: first curve ${Date.now() - begun} ms after the address was opened.`);
   assert.equal(await page.locator("#start").inputValue(), "test-case-2");
   // Table 2 of the paper: 13.79 um; ours 13.8.
@@ -427,7 +428,7 @@ await stepsOn(locked).step("a key is asked for, and used", async (page) => {
   await axe(page);
   await page.locator("#key").fill(key);
   await page.locator("#key-form button.primary").click();
-  await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+  await answered(page);
   assert.ok(Math.abs((await answer(page, "mean")) - 13.8) < 0.1);
   // Streams of events carry the key too.
   await tab(page, "jobs");

@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import {
   answer,
+  answered,
   axe,
   changed,
   changing,
@@ -15,6 +16,7 @@ import {
   settled,
   stepsOn,
   tab,
+  unfold,
 } from "./harness.mjs";
 import { start } from "./service.mjs";
 import { HELICAL } from "./solid.mjs";
@@ -139,7 +141,7 @@ export async function shownSteps(service) {
     async (page) => {
       await estimateSeconds(page);
       await openDesign(page, service, HELICAL);
-      await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+      await answered(page);
       await settled(page);
       await watch(page);
       const asked = [];
@@ -170,7 +172,7 @@ export async function shownSteps(service) {
       await page.clock.install();
       await estimateSeconds(page);
       await openDesign(page, service, HELICAL);
-      await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+      await answered(page);
       await settled(page);
       const asked = [];
       page.on("request", (request) => {
@@ -636,7 +638,7 @@ export async function shownSteps(service) {
         for (const design of [null, HELICAL]) {
           if (design) await openDesign(page, service, design);
           else await open(page, service);
-          await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+          await answered(page);
           await settled(page);
           await page.waitForTimeout(300);
           const shift = await page.evaluate(() => window.shift);
@@ -861,9 +863,7 @@ export async function shownSteps(service) {
       const leads = page
         .locator("#form fieldset.list", { has: page.locator("legend", { hasText: /lead modifications/i }) })
         .first();
-      await leads.evaluate((element) => {
-        for (let at = element; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true;
-      });
+      await unfold(leads);
       await leads.locator(":scope > button").click();
       await page.evaluate(() => {
         window.drawn = [];
@@ -922,7 +922,7 @@ export async function shownSteps(service) {
         ...HELICAL,
         resolution: { ...HELICAL.resolution, positions_per_mesh_period: 40 },
       });
-      await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+      await answered(page);
       await settled(page);
       const button = page.locator("#chart-pattern button");
       const clock = page.locator("#chart-pattern [role=status]", { hasText: /at every position, about \d+ s more/ });

@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import {
   answer,
+  answered,
   axe,
   changing,
   designOf,
@@ -137,7 +138,7 @@ export async function solidSteps(service) {
 
   await step("the load along the face is a map under the cursor of the curves", async (page) => {
     await openDesign(page, service, HELICAL);
-    await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+    await answered(page);
     await settled(page);
     const map = page.locator("#chart-face");
     await map.scrollIntoViewIfNeeded();
@@ -326,7 +327,7 @@ export async function solidSteps(service) {
       const fetched = [];
       page.on("request", (request) => fetched.push(new URL(request.url()).pathname));
       await openDesign(page, service, HELICAL);
-      await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+      await answered(page);
       await settled(page);
       assert.ok(
         !fetched.includes("/web/draw/space.js") && !fetched.includes("/web/draw/raster.js"),
@@ -475,7 +476,7 @@ export async function solidSteps(service) {
     "one finger turns the pair, and two zoom",
     async (page, context) => {
       await openDesign(page, service, HELICAL);
-      await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+      await answered(page);
       await page.locator("[data-view=space]").click();
       await page.waitForFunction(() => /^fine/.test(document.querySelector("canvas.space")?.dataset.painted ?? ""));
       await page.locator("canvas.space").scrollIntoViewIfNeeded();
@@ -561,7 +562,7 @@ export async function solidSteps(service) {
     const askew = structuredClone(HELICAL);
     askew.pair.driving.lead_modifications = [{ kind: "crowning", amount_um: 2 }];
     await openDesign(page, service, askew);
-    await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+    await answered(page);
     await settled(page);
     const before = await answer(page, "face");
     const told = await page.locator("#cure").innerText();
