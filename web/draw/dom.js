@@ -89,6 +89,38 @@ export const region = (ariaLabel, ...children) =>
   h("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel }, ...children);
 
 /**
+ * What those alone hear who do not see.
+ *
+ * @param {string} words
+ */
+export const unseen = (words) => h("span", { className: "visually-hidden" }, words);
+
+/**
+ * A row of a table: what it is of, and its cells.
+ *
+ * @param {Child} of
+ * @param {(Child | Child[])[]} cells
+ */
+export const tableRow = (of, ...cells) =>
+  h("tr", {}, h("th", { scope: "row" }, of), ...cells.map((cell) => h("td", {}, cell)));
+
+/**
+ * A table of these rows below the names of its columns.
+ *
+ * @param {Child[]} names
+ * @param {HTMLTableRowElement[]} rows
+ * @param {string | null} [caption]
+ */
+export const table = (names, rows, caption = null) =>
+  h(
+    "table",
+    {},
+    caption && h("caption", {}, caption),
+    h("thead", {}, h("tr", {}, ...names.map((name) => h("th", { scope: "col" }, name)))),
+    h("tbody", {}, ...rows),
+  );
+
+/**
  * A form whose answer is computed by `ask`, and which is not sent.
  *
  * @param {() => void} ask

@@ -1,7 +1,7 @@
 // @ts-check
 // The jobs of this client: submitted, followed by their events, cancelled, opened, run again.
 
-import { button, debounced, h, inLine, labelled, note } from "../draw/dom.js";
+import { button, debounced, h, inLine, labelled, note, table } from "../draw/dom.js";
 import { filesOf, saveFile } from "../draw/files.js";
 import { read } from "../draw/inputs.js";
 import { follow, hasEnded, isAborted, json, post, ProblemError, request } from "../state/api.js";
@@ -205,14 +205,9 @@ export function jobs(place, design, form, onOpen, onStudy) {
       listedStudies = [...listedStudies, ...page.items];
       nextStudies = page.next;
       olderStudies.hidden = !nextStudies;
-      const head = h(
-        "tr",
-        {},
-        ...["Submitted", "What", "State", "Actions"].map((name) => h("th", { scope: "col" }, name)),
-      );
       studies.replaceChildren(
         listedStudies.length
-          ? h("table", {}, h("thead", {}, head), h("tbody", {}, ...listedStudies.map(studyRow)))
+          ? table(["Submitted", "What", "State", "Actions"], listedStudies.map(studyRow))
           : note("There are none yet."),
       );
     });
@@ -288,14 +283,8 @@ export function jobs(place, design, form, onOpen, onStudy) {
 
   /** @param {Job[]} items */
   function tableOf(items) {
-    const head = h(
-      "tr",
-      {},
-      ...["Submitted", "Design, and what differs from the one on the page", "State", "Actions"].map((name) =>
-        h("th", { scope: "col" }, name),
-      ),
-    );
-    return h("table", {}, h("thead", {}, head), h("tbody", {}, ...items.map(rowOf)));
+    const names = ["Submitted", "Design, and what differs from the one on the page", "State", "Actions"];
+    return table(names, items.map(rowOf));
   }
 
   /**

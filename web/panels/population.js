@@ -2,7 +2,7 @@
 // How good the pairs will be that are made by a design: members drawn from laws and classes of accuracy, and what they
 // come to.
 
-import { button, debounced, h, inLine, labelled, note, region, s } from "../draw/dom.js";
+import { button, debounced, h, inLine, labelled, note, region, s, table, tableRow, unseen } from "../draw/dom.js";
 import { figure } from "../draw/figure.js";
 import { allGiven, given, numeric } from "../draw/inputs.js";
 import { offer, options } from "./offer.js";
@@ -367,22 +367,12 @@ export function population(place, design, form, limits, onOpen) {
         s("rect", { x: 0, y: 3, width: 200 * each.share, height: 8, class: "dot" }),
         s("line", { x1: 200 * low, x2: 200 * high, y1: 7, y2: 7, stroke: "currentColor", "stroke-width": 1.5 }),
       );
-      return h(
-        "tr",
-        {},
-        h("th", { scope: "row" }, name(each)),
-        h("td", {}, bar),
-        h("td", {}, `${fixed(100 * each.share, 0)} %`),
-        h("td", {}, each.low === null ? "–" : `${fixed(100 * low, 0)} to ${fixed(100 * high, 0)} %`),
-      );
+      const limits = each.low === null ? "–" : `${fixed(100 * low, 0)} to ${fixed(100 * high, 0)} %`;
+      return tableRow(name(each), bar, `${fixed(100 * each.share, 0)} %`, limits);
     });
-    const head = ["Part of the variance by", "", "Share", "95 % limits"].map((words) =>
-      h("th", { scope: "col" }, words || h("span", { className: "visually-hidden" }, "Bar")),
-    );
-    return region(
-      "Influences",
-      h("table", { className: "influences" }, h("thead", {}, h("tr", {}, ...head)), h("tbody", {}, ...rows)),
-    );
+    const found = table(["Part of the variance by", unseen("Bar"), "Share", "95 % limits"], rows);
+    found.className = "influences";
+    return region("Influences", found);
   }
 
   /** @type {(address: string, member: number) => Promise<void>} */

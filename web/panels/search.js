@@ -2,7 +2,7 @@
 // A search: fields that may differ, what is to be small and what has to hold; the service chooses which designs to
 // compute.
 
-import { asking, button, h, inLine, labelled, note, region } from "../draw/dom.js";
+import { asking, button, h, inLine, labelled, note, region, table, tableRow, unseen } from "../draw/dom.js";
 import { figure } from "../draw/figure.js";
 import { given, numeric } from "../draw/inputs.js";
 import { offer, options } from "./offer.js";
@@ -203,24 +203,9 @@ export function search(place, design, form, onOpen) {
     const missing = h("p", { className: "outdated", hidden: !failed.length }, failed.join(" "));
     if (!best) return out.replaceChildren(missing);
     const rows = Object.entries(best.values).map(([path, value]) =>
-      h(
-        "tr",
-        {},
-        h("th", { scope: "row" }, form.named(path)),
-        h("td", {}, number(at(about.base, path) ?? null, 5)),
-        h("td", {}, number(value, 5)),
-      ),
+      tableRow(form.named(path), number(at(about.base, path) ?? null, 5), number(value, 5)),
     );
-    const table = h(
-      "table",
-      {},
-      h(
-        "thead",
-        {},
-        h("tr", {}, ...["Field", "Begun with", "Best so far"].map((words) => h("th", { scope: "col" }, words))),
-      ),
-      h("tbody", {}, ...rows),
-    );
+
     const atEnd = about.search.variables
       .filter(({ path, low, high }) => [low, high].includes(at(best, "/values")?.[path]))
       .map(({ path }) => form.named(path));
@@ -277,7 +262,7 @@ export function search(place, design, form, onOpen) {
           : "",
       ),
       missing,
-      region("Best design of the search", table),
+      region("Best design of the search", table(["Field", "Begun with", "Best so far"], rows)),
       ...(atEnd.length && parts.length === 1
         ? [note(`At an end of its range: ${atEnd.join("; ")}. A wider one may find better.`)]
         : []),
@@ -360,9 +345,6 @@ export function search(place, design, form, onOpen) {
    * @param {(row: number, words: string) => HTMLButtonElement} use
    */
   function frontOf(front, parts, use) {
-    const head = [...parts.map(inUnit), ""].map((words) =>
-      h("th", { scope: "col" }, words || h("span", { className: "visually-hidden" }, "Actions")),
-    );
     const rows = front.map(({ row, goals }) =>
       h(
         "tr",
@@ -371,10 +353,7 @@ export function search(place, design, form, onOpen) {
         h("td", {}, use(row, "Use")),
       ),
     );
-    return region(
-      "Designs of the front",
-      h("table", {}, h("thead", {}, h("tr", {}, ...head)), h("tbody", {}, ...rows)),
-    );
+    return region("Designs of the front", table([...parts.map(inUnit), unseen("Actions")], rows));
   }
 
   const refresh = () => variables.forEach((each) => each.refresh());

@@ -2,7 +2,7 @@
 // Many designs at once: axes of values over any fields, a table, a picture of two of its columns, and which designs no
 // other beats; or a search that chooses the values itself.
 
-import { asking, button, h, inLine, labelled, note, region, within } from "../draw/dom.js";
+import { asking, button, h, inLine, labelled, note, region, table, unseen, within } from "../draw/dom.js";
 import { save } from "../draw/download.js";
 import { figure } from "../draw/figure.js";
 import { allGiven, given, numeric } from "../draw/inputs.js";
@@ -208,19 +208,17 @@ export function study(place, design, form, onOpen) {
     const ofCurve = OF_CURVE.map(quantityOf);
     /** @type {(quantity: Quantity) => string} */
     const named = (quantity) => `${calledOf(quantity)} ${quantity.printed}`;
-    const names = ["Design", "Best", ...ofRow.map(named), "Torque N m", ...ofCurve.map(named), ""];
-    const head = h(
-      "tr",
-      {},
-      ...names.map((name) => h("th", { scope: "col" }, name || h("span", { className: "visually-hidden" }, "Actions"))),
-    );
+    const names = ["Design", "Best", ...ofRow.map(named), "Torque N m", ...ofCurve.map(named), unseen("Actions")];
     /** @type {(row: TableRow, curve: RowCurve) => string[]} */
     const cells = (row, curve) => {
       /** @type {(quantity: Quantity) => string} */
       const each = (quantity) => shown(quantity, inRow(quantity, row, curve, gear));
       return [...ofRow.map(each), number(curve.output_torque_n_m), ...ofCurve.map(each)];
     };
-    return h("table", {}, h("thead", {}, head), h("tbody", {}, ...rows.flatMap((row) => rowsOf(row, cells))));
+    return table(
+      names,
+      rows.flatMap((row) => rowsOf(row, cells)),
+    );
   }
 
   /**

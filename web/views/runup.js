@@ -3,7 +3,20 @@
 // resonances named, and one speed that is looked at, turned and heard.
 
 import { looks } from "../draw/charts.js";
-import { button, debounced, dress, h, inLine, labelled, note, region, s } from "../draw/dom.js";
+import {
+  button,
+  debounced,
+  dress,
+  h,
+  inLine,
+  labelled,
+  note,
+  region,
+  s,
+  table,
+  tableRow,
+  unseen,
+} from "../draw/dom.js";
 import { figure, ticks } from "../draw/figure.js";
 import { Tones } from "../draw/sound.js";
 import { motionAt } from "../state/motion.js";
@@ -452,38 +465,19 @@ export class RunUp {
 
   #tableOf() {
     const values = this.#run.dynamic_transmission_error_um.peak_to_peak;
-    const head = h(
-      "tr",
-      {},
-      ...["Speed rpm", "Order", "What meets", "the natural frequency", "STE p-p there µm"].map((name) =>
-        h("th", { scope: "col" }, name),
-      ),
-      h("th", { scope: "col" }, h("span", { className: "visually-hidden" }, "Actions")),
-    );
     const rows = this.#named().map((each) =>
-      h(
-        "tr",
-        {},
-        h("th", { scope: "row" }, Math.round(each.driving_speed_rpm).toLocaleString("en")),
-        h("td", {}, each.label),
-        h("td", {}, each.what),
-        h("td", {}, each.kind === "forced" ? "once: forced" : "twice: parametric"),
-        h("td", {}, fixed(values[this.#index(each.driving_speed_rpm)], 2)),
-        h(
-          "td",
-          {},
-          button("Look", () => this.#look(each.driving_speed_rpm), { ariaLabel: `Look at ${each.words}` }),
-        ),
+      tableRow(
+        Math.round(each.driving_speed_rpm).toLocaleString("en"),
+        each.label,
+        each.what,
+        each.kind === "forced" ? "once: forced" : "twice: parametric",
+        fixed(values[this.#index(each.driving_speed_rpm)], 2),
+        button("Look", () => this.#look(each.driving_speed_rpm), { ariaLabel: `Look at ${each.words}` }),
       ),
     );
     const caption = `Resonances: the natural frequency is ${number(this.#dynamics.natural_frequency_hz)} Hz, of ${number(this.#dynamics.equivalent_mass_kg, 3)} kg on the line of action`;
-    return h(
-      "table",
-      {},
-      h("caption", {}, caption),
-      h("thead", {}, head),
-      h("tbody", {}, ...(rows.length ? rows : [h("tr", {}, h("td", { colSpan: 6 }, "None at these speeds."))])),
-    );
+    const names = ["Speed rpm", "Order", "What meets", "the natural frequency", "STE p-p there µm", unseen("Actions")];
+    return table(names, rows.length ? rows : [h("tr", {}, h("td", { colSpan: 6 }, "None at these speeds."))], caption);
   }
 
   /**
