@@ -97,43 +97,15 @@ fn the_model_of_test_case_2_is_its_submission() {
 
 #[test]
 fn units_are_converted_and_unknown_ones_refused() {
-    for (id, unit, said, pointer, value) in [
-        (
-            "center_distance",
-            "m",
-            "0.1005",
-            "/pair/center_distance_mm",
-            100.5,
-        ),
-        (
-            "elastic_modulus",
-            "MPa",
-            "205000",
-            "/pair/driven/material/youngs_modulus_gpa",
-            205.0,
-        ),
-        (
-            "density",
-            "kg / m^3",
-            "7850",
-            "/pair/driven/material/density_kg_m3",
-            7850.0,
-        ),
-        (
-            "torque_around_u_axis",
-            "kN m",
-            "-0.115",
-            "/output_torques_n_m/0",
-            115.0,
-        ),
-        (
-            "tip_relief_depth",
-            "mum",
-            "5.1",
-            "/pair/driving/tip_relief/amount_um",
-            5.1,
-        ),
-    ] {
+    #[rustfmt::skip]
+    let cases = [
+        ("center_distance", "m", "0.1005", "/pair/center_distance_mm", 100.5),
+        ("elastic_modulus", "MPa", "205000", "/pair/driven/material/youngs_modulus_gpa", 205.0),
+        ("density", "kg / m^3", "7850", "/pair/driven/material/density_kg_m3", 7850.0),
+        ("torque_around_u_axis", "kN m", "-0.115", "/output_torques_n_m/0", 115.0),
+        ("tip_relief_depth", "mum", "5.1", "/pair/driving/tip_relief/amount_um", 5.1),
+    ];
+    for (id, unit, said, pointer, value) in cases {
         let found = field(&taken(&saying(id, unit, said)), pointer);
         assert_eq!(found.as_f64(), Some(value), "{said}");
     }
