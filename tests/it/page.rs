@@ -4,7 +4,7 @@ use meshwright_wire::examples;
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 
-use crate::bench::{Asked, Bench, Said, problem, submission};
+use crate::bench::{Asked, Bench, problem, submission};
 
 fn example(name: &str) -> Value {
     let found = examples().iter().find(|example| example.name == name);
@@ -119,12 +119,7 @@ async fn the_page_and_its_files_come_with_their_types_and_a_strict_policy() {
 async fn the_outline_of_a_pair_comes_as_numbers_or_as_a_drawing() {
     let bench = Bench::quick().await;
     let case_2 = example("test-case-2");
-    let outline = bench
-        .post("/v1/outline", &case_2)
-        .answer()
-        .await
-        .document()
-        .await;
+    let outline = bench.post("/v1/outline", &case_2).document().await;
     assert_eq!(outline["driven"]["holes"].as_array().unwrap().len(), 10);
     assert_eq!(outline["driven"]["center_mm"], json!([100.5, 0.0]));
     assert_eq!(outline["driving"]["angle_per_mesh_period_deg"], 7.2);
@@ -142,11 +137,8 @@ async fn the_outline_of_a_pair_comes_as_numbers_or_as_a_drawing() {
     assert_eq!(picture.headers()["content-type"], "image/svg+xml");
     assert!(picture.body().await.starts_with("<svg"));
 
-    let bad = bench
-        .post("/v1/outline", &example("bad-case-3-as-printed"))
-        .answer()
-        .await;
-    problem(bad, 422, "teeth_do_not_reach").await;
+    let asked = bench.post("/v1/outline", &example("bad-case-3-as-printed"));
+    problem(asked, 422, "teeth_do_not_reach").await;
 }
 
 #[tokio::test]
@@ -204,10 +196,7 @@ async fn results_without_what_a_picture_shows_say_so() {
         "force-table.txt",
         "drawing.svg",
     ] {
-        let answer = bench
-            .get(&format!("{path}/results/{absent}"))
-            .answer()
-            .await;
-        problem(answer, 404, "not_found").await;
+        let asked = bench.get(&format!("{path}/results/{absent}"));
+        problem(asked, 404, "not_found").await;
     }
 }

@@ -13,7 +13,7 @@ use tokio::sync::mpsc;
 use tokio::task::JoinHandle;
 use tokio_util::sync::CancellationToken;
 
-use crate::bench::{Asked, Bench, PATIENCE, RESULTS, Said, problem, results, submission};
+use crate::bench::{Asked, Bench, PATIENCE, RESULTS, problem, results, submission};
 use crate::stores;
 
 fn named(id: &str, torque: f64) -> Value {

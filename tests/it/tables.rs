@@ -5,7 +5,7 @@ use std::sync::Arc;
 use reqwest::StatusCode;
 use serde_json::Value;
 
-use crate::bench::{Asked, Bench, Said, problem, results, submission};
+use crate::bench::{Asked, Bench, problem, results, submission};
 use crate::stores;
 
 #[tokio::test]
@@ -53,12 +53,8 @@ async fn a_table_of_a_job_that_has_not_ended_is_not_ready() {
     let (bench, mut engine) = Bench::steered().await;
     let path = bench.submit(&submission(115.0)).await;
     let work = engine.next().await;
-    problem(
-        bench.get(&format!("{path}/results/ste.csv")).answer().await,
-        404,
-        "result_not_ready",
-    )
-    .await;
+    let asked = bench.get(&format!("{path}/results/ste.csv"));
+    problem(asked, 404, "result_not_ready").await;
     work.finish();
     bench.ended(&path).await;
     assert_eq!(
@@ -199,7 +195,7 @@ async fn the_load_along_a_face_adds_up_to_the_whole_in_the_mean_and_at_every_pos
         let load = results["curves"][2]["load_n"].as_f64().unwrap();
         let get = async |file: &str| {
             let path = format!("{path}/results/face-load.{file}");
-            bench.get(&path).answer().await.body().await
+            bench.get(&path).body().await
         };
         let table = get("csv?torque=50").await;
         let lines: Vec<Vec<&str>> = table
@@ -226,7 +222,7 @@ async fn the_load_along_a_face_adds_up_to_the_whole_in_the_mean_and_at_every_pos
     bench.ended(&plane).await;
     for file in ["json", "csv", "svg"] {
         let path = format!("{plane}/results/face-load.{file}");
-        problem(bench.get(&path).answer().await, 404, "not_found").await;
+        problem(bench.get(&path), 404, "not_found").await;
     }
 }
 
@@ -324,8 +320,8 @@ async fn a_contact_pattern_of_a_job_that_failed_or_is_under_way_is_told_as_its_r
     let path = bench.submit(&helical()).await;
     let work = engine.next().await;
     let pattern = format!("{path}/results/contact-pattern.json");
-    problem(bench.get(&pattern).answer().await, 404, "result_not_ready").await;
-    let cancel = bench.client.post(bench.url(&format!("{path}/cancel")));
+    problem(bench.get(&pattern), 404, "result_not_ready").await;
+    let cancel = bench.cancel(&path);
     assert!(cancel.answer().await.status().is_success());
     work.stopped().await;
     bench.ended(&path).await;
