@@ -77,7 +77,7 @@ pub struct Config {
     #[arg(long, value_name = "MB", value_parser = value_parser!(u64).range(64..=1 << 24))]
     pub memory_mb: Option<u64>,
 
-    /// Memory that one job or preview may take, by the estimate that /v1/validate tells; larger ones are refused.
+    /// Memory that one job or preview may take, by the estimate of /v1/validate; larger ones are refused.
     #[arg(long, default_value_t = 2048, value_name = "MB",
           value_parser = value_parser!(u64).range(1..=1 << 20))]
     pub job_memory_mb: u64,
@@ -197,7 +197,7 @@ pub struct AdmissionOptions {
     #[arg(long, default_value = "20s", value_parser = span, value_name = "TIME")]
     pub idle_time: Duration,
 
-    /// Hosts that clients may be told at by webhooks, separated by commas: hooks.example.com, *.example.com. A host named
+    /// Hosts to which clients may have webhooks sent, separated by commas: hooks.example.com, *.example.com. A host named
     /// in full may have a private address, one of this machine or its link only if it is named by that address. Without any, webhooks are off.
     #[arg(long = "webhook-host", value_delimiter = ',', value_name = "HOST")]
     pub webhook_hosts: Vec<HookTarget>,
@@ -333,7 +333,7 @@ impl Config {
             keys: self.admission.keys.unwrap_or_default(),
             // Who names somebody that vouches for people wants to know who they are.
             local: loopback && hosts.is_empty() && self.oidc.oidc_issuer.is_none(),
-            // Elsewhere the names of the service are known only if they are told; there, keys are needed anyway.
+            // Elsewhere the names of the service are known only if they are given; there, keys are needed anyway.
             strict_hosts: loopback || !hosts.is_empty(),
             hosts,
             requests_per_second: self.admission.requests_per_second,

@@ -1,4 +1,4 @@
-//! The numbers of a design by name: what tables have columns of, populations tell and searches go by.
+//! The numbers of a design by name: columns of tables, statistics of populations, goals and bounds of searches.
 
 use meshwright_engine::analysis::Method;
 use meshwright_wire::declare::{Choice as _, document};
@@ -428,7 +428,7 @@ pub(crate) const QUANTITIES: &[Quantity] = &[
         .needs(&[Needs::WholePeriods]),
 ];
 
-/// All of them, as they are told.
+/// All of them, as clients see them.
 pub fn quantities() -> impl Iterator<Item = QuantityEntry> {
     QUANTITIES.iter().map(QuantityEntry::of)
 }

@@ -969,8 +969,8 @@ fn a_helical_pinion_of_one_piece_with_its_shaft_is_computed_along_its_face() {
     let on_shaft = computed(&[]);
     let at_one_end = computed(&[(shaft, json!({ "radius_mm": 12.0, "torque_at": "plus" }))]);
     let bored = computed(&[("/pair/driving/blank", json!({ "bore_radius_mm": 12.0 }))]);
-    // A rigid bore holds more than a shaft, and this more where the torque leaves it at both ends: the teeth bend and press, and the body turns, by φ = T/(4 π G b)
-    // (1/R² − 1/r²) around a bore and (4/(3 R²) − 1/r²) around a shaft, and T b/(12 G J) more.
+    // A rigid bore is stiffer than a shaft, and a shaft is stiffer where the torque leaves it at both ends. Beside what the teeth yield, the body turns by
+    // φ = T/(4 π G b) (1/R² − 1/r²) around a bore and (4/(3 R²) − 1/r²) around a shaft, and T b/(12 G J) more.
     assert!(
         bored.0 < on_shaft.0 && on_shaft.0 < at_one_end.0,
         "{bored:?} {on_shaft:?} {at_one_end:?}"
