@@ -18,7 +18,7 @@ use crate::machine;
 use crate::tokens::{self, Claim, ClaimValue, IssuerUrl, TokenRules};
 use crate::webhooks::HookTarget;
 
-/// Where and how the service runs. Every option has its variable of the environment ([`with_variable`]).
+/// Where and how the service runs. Every option has its variable of the environment (`with_variable`).
 #[derive(Debug, Clone, clap::Args)]
 pub struct Config {
     /// Address to listen on; port 0 takes a free one. Where others than this machine can call, keys are needed.

@@ -82,7 +82,7 @@ async fn the_results_of_a_study_come_line_by_line_and_its_table_at_both_addresse
         .answer()
         .await;
     assert_eq!(answer.headers()["content-type"], "application/x-ndjson");
-    let text = answer.body().await;
+    let text = answer.whole_text().await;
     let lines: Vec<Value> = text
         .lines()
         .map(|line| serde_json::from_str(line).unwrap())
@@ -107,10 +107,10 @@ async fn the_results_of_a_study_come_line_by_line_and_its_table_at_both_addresse
         .answer()
         .await;
     let tag = csv.headers()["etag"].clone();
-    let csv = csv.body().await;
+    let csv = csv.whole_text().await;
     let old = bench.get(&format!("{path}/results.csv")).answer().await;
     assert!(old.headers().contains_key("deprecation"));
-    assert_eq!(old.body().await, csv);
+    assert_eq!(old.whole_text().await, csv);
     let known = bench
         .get(ended["links"]["results_csv"].as_str().unwrap())
         .header("if-none-match", tag);
@@ -121,7 +121,7 @@ async fn the_results_of_a_study_come_line_by_line_and_its_table_at_both_addresse
     let lines = bench.get(ended["links"]["table_ndjson"].as_str().unwrap());
     let lines = lines.answer().await;
     assert_eq!(lines.headers()["content-type"], "application/x-ndjson");
-    let lines = lines.body().await;
+    let lines = lines.whole_text().await;
     let rows: Vec<Value> = lines
         .lines()
         .map(|line| serde_json::from_str(line).unwrap())

@@ -247,7 +247,7 @@ pub(crate) trait Asked: Sized {
     }
 
     /// The text of it.
-    async fn body(self) -> String {
+    async fn whole_text(self) -> String {
         self.answer().await.text().await.unwrap()
     }
 }

@@ -88,7 +88,7 @@ async fn check(client: &Client, process: &Process, taken: &Taken) {
         let ended = client.get(&url).header("prefer", "wait=20").answer().await;
         let ended = ended.document().await;
         assert_eq!(ended["status"], "successful", "job {number}: {ended}");
-        let text = client.get(format!("{url}/results")).body().await;
+        let text = client.get(format!("{url}/results")).whole_text().await;
         let submission = Submission::parse(job(*number).to_string().as_bytes()).unwrap();
         assert_eq!(
             text,

@@ -126,14 +126,14 @@ async fn answers_bear_the_request_id_and_are_packed_for_who_asks() {
 #[tokio::test]
 async fn every_problem_has_its_page() {
     let bench = Bench::quick().await;
-    let index = bench.get("/problems").body().await;
+    let index = bench.get("/problems").whole_text().await;
     for code in Code::ALL {
         let page = bench
             .get(&format!("/problems/{}", code.slug()))
             .answer()
             .await;
         assert_eq!(page.status(), StatusCode::OK);
-        assert!(page.body().await.contains(code.explanation()));
+        assert!(page.whole_text().await.contains(code.explanation()));
         assert!(index.contains(code.slug()));
     }
 }
@@ -143,8 +143,8 @@ async fn the_documentation_needs_nothing_from_elsewhere() {
     let bench = Bench::quick().await;
     let page = bench.get("/docs/").answer().await;
     assert_eq!(page.status(), StatusCode::OK);
-    assert!(!page.body().await.contains("://"));
-    let script = bench.get("/docs/swagger-initializer.js").body().await;
+    assert!(!page.whole_text().await.contains("://"));
+    let script = bench.get("/docs/swagger-initializer.js").whole_text().await;
     assert!(
         script.contains("../openapi.json") && script.contains("\"validatorUrl\": \"none\""),
         "{script}"
@@ -188,14 +188,14 @@ async fn the_documentation_needs_nothing_from_elsewhere() {
 #[tokio::test]
 async fn the_service_tells_its_health_and_numbers() {
     let bench = Bench::quick().await;
-    assert_eq!(bench.get("/health/live").body().await, "alive");
+    assert_eq!(bench.get("/health/live").whole_text().await, "alive");
     let ready = bench.get("/health/ready").answer().await;
     assert_eq!(ready.status(), StatusCode::OK);
     assert_eq!(ready.document().await["workers"], 1);
 
     let path = bench.submit(&submission(1.0)).await;
     bench.ended(&path).await;
-    let numbers = bench.get("/metrics").body().await;
+    let numbers = bench.get("/metrics").whole_text().await;
     for name in [
         "meshwright_jobs_waiting",
         "meshwright_jobs_running",

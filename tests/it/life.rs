@@ -50,7 +50,7 @@ async fn a_job_goes_from_submission_over_progress_to_the_very_text_of_its_result
 
     let results = bench.get(&format!("{path}/results")).answer().await;
     assert_eq!(results.status(), StatusCode::OK);
-    assert_eq!(results.body().await, RESULTS);
+    assert_eq!(results.whole_text().await, RESULTS);
 }
 
 #[tokio::test]

@@ -129,11 +129,11 @@ async fn a_population_comes_to_what_its_table_says_whenever_it_is_asked() {
             .answer()
             .await;
         let tag = before.headers()["etag"].clone();
-        let text = before.body().await;
+        let text = before.whole_text().await;
         bench.shut_down().await;
         bench.start_again().await;
         let after = bench.get(&format!("{path}/results/population"));
-        assert_eq!(after.body().await, text);
+        assert_eq!(after.whole_text().await, text);
         let known = bench.get(&format!("{path}/results/population"));
         let known = known.header("if-none-match", tag).answer().await;
         assert_eq!(known.status(), StatusCode::NOT_MODIFIED);

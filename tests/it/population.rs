@@ -37,7 +37,7 @@ async fn text(process: &Process, client: &Client, path: &str) -> String {
     let response = client.get(format!("{}{path}", process.base)).send().await;
     let response = response.unwrap();
     assert_eq!(response.status(), 200, "{path}");
-    response.body().await
+    response.whole_text().await
 }
 
 /// The jobs of a study, page after page.

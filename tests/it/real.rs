@@ -222,15 +222,15 @@ async fn a_run_up_comes_back_with_its_table_and_in_the_forms_of_other_programs()
     assert!(unseen.contains("shafts, bearings, housing"), "{unseen}");
 
     let get = async |file: &str| bench.get(&format!("{path}/results/{file}")).answer().await;
-    let run_up = get("run-up.csv").await.body().await;
+    let run_up = get("run-up.csv").await.whole_text().await;
     assert!(
         run_up.starts_with("output_torque_n_m,driving_speed_rpm,branch,rms_um,peak_to_peak_um,"),
         "{run_up}"
     );
     assert_eq!(run_up.lines().count(), 1 + 2 * 41);
-    let drawn = get("run-up.svg").await.body().await;
+    let drawn = get("run-up.svg").await.whole_text().await;
     assert!(drawn.starts_with("<svg") && drawn.contains("115 N m, down"));
-    let csv = get("force-table.csv").await.body().await;
+    let csv = get("force-table.csv").await.whole_text().await;
     assert_eq!(
         csv.lines().filter(|line| !line.starts_with('#')).count(),
         1 + 2 * 12 * 400
@@ -238,14 +238,14 @@ async fn a_run_up_comes_back_with_its_table_and_in_the_forms_of_other_programs()
     assert!(
         get("force-table.txt")
             .await
-            .body()
+            .whole_text()
             .await
             .starts_with("#1\n")
     );
     assert!(
         get("force-table.mo")
             .await
-            .body()
+            .whole_text()
             .await
             .contains("end MeshwrightMesh;")
     );

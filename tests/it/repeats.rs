@@ -98,7 +98,7 @@ async fn an_equal_submission_is_successful_at_once() {
         .get(job["links"]["results"].as_str().unwrap())
         .answer()
         .await;
-    assert_eq!(results.body().await, RESULTS);
+    assert_eq!(results.whole_text().await, RESULTS);
 
     bench.submit(&submission(20.0)).await;
     engine.next().await.finish();

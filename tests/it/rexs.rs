@@ -179,7 +179,7 @@ async fn a_model_is_read_and_a_job_is_written_as_one_over_http() {
     let written = bench.get(&format!("{job}/submission.rexs"));
     let written = written.answer().await;
     assert_eq!(written.headers()["content-type"], "application/xml");
-    let written = written.body().await;
+    let written = written.whole_text().await;
     assert!(written.contains("meshing_stiffness_characteristic"));
     let again = post(written, "text/xml").await.unwrap();
     let again = again.document().await;

@@ -41,7 +41,12 @@ async fn begun(bench: &Bench, study: &Value) -> String {
         .headers()
         .get("location")
         .map(|path| path.to_str().unwrap().to_owned());
-    assert_eq!(status, StatusCode::ACCEPTED, "{}", response.body().await);
+    assert_eq!(
+        status,
+        StatusCode::ACCEPTED,
+        "{}",
+        response.whole_text().await
+    );
     path.unwrap()
 }
 
@@ -135,7 +140,10 @@ async fn a_search_finds_its_best_design_confirms_it_and_gives_its_submission() {
         (&fine["method"], &fine["resolution"]["grid"]),
         (&json!("flexible"), &json!("fine"))
     );
-    let csv = bench.get(&format!("{path}/results/table.csv")).body().await;
+    let csv = bench
+        .get(&format!("{path}/results/table.csv"))
+        .whole_text()
+        .await;
     assert_eq!(csv.lines().count(), 32);
 
     let other = begun(&bench, &json!({ "base": reliefs(2)["base"], "axes": [{ "path": "/output_torques_n_m/0", "values": [1.0] }] })).await;

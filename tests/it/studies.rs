@@ -101,7 +101,7 @@ async fn a_study_fills_its_table_row_by_row() {
             .get(job["links"]["results"].as_str().unwrap())
             .answer()
             .await;
-        assert_eq!(results.body().await, RESULTS);
+        assert_eq!(results.whole_text().await, RESULTS);
     }
     let jobs = bench.job(ended["links"]["jobs"].as_str().unwrap()).await;
     assert_eq!(jobs["items"].as_array().unwrap().len(), 2);
@@ -113,7 +113,7 @@ async fn a_study_fills_its_table_row_by_row() {
         response.headers()["content-type"],
         "text/csv; charset=utf-8"
     );
-    let text = response.body().await;
+    let text = response.whole_text().await;
     // A header, and a line for each of two rows and the stub's two torques.
     assert_eq!(text.lines().count(), 5, "{text}");
     assert!(text.starts_with("label,changes./output_torques_n_m/0,job,status,"));
@@ -259,7 +259,7 @@ async fn a_study_that_keeps_statistics_has_its_table_and_no_curves() {
     }
     let documents = bench.get(&format!("{path}/results/documents.ndjson"));
     let documents = documents.answer().await;
-    assert_eq!(documents.body().await, "");
+    assert_eq!(documents.whole_text().await, "");
 
     // The numbers are there for the next study that wants no more.
     let again = submit(&bench, &study).await;
@@ -274,7 +274,7 @@ async fn a_study_that_keeps_statistics_has_its_table_and_no_curves() {
     assert!(job["links"]["same_as"].is_null() && job["keep"].is_null());
     for path in [&single, design] {
         let results = bench.get(&format!("{path}/results")).answer().await;
-        assert_eq!(results.body().await, RESULTS);
+        assert_eq!(results.whole_text().await, RESULTS);
     }
 }
 
