@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use axum::http::{HeaderValue, Uri};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{Arg, value_parser};
 use jiff::SignedDuration;
 use jsonwebtoken::Algorithm;
 use meshwright_connections::Bounds;
@@ -17,22 +18,16 @@ use crate::machine;
 use crate::tokens::{self, Claim, ClaimValue, IssuerUrl, TokenRules};
 use crate::webhooks::HookTarget;
 
-/// Where and how the service runs. Every option has its variable of the environment.
+/// Where and how the service runs. Every option has its variable of the environment (`with_variable`).
 #[derive(Debug, Clone, clap::Args)]
 pub struct Config {
     /// Address to listen on; port 0 takes a free one. Where others than this machine can call, keys are needed.
-    #[arg(
-        long,
-        env = "MESHWRIGHT_LISTEN",
-        default_value = "127.0.0.1:8080",
-        value_name = "ADDRESS"
-    )]
+    #[arg(long, default_value = "127.0.0.1:8080", value_name = "ADDRESS")]
     pub listen: SocketAddr,
 
     /// File of the database, which is made if it is absent; or postgres://user@host/name, on which several processes work.
     #[arg(
         long,
-        env = "MESHWRIGHT_DATABASE",
         default_value = "./meshwright.db",
         hide_env_values = true,
         value_name = "FILE or ADDRESS"
@@ -40,77 +35,66 @@ pub struct Config {
     pub database: DatabaseAddress,
 
     /// Who brings the tables of the database up to date: this process when it starts, or `meshwright migrate` only.
-    #[arg(long, env = "MESHWRIGHT_MIGRATE", value_parser = migrate(), default_value = "auto")]
+    #[arg(long, value_parser = migrate(), default_value = "auto")]
     pub migrate: Migrate,
 
     /// What this process does. Several on one PostgreSQL may divide the work.
-    #[arg(long, env = "MESHWRIGHT_ROLE", value_enum, default_value = "all")]
+    #[arg(long, value_enum, default_value = "all")]
     pub role: Part,
 
     /// Jobs computed at the same time, each by up to eight threads [default: one for each core, fewer on large machines].
-    #[arg(long, env = "MESHWRIGHT_WORKERS", value_name = "NUMBER")]
+    #[arg(long, value_name = "NUMBER")]
     pub workers: Option<NonZeroUsize>,
 
     /// Origins whose pages may call the service, separated by commas; * for all.
-    #[arg(
-        long,
-        env = "MESHWRIGHT_CORS_ORIGIN",
-        value_delimiter = ',',
-        value_name = "ORIGIN"
-    )]
+    #[arg(long, value_delimiter = ',', value_name = "ORIGIN")]
     pub cors_origin: Vec<HeaderValue>,
 
     /// Address under which clients see the service, for all links [default: links are relative to the host].
-    #[arg(long, env = "MESHWRIGHT_PUBLIC_URL", value_parser = public_url, value_name = "URL")]
+    #[arg(long, value_parser = public_url, value_name = "URL")]
     pub public_url: Option<String>,
 
     /// Jobs that may wait; further ones are refused.
-    #[arg(
-        long,
-        env = "MESHWRIGHT_QUEUE_LIMIT",
-        default_value_t = 1000,
-        value_name = "NUMBER"
-    )]
+    #[arg(long, default_value_t = 1000, value_name = "NUMBER")]
     pub queue_limit: u32,
 
     /// Time for one job; a job that takes longer fails.
-    #[arg(long, env = "MESHWRIGHT_TIME_LIMIT_SECONDS", default_value_t = 600, value_name = "SECONDS",
-          value_parser = clap::value_parser!(u64).range(1..=7 * 24 * 3600))]
+    #[arg(long, default_value_t = 600, value_name = "SECONDS",
+          value_parser = value_parser!(u64).range(1..=7 * 24 * 3600))]
     pub time_limit_seconds: u64,
 
     /// Time after which a job whose worker has not been heard of is given to another one.
-    #[arg(long, env = "MESHWRIGHT_LEASE", default_value = "30s", value_parser = lasting, value_name = "TIME", hide = true)]
+    #[arg(long, default_value = "30s", value_parser = lasting, value_name = "TIME", hide = true)]
     pub lease: Duration,
 
     /// Memory for the teeth, blanks and gears that jobs and previews share, in MB of 2^20 bytes.
-    #[arg(long, env = "MESHWRIGHT_CACHE_MB", default_value_t = 256, value_name = "MB",
-          value_parser = clap::value_parser!(u32).range(0..=1 << 20))]
+    #[arg(long, default_value_t = 256, value_name = "MB",
+          value_parser = value_parser!(u32).range(0..=1 << 20))]
     pub cache_mb: u32,
 
     /// Memory for everything that is computed or read at the same time, in MB; what does not fit waits [default: half of the
     /// machine's].
-    #[arg(long, env = "MESHWRIGHT_MEMORY_MB", value_name = "MB",
-          value_parser = clap::value_parser!(u64).range(64..=1 << 24))]
+    #[arg(long, value_name = "MB", value_parser = value_parser!(u64).range(64..=1 << 24))]
     pub memory_mb: Option<u64>,
 
-    /// Memory that one job or preview may take, by the estimate that /v1/validate tells; larger ones are refused.
-    #[arg(long, env = "MESHWRIGHT_JOB_MEMORY_MB", default_value_t = 2048, value_name = "MB",
-          value_parser = clap::value_parser!(u64).range(1..=1 << 20))]
+    /// Memory that one job or preview may take, by the estimate of /v1/validate; larger ones are refused.
+    #[arg(long, default_value_t = 2048, value_name = "MB",
+          value_parser = value_parser!(u64).range(1..=1 << 20))]
     pub job_memory_mb: u64,
 
     /// Previews that requests may wait for at the same time; further ones are refused.
-    #[arg(long, env = "MESHWRIGHT_PREVIEWS", default_value_t = 8, value_name = "NUMBER",
-          value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, default_value_t = 8, value_name = "NUMBER",
+          value_parser = value_parser!(u32).range(1..=1000))]
     pub previews: u32,
 
     /// Positions times torques of one preview, at most.
-    #[arg(long, env = "MESHWRIGHT_PREVIEW_POSITIONS", default_value_t = 4000, value_name = "NUMBER",
-          value_parser = clap::value_parser!(u64).range(1..=meshwright_wire::submission::MOST_POSITIONS))]
+    #[arg(long, default_value_t = 4000, value_name = "NUMBER",
+          value_parser = value_parser!(u64).range(1..=meshwright_wire::submission::MOST_POSITIONS))]
     pub preview_positions: u64,
 
     /// Time for one preview, from its request to its answer.
-    #[arg(long, env = "MESHWRIGHT_PREVIEW_TIME_LIMIT_SECONDS", default_value_t = 10, value_name = "SECONDS",
-          value_parser = clap::value_parser!(u64).range(1..=60))]
+    #[arg(long, default_value_t = 10, value_name = "SECONDS",
+          value_parser = value_parser!(u64).range(1..=60))]
     pub preview_time_limit_seconds: u64,
 
     /// What is kept, and how long.
@@ -153,20 +137,15 @@ impl Part {
 #[derive(Debug, Clone, clap::Args)]
 pub struct KeepOptions {
     /// Time that jobs and studies are kept after their end, such as 30d or 12h; 0 keeps them for good.
-    #[arg(long, env = "MESHWRIGHT_KEEP_RESULTS", default_value = "30d", value_parser = span, value_name = "TIME")]
+    #[arg(long, default_value = "30d", value_parser = span, value_name = "TIME")]
     pub keep_results: Duration,
 
     /// Size of the database beyond which the jobs and studies that ended first are removed, in GB; 0 for any size.
-    #[arg(
-        long,
-        env = "MESHWRIGHT_KEEP_GB",
-        default_value_t = 10.0,
-        value_name = "GB"
-    )]
+    #[arg(long, default_value_t = 10.0, value_name = "GB")]
     pub keep_gb: f64,
 
     /// Time between two looks at what is old.
-    #[arg(long, env = "MESHWRIGHT_KEEP_EVERY", default_value = "5m", value_parser = lasting, value_name = "TIME", hide = true)]
+    #[arg(long, default_value = "5m", value_parser = lasting, value_name = "TIME", hide = true)]
     pub keep_every: Duration,
 }
 
@@ -174,83 +153,53 @@ pub struct KeepOptions {
 #[derive(Debug, Clone, clap::Args)]
 pub struct AdmissionOptions {
     /// Names under which clients call the service, beside localhost, its addresses and the public one; separated by commas.
-    #[arg(
-        long = "allowed-host",
-        env = "MESHWRIGHT_ALLOWED_HOSTS",
-        value_delimiter = ',',
-        value_name = "NAME"
-    )]
+    #[arg(long = "allowed-host", value_delimiter = ',', value_name = "NAME")]
     pub allowed_hosts: Vec<String>,
 
     /// Address of a listener of its own for /metrics and health; /metrics is served only there then.
-    #[arg(long, env = "MESHWRIGHT_METRICS_LISTEN", value_name = "ADDRESS")]
+    #[arg(long, value_name = "ADDRESS")]
     pub metrics_listen: Option<SocketAddr>,
 
     /// Whether requests need keys [default: as soon as there is one, and wherever others than this machine may be at the other
     /// end: beyond the loopback, with a public or allowed name, behind a proxy].
-    #[arg(long, env = "MESHWRIGHT_KEYS", value_enum, hide_default_value = true)]
+    #[arg(long, value_enum, hide_default_value = true)]
     pub keys: Option<KeysRule>,
 
     /// Requests a second without a key that one address may send where keys are needed, and all together twenty times as many; 0
     /// for any number.
-    #[arg(
-        long,
-        env = "MESHWRIGHT_REQUESTS_WITHOUT_KEY",
-        default_value_t = 50,
-        value_name = "NUMBER"
-    )]
+    #[arg(long, default_value_t = 50, value_name = "NUMBER")]
     pub requests_without_key: u32,
 
     /// Requests a second that one client may send; 0 for any number.
-    #[arg(
-        long,
-        env = "MESHWRIGHT_REQUESTS_PER_SECOND",
-        default_value_t = 0,
-        value_name = "NUMBER"
-    )]
+    #[arg(long, default_value_t = 0, value_name = "NUMBER")]
     pub requests_per_second: u32,
 
     /// Jobs of one client that may wait, not counting designs of studies [default: half of --queue-limit].
-    #[arg(long, env = "MESHWRIGHT_CLIENT_QUEUE_LIMIT", value_name = "NUMBER")]
+    #[arg(long, value_name = "NUMBER")]
     pub client_queue_limit: Option<u32>,
 
     /// Designs of studies of one client that may wait.
-    #[arg(long, env = "MESHWRIGHT_CLIENT_DESIGN_LIMIT", default_value_t = 100_000, value_name = "NUMBER",
-          value_parser = clap::value_parser!(i64).range(1..))]
+    #[arg(long, default_value_t = 100_000, value_name = "NUMBER",
+          value_parser = value_parser!(i64).range(1..))]
     pub client_design_limit: i64,
 
     /// Streams of events and waiting requests that one client may have open, at most an eighth of --connections; all together may
     /// have eight times as many, at most half of --connections.
-    #[arg(
-        long,
-        env = "MESHWRIGHT_CLIENT_STREAMS",
-        default_value_t = 64,
-        value_name = "NUMBER"
-    )]
+    #[arg(long, default_value_t = 64, value_name = "NUMBER")]
     pub client_streams: usize,
 
     /// Connections at the same time; idle ones are evicted for new ones. One client, or one address without a key, has a quarter of them
     /// busy at most.
-    #[arg(
-        long,
-        env = "MESHWRIGHT_CONNECTIONS",
-        default_value_t = 1024,
-        value_name = "NUMBER"
-    )]
+    #[arg(long, default_value_t = 1024, value_name = "NUMBER")]
     pub connections: usize,
 
     /// Time for the head of a request to come, and for an idle connection to stay.
-    #[arg(long, env = "MESHWRIGHT_IDLE_TIME", default_value = "20s", value_parser = span, value_name = "TIME")]
+    #[arg(long, default_value = "20s", value_parser = span, value_name = "TIME")]
     pub idle_time: Duration,
 
-    /// Hosts that clients may be told at by webhooks, separated by commas: hooks.example.com, *.example.com. A host named
+    /// Hosts to which clients may have webhooks sent, separated by commas: hooks.example.com, *.example.com. A host named
     /// in full may have a private address, one of this machine or its link only if it is named by that address. Without any, webhooks are off.
-    #[arg(
-        long = "webhook-host",
-        env = "MESHWRIGHT_WEBHOOK_HOSTS",
-        value_delimiter = ',',
-        value_name = "HOST"
-    )]
+    #[arg(long = "webhook-host", value_delimiter = ',', value_name = "HOST")]
     pub webhook_hosts: Vec<HookTarget>,
 }
 
@@ -258,49 +207,23 @@ pub struct AdmissionOptions {
 #[derive(Debug, Clone, clap::Args)]
 pub struct OidcOptions {
     /// Identity provider (OpenID Connect) whose tokens are accepted beside keys, as they have it under iss [default: keys alone].
-    #[arg(
-        long,
-        env = "MESHWRIGHT_OIDC_ISSUER",
-        value_name = "URL",
-        requires = "oidc_audience"
-    )]
+    #[arg(long, value_name = "URL", requires = "oidc_audience")]
     pub oidc_issuer: Option<IssuerUrl>,
 
     /// What its tokens for this service have under aud.
-    #[arg(
-        long,
-        env = "MESHWRIGHT_OIDC_AUDIENCE",
-        value_name = "NAME",
-        requires = "oidc_issuer"
-    )]
+    #[arg(long, value_name = "NAME", requires = "oidc_issuer")]
     pub oidc_audience: Option<String>,
 
     /// Claim that names the client: its name, or a JSON pointer into the claims. Take one that its bearer cannot choose.
-    #[arg(
-        long,
-        env = "MESHWRIGHT_OIDC_CLIENT_CLAIM",
-        default_value = "sub",
-        value_name = "CLAIM"
-    )]
+    #[arg(long, default_value = "sub", value_name = "CLAIM")]
     pub oidc_client_claim: Claim,
 
     /// Claim that makes an operator, as the word or in a list: roles=admin, /realm_access/roles=admin [default: no token does].
-    #[arg(
-        long,
-        env = "MESHWRIGHT_OIDC_OPERATOR_CLAIM",
-        value_name = "CLAIM=VALUE"
-    )]
+    #[arg(long, value_name = "CLAIM=VALUE")]
     pub oidc_operator_claim: Option<ClaimValue>,
 
     /// Algorithms that its tokens may be signed with, separated by commas.
-    #[arg(
-        long,
-        env = "MESHWRIGHT_OIDC_ALGORITHM",
-        value_delimiter = ',',
-        default_value = "RS256",
-        value_parser = tokens::algorithm,
-        value_name = "NAME"
-    )]
+    #[arg(long, value_delimiter = ',', default_value = "RS256", value_parser = tokens::algorithm, value_name = "NAME")]
     pub oidc_algorithm: Vec<Algorithm>,
 }
 
@@ -410,7 +333,7 @@ impl Config {
             keys: self.admission.keys.unwrap_or_default(),
             // Who names somebody that vouches for people wants to know who they are.
             local: loopback && hosts.is_empty() && self.oidc.oidc_issuer.is_none(),
-            // Elsewhere the names of the service are known only if they are told; there, keys are needed anyway.
+            // Elsewhere the names of the service are known only if they are given; there, keys are needed anyway.
             strict_hosts: loopback || !hosts.is_empty(),
             hosts,
             requests_per_second: self.admission.requests_per_second,
@@ -455,6 +378,12 @@ const LEAST_STALL: Duration = Duration::from_secs(120);
 
 /// Descriptors that the process needs for itself: the database, its log, files, requests of its own, and the reserve of connections.
 const OWN_DESCRIPTORS: u64 = 128;
+
+/// An option with its variable of the environment: `MESHWRIGHT_` and the name of its field.
+pub(crate) fn with_variable(option: Arg) -> Arg {
+    let variable = format!("MESHWRIGHT_{}", option.get_id().as_str().to_uppercase());
+    option.env(variable)
+}
 
 /// Who may bring the tables of the database up to date, by its words.
 fn migrate() -> impl TypedValueParser<Value = Migrate> {

@@ -78,7 +78,7 @@ impl Key {
         sha256_hex(&self.secret)
     }
 
-    /// The whole key, to be told once.
+    /// The whole key, to be shown once.
     pub fn reveal(&self) -> String {
         format!("{PREFIX}_{}_{}", self.id, self.secret)
     }
@@ -94,7 +94,7 @@ impl Key {
         now: Timestamp,
     ) -> Result<Option<KeyRecord>, StoreError> {
         let record = store.find_key(&self.id, now).await?;
-        // The time of the comparison tells nothing of how much of the secret was right.
+        // The time of the comparison reveals nothing of how much of the secret was right.
         Ok(record.filter(|record| {
             let same = record
                 .secret_hash

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-/// Where the system does not tell its memory, it has this much, in MB.
+/// Where the system does not report its memory, it has this much, in MB.
 const USUAL_MB: u64 = 4096;
 
 /// The memory that the process may have, in MB.

@@ -302,7 +302,7 @@ impl Service {
         }
     }
 
-    /// Ends as a crash would: nothing is returned to the queue, nobody is told.
+    /// Ends as a crash would: nothing is returned to the queue, nobody is notified.
     pub async fn kill(self) {
         if let Some(server) = self.server {
             server.kill();

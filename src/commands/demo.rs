@@ -69,7 +69,7 @@ pub(super) async fn run(address: SocketAddr) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Shows the progress that the job's events tell until they end.
+/// Shows the progress in the job's events until they end.
 async fn follow(client: &reqwest::Client, events: &str) -> anyhow::Result<()> {
     let mut stream = client
         .get(events)

@@ -31,7 +31,7 @@ pub(crate) struct Keys {
 
 #[derive(Debug, clap::Subcommand)]
 enum What {
-    /// Make a key and print it. It is told this once and kept nowhere.
+    /// Make a key and print it. It is shown this once and kept nowhere.
     Create(Create),
     /// List the keys, without their secrets.
     List,

@@ -9,7 +9,7 @@ use anyhow::Context;
 use tracing_subscriber::EnvFilter;
 
 use super::demo;
-use crate::config::Config;
+use crate::config::{Config, with_variable};
 use crate::jobs::Clock;
 use crate::serve::{END, World, serve};
 use crate::spans::Spans;
@@ -17,6 +17,7 @@ use crate::webhooks::HookRules;
 
 /// Serve jobs over HTTP.
 #[derive(Debug, clap::Args)]
+#[command(mut_args(|option| if option.get_id() == "demo" { option } else { with_variable(option) }))]
 pub(crate) struct Serve {
     #[command(flatten)]
     config: Config,
@@ -25,10 +26,10 @@ pub(crate) struct Serve {
     demo: bool,
     /// Collector of OpenTelemetry that takes a span of each request and each job, by OTLP over HTTP: http://localhost:4318 [default:
     /// none].
-    #[arg(long, env = "MESHWRIGHT_OTLP_ENDPOINT", value_parser = endpoint, value_name = "URL")]
+    #[arg(long, value_parser = endpoint, value_name = "URL")]
     otlp_endpoint: Option<String>,
     /// Write the log as JSON, one object to a line.
-    #[arg(long, env = "MESHWRIGHT_LOG_JSON")]
+    #[arg(long)]
     log_json: bool,
 }
 

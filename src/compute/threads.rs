@@ -86,8 +86,8 @@ impl Work {
 /// another whole one, and the first ends only when that does.
 ///
 /// The system serves other threads first. A request needs a core for a fraction of a millisecond, a computation all of
-/// them for as long as it lasts: without a difference a request waits for the end of a time slice of every engine's
-/// thread, which under full load is longer than everything else that it waits for. The computation loses what requests
+/// them for as long as it lasts. With equal priority a request waits for the end of a time slice of every engine's
+/// thread. Under full load that is longer than everything else that it waits for. The computation loses what requests
 /// take, no more.
 pub(crate) fn engine_threads(
     name: impl Fn(usize) -> String + 'static,

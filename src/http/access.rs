@@ -44,7 +44,7 @@ pub enum KeysRule {
 pub struct AccessRules {
     /// Whether requests need keys.
     pub keys: KeysRule,
-    /// Whether only this machine reaches the service, as far as its configuration tells.
+    /// Whether only this machine reaches the service, as far as its configuration says.
     pub local: bool,
     /// Names under which the service may be called, beside this machine's own and all addresses.
     pub hosts: Vec<String>,

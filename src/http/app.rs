@@ -26,7 +26,7 @@ pub struct App {
     pub library: Library,
     /// The number of workers that live.
     pub workers_alive: Arc<AtomicUsize>,
-    /// Where clients are told.
+    /// Where clients want messages sent.
     pub webhooks: Webhooks,
     /// Who gets in by a token, where there is an identity provider.
     pub tokens: Option<Tokens>,

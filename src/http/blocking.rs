@@ -17,7 +17,7 @@ pub(super) async fn turn_to_read(client: &str) -> Part {
     READERS.take(client, 1).await
 }
 
-/// Does work for `client` where it holds nobody up. The work is told to stop when nobody waits for it any more.
+/// Does work for `client` where it holds nobody up. The work is stopped when nobody waits for it any more.
 ///
 /// # Errors
 ///

@@ -17,7 +17,7 @@ pub(super) enum Credential {
 }
 
 impl Credential {
-    /// What tells it from others and does not tell it to anybody.
+    /// What distinguishes it from others and does not reveal it.
     pub(super) fn fingerprint(&self) -> String {
         match self {
             Self::Key(key) => key.secret_hash(),

@@ -209,7 +209,7 @@ pub(super) async fn hold(
 }
 
 /// What is made of a document takes so many bytes, about. Every value of JSON but the first stands behind one of three signs, and every
-/// element of XML behind a fourth, so their number is known without reading them: texts that have such signs are told as larger than
+/// element of XML behind a fourth, so their number is known without reading them. Texts that contain such signs count as larger than
 /// they are.
 fn weight(document: &[u8]) -> u64 {
     let is_sign = |byte: &&u8| matches!(byte, b',' | b'[' | b'{' | b'<');

@@ -12,7 +12,7 @@ use super::edge::Edge;
 use super::parameters::invalid;
 use crate::jobs::{Cursor, Listed, Span};
 
-/// A list has so many items unless it is told, and so many at most.
+/// A list has so many items unless the request says otherwise, and so many at most.
 pub(super) const USUAL_LIMIT: u32 = 50;
 pub(super) const LARGEST_LIMIT: u32 = 200;
 

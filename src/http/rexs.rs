@@ -191,7 +191,7 @@ fn refusal(wrong: Vec<Wrong>) -> Problem {
     }
 }
 
-/// The submission, if it can be computed; what is wrong is told where it stands in the model.
+/// The submission, if it can be computed; what is wrong is reported at its place in the model.
 fn checked(stage: Option<i64>, import: &Import) -> Result<Submission, Vec<Wrong>> {
     let parsed = Submission::parse(import.submission.to_string().as_bytes());
     parsed.map_err(|problem| {

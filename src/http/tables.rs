@@ -383,21 +383,13 @@ enum File {
     Fmu,
 }
 
+#[rustfmt::skip]
 const FILES: [(&str, File); 22] = [
-    (
-        "ste.json",
-        File::Table(Table::TransmissionError, Form::Json),
-    ),
+    ("ste.json", File::Table(Table::TransmissionError, Form::Json)),
     ("ste.csv", File::Table(Table::TransmissionError, Form::Csv)),
     ("ste.svg", File::Picture(Picture::TransmissionError)),
-    (
-        "mesh-stiffness.json",
-        File::Table(Table::MeshStiffness, Form::Json),
-    ),
-    (
-        "mesh-stiffness.csv",
-        File::Table(Table::MeshStiffness, Form::Csv),
-    ),
+    ("mesh-stiffness.json", File::Table(Table::MeshStiffness, Form::Json)),
+    ("mesh-stiffness.csv", File::Table(Table::MeshStiffness, Form::Csv)),
     ("mesh-stiffness.svg", File::Picture(Picture::MeshStiffness)),
     ("spectrum.json", File::Table(Table::Spectrum, Form::Json)),
     ("spectrum.csv", File::Table(Table::Spectrum, Form::Csv)),

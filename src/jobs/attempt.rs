@@ -54,7 +54,7 @@ struct Done {
 /// Attempts that go on, by their places among those that were begun together.
 type Held = BTreeMap<usize, Attempt>;
 
-/// What the engine's threads tell: the attempt by its place, what it came to, and what it took.
+/// What the engine's threads report: the attempt by its place, what it came to, and what it took.
 type Reached = (usize, Outcome, SignedDuration);
 
 /// After so long it is looked up whether the claims still hold. What is computed by then is not worth the look.
@@ -81,7 +81,7 @@ type Work = (Uuid, String, Kept, Result<String, Damaged>, Run);
 
 impl WorkerContext {
     /// Has claimed jobs computed, and watches over them: heartbeat, time limit, shutdown. Gives back how often a
-    /// worker had been told of jobs when the last of these had ended, and nobody knew yet.
+    /// worker had been notified of jobs when the last of these had ended, and nobody knew yet.
     pub(super) async fn compute(&self, started: Vec<Started>, threads: &Threads) -> u64 {
         let mut rung = self.jobs.live.rung();
         let mut work = Vec::with_capacity(started.len());
@@ -238,7 +238,7 @@ impl WorkerContext {
         receiver
     }
 
-    /// Writes down what came of attempts in one commit, and tells of it. Gives back how often a worker had been told of jobs before.
+    /// Writes down what came of attempts in one commit, and notifies those who wait. Gives back how often a worker had been notified of jobs before.
     async fn settle(&self, done: Vec<Done>) -> u64 {
         let problems: Vec<String> = done
             .iter()

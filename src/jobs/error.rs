@@ -81,7 +81,7 @@ impl From<StoreError> for JobError {
     }
 }
 
-/// What clients are told of a document that is damaged. The cause stands in the log.
+/// The answer to clients for a document that is damaged. The cause stands in the log.
 pub fn damage_problem(error: &Damaged) -> Problem {
     error!(%error, "the database is damaged");
     let detail = "A document that is needed was changed since it was stored, by a fault of the disk or by other means. The failure has been logged.";

@@ -140,7 +140,7 @@ impl Live {
         self.work.notify_one();
     }
 
-    /// How often that was told.
+    /// How often that was notified.
     pub(super) fn rung(&self) -> u64 {
         self.rung.load(Ordering::SeqCst)
     }

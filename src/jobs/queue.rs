@@ -477,7 +477,7 @@ pub(super) fn new_job(submission: &Submission, client: &str, now: Timestamp) -> 
     }
 }
 
-/// What a submission takes of a core, in microseconds, as far as its size tells; less where the pair as drawn is known from others. The
+/// What a submission takes of a core, in microseconds, estimated from its size; less where the pair as drawn is known from others. The
 /// engine's own estimate is better, and takes a tenth of a job; for fair shares the order of magnitude is enough.
 pub(super) fn rough_cost(submission: &Submission, is_known_as_drawn: bool) -> u64 {
     // The closed form of the load distribution needs no grid.

@@ -1,6 +1,6 @@
 //! Searches: studies whose rows are chosen generation by generation, each by what came of those before.
 //!
-//! A search is a function of its document and of its rows. Who takes one over, after a crash or in another process, is told the rows that stand
+//! A search is a function of its document and of its rows. Who takes one over, after a crash or in another process, is given the rows that stand
 //! and goes on; two that did so at once would write the same rows, of which the table takes one.
 
 use std::sync::Arc;
@@ -105,7 +105,7 @@ impl Jobs {
         if confirmation.is_some() {
             let first = end;
             end += 1;
-            // One row more than there are: a study ends with its last one, and this one is to tell what came of it.
+            // One row more than there are: a study ends with its last one, and this one shows what came of it.
             let step = step_of(&shared, Some(end + 1));
             let wanted = Wanted {
                 first,

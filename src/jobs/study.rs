@@ -5,7 +5,7 @@ use meshwright_studies::SearchState;
 use meshwright_wire::warning::GearName;
 use meshwright_wire::{Code, Problem};
 
-/// The gear whose mass and holes the table of a study tells.
+/// The gear whose mass and holes the table of a study shows.
 pub fn gear_of(study: &StudyRecord) -> GearName {
     GearName::of_word(&study.gear).unwrap_or(GearName::Driven)
 }

@@ -47,7 +47,7 @@ impl From<StoreError> for WebhookError {
     }
 }
 
-/// A webhook that was made. The secret is told this once, and to who repeats the request.
+/// A webhook that was made. The secret is shown this once, and to who repeats the request.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Made {
     /// The webhook.
@@ -66,7 +66,7 @@ pub struct Webhooks {
 }
 
 impl Webhooks {
-    /// Webhooks that are told of `jobs`, by these rules.
+    /// Webhooks that report the ends of `jobs`, by these rules.
     pub fn new(jobs: Jobs, rules: HookRules) -> Self {
         Self { jobs, rules }
     }
@@ -218,7 +218,7 @@ fn new_secret() -> Result<String, WebhookError> {
     Ok(BASE64.encode(secret))
 }
 
-/// A secret as it is told.
+/// A secret as it is shown.
 fn shown(secret: &str) -> String {
     format!("whsec_{secret}")
 }

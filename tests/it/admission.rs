@@ -6,7 +6,7 @@ use meshwright::keys::Key;
 use reqwest::{Response, StatusCode};
 use serde_json::{Value, json};
 
-use crate::bench::{Asked, Bench, Said, problem, submission};
+use crate::bench::{Asked, Bench, problem, submission};
 
 /// Makes a key in the database of a service that runs, as `meshwright keys create` does.
 async fn make_key(
@@ -74,18 +74,10 @@ async fn keys_are_needed_as_soon_as_there_is_one() {
     // The right form and the wrong secret, of a key that is there and of one that is not.
     let (start, _) = key.rsplit_once('_').unwrap();
     let secret = "0".repeat(64);
-    problem(
-        get(&bench, "/v1/jobs", &format!("{start}_{secret}")).await,
-        401,
-        "unauthorized",
-    )
-    .await;
-    problem(
-        get(&bench, "/v1/jobs", &format!("mw_0123456789abcdef_{secret}")).await,
-        401,
-        "unauthorized",
-    )
-    .await;
+    let asked = get(&bench, "/v1/jobs", &format!("{start}_{secret}")).await;
+    problem(asked, 401, "unauthorized").await;
+    let asked = get(&bench, "/v1/jobs", &format!("mw_0123456789abcdef_{secret}")).await;
+    problem(asked, 401, "unauthorized").await;
 
     assert_eq!(get(&bench, "/v1/jobs", &key).await.status(), StatusCode::OK);
     assert_eq!(
@@ -135,7 +127,7 @@ async fn a_key_that_is_revoked_opens_nothing_from_that_moment_on() {
     store.close().await;
     problem(get(&bench, "/v1/jobs", &key).await, 401, "unauthorized").await;
     // The last key that goes does not let everybody in.
-    problem(bench.get("/v1/jobs").answer().await, 401, "unauthorized").await;
+    problem(bench.get("/v1/jobs"), 401, "unauthorized").await;
 }
 
 #[tokio::test]
@@ -175,13 +167,7 @@ async fn a_client_sees_and_touches_only_its_own() {
         }
     }
     let own = links(&job)[0].clone();
-    let deleted = bench
-        .client
-        .delete(bench.url(&own))
-        .bearer_auth(&other)
-        .answer()
-        .await;
-    problem(deleted, 404, "job_not_found").await;
+    problem(bench.delete(&own).bearer_auth(&other), 404, "job_not_found").await;
     // An equal submission of another client is computed for it, and tells nothing of the first.
     let theirs = submit(&bench, &other, 1.0).await.document().await;
     assert!(theirs["links"].get("same_as").is_none());
@@ -215,13 +201,7 @@ async fn a_reader_looks_and_changes_nothing_and_numbers_are_for_operators() {
         .bearer_auth(&reader);
     assert_eq!(validate.answer().await.status(), StatusCode::OK);
     problem(submit(&bench, &reader, 2.0).await, 403, "forbidden").await;
-    let deleted = bench
-        .client
-        .delete(bench.url(path))
-        .bearer_auth(&reader)
-        .answer()
-        .await;
-    problem(deleted, 403, "forbidden").await;
+    problem(bench.delete(path).bearer_auth(&reader), 403, "forbidden").await;
     for key in [&client, &reader] {
         problem(get(&bench, "/metrics", key).await, 403, "forbidden").await;
     }
@@ -302,8 +282,6 @@ async fn without_a_key_nobody_beyond_this_machine_gets_in() {
     let document = bench
         .client
         .get(format!("{base}/openapi.json"))
-        .answer()
-        .await
         .document()
         .await;
     assert_eq!(document["security"], json!([{ "key": [] }]));
@@ -341,20 +319,20 @@ async fn numbers_and_health_may_have_a_listener_of_their_own() {
         config.admission.metrics_listen = Some("127.0.0.1:0".parse().unwrap());
     })
     .await;
-    problem(bench.get("/metrics").answer().await, 404, "not_found").await;
+    problem(bench.get("/metrics"), 404, "not_found").await;
     let base = format!("http://{}", bench.service().metrics_address().unwrap());
     for path in ["/metrics", "/health/live", "/health/ready"] {
         let answer = bench.client.get(format!("{base}{path}")).answer().await;
         assert_eq!(answer.status(), StatusCode::OK, "{path}");
         // Nobody needs a key there: a page of a foreign name that leads there must not read it.
         let foreign = bench.client.get(format!("{base}{path}"));
-        let foreign = foreign.header("host", "evil.example").answer().await;
-        problem(foreign, 421, "host_not_allowed").await;
+        let asked = foreign.header("host", "evil.example");
+        problem(asked, 421, "host_not_allowed").await;
     }
-    let nothing = bench.client.get(format!("{base}/v1/jobs")).answer().await;
-    problem(nothing, 404, "not_found").await;
-    let posted = bench.client.post(format!("{base}/metrics")).answer().await;
-    problem(posted, 405, "method_not_allowed").await;
+    let asked = bench.client.get(format!("{base}/v1/jobs"));
+    problem(asked, 404, "not_found").await;
+    let asked = bench.client.post(format!("{base}/metrics"));
+    problem(asked, 405, "method_not_allowed").await;
 }
 
 #[tokio::test]
@@ -479,8 +457,7 @@ async fn a_key_opens_until_it_expires() {
     bench.start_again().await;
     problem(get(&bench, "/v1/jobs", &key).await, 401, "unauthorized").await;
     // It was made, so that not everybody is let in.
-    let without = bench.get("/v1/jobs").answer().await;
-    problem(without, 401, "unauthorized").await;
+    problem(bench.get("/v1/jobs"), 401, "unauthorized").await;
 }
 
 #[tokio::test]

@@ -185,7 +185,21 @@ impl Bench {
     }
 
     pub(crate) fn post(&self, path: &str, document: &Value) -> RequestBuilder {
-        self.client.post(self.url(path)).json(document)
+        self.send(path).json(document)
+    }
+
+    /// A POST without a body.
+    pub(crate) fn send(&self, path: &str) -> RequestBuilder {
+        self.client.post(self.url(path))
+    }
+
+    pub(crate) fn delete(&self, path: &str) -> RequestBuilder {
+        self.client.delete(self.url(path))
+    }
+
+    /// Asks for the end of what is at `path`.
+    pub(crate) fn cancel(&self, path: &str) -> RequestBuilder {
+        self.send(&format!("{path}/cancel"))
     }
 
     /// Submits a job and gives its address.
@@ -213,7 +227,7 @@ impl Bench {
         let mut job = Value::Null;
         for _ in 0..8 {
             let request = self.get(path).header("prefer", "wait=15");
-            job = request.answer().await.document().await;
+            job = request.document().await;
             if ["successful", "failed", "dismissed"].contains(&job["status"].as_str().unwrap()) {
                 return job;
             }
@@ -222,10 +236,20 @@ impl Bench {
     }
 }
 
-/// What a test asks.
-pub(crate) trait Asked {
+/// What a test asks, and what is answered: both have the same document.
+pub(crate) trait Asked: Sized {
     /// The answer, which has to come.
     async fn answer(self) -> Response;
+
+    /// The JSON of it.
+    async fn document(self) -> Value {
+        self.answer().await.json().await.unwrap()
+    }
+
+    /// The text of it.
+    async fn whole_text(self) -> String {
+        self.answer().await.text().await.unwrap()
+    }
 }
 
 impl Asked for RequestBuilder {
@@ -234,22 +258,9 @@ impl Asked for RequestBuilder {
     }
 }
 
-/// What is answered, which has to be read.
-pub(crate) trait Said {
-    /// The JSON of it.
-    async fn document(self) -> Value;
-
-    /// The text of it.
-    async fn body(self) -> String;
-}
-
-impl Said for Response {
-    async fn document(self) -> Value {
-        self.json().await.unwrap()
-    }
-
-    async fn body(self) -> String {
-        self.text().await.unwrap()
+impl Asked for Response {
+    async fn answer(self) -> Response {
+        self
     }
 }
 
@@ -392,8 +403,9 @@ pub(crate) fn submission(torque: f64) -> Value {
     })
 }
 
-/// The problem document of a response, which must be one, of a status and code.
-pub(crate) async fn problem(response: Response, status: u16, code: &str) -> Value {
+/// The problem document that is answered, which must be one, of a status and code.
+pub(crate) async fn problem(asked: impl Asked, status: u16, code: &str) -> Value {
+    let response = asked.answer().await;
     let found = response.status().as_u16();
     assert_eq!(
         response.headers()["content-type"],

@@ -14,7 +14,7 @@ use reqwest::Client;
 use serde_json::{Value, json};
 use tokio::sync::Mutex;
 
-use crate::bench::{Asked, Said};
+use crate::bench::Asked;
 use crate::process::Process;
 use crate::stores;
 use crate::submitters::{Bases, Submitters, Taken};
@@ -88,12 +88,7 @@ async fn check(client: &Client, process: &Process, taken: &Taken) {
         let ended = client.get(&url).header("prefer", "wait=20").answer().await;
         let ended = ended.document().await;
         assert_eq!(ended["status"], "successful", "job {number}: {ended}");
-        let text = client
-            .get(format!("{url}/results"))
-            .answer()
-            .await
-            .body()
-            .await;
+        let text = client.get(format!("{url}/results")).whole_text().await;
         let submission = Submission::parse(job(*number).to_string().as_bytes()).unwrap();
         assert_eq!(
             text,

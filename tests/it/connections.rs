@@ -7,7 +7,7 @@ use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 
 use crate::admission::key_of;
-use crate::bench::{Asked, Bench, PATIENCE, Said, problem, results, submission};
+use crate::bench::{Asked, Bench, PATIENCE, problem, results, submission};
 
 async fn service(adjust: impl FnOnce(&mut Config)) -> Bench {
     Bench::start(adjust, std::sync::Arc::new(|_, _| Ok(results()))).await
@@ -101,7 +101,7 @@ async fn the_streams_of_one_client_leave_most_connections_to_others() {
     let (bench, _engine) = Bench::steered_with(adjust).await;
     let (hog, other) = (key_of(&bench, "hog").await, key_of(&bench, "other").await);
     let request = bench.post("/v1/jobs", &submission(1.0)).bearer_auth(&hog);
-    let job = request.answer().await.document().await;
+    let job = request.document().await;
     let events = format!("/v1/jobs/{}/events", job["id"].as_str().unwrap());
     let mut streams = Vec::new();
     for _ in 0..16 / 8 {
@@ -109,8 +109,7 @@ async fn the_streams_of_one_client_leave_most_connections_to_others() {
         assert_eq!(stream.status(), 200);
         streams.push(stream);
     }
-    let one_more = bench.get(&events).bearer_auth(&hog).answer().await;
-    problem(one_more, 429, "rate_limited").await;
+    problem(bench.get(&events).bearer_auth(&hog), 429, "rate_limited").await;
     let answer = bench.get("/v1/jobs").bearer_auth(&other).answer().await;
     assert_eq!(answer.status(), 200);
 }
@@ -158,8 +157,7 @@ async fn one_client_has_a_quarter_of_the_connections_busy_and_health_is_answered
         assert!(start.elapsed() < Duration::from_secs(1), "{path}");
     }
     let request = bench.get("/v1/jobs").bearer_auth(&keys[4]);
-    let late = request.header("connection", "close").answer().await;
-    problem(late, 503, "overloaded").await;
+    problem(request.header("connection", "close"), 503, "overloaded").await;
 }
 
 #[tokio::test]

@@ -71,8 +71,7 @@ async fn what_operations_show_to_send_works_as_it_stands() {
                 None => shown.to_string(),
             };
             let request = bench
-                .client
-                .post(bench.url(&shown_address(path, &item["post"])))
+                .send(&shown_address(path, &item["post"]))
                 .header("content-type", media_type)
                 .body(body);
             let answer = request.send().await.unwrap();
@@ -255,57 +254,20 @@ fn each_part_knows_only_the_parts_below_it() {
         "crate::search",
         "crate::study",
     ];
+    #[rustfmt::skip]
     let forbidden: [(&str, &[&str]); 12] = [
-        (
-            "crates/wire/src",
-            &["axum", "sqlx", "tokio", "std::fs", "std::net"],
-        ),
-        (
-            "crates/studies/src",
-            &["axum", "sqlx", "tokio", "std::fs", "std::net"],
-        ),
+        ("crates/wire/src", &["axum", "sqlx", "tokio", "std::fs", "std::net"]),
+        ("crates/studies/src", &["axum", "sqlx", "tokio", "std::fs", "std::net"]),
         ("crates/studies/src/optimum", &above_numbers),
         ("crates/studies/src/sample", &above_numbers),
-        (
-            "src/compute",
-            &["crate::jobs", "crate::http", "crate::serve", "axum"],
-        ),
+        ("src/compute", &["crate::jobs", "crate::http", "crate::serve", "axum"]),
         ("src", &["sqlx"]),
-        (
-            "crates/store/src",
-            &["meshwright_wire", "meshwright_engine", "axum", "hyper"],
-        ),
-        (
-            "src/jobs",
-            &["crate::http", "crate::serve", "crate::webhooks", "axum"],
-        ),
+        ("crates/store/src", &["meshwright_wire", "meshwright_engine", "axum", "hyper"]),
+        ("src/jobs", &["crate::http", "crate::serve", "crate::webhooks", "axum"]),
         ("src/webhooks", &["crate::http", "crate::serve", "axum"]),
-        (
-            "crates/connections/src",
-            &[
-                "axum",
-                "sqlx",
-                "std::fs",
-                "meshwright_engine",
-                "meshwright_wire",
-            ],
-        ),
-        (
-            "crates/exchange/src",
-            &["tokio", "axum", "sqlx", "std::fs", "std::net"],
-        ),
-        (
-            "crates/engine/src",
-            &[
-                "serde",
-                "tokio",
-                "axum",
-                "sqlx",
-                "std::fs",
-                "std::net",
-                "std::time",
-            ],
-        ),
+        ("crates/connections/src", &["axum", "sqlx", "std::fs", "meshwright_engine", "meshwright_wire"]),
+        ("crates/exchange/src", &["tokio", "axum", "sqlx", "std::fs", "std::net"]),
+        ("crates/engine/src", &["serde", "tokio", "axum", "sqlx", "std::fs", "std::net", "std::time"]),
     ];
     for (folder, names) in forbidden {
         for file in rust_files(&root().join(folder)) {

@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{ConnectOptions, Connection};
 
-use crate::bench::{Asked, Bench, Said, problem, submission};
+use crate::bench::{Asked, Bench, problem, submission};
 use crate::process::Process;
 
 /// A small file system, gone when it is dropped.

@@ -10,7 +10,7 @@ use meshwright_wire::Code;
 use reqwest::{Method, StatusCode};
 use serde_json::{Value, json};
 
-use crate::bench::{Asked, Bench, RESULTS, Said, submission};
+use crate::bench::{Asked, Bench, RESULTS, submission};
 
 #[tokio::test]
 async fn every_link_bears_the_public_address() {
@@ -126,14 +126,14 @@ async fn answers_bear_the_request_id_and_are_packed_for_who_asks() {
 #[tokio::test]
 async fn every_problem_has_its_page() {
     let bench = Bench::quick().await;
-    let index = bench.get("/problems").answer().await.body().await;
+    let index = bench.get("/problems").whole_text().await;
     for code in Code::ALL {
         let page = bench
             .get(&format!("/problems/{}", code.slug()))
             .answer()
             .await;
         assert_eq!(page.status(), StatusCode::OK);
-        assert!(page.body().await.contains(code.explanation()));
+        assert!(page.whole_text().await.contains(code.explanation()));
         assert!(index.contains(code.slug()));
     }
 }
@@ -143,13 +143,8 @@ async fn the_documentation_needs_nothing_from_elsewhere() {
     let bench = Bench::quick().await;
     let page = bench.get("/docs/").answer().await;
     assert_eq!(page.status(), StatusCode::OK);
-    assert!(!page.body().await.contains("://"));
-    let script = bench
-        .get("/docs/swagger-initializer.js")
-        .answer()
-        .await
-        .body()
-        .await;
+    assert!(!page.whole_text().await.contains("://"));
+    let script = bench.get("/docs/swagger-initializer.js").whole_text().await;
     assert!(
         script.contains("../openapi.json") && script.contains("\"validatorUrl\": \"none\""),
         "{script}"
@@ -193,17 +188,14 @@ async fn the_documentation_needs_nothing_from_elsewhere() {
 #[tokio::test]
 async fn the_service_tells_its_health_and_numbers() {
     let bench = Bench::quick().await;
-    assert_eq!(
-        bench.get("/health/live").answer().await.body().await,
-        "alive"
-    );
+    assert_eq!(bench.get("/health/live").whole_text().await, "alive");
     let ready = bench.get("/health/ready").answer().await;
     assert_eq!(ready.status(), StatusCode::OK);
     assert_eq!(ready.document().await["workers"], 1);
 
     let path = bench.submit(&submission(1.0)).await;
     bench.ended(&path).await;
-    let numbers = bench.get("/metrics").answer().await.body().await;
+    let numbers = bench.get("/metrics").whole_text().await;
     for name in [
         "meshwright_jobs_waiting",
         "meshwright_jobs_running",
@@ -255,8 +247,6 @@ async fn what_can_be_known_without_a_job_is_told() {
     );
     let valid = bench
         .post("/v1/validate", &submission(115.0))
-        .answer()
-        .await
         .document()
         .await;
     assert_eq!(valid["valid"], true);

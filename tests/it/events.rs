@@ -1,6 +1,6 @@
 //! The stream of a job's events.
 
-use crate::bench::{Asked, Bench, Events, Said, submission};
+use crate::bench::{Asked, Bench, Events, submission};
 
 impl Events {
     async fn status(&mut self) -> String {
@@ -61,11 +61,7 @@ async fn a_stream_tells_of_a_cancel() {
     let work = engine.next().await;
     let mut events = Events::of(&bench, &path).await;
     assert_eq!(events.status().await, "running");
-    bench
-        .client
-        .post(bench.url(&format!("{path}/cancel")))
-        .answer()
-        .await;
+    bench.cancel(&path).answer().await;
     loop {
         let (name, data) = events.next().await.unwrap();
         if name == "status" {

@@ -19,7 +19,7 @@ use tokio::net::tcp::{OwnedReadHalf, OwnedWriteHalf};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::{Mutex, watch};
 
-use crate::bench::{Asked, Said};
+use crate::bench::Asked;
 use crate::process::Process;
 use crate::submitters::{Bases, Submitters};
 use crate::{server, stores};
@@ -469,7 +469,7 @@ async fn a_study_of_twenty_thousand_designs_through_two_processes() {
         .client
         .get(format!("{}{path}/results/table.csv", api.base))
         .timeout(Duration::from_secs(120));
-    let table = table.answer().await.body().await;
+    let table = table.whole_text().await;
     assert_eq!(table.lines().count(), 20_001);
     let read = read.elapsed();
     let bytes = fleet.bytes_of_each(20_000).await;

@@ -3,7 +3,7 @@
 use reqwest::Response;
 use serde_json::json;
 
-use crate::bench::{Asked, Bench, Said, problem, submission};
+use crate::bench::{Asked, Bench, problem, submission};
 
 async fn list(bench: &Bench, query: &str) -> Response {
     bench.get(&format!("/v1/jobs{query}")).answer().await
@@ -121,7 +121,6 @@ async fn a_text_with_a_character_nul_is_refused_by_either_store() {
         "/v1/studies?name=%00",
         "/v1/studies?tag=%00",
     ] {
-        let answer = bench.get(query).answer().await;
-        problem(answer, 400, "invalid_parameter").await;
+        problem(bench.get(query), 400, "invalid_parameter").await;
     }
 }

@@ -3,7 +3,7 @@
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 
-use crate::bench::{Asked, Bench, Said, problem};
+use crate::bench::{Asked, Bench, problem};
 
 /// Members of a small pair by the quick method: a varied field, and teeth of both gears.
 fn members(size: u32, sampling: &str) -> Value {
@@ -129,11 +129,11 @@ async fn a_population_comes_to_what_its_table_says_whenever_it_is_asked() {
             .answer()
             .await;
         let tag = before.headers()["etag"].clone();
-        let text = before.body().await;
+        let text = before.whole_text().await;
         bench.shut_down().await;
         bench.start_again().await;
         let after = bench.get(&format!("{path}/results/population"));
-        assert_eq!(after.answer().await.body().await, text);
+        assert_eq!(after.whole_text().await, text);
         let known = bench.get(&format!("{path}/results/population"));
         let known = known.header("if-none-match", tag).answer().await;
         assert_eq!(known.status(), StatusCode::NOT_MODIFIED);
@@ -166,8 +166,8 @@ async fn a_design_of_a_study_is_given_as_the_submission_that_its_job_computes() 
         assert_eq!(line["label"], format!("member {row}"));
     }
     for row in ["8", "-1", "first"] {
-        let response = bench.get(&format!("{path}/designs/{row}")).answer().await;
-        problem(response, 404, "not_found").await;
+        let asked = bench.get(&format!("{path}/designs/{row}"));
+        problem(asked, 404, "not_found").await;
     }
     // One that cannot be built is given as it was put together.
     let gear = &members(8, "sobol")["base"];
@@ -175,11 +175,8 @@ async fn a_design_of_a_study_is_given_as_the_submission_that_its_job_computes() 
     let path = begun(&bench, &study).await;
     let design = bench.job(&format!("{path}/designs/0")).await;
     assert_eq!(design["pair"]["center_distance_mm"], 60);
-    let none = bench
-        .get(&format!("{path}/results/population"))
-        .answer()
-        .await;
-    problem(none, 404, "not_found").await;
+    let asked = bench.get(&format!("{path}/results/population"));
+    problem(asked, 404, "not_found").await;
 }
 
 #[tokio::test]
@@ -221,10 +218,7 @@ async fn a_population_tells_what_is_there_while_it_runs_and_after_it_was_cancell
         ),
         (Some("running"), Some(3), Some(3))
     );
-    let cancelled = bench
-        .post(&format!("{path}/cancel"), &json!({}))
-        .answer()
-        .await;
+    let cancelled = bench.cancel(&path).answer().await;
     assert_eq!(cancelled.status(), StatusCode::ACCEPTED);
     let kept = bench.job(&format!("{path}/results/population")).await;
     assert_eq!(

@@ -3,7 +3,7 @@
 use meshwright_wire::Submission;
 use serde_json::{Value, json};
 
-use crate::bench::{Asked, Bench, Said};
+use crate::bench::{Asked, Bench};
 use crate::generated::Chance;
 
 /// Memory that one job may take, in MB: what a usual pair takes at most, and more.

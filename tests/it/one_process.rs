@@ -51,7 +51,7 @@ async fn a_stored_document_that_was_changed_is_not_served() {
         format!("{study}/results/table.csv"),
     ] {
         let answer = bench.get(&path).header("accept-encoding", "gzip");
-        problem(answer.answer().await, 500, "document_damaged").await;
+        problem(answer, 500, "document_damaged").await;
     }
 }
 

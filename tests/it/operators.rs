@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use meshwright_engine::library::Library;
 use serde_json::Value;
 
-use crate::bench::{Asked, Bench, Said, submission};
+use crate::bench::{Asked, Bench, submission};
 
 const DASHBOARD: &str = include_str!("../../deploy/grafana/meshwright.json");
 const ALERTS: &str = include_str!("../../deploy/prometheus/alerts.yaml");
@@ -22,7 +22,7 @@ fn names(text: &str) -> BTreeSet<&str> {
 #[tokio::test]
 async fn what_an_alert_waits_for_is_told_before_it_happens_the_first_time() {
     let bench = Bench::quick().await;
-    let told = bench.get("/metrics").answer().await.body().await;
+    let told = bench.get("/metrics").whole_text().await;
     let grows: Vec<&str> = ALERTS
         .split("increase(")
         .skip(1)
@@ -44,7 +44,7 @@ async fn every_number_of_the_dashboard_and_of_the_alerts_is_told() {
     let preview = bench.post("/v1/preview", &submission(1.0)).send().await;
     assert!(preview.unwrap().status().is_success());
     let told = bench.get("/metrics").answer().await;
-    let told = told.body().await;
+    let told = told.whole_text().await;
     let told = names(&told);
 
     let dashboard: Value = serde_json::from_str(DASHBOARD).unwrap();
@@ -98,7 +98,7 @@ async fn no_label_has_a_value_that_a_client_invents() {
             assert!(answer.status().is_client_error(), "{folder}");
         }
     }
-    let told = bench.get("/metrics").answer().await.body().await;
+    let told = bench.get("/metrics").whole_text().await;
 
     let document = bench.document("/openapi.json").await;
     let described = document["paths"].as_object().unwrap().keys();

@@ -4,7 +4,7 @@ use meshwright_wire::examples;
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 
-use crate::bench::{Asked, Bench, Said, problem, submission};
+use crate::bench::{Asked, Bench, problem, submission};
 
 fn example(name: &str) -> Value {
     let found = examples().iter().find(|example| example.name == name);
@@ -15,7 +15,7 @@ fn example(name: &str) -> Value {
 async fn the_guides_are_read_in_a_browser_where_a_warning_leads_to_them() {
     let bench = Bench::quick().await;
     let list = bench.get("/guides").answer().await;
-    let text = list.body().await;
+    let text = list.whole_text().await;
     assert!(
         text.contains("href=\"guides/is-my-thin-web-all-right\""),
         "{text}"
@@ -33,7 +33,7 @@ async fn the_guides_are_read_in_a_browser_where_a_warning_leads_to_them() {
     assert_eq!(guide.headers()["content-type"], "text/html; charset=utf-8");
     let policy = guide.headers()["content-security-policy"].to_str().unwrap();
     assert!(policy.contains("style-src 'self'"), "{policy}");
-    assert!(guide.body().await.contains("plane stress"));
+    assert!(guide.whole_text().await.contains("plane stress"));
     let figure = bench.get("/guides/figures/spacing-even.svg").send().await;
     assert_eq!(figure.unwrap().headers()["content-type"], "image/svg+xml");
     for absent in ["/guides/none", "/guides/figures/none.svg"] {
@@ -85,7 +85,7 @@ async fn the_page_and_its_files_come_with_their_types_and_a_strict_policy() {
     let again = bench.get("/").header("if-none-match", &tag).answer().await;
     assert_eq!(again.status(), StatusCode::NOT_MODIFIED);
 
-    let text = page.body().await;
+    let text = page.whole_text().await;
     let files = text.split('"').filter(|word| word.starts_with("web/"));
     let mut seen = 0;
     for file in files {
@@ -119,12 +119,7 @@ async fn the_page_and_its_files_come_with_their_types_and_a_strict_policy() {
 async fn the_outline_of_a_pair_comes_as_numbers_or_as_a_drawing() {
     let bench = Bench::quick().await;
     let case_2 = example("test-case-2");
-    let outline = bench
-        .post("/v1/outline", &case_2)
-        .answer()
-        .await
-        .document()
-        .await;
+    let outline = bench.post("/v1/outline", &case_2).document().await;
     assert_eq!(outline["driven"]["holes"].as_array().unwrap().len(), 10);
     assert_eq!(outline["driven"]["center_mm"], json!([100.5, 0.0]));
     assert_eq!(outline["driving"]["angle_per_mesh_period_deg"], 7.2);
@@ -140,13 +135,10 @@ async fn the_outline_of_a_pair_comes_as_numbers_or_as_a_drawing() {
         .header("accept", "image/svg+xml");
     let picture = request.answer().await;
     assert_eq!(picture.headers()["content-type"], "image/svg+xml");
-    assert!(picture.body().await.starts_with("<svg"));
+    assert!(picture.whole_text().await.starts_with("<svg"));
 
-    let bad = bench
-        .post("/v1/outline", &example("bad-case-3-as-printed"))
-        .answer()
-        .await;
-    problem(bad, 422, "teeth_do_not_reach").await;
+    let asked = bench.post("/v1/outline", &example("bad-case-3-as-printed"));
+    problem(asked, 422, "teeth_do_not_reach").await;
 }
 
 #[tokio::test]
@@ -164,7 +156,7 @@ async fn pictures_and_look_up_tables_stand_beside_the_results() {
             "image/svg+xml",
             "{picture}"
         );
-        let text = answer.body().await;
+        let text = answer.whole_text().await;
         assert!(
             text.starts_with("<svg") && !text.contains("NaN"),
             "{picture}"
@@ -176,7 +168,7 @@ async fn pictures_and_look_up_tables_stand_beside_the_results() {
         .get(&format!("{path}/results/look-up-table.csv"))
         .answer()
         .await;
-    let text = table.body().await;
+    let text = table.whole_text().await;
     let rows: Vec<Vec<f64>> = text
         .lines()
         .filter(|line| line.starts_with(|first: char| first.is_ascii_digit()))
@@ -204,10 +196,7 @@ async fn results_without_what_a_picture_shows_say_so() {
         "force-table.txt",
         "drawing.svg",
     ] {
-        let answer = bench
-            .get(&format!("{path}/results/{absent}"))
-            .answer()
-            .await;
-        problem(answer, 404, "not_found").await;
+        let asked = bench.get(&format!("{path}/results/{absent}"));
+        problem(asked, 404, "not_found").await;
     }
 }

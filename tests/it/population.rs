@@ -7,7 +7,7 @@ use meshwright::jobs::DatabaseAddress;
 use reqwest::Client;
 use serde_json::{Value, json};
 
-use crate::bench::{Asked, Said};
+use crate::bench::Asked;
 use crate::process::Process;
 use crate::{server, stores};
 
@@ -37,7 +37,7 @@ async fn text(process: &Process, client: &Client, path: &str) -> String {
     let response = client.get(format!("{}{path}", process.base)).send().await;
     let response = response.unwrap();
     assert_eq!(response.status(), 200, "{path}");
-    response.body().await
+    response.whole_text().await
 }
 
 /// The jobs of a study, page after page.
@@ -90,7 +90,7 @@ async fn live_and_die(place: &DatabaseAddress, designs: u32) {
 
     let start = Instant::now();
     let cancel = client.post(format!("{}{path}/cancel", process.base));
-    let cancelled = cancel.answer().await.document().await;
+    let cancelled = cancel.document().await;
     let cancel = start.elapsed();
     let count = |name: &str| cancelled[name].as_u64().unwrap();
     assert_eq!(cancelled["status"], "dismissed");

@@ -13,7 +13,7 @@ use tokio::sync::mpsc;
 use tokio::task::JoinHandle;
 use tokio_util::sync::CancellationToken;
 
-use crate::bench::{Asked, Bench, PATIENCE, RESULTS, Said, problem, results, submission};
+use crate::bench::{Asked, Bench, PATIENCE, RESULTS, problem, results, submission};
 use crate::stores;
 
 fn named(id: &str, torque: f64) -> Value {
@@ -30,7 +30,7 @@ fn ask(bench: &Bench, preview: &Value) -> JoinHandle<Response> {
 
 async fn text(response: Response) -> String {
     assert_eq!(response.status(), StatusCode::OK);
-    response.body().await
+    response.whole_text().await
 }
 
 /// An engine that obeys no stop: a computation ends when the test lets go of it.
@@ -94,7 +94,7 @@ async fn a_preview_is_the_document_of_a_job_to_the_last_digit_and_is_not_kept() 
     assert!(cold == job && warm == job);
 
     let numbers = bench.get("/metrics").answer().await;
-    let numbers = numbers.body().await;
+    let numbers = numbers.whole_text().await;
     for name in ["bytes", "capacity_bytes", "entries", "evictions_total"] {
         for shelf in [
             "teeth",

@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use meshwright::jobs::DatabaseAddress;
 
-use crate::bench::{Asked, Said};
+use crate::bench::Asked;
 use crate::stores;
 
 /// Little memory to share, and what a process with it takes at most.

@@ -7,7 +7,7 @@ use reqwest::Client;
 use serde_json::{Value, json};
 use tokio::task::JoinSet;
 
-use crate::bench::{Asked, PATIENCE, Said, problem};
+use crate::bench::{Asked, PATIENCE, problem};
 use crate::flood::{make_key, shared_by};
 use crate::process::{LITTLE, LITTLE_MB, Process};
 use crate::stores;
@@ -71,7 +71,7 @@ async fn who_reads_a_large_table_on_forty_connections_leaves_the_service_to_othe
             let request = client.get(format!("{state}/results/table.ndjson"));
             let request = request.bearer_auth(&reader);
             tokio::spawn(async move {
-                let table = request.answer().await.body().await;
+                let table = request.whole_text().await;
                 table.lines().count() as u64
             })
         })
@@ -125,10 +125,10 @@ async fn large_study(process: &Process, client: &Client, key: &str) -> (String, 
         .headers()
         .get("location")
         .map(|path| path.to_str().unwrap().to_owned());
-    assert_eq!(status, 202, "{}", made.body().await);
+    assert_eq!(status, 202, "{}", made.whole_text().await);
     let url = format!("{}{}/document", process.base, path.unwrap());
     let document = client.get(&url).bearer_auth(key).answer().await;
-    (url, document.body().await.len() as u64)
+    (url, document.whole_text().await.len() as u64)
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
@@ -268,7 +268,7 @@ async fn designs_of_a_large_study_are_looked_at_in_a_bounded_memory() {
     let readers: Vec<_> = (0..20)
         .map(|row| {
             let request = client.get(format!("{}{path}/designs/{row}", process.base));
-            tokio::spawn(async move { request.answer().await.document().await })
+            tokio::spawn(async move { request.document().await })
         })
         .collect();
     for (row, reader) in readers.into_iter().enumerate() {

@@ -14,10 +14,8 @@ async fn a_job_whose_process_died_runs_again() {
     bench.start_again().await;
     let work = engine.next().await;
     let job = bench.job(&running).await;
-    assert_eq!(
-        (job["status"].as_str(), job["attempt"].as_u64()),
-        (Some("running"), Some(2))
-    );
+    assert_eq!(job["status"], "running");
+    assert_eq!(job["attempt"], 2);
     // The first attempt ends after all; nobody asks for it any more.
     lost.finish();
     assert_eq!(bench.job(&running).await["status"], "running");
@@ -40,10 +38,8 @@ async fn a_job_that_loses_its_process_three_times_fails() {
         bench.start_again().await;
     }
     let job = bench.job(&path).await;
-    assert_eq!(
-        (job["status"].as_str(), job["problem"]["code"].as_str()),
-        (Some("failed"), Some("attempts_exhausted"))
-    );
+    assert_eq!(job["status"], "failed");
+    assert_eq!(job["problem"]["code"], "attempts_exhausted");
     assert!(engine.is_idle());
 }
 

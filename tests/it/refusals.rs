@@ -3,12 +3,11 @@
 use reqwest::{Method, Response, StatusCode};
 use serde_json::Value;
 
-use crate::bench::{Asked, Bench, Said, problem, submission};
+use crate::bench::{Asked, Bench, problem, submission};
 
 async fn send(bench: &Bench, body: impl Into<reqwest::Body>) -> Response {
     bench
-        .client
-        .post(bench.url("/v1/jobs"))
+        .send("/v1/jobs")
         .header("content-type", "application/json")
         .body(body)
         .answer()
@@ -44,10 +43,7 @@ async fn bad_bodies_are_refused_and_leave_nothing_behind() {
     for body in bodies {
         let shown = String::from_utf8_lossy(&body[..body.len().min(80)]).into_owned();
         for path in ["/v1/jobs", "/v1/validate", "/v1/preview"] {
-            let request = bench
-                .client
-                .post(bench.url(path))
-                .header("content-type", "application/json");
+            let request = bench.send(path).header("content-type", "application/json");
             let response = request.body(body.clone()).answer().await;
             let status = response.status();
             assert!(matches!(status.as_u16(), 400 | 422), "{shown}: {status}");
@@ -65,21 +61,13 @@ async fn bad_bodies_are_refused_and_leave_nothing_behind() {
 #[tokio::test]
 async fn a_body_of_ten_megabytes_is_too_large() {
     let bench = Bench::quick().await;
-    problem(
-        send(&bench, vec![b' '; 10_000_000]).await,
-        413,
-        "payload_too_large",
-    )
-    .await;
+    let asked = send(&bench, vec![b' '; 10_000_000]).await;
+    problem(asked, 413, "payload_too_large").await;
     // Sent in chunks, its length is not known beforehand.
     let chunks =
         futures_util::stream::iter((0..100).map(|_| Ok::<_, std::io::Error>(vec![b' '; 100_000])));
-    problem(
-        send(&bench, reqwest::Body::wrap_stream(chunks)).await,
-        413,
-        "payload_too_large",
-    )
-    .await;
+    let asked = send(&bench, reqwest::Body::wrap_stream(chunks)).await;
+    problem(asked, 413, "payload_too_large").await;
     let mut padded = " ".repeat(900_000);
     padded.push_str(&submission(115.0).to_string());
     assert_eq!(send(&bench, padded).await.status(), StatusCode::ACCEPTED);
@@ -95,25 +83,19 @@ async fn only_json_is_read() {
         Some("application/x-www-form-urlencoded"),
         Some("application/jsonp"),
     ] {
-        let mut request = bench.client.post(bench.url("/v1/jobs")).body(text.clone());
+        let mut request = bench.send("/v1/jobs").body(text.clone());
         if let Some(media_type) = media_type {
             request = request.header("content-type", media_type);
         }
-        problem(request.answer().await, 415, "unsupported_media_type").await;
+        problem(request, 415, "unsupported_media_type").await;
     }
     let packed = bench
-        .client
-        .post(bench.url("/v1/jobs"))
+        .send("/v1/jobs")
         .header("content-type", "application/json");
-    let packed = packed
-        .header("content-encoding", "gzip")
-        .body(text.clone())
-        .answer()
-        .await;
-    problem(packed, 415, "unsupported_media_type").await;
+    let asked = packed.header("content-encoding", "gzip").body(text.clone());
+    problem(asked, 415, "unsupported_media_type").await;
     let request = bench
-        .client
-        .post(bench.url("/v1/jobs"))
+        .send("/v1/jobs")
         .header("content-type", "application/json; charset=utf-8");
     assert_eq!(
         request.body(text).answer().await.status(),
@@ -144,27 +126,12 @@ async fn what_is_not_there_is_said_so() {
         "/v1/jobs/1",
         "/v1/jobs/00000000-0000-0000-0000-000000000000",
     ] {
-        problem(bench.get(path).answer().await, 404, "job_not_found").await;
-        problem(
-            bench.client.delete(bench.url(path)).answer().await,
-            404,
-            "job_not_found",
-        )
-        .await;
+        problem(bench.get(path), 404, "job_not_found").await;
+        problem(bench.delete(path), 404, "job_not_found").await;
         for part in ["results", "events", "results/ste.csv"] {
-            problem(
-                bench.get(&format!("{path}/{part}")).answer().await,
-                404,
-                "job_not_found",
-            )
-            .await;
+            problem(bench.get(&format!("{path}/{part}")), 404, "job_not_found").await;
         }
-        let cancel = bench
-            .client
-            .post(bench.url(&format!("{path}/cancel")))
-            .answer()
-            .await;
-        problem(cancel, 404, "job_not_found").await;
+        problem(bench.cancel(&path), 404, "job_not_found").await;
     }
 }
 

@@ -4,7 +4,7 @@ use std::process::{Command, Output};
 use reqwest::StatusCode;
 use serde_json::Value;
 
-use crate::bench::{Asked, Bench, Said, problem};
+use crate::bench::{Asked, Bench, problem};
 
 fn example(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -147,7 +147,7 @@ fn what_is_wrong_is_told_with_its_place_in_the_model() {
 async fn a_model_is_read_and_a_job_is_written_as_one_over_http() {
     let bench = Bench::real().await;
     let post = |model: String, media_type: &'static str| {
-        let request = bench.client.post(bench.url("/v1/rexs"));
+        let request = bench.send("/v1/rexs");
         request
             .header("content-type", media_type)
             .body(model)
@@ -179,7 +179,7 @@ async fn a_model_is_read_and_a_job_is_written_as_one_over_http() {
     let written = bench.get(&format!("{job}/submission.rexs"));
     let written = written.answer().await;
     assert_eq!(written.headers()["content-type"], "application/xml");
-    let written = written.body().await;
+    let written = written.whole_text().await;
     assert!(written.contains("meshing_stiffness_characteristic"));
     let again = post(written, "text/xml").await.unwrap();
     let again = again.document().await;
@@ -208,7 +208,7 @@ async fn a_model_is_read_and_a_job_is_written_as_one_over_http() {
 async fn a_model_is_read_in_every_container_and_a_refused_one_says_why_of_each_stage() {
     let bench = Bench::real().await;
     let post = |model: Vec<u8>, media_type: &'static str, query: &'static str| {
-        let request = bench.client.post(bench.url(&format!("/v1/rexs{query}")));
+        let request = bench.send(&format!("/v1/rexs{query}"));
         request
             .header("content-type", media_type)
             .body(model)
@@ -331,7 +331,7 @@ async fn every_file_of_another_program_is_read_over_http_as_on_the_command_line(
         } else {
             String::new()
         };
-        let request = bench.client.post(bench.url(&format!("/v1/rexs{query}")));
+        let request = bench.send(&format!("/v1/rexs{query}"));
         let request = request.header("content-type", "application/octet-stream");
         let answer = request
             .body(std::fs::read(&file).unwrap())

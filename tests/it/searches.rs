@@ -6,7 +6,7 @@ use std::sync::Arc;
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 
-use crate::bench::{Asked, Bench, Said, problem};
+use crate::bench::{Asked, Bench, problem};
 
 /// Reliefs of a small pair by the quick method, chosen by a search.
 fn reliefs(evaluations: u32) -> Value {
@@ -41,7 +41,12 @@ async fn begun(bench: &Bench, study: &Value) -> String {
         .headers()
         .get("location")
         .map(|path| path.to_str().unwrap().to_owned());
-    assert_eq!(status, StatusCode::ACCEPTED, "{}", response.body().await);
+    assert_eq!(
+        status,
+        StatusCode::ACCEPTED,
+        "{}",
+        response.whole_text().await
+    );
     path.unwrap()
 }
 
@@ -137,19 +142,12 @@ async fn a_search_finds_its_best_design_confirms_it_and_gives_its_submission() {
     );
     let csv = bench
         .get(&format!("{path}/results/table.csv"))
-        .answer()
-        .await
-        .body()
+        .whole_text()
         .await;
     assert_eq!(csv.lines().count(), 32);
 
     let other = begun(&bench, &json!({ "base": reliefs(2)["base"], "axes": [{ "path": "/output_torques_n_m/0", "values": [1.0] }] })).await;
-    problem(
-        bench.get(&format!("{other}/best")).answer().await,
-        404,
-        "not_found",
-    )
-    .await;
+    problem(bench.get(&format!("{other}/best")), 404, "not_found").await;
     assert_eq!(ended(&bench, &other).await["search"], Value::Null);
 }
 
@@ -286,12 +284,7 @@ async fn a_search_that_is_cancelled_keeps_what_is_there() {
         (&before["search"]["evaluations"], &before["search"]["best"]),
         (&json!(0), &Value::Null)
     );
-    problem(
-        bench.get(&format!("{path}/best")).answer().await,
-        404,
-        "result_not_ready",
-    )
-    .await;
+    problem(bench.get(&format!("{path}/best")), 404, "result_not_ready").await;
     let begun = bench.job(&format!("{path}/results")).await["rows"]
         .as_array()
         .unwrap()
@@ -307,10 +300,7 @@ async fn a_search_that_is_cancelled_keeps_what_is_there() {
         study["search"]["generations"].as_array().map(Vec::len),
         Some(1)
     );
-    let cancelled = bench
-        .post(&format!("{path}/cancel"), &json!({}))
-        .answer()
-        .await;
+    let cancelled = bench.cancel(&path).answer().await;
     assert_eq!(cancelled.status(), StatusCode::ACCEPTED);
     let kept = bench.job(&path).await;
     assert_eq!(kept["status"], "dismissed");
@@ -338,12 +328,7 @@ async fn a_search_whose_every_design_is_refused_names_the_usual_reason() {
         "{detail}"
     );
     assert_eq!(failed["search"]["refusals"][0]["count"], 20);
-    problem(
-        bench.get(&format!("{path}/best")).answer().await,
-        404,
-        "result_not_ready",
-    )
-    .await;
+    problem(bench.get(&format!("{path}/best")), 404, "result_not_ready").await;
 }
 
 #[tokio::test]
@@ -395,19 +380,9 @@ async fn a_search_that_cannot_be_is_refused_with_its_place() {
     let bench = Bench::quick().await;
     let mut study = reliefs(40);
     study["search"]["variables"][1]["step"] = json!(7);
-    let refused = problem(
-        bench.post("/v1/studies", &study).answer().await,
-        422,
-        "out_of_range",
-    )
-    .await;
+    let refused = problem(bench.post("/v1/studies", &study), 422, "out_of_range").await;
     assert_eq!(refused["errors"][0]["pointer"], "/search/variables/1/step");
     study["axes"] = json!([{ "path": "/output_torques_n_m/0", "values": [1.0] }]);
-    let refused = problem(
-        bench.post("/v1/studies", &study).answer().await,
-        422,
-        "out_of_range",
-    )
-    .await;
+    let refused = problem(bench.post("/v1/studies", &study), 422, "out_of_range").await;
     assert_eq!(refused["errors"][0]["pointer"], "/search");
 }

@@ -14,7 +14,7 @@ use reqwest::Client;
 use serde_json::{Value, json};
 use tokio::net::TcpListener;
 
-use crate::bench::{Asked, PATIENCE, Said};
+use crate::bench::{Asked, PATIENCE};
 use crate::process::Process;
 use crate::stores;
 

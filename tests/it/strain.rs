@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use tokio::io::AsyncWriteExt;
 use tokio::net::TcpStream;
 
-use crate::bench::{Asked, PATIENCE, Said};
+use crate::bench::{Asked, PATIENCE};
 use crate::process::Process;
 use crate::stores;
 

@@ -7,9 +7,7 @@ use meshwright_wire::{Code, Problem};
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 
-use crate::bench::{
-    Asked, Bench, Engine, Events, RESULTS, Said, Work, problem, results, submission,
-};
+use crate::bench::{Asked, Bench, Engine, Events, RESULTS, Work, problem, results, submission};
 
 /// A study of torques: as many designs, all of which can be built.
 fn torques(values: &[f64]) -> Value {
@@ -62,10 +60,8 @@ async fn a_study_fills_its_table_row_by_row() {
         path,
         format!("/v1/studies/{}", study["id"].as_str().unwrap())
     );
-    assert_eq!(
-        (study["done"].as_u64(), study["total"].as_u64()),
-        (Some(0), Some(2))
-    );
+    assert_eq!(study["done"], 0);
+    assert_eq!(study["total"], 2);
 
     let work = engine.next().await;
     let partial = table(&bench, &path).await;
@@ -81,10 +77,8 @@ async fn a_study_fills_its_table_row_by_row() {
     engine.next().await.finish();
 
     let ended = bench.ended(&path).await;
-    assert_eq!(
-        (ended["status"].as_str(), ended["done"].as_u64()),
-        (Some("successful"), Some(2))
-    );
+    assert_eq!(ended["status"], "successful");
+    assert_eq!(ended["done"], 2);
     assert!(ended["finished_at"].is_string());
     let full = table(&bench, &path).await;
     assert_eq!(
@@ -107,7 +101,7 @@ async fn a_study_fills_its_table_row_by_row() {
             .get(job["links"]["results"].as_str().unwrap())
             .answer()
             .await;
-        assert_eq!(results.body().await, RESULTS);
+        assert_eq!(results.whole_text().await, RESULTS);
     }
     let jobs = bench.job(ended["links"]["jobs"].as_str().unwrap()).await;
     assert_eq!(jobs["items"].as_array().unwrap().len(), 2);
@@ -119,7 +113,7 @@ async fn a_study_fills_its_table_row_by_row() {
         response.headers()["content-type"],
         "text/csv; charset=utf-8"
     );
-    let text = response.body().await;
+    let text = response.whole_text().await;
     // A header, and a line for each of two rows and the stub's two torques.
     assert_eq!(text.lines().count(), 5, "{text}");
     assert!(text.starts_with("label,changes./output_torques_n_m/0,job,status,"));
@@ -148,10 +142,7 @@ async fn a_single_job_is_served_before_the_designs_of_a_study() {
         tokio::time::sleep(std::time::Duration::from_millis(20)).await;
     }
     assert_eq!(rows, 1000);
-    bench
-        .post(&format!("{path}/cancel"), &json!({}))
-        .answer()
-        .await;
+    bench.cancel(&path).answer().await;
     drop(engine);
 }
 
@@ -168,14 +159,9 @@ async fn designs_that_cannot_be_built_stand_in_the_table_and_do_not_fail_the_res
     let not_converged = Problem::new(Code::NotConverged, "at mesh position 3");
     engine.next().await.fail(not_converged);
     let ended = bench.ended(&path).await;
-    assert_eq!(
-        (
-            ended["status"].as_str(),
-            ended["successful"].as_u64(),
-            ended["failed"].as_u64()
-        ),
-        (Some("successful"), Some(1), Some(2))
-    );
+    assert_eq!(ended["status"], "successful");
+    assert_eq!(ended["successful"], 1);
+    assert_eq!(ended["failed"], 2);
     let table = table(&bench, &path).await;
     assert_eq!(statuses(&table), ["successful", "failed", "failed"]);
     let rows = &table["rows"];
@@ -197,10 +183,8 @@ async fn a_study_of_impossible_designs_finishes_and_says_so() {
     ] });
     let path = submit(&bench, &study).await;
     let ended = bench.job(&path).await;
-    assert_eq!(
-        (ended["status"].as_str(), ended["done"].as_u64()),
-        (Some("failed"), Some(3))
-    );
+    assert_eq!(ended["status"], "failed");
+    assert_eq!(ended["done"], 3);
     assert_eq!(ended["problem"]["code"], "no_design_computed");
     let table = table(&bench, &path).await;
     assert_eq!(table["problem"]["code"], "no_design_computed");
@@ -275,7 +259,7 @@ async fn a_study_that_keeps_statistics_has_its_table_and_no_curves() {
     }
     let documents = bench.get(&format!("{path}/results/documents.ndjson"));
     let documents = documents.answer().await;
-    assert_eq!(documents.body().await, "");
+    assert_eq!(documents.whole_text().await, "");
 
     // The numbers are there for the next study that wants no more.
     let again = submit(&bench, &study).await;
@@ -290,7 +274,7 @@ async fn a_study_that_keeps_statistics_has_its_table_and_no_curves() {
     assert!(job["links"]["same_as"].is_null() && job["keep"].is_null());
     for path in [&single, design] {
         let results = bench.get(&format!("{path}/results")).answer().await;
-        assert_eq!(results.body().await, RESULTS);
+        assert_eq!(results.whole_text().await, RESULTS);
     }
 }
 
@@ -300,13 +284,9 @@ async fn a_cancelled_study_keeps_what_it_has_and_computes_no_more() {
     let path = submit(&bench, &torques(&[1.0, 2.0, 3.0])).await;
     engine.next().await.finish();
     let running = engine.next().await;
-    let refused = bench.client.delete(bench.url(&path)).answer().await;
-    problem(refused, 409, "job_running").await;
+    problem(bench.delete(&path), 409, "job_running").await;
     for _ in 0..2 {
-        let response = bench
-            .post(&format!("{path}/cancel"), &json!({}))
-            .answer()
-            .await;
+        let response = bench.cancel(&path).answer().await;
         assert_eq!(response.status(), StatusCode::ACCEPTED);
         let study = response.document().await;
         assert_eq!(study["status"], "dismissed");
@@ -317,10 +297,10 @@ async fn a_cancelled_study_keeps_what_it_has_and_computes_no_more() {
     assert!(engine.is_idle());
 
     let first = format!("/v1/jobs/{}", rows["rows"][0]["job"].as_str().unwrap());
-    let deleted = bench.client.delete(bench.url(&path)).answer().await;
+    let deleted = bench.delete(&path).answer().await;
     assert_eq!(deleted.status(), StatusCode::NO_CONTENT);
-    problem(bench.get(&path).answer().await, 404, "study_not_found").await;
-    problem(bench.get(&first).answer().await, 404, "job_not_found").await;
+    problem(bench.get(&path), 404, "study_not_found").await;
+    problem(bench.get(&first), 404, "job_not_found").await;
 }
 
 #[tokio::test]
@@ -328,11 +308,7 @@ async fn a_study_that_has_ended_is_not_cancelled_and_an_unknown_one_is_not_found
     let bench = Bench::quick().await;
     let path = submit(&bench, &torques(&[1.0])).await;
     bench.ended(&path).await;
-    let response = bench
-        .post(&format!("{path}/cancel"), &json!({}))
-        .answer()
-        .await;
-    problem(response, 409, "job_finished").await;
+    problem(bench.cancel(&path), 409, "job_finished").await;
     for path in [
         "/v1/studies/00000000-0000-0000-0000-000000000000",
         "/v1/studies/x",
@@ -340,7 +316,7 @@ async fn a_study_that_has_ended_is_not_cancelled_and_an_unknown_one_is_not_found
         "/v1/studies/x/results.csv",
         "/v1/studies/x/events",
     ] {
-        problem(bench.get(path).answer().await, 404, "study_not_found").await;
+        problem(bench.get(path), 404, "study_not_found").await;
     }
 }
 
@@ -351,13 +327,11 @@ async fn a_job_of_a_study_may_be_deleted_and_its_row_stays() {
     bench.ended(&path).await;
     let job = table(&bench, &path).await["rows"][0]["job"].clone();
     let job = format!("/v1/jobs/{}", job.as_str().unwrap());
-    bench.client.delete(bench.url(&job)).answer().await;
+    bench.delete(&job).answer().await;
     let table = table(&bench, &path).await;
     assert_eq!(statuses(&table), ["dismissed", "successful"]);
-    assert_eq!(
-        (table["done"].as_u64(), table["status"].as_str()),
-        (Some(2), Some("successful"))
-    );
+    assert_eq!(table["done"], 2);
+    assert_eq!(table["status"], "successful");
 }
 
 #[tokio::test]
@@ -382,14 +356,15 @@ async fn what_is_wrong_with_a_study_is_refused_with_its_place() {
     problem(send(twice).await, 422, "out_of_range").await;
     let long = json!({ "base": submission(1.0), "axes": [{ "path": "/output_torques_n_m/0", "values": vec![1.0; 5_000_000] }] });
     problem(send(long).await, 413, "payload_too_large").await;
-    let response = bench
-        .client
-        .post(bench.url("/v1/studies"))
-        .header("content-type", "application/json")
-        .body(r#"{ "base": NaN }"#)
-        .answer()
-        .await;
-    problem(response, 400, "malformed_json").await;
+    problem(
+        bench
+            .send("/v1/studies")
+            .header("content-type", "application/json")
+            .body(r#"{ "base": NaN }"#),
+        400,
+        "malformed_json",
+    )
+    .await;
     let list = bench.job("/v1/studies").await;
     assert_eq!(list, json!({ "items": [], "next": null }));
 }
@@ -423,8 +398,8 @@ async fn a_key_gives_the_same_study_and_lists_turn_their_pages() {
     assert_eq!(page["items"][0]["links"]["self"], first.to_str().unwrap());
     assert!(page["next"].is_null());
     for query in ["?limit=0", "?cursor=x", "?colour=red"] {
-        let response = bench.get(&format!("/v1/studies{query}")).answer().await;
-        problem(response, 400, "invalid_parameter").await;
+        let asked = bench.get(&format!("/v1/studies{query}"));
+        problem(asked, 400, "invalid_parameter").await;
     }
 }
 
@@ -474,10 +449,8 @@ async fn a_study_whose_process_died_goes_on_where_it_was_and_loses_no_design() {
     }
     assert_eq!(computed, values[3..], "each of the others once, in order");
     let ended = bench.ended(&path).await;
-    assert_eq!(
-        (ended["status"].as_str(), ended["successful"].as_u64()),
-        (Some("successful"), Some(1200))
-    );
+    assert_eq!(ended["status"], "successful");
+    assert_eq!(ended["successful"], 1200);
     assert!(engine.is_idle());
     assert_eq!(
         statuses(&table(&bench, &path).await),

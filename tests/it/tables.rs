@@ -5,7 +5,7 @@ use std::sync::Arc;
 use reqwest::StatusCode;
 use serde_json::Value;
 
-use crate::bench::{Asked, Bench, Said, problem, results, submission};
+use crate::bench::{Asked, Bench, problem, results, submission};
 use crate::stores;
 
 #[tokio::test]
@@ -17,7 +17,7 @@ async fn curves_and_spectra_come_as_csv_and_json() {
 
     let csv = get("ste.csv?torque=115").await;
     assert_eq!(csv.headers()["content-type"], "text/csv; charset=utf-8");
-    let text = csv.body().await;
+    let text = csv.whole_text().await;
     let lines: Vec<&str> = text.lines().collect();
     assert_eq!(
         lines[0],
@@ -28,7 +28,7 @@ async fn curves_and_spectra_come_as_csv_and_json() {
         ["115.0,0.0,0.0,0.0,13.79", "115.0,0.5,3.6,3.6,14.0"]
     );
     assert_eq!(
-        get("ste.csv").await.body().await.lines().count(),
+        get("ste.csv").await.whole_text().await.lines().count(),
         5,
         "both torques"
     );
@@ -53,12 +53,8 @@ async fn a_table_of_a_job_that_has_not_ended_is_not_ready() {
     let (bench, mut engine) = Bench::steered().await;
     let path = bench.submit(&submission(115.0)).await;
     let work = engine.next().await;
-    problem(
-        bench.get(&format!("{path}/results/ste.csv")).answer().await,
-        404,
-        "result_not_ready",
-    )
-    .await;
+    let asked = bench.get(&format!("{path}/results/ste.csv"));
+    problem(asked, 404, "result_not_ready").await;
     work.finish();
     bench.ended(&path).await;
     assert_eq!(
@@ -84,7 +80,7 @@ async fn fields_come_as_a_grid_at_any_position_and_torque_of_the_job() {
     assert_eq!(answer.status(), StatusCode::OK);
     assert_eq!(answer.headers()["content-type"], "text/xml");
     let tag = answer.headers()["etag"].clone();
-    let text = answer.body().await;
+    let text = answer.whole_text().await;
     for name in [
         "UnstructuredGrid",
         "displacement_um",
@@ -165,7 +161,7 @@ async fn fields_of_a_pair_along_its_faces_are_volumes_and_its_edges_those_of_a_s
     };
     let volumes = get("fields.vtu").await;
     assert_eq!(volumes.status(), StatusCode::OK);
-    let text = volumes.body().await;
+    let text = volumes.whole_text().await;
     for name in ["displacement_um", "stress_mpa", "von_mises_mpa", "gear"] {
         assert!(text.contains(&format!("Name=\"{name}\"")), "{name}");
     }
@@ -199,7 +195,7 @@ async fn the_load_along_a_face_adds_up_to_the_whole_in_the_mean_and_at_every_pos
         let load = results["curves"][2]["load_n"].as_f64().unwrap();
         let get = async |file: &str| {
             let path = format!("{path}/results/face-load.{file}");
-            bench.get(&path).answer().await.body().await
+            bench.get(&path).whole_text().await
         };
         let table = get("csv?torque=50").await;
         let lines: Vec<Vec<&str>> = table
@@ -226,7 +222,7 @@ async fn the_load_along_a_face_adds_up_to_the_whole_in_the_mean_and_at_every_pos
     bench.ended(&plane).await;
     for file in ["json", "csv", "svg"] {
         let path = format!("{plane}/results/face-load.{file}");
-        problem(bench.get(&path).answer().await, 404, "not_found").await;
+        problem(bench.get(&path), 404, "not_found").await;
     }
 }
 
@@ -271,7 +267,7 @@ async fn the_contact_pattern_of_a_pair_along_its_faces_comes_as_numbers_and_as_a
 
     let picture = get("svg").await;
     assert_eq!(picture.headers()["content-type"], "image/svg+xml");
-    let picture = picture.body().await;
+    let picture = picture.whole_text().await;
     for word in [
         "driving flank, 200 N m",
         "driven flank, 50 N m",
@@ -281,7 +277,7 @@ async fn the_contact_pattern_of_a_pair_along_its_faces_comes_as_numbers_and_as_a
     ] {
         assert!(picture.contains(word), "{word}");
     }
-    let one = get("svg?torque=200").await.body().await;
+    let one = get("svg?torque=200").await.whole_text().await;
     assert!(!one.contains("50 N m") && one.len() < picture.len());
     problem(get("json?torque=0").await, 404, "not_found").await;
     problem(get("svg?torque=51").await, 404, "not_found").await;
@@ -324,8 +320,8 @@ async fn a_contact_pattern_of_a_job_that_failed_or_is_under_way_is_told_as_its_r
     let path = bench.submit(&helical()).await;
     let work = engine.next().await;
     let pattern = format!("{path}/results/contact-pattern.json");
-    problem(bench.get(&pattern).answer().await, 404, "result_not_ready").await;
-    let cancel = bench.client.post(bench.url(&format!("{path}/cancel")));
+    problem(bench.get(&pattern), 404, "result_not_ready").await;
+    let cancel = bench.cancel(&path);
     assert!(cancel.answer().await.status().is_success());
     work.stopped().await;
     bench.ended(&path).await;

@@ -4,21 +4,25 @@
 import assert from "node:assert/strict";
 import {
   answer,
+  answered,
   axe,
   changed,
   changing,
+  computed,
   designOf,
   downloaded,
   drag,
   ends,
   field,
   holeAt,
+  idle,
   named,
   open,
   openDesign,
   settled,
-  step,
+  stepsOn,
   tab,
+  unfold,
 } from "./harness.mjs";
 import { seenByDeuteranopia } from "./colors.mjs";
 
@@ -44,54 +48,48 @@ const LONG = {
 
 /** @param service the service whose page is used */
 export async function benchSteps(service) {
-  await step(
-    "another module takes the lengths of the rack with it, says so, and can be undone",
-    service,
-    async (page) => {
-      await open(page, service);
-      // Case 2 gives its rack: it shows it, marked.
-      const addendum = page.locator(`[id="field-${DRIVEN}/addendum_mm"]`);
-      await field(page, `${DRIVEN}/addendum_mm`);
-      assert.ok(await addendum.isVisible());
-      assert.ok(
-        await addendum.evaluate(
-          (input) =>
-            input.closest(".field").classList.contains("given") && !input.closest("details").matches(":not(.section)"),
-        ),
-        "not folded away",
-      );
-      await (await field(page, "/pair/driving/module_mm")).fill("2.5");
-      await page.locator("#notice", { hasText: "Addendum" }).waitFor();
-      await (await field(page, "/pair/center_distance_mm")).fill("125.5");
-      await page.waitForFunction(
-        () => !document.body.classList.contains("busy") && document.querySelector("#problem").hidden,
-      );
-      const { pair } = await designOf(page);
-      for (const gear of [pair.driving, pair.driven]) {
-        assert.equal(gear.module_mm, 2.5);
-        for (const name of ["addendum_mm", "dedendum_mm", "rack_tip_radius_mm"])
-          assert.equal(gear[name], undefined, name);
-      }
-      // What the notice takes back is what it tells of, and nothing that came after.
-      await page.locator("#notice", { hasText: "Addendum" }).waitFor();
-      assert.equal(await page.locator("#notice button", { hasText: "Undo" }).count(), 0);
-      // A rack that is not the usual one keeps its modules.
-      await page.locator("#start").selectOption("test-case-2");
-      await (await field(page, `${DRIVEN}/addendum_mm`)).fill("1.9");
-      await page.waitForFunction(() => !document.body.classList.contains("busy"));
-      await (await field(page, "/pair/driving/module_mm")).fill("4");
-      await page.locator("#notice", { hasText: "0.95 modules" }).waitFor();
-      assert.equal((await designOf(page)).pair.driven.addendum_mm, 3.8);
-      await page.locator("#notice button", { hasText: "Undo" }).click();
-      const back = (await designOf(page)).pair;
-      assert.deepEqual(
-        [back.driven.module_mm, back.driving.module_mm, back.driven.addendum_mm, back.driving.dedendum_mm],
-        [2, 2, 1.9, 2.5],
-      );
-    },
-  );
+  const { opened, step } = stepsOn(service);
+  await opened("another module takes the lengths of the rack with it, says so, and can be undone", async (page) => {
+    // Case 2 gives its rack: it shows it, marked.
+    const addendum = page.locator(`[id="field-${DRIVEN}/addendum_mm"]`);
+    await field(page, `${DRIVEN}/addendum_mm`);
+    assert.ok(await addendum.isVisible());
+    assert.ok(
+      await addendum.evaluate(
+        (input) =>
+          input.closest(".field").classList.contains("given") && !input.closest("details").matches(":not(.section)"),
+      ),
+      "not folded away",
+    );
+    await (await field(page, "/pair/driving/module_mm")).fill("2.5");
+    await page.locator("#notice", { hasText: "Addendum" }).waitFor();
+    await (await field(page, "/pair/center_distance_mm")).fill("125.5");
+    await computed(page);
+    const { pair } = await designOf(page);
+    for (const gear of [pair.driving, pair.driven]) {
+      assert.equal(gear.module_mm, 2.5);
+      for (const name of ["addendum_mm", "dedendum_mm", "rack_tip_radius_mm"])
+        assert.equal(gear[name], undefined, name);
+    }
+    // What the notice takes back is what it tells of, and nothing that came after.
+    await page.locator("#notice", { hasText: "Addendum" }).waitFor();
+    assert.equal(await page.locator("#notice button", { hasText: "Undo" }).count(), 0);
+    // A rack that is not the usual one keeps its modules.
+    await page.locator("#start").selectOption("test-case-2");
+    await (await field(page, `${DRIVEN}/addendum_mm`)).fill("1.9");
+    await idle(page);
+    await (await field(page, "/pair/driving/module_mm")).fill("4");
+    await page.locator("#notice", { hasText: "0.95 modules" }).waitFor();
+    assert.equal((await designOf(page)).pair.driven.addendum_mm, 3.8);
+    await page.locator("#notice button", { hasText: "Undo" }).click();
+    const back = (await designOf(page)).pair;
+    assert.deepEqual(
+      [back.driven.module_mm, back.driving.module_mm, back.driven.addendum_mm, back.driving.dedendum_mm],
+      [2, 2, 1.9, 2.5],
+    );
+  });
 
-  await step("a pair typed over an example is the pair typed from nothing", service, async (page) => {
+  await step("a pair typed over an example is the pair typed from nothing", async (page) => {
     const type = async (pointer, value) => (await field(page, pointer)).fill(String(value));
     const typed = async () => {
       await type("/pair/driving/module_mm", 2.5);
@@ -106,9 +104,7 @@ export async function benchSteps(service) {
       }
       await type("/pair/center_distance_mm", 80.7);
       await type("/output_torques_n_m", 100);
-      await page.waitForFunction(
-        () => !document.body.classList.contains("busy") && document.querySelector("#problem").hidden,
-      );
+      await computed(page);
       return page.locator("#headline").innerText();
     };
     await open(page, service);
@@ -120,50 +116,42 @@ export async function benchSteps(service) {
     assert.equal(await typed(), fresh);
   });
 
-  await step(
-    "a hole that is let go where it cannot be goes back, and everything shows one design",
-    service,
-    async (page) => {
-      await open(page, service);
-      const before = await answer(page, "p-p");
-      const [middle, center] = await holeAt(page, 5);
-      const place = () => page.locator("#drawing svg").boundingBox();
-      const still = await place();
-      // Outward, through the rim. What is said of it moves nothing under the hand.
-      await page.mouse.move(...middle);
-      await page.mouse.down();
-      await page.mouse.move(...middle.map((value, i) => value - (center[i] - value) * 0.3), { steps: 25 });
-      await page.locator("#problem").waitFor();
-      assert.deepEqual(await place(), still);
-      await page.mouse.up();
-      await page.locator("#notice", { hasText: "Back to what can be made" }).waitFor();
-      await page.waitForFunction(
-        () => !document.body.classList.contains("busy") && document.querySelector("#problem").hidden,
-      );
-      const circle = (await designOf(page)).pair.driven.blank.holes.circle_radius_mm;
-      assert.ok(circle > 34 && circle < 40, `the circle is ${circle} mm`);
-      assert.equal(await page.locator(".holes.wrong").count(), 0);
-      assert.match(await page.locator(".rotor.driven .hole title").first().textContent(), new RegExp(`R ${circle} mm`));
-      await tab(page, "export");
-      const { bytes } = await downloaded(page, () => page.locator("[data-download=json]").click());
-      const { submission, results } = JSON.parse(bytes.toString());
-      assert.equal(submission.pair.driven.blank.holes.circle_radius_mm, circle);
-      assert.equal(results.curves[0].mesh_position.length, 200, "no draft");
-      assert.equal(
-        results.curves[0].statistics.transmission_error_um.peak_to_peak.toFixed(3),
-        (await answer(page, "p-p")).toFixed(3),
-      );
-      assert.notEqual(await answer(page, "p-p"), before);
-      // The drag is one change: undone, everything is as it was.
-      await page.locator("#undo").click();
-      await changed(page, "p-p", results.curves[0].statistics.transmission_error_um.peak_to_peak);
-      assert.equal(await answer(page, "p-p"), before);
-      assert.equal((await designOf(page)).pair.driven.blank.holes.circle_radius_mm, 34);
-    },
-  );
+  await opened("a hole that is let go where it cannot be goes back, and everything shows one design", async (page) => {
+    const before = await answer(page, "p-p");
+    const [middle, center] = await holeAt(page, 5);
+    const place = () => page.locator("#drawing svg").boundingBox();
+    const still = await place();
+    // Outward, through the rim. What is said of it moves nothing under the hand.
+    await page.mouse.move(...middle);
+    await page.mouse.down();
+    await page.mouse.move(...middle.map((value, i) => value - (center[i] - value) * 0.3), { steps: 25 });
+    await page.locator("#problem").waitFor();
+    assert.deepEqual(await place(), still);
+    await page.mouse.up();
+    await page.locator("#notice", { hasText: "Back to what can be made" }).waitFor();
+    await computed(page);
+    const circle = (await designOf(page)).pair.driven.blank.holes.circle_radius_mm;
+    assert.ok(circle > 34 && circle < 40, `the circle is ${circle} mm`);
+    assert.equal(await page.locator(".holes.wrong").count(), 0);
+    assert.match(await page.locator(".rotor.driven .hole title").first().textContent(), new RegExp(`R ${circle} mm`));
+    await tab(page, "export");
+    const { bytes } = await downloaded(page, () => page.locator("[data-download=json]").click());
+    const { submission, results } = JSON.parse(bytes.toString());
+    assert.equal(submission.pair.driven.blank.holes.circle_radius_mm, circle);
+    assert.equal(results.curves[0].mesh_position.length, 200, "no draft");
+    assert.equal(
+      results.curves[0].statistics.transmission_error_um.peak_to_peak.toFixed(3),
+      (await answer(page, "p-p")).toFixed(3),
+    );
+    assert.notEqual(await answer(page, "p-p"), before);
+    // The drag is one change: undone, everything is as it was.
+    await page.locator("#undo").click();
+    await changed(page, "p-p", results.curves[0].statistics.transmission_error_um.peak_to_peak);
+    assert.equal(await answer(page, "p-p"), before);
+    assert.equal((await designOf(page)).pair.driven.blank.holes.circle_radius_mm, 34);
+  });
 
-  await step("what cannot be computed is not exported and not kept", service, async (page) => {
-    await open(page, service);
+  await opened("what cannot be computed is not exported and not kept", async (page) => {
     await (await field(page, `${HOLES}/radius_mm`)).fill("12");
     await page.locator("#problem").waitFor();
     await tab(page, "export");
@@ -181,8 +169,7 @@ export async function benchSteps(service) {
     assert.equal((await designOf(page)).pair.driven.blank.holes.radius_mm, 7.5);
   });
 
-  await step("a further pattern leaves what was typed in the others", service, async (page) => {
-    await open(page, service);
+  await opened("a further pattern leaves what was typed in the others", async (page) => {
     await (await field(page, HOLES)).selectOption({ index: 2 });
     await (await field(page, `${HOLES}/0/count`)).fill("4");
     await (await field(page, `${HOLES}/0/circle_radius_mm`)).fill("30");
@@ -194,49 +181,44 @@ export async function benchSteps(service) {
     assert.equal(second.count, 4);
   });
 
-  await step(
-    "a design too long for a preview is computed by a job, and opened with its results",
-    service,
-    async (page) => {
-      const previews = [];
-      page.on("request", (request) => {
-        if (/v1\/preview$/.test(request.url())) previews.push(request.postData());
-      });
-      await openDesign(page, service, LONG);
-      await page.locator("#progress").waitFor();
-      await page.waitForFunction(
-        () =>
-          !document.body.classList.contains("busy") && document.querySelector("#answer-p-p .value").textContent !== "–",
-      );
-      const long = await answer(page, "p-p");
-      assert.ok(long > 0);
-      assert.ok(await page.locator("#problem").isHidden());
-      // 61 periods are shown as an envelope under a strip of the whole period; zoomed in as curves.
-      assert.ok(await page.locator("#brush").isVisible());
-      assert.match(await page.locator("#chart-ste .legend").innerText(), /zoom in/);
-      await page.locator("#brush button", { hasText: "+" }).click();
-      await page.locator("#brush button", { hasText: "+" }).click();
-      await page.locator("#brush button", { hasText: "+" }).click();
-      assert.doesNotMatch(await page.locator("#chart-ste .legend").innerText(), /zoom in/);
-      assert.match(await page.locator("#brush output").innerText(), /of 61/);
-      // Another design, and back by the list of jobs: its results are shown, and not computed again.
-      await page.locator("#start").selectOption("standard-pair");
-      await changed(page, "p-p", long);
-      await tab(page, "jobs");
-      const row = page.locator("#jobs-list tbody tr", { hasText: "successful" }).first();
-      await row.waitFor();
-      previews.length = 0;
-      await row.locator("button", { hasText: "Open" }).click();
-      await page.waitForFunction(
-        (value) => Number(document.querySelector("#answer-p-p .value").textContent) === value,
-        long,
-      );
-      assert.deepEqual(previews, []);
-    },
-  );
+  await step("a design too long for a preview is computed by a job, and opened with its results", async (page) => {
+    const previews = [];
+    page.on("request", (request) => {
+      if (/v1\/preview$/.test(request.url())) previews.push(request.postData());
+    });
+    await openDesign(page, service, LONG);
+    await page.locator("#progress").waitFor();
+    await page.waitForFunction(
+      () =>
+        !document.body.classList.contains("busy") && document.querySelector("#answer-p-p .value").textContent !== "–",
+    );
+    const long = await answer(page, "p-p");
+    assert.ok(long > 0);
+    assert.ok(await page.locator("#problem").isHidden());
+    // 61 periods are shown as an envelope under a strip of the whole period; zoomed in as curves.
+    assert.ok(await page.locator("#brush").isVisible());
+    assert.match(await page.locator("#chart-ste .legend").innerText(), /zoom in/);
+    await page.locator("#brush button", { hasText: "+" }).click();
+    await page.locator("#brush button", { hasText: "+" }).click();
+    await page.locator("#brush button", { hasText: "+" }).click();
+    assert.doesNotMatch(await page.locator("#chart-ste .legend").innerText(), /zoom in/);
+    assert.match(await page.locator("#brush output").innerText(), /of 61/);
+    // Another design, and back by the list of jobs: its results are shown, and not computed again.
+    await page.locator("#start").selectOption("standard-pair");
+    await changed(page, "p-p", long);
+    await tab(page, "jobs");
+    const row = page.locator("#jobs-list tbody tr", { hasText: "successful" }).first();
+    await row.waitFor();
+    previews.length = 0;
+    await row.locator("button", { hasText: "Open" }).click();
+    await page.waitForFunction(
+      (value) => Number(document.querySelector("#answer-p-p .value").textContent) === value,
+      long,
+    );
+    assert.deepEqual(previews, []);
+  });
 
-  await step("a job that waits for others says so", service, async (page) => {
-    await open(page, service);
+  await opened("a job that waits for others says so", async (page) => {
     // What is asked is made to wait: its first event comes, and no further one until then.
     const [event, answer] = await page.evaluate(async (submission) => {
       const job = await (
@@ -271,7 +253,7 @@ export async function benchSteps(service) {
     );
   });
 
-  await step("several torques of a long period are computed too", service, async (page) => {
+  await step("several torques of a long period are computed too", async (page) => {
     const short = structuredClone(LONG);
     short.pair.driven.tooth_count = 23;
     short.pair.driven.profile_shift = 0.3;
@@ -287,8 +269,7 @@ export async function benchSteps(service) {
     assert.equal(await page.locator("#charts .legend.shared:not([hidden]) .entry").count(), 3);
   });
 
-  await step("a web that a plane does not stand for is warned of, with the guide", service, async (page) => {
-    await open(page, service);
+  await opened("a web that a plane does not stand for is warned of, with the guide", async (page) => {
     await page.locator("#start").selectOption("web");
     await page.locator("#warned").click();
     const link = page.locator("#warnings li", { hasText: "The web of the driven gear" }).locator("a");
@@ -298,7 +279,7 @@ export async function benchSteps(service) {
     await axe(page);
   });
 
-  await step("every part of the form begins with what fits the gear", service, async (page) => {
+  await step("every part of the form begins with what fits the gear", async (page) => {
     await openDesign(page, service, {
       ...LONG,
       pair: {
@@ -366,9 +347,7 @@ export async function benchSteps(service) {
       const list = page
         .locator(`#form fieldset.list`, { has: page.locator("legend", { hasText: /profile modifications/i }) })
         .nth(member === "driving" ? 0 : 1);
-      await list.evaluate((element) => {
-        for (let at = element; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true;
-      });
+      await unfold(list);
       await list.locator(":scope > button").click();
       await settle(`${pointer} added`);
       const kinds = await (await field(page, `${pointer}/0`))
@@ -382,8 +361,7 @@ export async function benchSteps(service) {
     }
   });
 
-  await step("a design is better or worse than a kept one at the same torque alone", service, async (page) => {
-    await open(page, service);
+  await opened("a design is better or worse than a kept one at the same torque alone", async (page) => {
     await page.locator("#pin").click();
     await page.locator("#against-label").waitFor();
     const torques = await field(page, "/output_torques_n_m");
@@ -405,8 +383,7 @@ export async function benchSteps(service) {
     assert.equal(await change.innerText(), "±0 %");
   });
 
-  await step("holes that are asked for lie within the web, and a web around the holes", service, async (page) => {
-    await open(page, service);
+  await opened("holes that are asked for lie within the web, and a web around the holes", async (page) => {
     await page.locator("#start").selectOption("new pair");
     await settled(page);
     const blank = "/pair/driven/blank";
@@ -432,7 +409,7 @@ export async function benchSteps(service) {
     }
   });
 
-  await step("a force table and a run-up begin with what a long period leaves room for", service, async (page) => {
+  await step("a force table and a run-up begin with what a long period leaves room for", async (page) => {
     // The driven gear's teeth differ: 48 mesh periods, of which 12 loads would be too many positions.
     const uneven = { pitch_single_um: Array.from({ length: 48 }, (_, i) => (i % 2 ? 1 : -1) * (i % 5)) };
     const sum = uneven.pitch_single_um.reduce((all, value) => all + value, 0);
@@ -462,8 +439,7 @@ export async function benchSteps(service) {
     }
   });
 
-  await step("a run-up begins with speeds up to beyond the resonance", service, async (page) => {
-    await open(page, service);
+  await opened("a run-up begins with speeds up to beyond the resonance", async (page) => {
     await (await field(page, "/dynamics")).check();
     await settled(page);
     const { from, to, count } = (await designOf(page)).dynamics.driving_speed_rpm;
@@ -471,8 +447,7 @@ export async function benchSteps(service) {
     assert.deepEqual([from, to, count], [0, 7000, 100]);
   });
 
-  await step("a run-up is asked for, shown with both branches, and its resonances are named", service, async (page) => {
-    await open(page, service);
+  await opened("a run-up is asked for, shown with both branches, and its resonances are named", async (page) => {
     await tab(page, "run-up");
     await page.evaluate(() => {
       window.said = [];
@@ -523,7 +498,6 @@ export async function benchSteps(service) {
 
   await step(
     "a run-up whose rims stand on hubs in the model is warned of, with the natural frequency that they make",
-    service,
     async (page) => {
       const gear = {
         tooth_count: 50,
@@ -550,7 +524,6 @@ export async function benchSteps(service) {
 
   await step(
     "flanks that part are marked and seen, and the motion that turns the gears is that of the service",
-    service,
     async (page) => {
       const light = await (await fetch(`${service.url}v1/examples`))
         .json()
@@ -616,8 +589,7 @@ export async function benchSteps(service) {
     },
   );
 
-  await step("kept designs stand in one run-up", service, async (page) => {
-    await open(page, service);
+  await opened("kept designs stand in one run-up", async (page) => {
     await tab(page, "run-up");
     await page.locator("#run-up-ask").click();
     await page.locator("#run-up .waterfall").waitFor();
@@ -640,7 +612,7 @@ export async function benchSteps(service) {
     assert.doesNotMatch(await chart.textContent(), /10×r7\.5@34/);
   });
 
-  await step("the excitation sounds when it is asked for, at the orders of the speed", service, async (page) => {
+  await step("the excitation sounds when it is asked for, at the orders of the speed", async (page) => {
     await page.addInitScript(() => {
       window.audio = { contexts: 0, closed: 0, tones: [] };
       /** @type {any} */ (window).AudioContext = class {
@@ -701,8 +673,7 @@ export async function benchSteps(service) {
     assert.equal(await page.evaluate(() => window.audio.closed), 1, "silent when nobody looks");
   });
 
-  await step("undo and redo take back everything, by keys too", service, async (page) => {
-    await open(page, service);
+  await opened("undo and redo take back everything, by keys too", async (page) => {
     const first = await answer(page, "p-p");
     await page.locator("#pin").click();
     await page.locator("#against-label").waitFor();
@@ -730,8 +701,7 @@ export async function benchSteps(service) {
     assert.ok(await page.locator("#redo").isDisabled());
   });
 
-  await step("designs are compared under names, field by field, and in the headline", service, async (page) => {
-    await open(page, service);
+  await opened("designs are compared under names, field by field, and in the headline", async (page) => {
     await page.locator("#pin").click();
     await tab(page, "compare");
     const name = page.locator("#name-1");
@@ -753,11 +723,9 @@ export async function benchSteps(service) {
     assert.match(bytes.toString(), /as built,flexible,115/);
   });
 
-  await step(
+  await opened(
     "four designs stand beside each other without scrolling, on a phone under names that stay, and the best of each line is marked",
-    service,
     async (page) => {
-      await open(page, service);
       await tab(page, "compare");
       for (const count of ["8", "6", "5"]) {
         await page.locator("#pin").click();
@@ -820,11 +788,9 @@ export async function benchSteps(service) {
     { viewport: { width: 1280, height: 800 } },
   );
 
-  await step(
+  await opened(
     "drawing and answers stay in view while the rest is scrolled",
-    service,
     async (page) => {
-      await open(page, service);
       await field(page, `${HOLES}/count`);
       assert.equal(await page.locator("#form details.section[open]").count(), 1, "one section at a time");
       await page.locator(".work-panel").evaluate((panel) => panel.scrollTo(0, panel.scrollHeight));
@@ -841,11 +807,9 @@ export async function benchSteps(service) {
     { viewport: { width: 1280, height: 800 } },
   );
 
-  await step(
+  await opened(
     "a phone shows answers, drawing and design first, a large screen curves beside the drawing",
-    service,
     async (page) => {
-      await open(page, service);
       const top = async (place) => (await page.locator(place).boundingBox()).y;
       const order = await Promise.all([".answers-panel", ".drawing-panel", ".form-panel", ".work-panel"].map(top));
       assert.deepEqual(
@@ -864,8 +828,7 @@ export async function benchSteps(service) {
     { viewport: { width: 390, height: 844 } },
   );
 
-  await step("the geometry report has what is checked first, on one page", service, async (page) => {
-    await open(page, service);
+  await opened("the geometry report has what is checked first, on one page", async (page) => {
     await tab(page, "geometry");
     const rows = await page.locator("#geometry").innerText();
     // By hand for z 50/50, m 2, a 100.5: ε 1.5116, j 0.3484, d_b 93.969; at A the driving root slides by 1 -
@@ -916,16 +879,13 @@ export async function benchSteps(service) {
     await axe(page);
   });
 
-  await step("teeth are drawn by a class, and pasted from a spreadsheet", service, async (page) => {
-    await open(page, service);
+  await opened("teeth are drawn by a class, and pasted from a spreadsheet", async (page) => {
     await page.locator("#start").selectOption("standard-pair");
     await named(page, "50/50");
     const before = await answer(page, "p-p");
     const tool = async (name) => {
       const found = page.locator(`#deviations-driven-${name}`);
-      await found.evaluate((element) => {
-        for (let at = element; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true;
-      });
+      await unfold(found);
       return found;
     };
     await (await tool("class")).fill("6");
@@ -966,15 +926,14 @@ export async function benchSteps(service) {
     );
   });
 
-  await step("a part of a long period has a spectrum, which says what it is", service, async (page) => {
+  await step("a part of a long period has a spectrum, which says what it is", async (page) => {
     await openDesign(page, service, { ...LONG, resolution: { span_mesh_periods: 12 } });
-    await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+    await answered(page);
     await page.locator("#chart-spectrum").scrollIntoViewIfNeeded();
     assert.match(await page.locator("#chart-spectrum .note").innerText(), /periods that were computed/);
   });
 
-  await step("what is shown is exported, with titles, and as a program", service, async (page) => {
-    await open(page, service);
+  await opened("what is shown is exported, with titles, and as a program", async (page) => {
     await tab(page, "export");
     const get = async (kind) => (await downloaded(page, () => page.locator(`[data-download="${kind}"]`).click())).bytes;
     for (const [kind, least] of [
@@ -1027,8 +986,7 @@ export async function benchSteps(service) {
     assert.equal(names((await get("svg")).toString()).filter((name) => name === "H_N").length, 2);
   });
 
-  await step("a pair is taken out of a gearbox program, and given back to it", service, async (page) => {
-    await open(page, service);
+  await opened("a pair is taken out of a gearbox program, and given back to it", async (page) => {
     await tab(page, "export");
     const { name, bytes } = await downloaded(page, () => page.locator('[data-download="submission.rexs"]').click());
     assert.match(name, /\.rexs$/);
@@ -1073,11 +1031,9 @@ export async function benchSteps(service) {
     await axe(page);
   });
 
-  await step(
+  await opened(
     "a study varies the web of a gear that has none yet, and the table tells tension from compression",
-    service,
     async (page) => {
-      await open(page, service);
       await (await field(page, "/stress")).check();
       await settled(page);
       await tab(page, "compare");
@@ -1110,8 +1066,7 @@ export async function benchSteps(service) {
     },
   );
 
-  await step("a study varies any field, and shows two columns", service, async (page) => {
-    await open(page, service);
+  await opened("a study varies any field, and shows two columns", async (page) => {
     await tab(page, "study");
     await page.locator("#axis-0").selectOption("/pair/driving/tip_relief/start/radial_length_mm");
     await page.locator("#axis-0-values").fill("1, 1.5");
@@ -1126,7 +1081,6 @@ export async function benchSteps(service) {
 
   await step(
     "kidneys and holes in several patterns are compared at one mass, and a relief that a gear has not yet is varied",
-    service,
     async (page) => {
       const blank = {
         bore_radius_mm: 20,
@@ -1186,8 +1140,7 @@ export async function benchSteps(service) {
     },
   );
 
-  await step("a search keeps a stress and a mass, and asks for the stress by itself", service, async (page) => {
-    await open(page, service);
+  await opened("a search keeps a stress and a mass, and asks for the stress by itself", async (page) => {
     await tab(page, "study");
     await page.locator("#search summary").click();
     await page.locator("#variable-0").selectOption(`${HOLES}/radius_mm`);
@@ -1218,11 +1171,9 @@ export async function benchSteps(service) {
     assert.equal((await designOf(page)).stress, undefined, "the design itself stays");
   });
 
-  await step(
+  await opened(
     "a service that was away is asked again, a job goes on, and a reload keeps the kept designs",
-    service,
     async (page, context) => {
-      await open(page, service);
       const before = await answer(page, "p-p");
       await page.locator("#pin").click();
       await tab(page, "compare");
@@ -1275,11 +1226,9 @@ export async function benchSteps(service) {
     },
   );
 
-  await step(
+  await opened(
     "what a sweep or a study found is marked once the design is another one, and begins with the torque of the design",
-    service,
     async (page) => {
-      await open(page, service);
       await (await field(page, "/output_torques_n_m")).fill("150");
       await settled(page);
       await tab(page, "sweep");
@@ -1342,11 +1291,9 @@ export async function benchSteps(service) {
     },
   );
 
-  await step(
+  await opened(
     "what is half typed is not told as wrong, what is wrong is told in the words of the form, and what is known takes no time",
-    service,
     async (page) => {
-      await open(page, service);
       await page.evaluate(() => {
         window.told = [];
         new MutationObserver(() => {
@@ -1392,9 +1339,7 @@ export async function benchSteps(service) {
       const list = page
         .locator(`#form fieldset.list`, { has: page.locator("legend", { hasText: /profile modifications/i }) })
         .first();
-      await list.evaluate((element) => {
-        for (let at = element; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true;
-      });
+      await unfold(list);
       await list.locator(":scope > button").click();
       await (await field(page, "/pair/driving/profile_modifications/0")).selectOption({ label: "Crowning" });
       await settled(page);
@@ -1420,15 +1365,11 @@ export async function benchSteps(service) {
     },
   );
 
-  await step(
+  await opened(
     "a population draws its teeth in place of those of the design, at torques of the design, and a search says where it ends",
-    service,
     async (page) => {
-      await open(page, service);
       const drawn = page.locator("#deviations-driven-class");
-      await drawn.evaluate((element) => {
-        for (let at = element; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true;
-      });
+      await unfold(drawn);
       await changing(page, () => page.locator("details.tool[open] button", { hasText: "Draw teeth" }).click());
       await (await field(page, "/output_torques_n_m")).fill("150");
       await settled(page);
@@ -1472,7 +1413,6 @@ export async function benchSteps(service) {
 
   await step(
     "a long sweep is seen as it comes, without what goes on from its curves, and can be cancelled",
-    service,
     async (page) => {
       const asked = [];
       page.on("request", (request) => {
@@ -1513,53 +1453,46 @@ export async function benchSteps(service) {
     },
   );
 
-  await step(
-    "a population says how many of its members cannot be computed, and why most of these",
-    service,
-    async (page) => {
-      await open(page, service);
-      await tab(page, "population");
-      await page.locator("#population-size").fill("24");
-      await page.locator("#population-torques").fill("115");
-      // Case 2 has 0.35 mm of backlash at 100.5 mm: half a millimeter less is too near.
-      await page.locator("#law-0").selectOption("/pair/center_distance_mm");
-      await page.locator("#law-0-kind").selectOption("uniform");
-      await page.locator("#law-0-spread").fill("1");
-      await page.locator("#population button[type=submit]").click();
-      await ends(page, "#population-state", /24 of 24 members, successful/);
-      const told = page.locator("#population .outdated", { hasText: "cannot be computed" });
-      await told.waitFor();
-      const [, failed, why] =
-        /^(\d+) of 24 members cannot be computed, most often: (.*)\. What stands below is of the others alone\.$/.exec(
-          await told.innerText(),
-        );
-      const results = await page.evaluate(async () =>
-        (
-          await fetch(`v1/studies/${(await (await fetch("v1/studies?limit=1")).json()).items[0].id}/results/population`)
-        ).json(),
+  await opened("a population says how many of its members cannot be computed, and why most of these", async (page) => {
+    await tab(page, "population");
+    await page.locator("#population-size").fill("24");
+    await page.locator("#population-torques").fill("115");
+    // Case 2 has 0.35 mm of backlash at 100.5 mm: half a millimeter less is too near.
+    await page.locator("#law-0").selectOption("/pair/center_distance_mm");
+    await page.locator("#law-0-kind").selectOption("uniform");
+    await page.locator("#law-0-spread").fill("1");
+    await page.locator("#population button[type=submit]").click();
+    await ends(page, "#population-state", /24 of 24 members, successful/);
+    const told = page.locator("#population .outdated", { hasText: "cannot be computed" });
+    await told.waitFor();
+    const [, failed, why] =
+      /^(\d+) of 24 members cannot be computed, most often: (.*)\. What stands below is of the others alone\.$/.exec(
+        await told.innerText(),
       );
-      assert.equal(Number(failed), results.failed);
-      assert.match(why, /\d/);
-      assert.ok(results.refusals[0].detail.includes(why.slice(0, 12)), `${why} ${results.refusals[0].detail}`);
-      assert.ok(results.failed > 2 && results.failed < 22, String(results.failed));
-      await axe(page);
-      // The next one has none of them.
-      await page.locator("#law-0-spread").fill("0.01");
-      await page.locator("#population button[type=submit]").click();
-      await page.waitForFunction(
-        () =>
-          /24 of 24 members, successful/.test(document.querySelector("#population [role=status]").innerText) &&
-          document.querySelector("#population .scatter"),
-      );
-      assert.ok(await told.isHidden());
-    },
-  );
+    const results = await page.evaluate(async () =>
+      (
+        await fetch(`v1/studies/${(await (await fetch("v1/studies?limit=1")).json()).items[0].id}/results/population`)
+      ).json(),
+    );
+    assert.equal(Number(failed), results.failed);
+    assert.match(why, /\d/);
+    assert.ok(results.refusals[0].detail.includes(why.slice(0, 12)), `${why} ${results.refusals[0].detail}`);
+    assert.ok(results.failed > 2 && results.failed < 22, String(results.failed));
+    await axe(page);
+    // The next one has none of them.
+    await page.locator("#law-0-spread").fill("0.01");
+    await page.locator("#population button[type=submit]").click();
+    await page.waitForFunction(
+      () =>
+        /24 of 24 members, successful/.test(document.querySelector("#population [role=status]").innerText) &&
+        document.querySelector("#population .scatter"),
+    );
+    assert.ok(await told.isHidden());
+  });
 
-  await step(
+  await opened(
     "a search over members says how many of its designs and of their members cannot be computed, and why most of these",
-    service,
     async (page) => {
-      await open(page, service);
       const found = await page.evaluate(async () => {
         const { follow, json, post } = await import(new URL("web/state/api.js", document.baseURI).href);
         const gear = { tooth_count: 50, module_mm: 2, face_width_mm: 20, blank: { bore_radius_mm: 16 } };
@@ -1615,7 +1548,6 @@ export async function benchSteps(service) {
 
   await step(
     "a population of a pair whose teeth meet late has as many torques as there is room for, without what goes on from its curves",
-    service,
     async (page) => {
       const posted = [];
       page.on("request", (request) => {
@@ -1660,7 +1592,6 @@ export async function benchSteps(service) {
 
   await step(
     "jobs say which design each is of: by its tags, its name, and what differs from the design on the page",
-    service,
     async (page) => {
       const asked = [];
       page.on("request", (request) => {
@@ -1762,31 +1693,27 @@ export async function benchSteps(service) {
     },
   );
 
-  await step(
-    "a link is copied where pages may not use the clipboard, or it says that it is not",
-    service,
-    async (page) => {
-      await page.addInitScript(() => {
-        Object.defineProperty(navigator, "clipboard", { value: undefined });
-        window.copies = 0;
-        document.addEventListener("copy", () => {
-          window.copies += 1;
-        });
+  await step("a link is copied where pages may not use the clipboard, or it says that it is not", async (page) => {
+    await page.addInitScript(() => {
+      Object.defineProperty(navigator, "clipboard", { value: undefined });
+      window.copies = 0;
+      document.addEventListener("copy", () => {
+        window.copies += 1;
       });
-      await open(page, service);
-      await page.locator("#share").click();
-      await page.waitForFunction(() => /copied/i.test(document.querySelector("#share").textContent));
-      assert.equal(await page.evaluate(() => window.copies), 1, "it says so because it did");
-      await page.evaluate(() => {
-        document.execCommand = () => false;
-      });
-      await page.waitForFunction(() => document.querySelector("#share").textContent === "Copy link");
-      await page.locator("#share").click();
-      await page.waitForFunction(() => /address bar/.test(document.querySelector("#share").textContent));
-    },
-  );
+    });
+    await open(page, service);
+    await page.locator("#share").click();
+    await page.waitForFunction(() => /copied/i.test(document.querySelector("#share").textContent));
+    assert.equal(await page.evaluate(() => window.copies), 1, "it says so because it did");
+    await page.evaluate(() => {
+      document.execCommand = () => false;
+    });
+    await page.waitForFunction(() => document.querySelector("#share").textContent === "Copy link");
+    await page.locator("#share").click();
+    await page.waitForFunction(() => /address bar/.test(document.querySelector("#share").textContent));
+  });
 
-  await step("every plot has words, and colors that deuteranopia keeps apart", service, async (page) => {
+  await step("every plot has words, and colors that deuteranopia keeps apart", async (page) => {
     for (const colorScheme of ["light", "dark"]) {
       await page.emulateMedia({ colorScheme });
       await open(page, service);
@@ -1818,11 +1745,9 @@ export async function benchSteps(service) {
     }
   });
 
-  await step(
+  await opened(
     "one tab leads to the holes, and what asks for less motion gets less",
-    service,
     async (page) => {
-      await open(page, service);
       assert.equal(await page.locator(".rotor.driven [tabindex='0']").count(), 1);
       await page.locator("#play").click();
       await page.waitForFunction(() => Number(document.querySelector("#position").value) > 0.05);
@@ -1837,8 +1762,7 @@ export async function benchSteps(service) {
     { reducedMotion: "reduce" },
   );
 
-  await step("what a visitor asks is answered where it stands", service, async (page) => {
-    await open(page, service);
+  await opened("what a visitor asks is answered where it stands", async (page) => {
     await page.locator("#answer-h-n .name").click();
     assert.match(await page.locator("#about-h-n").innerText(), /holes/);
     await page.locator("#answer-p-p .name").click();

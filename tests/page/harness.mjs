@@ -15,8 +15,25 @@ const browser = await chromium.launch({ executablePath: process.env.BROWSER, arg
 let passed = 0;
 let failed = 0;
 
-/** Runs a step in a page of its own, which must neither log an error nor ask another host. */
-export async function step(name, service, work, options = {}, others = []) {
+/**
+ * What runs a step on a service, in a page of its own, which must neither log an error nor ask another host; and what does
+ * once the page has been opened and shows its first design.
+ */
+export function stepsOn(service) {
+  const step = (name, work, options = {}, others = []) => run(name, service, work, options, others);
+  const opened = (name, work, options = {}) =>
+    step(
+      name,
+      async (page, context) => {
+        await open(page, service);
+        await work(page, context);
+      },
+      options,
+    );
+  return { opened, step };
+}
+
+async function run(name, service, work, options, others) {
   if (only && !only.test(name)) return;
   const context = await browser.newContext({
     viewport: { width: 1280, height: 1000 },
@@ -101,18 +118,16 @@ export async function changed(page, id, before) {
 
 export async function open(page, service, fragment = "") {
   await page.goto(service.url + fragment);
-  await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+  await answered(page);
   await page.locator("#form .field").first().waitFor();
-  await page.waitForFunction(() => !document.body.classList.contains("busy"));
+  await idle(page);
 }
 
 /** The field at a pointer, in view whatever was folded. */
 export async function field(page, pointer) {
   const found = page.locator(`[id="field-${pointer}"]`);
   await found.waitFor({ state: "attached" });
-  await found.evaluate((element) => {
-    for (let at = element; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true;
-  });
+  await unfold(found);
   return found;
 }
 
@@ -132,6 +147,23 @@ export const settled = (page) =>
   page.waitForFunction(
     () => !document.body.classList.contains("busy") && history.state?.changes === Number(document.body.dataset.changes),
   );
+
+/** Waits until the headline has numbers. */
+export const answered = (page) =>
+  page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+
+/** Opens all that a place is folded away in. */
+export const unfold = (place) =>
+  place.evaluate((element) => {
+    for (let at = element; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true;
+  });
+
+/** Waits until nothing is computed any more. */
+export const idle = (page) => page.waitForFunction(() => !document.body.classList.contains("busy"));
+
+/** Waits until the design is computed, and can be. */
+export const computed = (page) =>
+  page.waitForFunction(() => !document.body.classList.contains("busy") && document.querySelector("#problem").hidden);
 
 /** Does what changes the design sooner or later, and waits until it has, and is settled. */
 export async function changing(page, work) {

@@ -3,7 +3,19 @@
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { axe, changing, designOf, downloaded, ends, field, settled, step, tab } from "./harness.mjs";
+import {
+  answered as firstAnswered,
+  axe,
+  changing,
+  designOf,
+  downloaded,
+  ends,
+  field,
+  settled,
+  stepsOn,
+  tab,
+  unfold,
+} from "./harness.mjs";
 
 /** Numbers of the guide may be off by so much: its last digit, or what another processor rounds. */
 const TOLERANCE = 0.01;
@@ -40,7 +52,8 @@ function assertAlike(found, said) {
 
 /** @param service the service whose page is used */
 export async function hourSteps(service) {
-  await step("an hour at the bench goes as its guide says, click by click", service, async (page) => {
+  const { step } = stepsOn(service);
+  await step("an hour at the bench goes as its guide says, click by click", async (page) => {
     page.setDefaultTimeout(MINUTES);
     const { answers, names } = guide();
     let seen = "";
@@ -98,7 +111,7 @@ export async function hourSteps(service) {
 
     // The pair.
     await page.goto(service.url);
-    await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+    await firstAnswered(page);
     await page.locator("#form .field").first().waitFor();
     await page.locator("#start").selectOption({ label: "a new pair, all by default" });
     for (const [name, value] of [
@@ -137,9 +150,7 @@ export async function hourSteps(service) {
     const list = page
       .locator("#form fieldset.list", { has: page.locator("legend", { hasText: /profile modifications/i }) })
       .first();
-    await list.evaluate((element) => {
-      for (let at = element; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true;
-    });
+    await unfold(list);
     await changing(page, () => list.locator(":scope > button").click());
     await changing(page, async () =>
       (await field(page, "/pair/driving/profile_modifications/0")).selectOption({ label: "Crowning" }),
@@ -211,9 +222,7 @@ export async function hourSteps(service) {
 
     // As it will be made.
     const tool = page.locator("#deviations-driven-class");
-    await tool.evaluate((element) => {
-      for (let at = element; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true;
-    });
+    await unfold(tool);
     await changing(page, () => page.locator("details.tool[open] button", { hasText: "Draw teeth" }).last().click());
     await headline();
     await answered(await page.locator("details.tool[open] [role=status]").last().innerText());

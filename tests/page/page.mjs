@@ -7,6 +7,7 @@ import { createServer } from "node:http";
 import { benchSteps } from "./bench.mjs";
 import {
   answer,
+  answered,
   axe,
   changed,
   changing,
@@ -17,10 +18,11 @@ import {
   ends,
   field,
   holeAt,
+  idle,
   linkOf,
   named,
   open,
-  step,
+  stepsOn,
   tab,
 } from "./harness.mjs";
 import { hourSteps } from "./hour.mjs";
@@ -40,11 +42,12 @@ const SHOWN = ["390-light", "390-dark", "1280-light", "1280-dark", "3840-light"]
 const HOLES = "/pair/driven/blank/holes";
 
 const service = await start();
+const { opened, step } = stepsOn(service);
 
-await step("case 2 is there at once, with the mean of the reference", service, async (page) => {
+await step("case 2 is there at once, with the mean of the reference", async (page) => {
   const begun = Date.now();
   await page.goto(service.url);
-  await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+  await answered(page);
   console.log(`page: first curve ${Date.now() - begun} ms after the address was opened.`);
   assert.equal(await page.locator("#start").inputValue(), "test-case-2");
   // Table 2 of the paper: 13.79 um; ours 13.8.
@@ -54,8 +57,7 @@ await step("case 2 is there at once, with the mean of the reference", service, a
   await axe(page);
 });
 
-await step("a dragged hole changes the curve, and the hole stays where the hand left it", service, async (page) => {
-  await open(page, service);
+await opened("a dragged hole changes the curve, and the hole stays where the hand left it", async (page) => {
   const before = await answer(page, "p-p");
   const [middle, center] = await holeAt(page, 5);
   await drag(
@@ -69,8 +71,7 @@ await step("a dragged hole changes the curve, and the hole stays where the hand 
   assert.equal(await page.locator("#start").inputValue(), "");
 });
 
-await step("a field that is wrong says so, keeps the curve, and is mended by its button", service, async (page) => {
-  await open(page, service);
+await opened("a field that is wrong says so, keeps the curve, and is mended by its button", async (page) => {
   const mean = await answer(page, "mean");
   const radius = await field(page, `${HOLES}/radius_mm`);
   await radius.fill("12");
@@ -93,8 +94,7 @@ await step("a field that is wrong says so, keeps the curve, and is mended by its
   assert.ok(mended > 9 && mended < 12, `mended to ${mended}`);
 });
 
-await step("a link opened again gives the same design", service, async (page, context) => {
-  await open(page, service);
+await opened("a link opened again gives the same design", async (page, context) => {
   await (await field(page, `${HOLES}/count`)).fill("8");
   await named(page, "8×");
   const again = await context.newPage();
@@ -103,8 +103,7 @@ await step("a link opened again gives the same design", service, async (page, co
   assert.equal(await again.locator("#headline").innerText(), await page.locator("#headline").innerText());
 });
 
-await step("curves and gears stand at the same position, whichever is moved", service, async (page) => {
-  await open(page, service);
+await opened("curves and gears stand at the same position, whichever is moved", async (page) => {
   const angle = () => page.locator(".rotor.driving").getAttribute("transform");
   const before = await angle();
   await page.locator("#chart-ste .u-over").hover({ position: { x: 120, y: 60 } });
@@ -120,8 +119,7 @@ await step("curves and gears stand at the same position, whichever is moved", se
   assert.ok((await page.locator(".forces .force").count()) >= 1);
 });
 
-await step("stresses are shown where they are asked for", service, async (page) => {
-  await open(page, service);
+await opened("stresses are shown where they are asked for", async (page) => {
   assert.ok(await page.locator("#chart-stress").isHidden());
   await (await field(page, "/stress")).check();
   await page.locator("#chart-stress").waitFor();
@@ -133,7 +131,7 @@ await step("stresses are shown where they are asked for", service, async (page) 
   await axe(page);
 });
 
-await step("lists of holes and slots are opened, changed and computed", service, async (page, context) => {
+await step("lists of holes and slots are opened, changed and computed", async (page, context) => {
   const of = (name) => field(page, `${HOLES}${name}`);
   await open(page, service);
   await page.locator("#start").selectOption("slots");
@@ -169,8 +167,7 @@ await step("lists of holes and slots are opened, changed and computed", service,
   await axe(page);
 });
 
-await step("several designs and methods stand in one plot", service, async (page) => {
-  await open(page, service);
+await opened("several designs and methods stand in one plot", async (page) => {
   await tab(page, "compare");
   await page.locator("#methods").click();
   await page.waitForFunction(() => document.querySelectorAll("#table thead th").length === 5);
@@ -179,16 +176,14 @@ await step("several designs and methods stand in one plot", service, async (page
   assert.equal(await page.locator("#table thead th").count(), 4);
 });
 
-await step("a sweep marks the torque of the least peak-to-peak", service, async (page) => {
-  await open(page, service);
+await opened("a sweep marks the torque of the least peak-to-peak", async (page) => {
   await tab(page, "sweep");
   await page.locator("#sweep button[type=submit]").click();
   await page.locator("#sweep .scatter .strong").waitFor();
   assert.match(await page.locator("#sweep .out").innerText(), /Least peak-to-peak of these torques: \d/);
 });
 
-await step("a study runs and shows its table and its front", service, async (page) => {
-  await open(page, service);
+await opened("a study runs and shows its table and its front", async (page) => {
   await tab(page, "study");
   await page.locator("#axis-0-values").fill("6, 10, 40");
   await page.locator("#study-run").click();
@@ -203,8 +198,7 @@ await step("a study runs and shows its table and its front", service, async (pag
   await axe(page);
 });
 
-await step("a search finds a design, shows how it came to it, and opens it", service, async (page) => {
-  await open(page, service);
+await opened("a search finds a design, shows how it came to it, and opens it", async (page) => {
   await tab(page, "study");
   await page.locator("#search summary").click();
   await page.locator("#variable-0").selectOption("/pair/driving/tip_relief/amount_um");
@@ -228,11 +222,9 @@ await step("a search finds a design, shows how it came to it, and opens it", ser
   assert.equal((await designOf(page)).pair.driving.tip_relief.amount_um, found);
 });
 
-await step(
+await opened(
   "a search for two goals ends with a front, whose points open their designs by keys and by a click, beside the design it began with",
-  service,
   async (page) => {
-    await open(page, service);
     await tab(page, "study");
     await page.locator("#search summary").click();
     await page.locator("#variable-0").selectOption(`${HOLES}/radius_mm`);
@@ -283,33 +275,27 @@ await step(
   },
 );
 
-await step(
-  "a population shows how good the pairs will be that are made, and opens one of them",
-  service,
-  async (page) => {
-    await open(page, service);
-    await tab(page, "population");
-    await page.locator("#population-size").fill("24");
-    await page.locator("#population-torques").fill("60, 115");
-    await page.locator("#law-0").selectOption("/pair/center_distance_mm");
-    await page.locator("#law-0-kind").selectOption("uniform");
-    await page.locator("#population button[type=submit]").click();
-    await ends(page, "#population-state", /24 of 24 members, successful/);
-    assert.match(await page.locator("#population .out").innerText(), /95 of 100 pairs stay below \d/);
-    assert.equal(await page.locator("#population .scatter").count(), 2, "a histogram, and percentiles over the torque");
-    const influences = await page.locator("#population .influences tbody").innerText();
-    assert.match(influences, /[Cc]enter distance/);
-    assert.match(influences, /teeth of the driven gear/);
-    await axe(page);
-    await changing(page, () => page.locator("#population button", { hasText: "Open the largest member" }).click());
-    const opened = await designOf(page);
-    assert.equal(opened.pair.driven.tooth_deviations.pitch_single_um.length, opened.pair.driven.tooth_count);
-    assert.equal(opened.output_torques_n_m.length, 2);
-  },
-);
+await opened("a population shows how good the pairs will be that are made, and opens one of them", async (page) => {
+  await tab(page, "population");
+  await page.locator("#population-size").fill("24");
+  await page.locator("#population-torques").fill("60, 115");
+  await page.locator("#law-0").selectOption("/pair/center_distance_mm");
+  await page.locator("#law-0-kind").selectOption("uniform");
+  await page.locator("#population button[type=submit]").click();
+  await ends(page, "#population-state", /24 of 24 members, successful/);
+  assert.match(await page.locator("#population .out").innerText(), /95 of 100 pairs stay below \d/);
+  assert.equal(await page.locator("#population .scatter").count(), 2, "a histogram, and percentiles over the torque");
+  const influences = await page.locator("#population .influences tbody").innerText();
+  assert.match(influences, /[Cc]enter distance/);
+  assert.match(influences, /teeth of the driven gear/);
+  await axe(page);
+  await changing(page, () => page.locator("#population button", { hasText: "Open the largest member" }).click());
+  const opened = await designOf(page);
+  assert.equal(opened.pair.driven.tooth_deviations.pitch_single_um.length, opened.pair.driven.tooth_count);
+  assert.equal(opened.output_torques_n_m.length, 2);
+});
 
-await step("a job is submitted, followed and opened", service, async (page) => {
-  await open(page, service);
+await opened("a job is submitted, followed and opened", async (page) => {
   await tab(page, "jobs");
   // The jobs of studies stand in the list too, of which only statistics may be left.
   const submitted = page.waitForResponse(
@@ -325,8 +311,7 @@ await step("a job is submitted, followed and opened", service, async (page) => {
   assert.match((await file("VTU")).name, /fields\.vtu$/);
 });
 
-await step("the pair is seen deformed at the position shown, by keys too", service, async (page) => {
-  await open(page, service);
+await opened("the pair is seen deformed at the position shown, by keys too", async (page) => {
   await page.locator("#position").fill("0.3");
   await page.locator("#deformed").focus();
   await page.keyboard.press("Enter");
@@ -362,8 +347,7 @@ await step("the pair is seen deformed at the position shown, by keys too", servi
   assert.equal(await page.locator("#deformed").getAttribute("aria-pressed"), "false");
 });
 
-await step("keys alone do: a hole moves by arrows", service, async (page) => {
-  await open(page, service);
+await opened("keys alone do: a hole moves by arrows", async (page) => {
   const hole = page.locator(".rotor.driven .hole[role=slider]");
   await hole.focus();
   for (let i = 0; i < 4; i += 1) await page.keyboard.press("ArrowDown");
@@ -391,8 +375,7 @@ await step("keys alone do: a hole moves by arrows", service, async (page) => {
   assert.equal((await designOf(page)).pair.driven.blank.holes[0].slot.width_mm, Number((width - 0.1).toFixed(6)));
 });
 
-await step("200 drags are followed in order", service, async (page) => {
-  await open(page, service);
+await opened("200 drags are followed in order", async (page) => {
   await page.evaluate(() => {
     window.drawn = [];
     document.addEventListener("drawn", (/** @type {CustomEvent} */ { detail }) =>
@@ -412,7 +395,7 @@ await step("200 drags are followed in order", service, async (page) => {
     await page.waitForTimeout(16);
   }
   await page.mouse.up();
-  await page.waitForFunction(() => !document.body.classList.contains("busy"));
+  await idle(page);
   const drawn = await page.evaluate(() => window.drawn);
   const radii = drawn.map(([radius]) => radius);
   assert.deepEqual(
@@ -439,13 +422,13 @@ await hourSteps(service);
 
 const locked = await start();
 const key = locked.key("visitor");
-await step("a key is asked for, and used", locked, async (page) => {
+await stepsOn(locked).step("a key is asked for, and used", async (page) => {
   await page.goto(locked.url);
   await page.locator("#key-dialog[open]").waitFor();
   await axe(page);
   await page.locator("#key").fill(key);
   await page.locator("#key-form button.primary").click();
-  await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+  await answered(page);
   assert.ok(Math.abs((await answer(page, "mean")) - 13.8) < 0.1);
   // Streams of events carry the key too.
   await tab(page, "jobs");
@@ -460,9 +443,8 @@ const portal = createServer((_, answered) =>
 await once(portal.listen(0, "127.0.0.1"), "listening");
 const origin = `http://127.0.0.1:${/** @type {import("node:net").AddressInfo} */ (portal.address()).port}`;
 const shared = await start({ MESHWRIGHT_CORS_ORIGIN: origin });
-await step(
+await stepsOn(shared).step(
   "a portal on another origin submits, follows and draws",
-  shared,
   async (page) => {
     await page.goto(`${origin}/?service=${shared.url.replace(/\/$/, "")}`);
     await page.locator("button").click();
@@ -477,11 +459,9 @@ portal.close();
 
 for (const [width, height] of WIDTHS) {
   for (const colorScheme of ["light", "dark"]) {
-    await step(
+    await opened(
       `nothing serious at ${width} px, ${colorScheme}`,
-      service,
       async (page) => {
-        await open(page, service);
         await axe(page);
         const wider = await page.evaluate(
           () => document.documentElement.scrollWidth - document.documentElement.clientWidth,

@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import {
   answer,
+  answered,
   axe,
   changed,
   changing,
@@ -13,8 +14,9 @@ import {
   open,
   openDesign,
   settled,
-  step,
+  stepsOn,
   tab,
+  unfold,
 } from "./harness.mjs";
 import { start } from "./service.mjs";
 import { HELICAL } from "./solid.mjs";
@@ -90,11 +92,10 @@ const watch = (page) =>
 
 /** @param service the service whose page is used */
 export async function shownSteps(service) {
-  await step(
+  const { opened, step } = stepsOn(service);
+  await opened(
     "a decimal comma is a decimal point, in a field, in a list and in a panel, and what can be read in two ways says so",
-    service,
     async (page) => {
-      await open(page, service);
       const type = async (pointer, text) => {
         const input = await field(page, pointer);
         await input.click();
@@ -137,11 +138,10 @@ export async function shownSteps(service) {
 
   await step(
     "numbers of another design are gray 0.3 s after the last key, and no half-typed design is computed that takes long",
-    service,
     async (page) => {
       await estimateSeconds(page);
       await openDesign(page, service, HELICAL);
-      await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+      await answered(page);
       await settled(page);
       await watch(page);
       const asked = [];
@@ -168,12 +168,11 @@ export async function shownSteps(service) {
 
   await step(
     "by the clock: numbers are gray 300 to 400 ms after an edit, what takes over a second waits for 700, and Enter waits for nothing",
-    service,
     async (page) => {
       await page.clock.install();
       await estimateSeconds(page);
       await openDesign(page, service, HELICAL);
-      await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+      await answered(page);
       await settled(page);
       const asked = [];
       page.on("request", (request) => {
@@ -213,123 +212,116 @@ export async function shownSteps(service) {
     },
   );
 
-  await step(
-    "every view shows one design: while the form has another one it says so, or is empty",
-    service,
-    async (page) => {
-      const hold = async () => {
-        let go = (_ = null) => {};
-        const waits = new Promise((resolve) => {
-          go = resolve;
-        });
-        await page.route("**/v1/preview", async (route) => {
-          await waits;
-          await route.continue();
-        });
-        return async () => {
-          go();
-          await settled(page);
-          await page.unroute("**/v1/preview");
-        };
+  await step("every view shows one design: while the form has another one it says so, or is empty", async (page) => {
+    const hold = async () => {
+      let go = (_ = null) => {};
+      const waits = new Promise((resolve) => {
+        go = resolve;
+      });
+      await page.route("**/v1/preview", async (route) => {
+        await waits;
+        await route.continue();
+      });
+      return async () => {
+        go();
+        await settled(page);
+        await page.unroute("**/v1/preview");
       };
-      /**
-       * What stands in each of these places as if it were of the design in the form: words that are not gray, and
-       * pictures that are not pale.
-       */
-      const standingIn = (places) =>
-        page.evaluate((all) => {
-          const faint = getComputedStyle(document.querySelector("#state")).color;
-          return Object.fromEntries(
-            Object.entries(all).map(([name, selector]) => {
-              const seen = [...document.querySelectorAll(selector)].filter(
-                (element) =>
-                  element.checkVisibility({ visibilityProperty: true }) &&
-                  (element.matches("canvas, svg, g") ||
-                    [...element.childNodes].some(({ nodeType, data }) => nodeType === 3 && data.trim())),
-              );
-              const stands = (element) => {
-                let opacity = 1;
-                for (let each = element; each; each = each.parentElement)
-                  opacity *= Number(getComputedStyle(each).opacity);
-                return (
-                  opacity > 0.6 && (element.matches("canvas, svg, g") || getComputedStyle(element).color !== faint)
-                );
-              };
-              return [
-                name,
-                seen.filter(stands).map((element) => `${element.tagName} ${element.textContent.trim().slice(0, 30)}`),
-              ];
-            }),
-          );
-        }, places);
-      /** Each of these places shows the design, and once `edit` has made another one it does not stand as that. */
-      const marked = async (places, edit) => {
-        for (const [name, stands] of Object.entries(await standingIn(places)))
-          assert.ok(stands.length, `${name} shows its design`);
-        const release = await hold();
-        await edit();
-        await page.waitForFunction(() => document.body.classList.contains("other"));
-        const left = Object.entries(await standingIn(places)).filter(([, stands]) => stands.length);
-        assert.deepEqual(left, []);
-        return release;
-      };
-      const typing = (pointer, text) => async () => (await field(page, pointer)).fill(text);
+    };
+    /**
+     * What stands in each of these places as if it were of the design in the form: words that are not gray, and
+     * pictures that are not pale.
+     */
+    const standingIn = (places) =>
+      page.evaluate((all) => {
+        const faint = getComputedStyle(document.querySelector("#state")).color;
+        return Object.fromEntries(
+          Object.entries(all).map(([name, selector]) => {
+            const seen = [...document.querySelectorAll(selector)].filter(
+              (element) =>
+                element.checkVisibility({ visibilityProperty: true }) &&
+                (element.matches("canvas, svg, g") ||
+                  [...element.childNodes].some(({ nodeType, data }) => nodeType === 3 && data.trim())),
+            );
+            const stands = (element) => {
+              let opacity = 1;
+              for (let each = element; each; each = each.parentElement)
+                opacity *= Number(getComputedStyle(each).opacity);
+              return opacity > 0.6 && (element.matches("canvas, svg, g") || getComputedStyle(element).color !== faint);
+            };
+            return [
+              name,
+              seen.filter(stands).map((element) => `${element.tagName} ${element.textContent.trim().slice(0, 30)}`),
+            ];
+          }),
+        );
+      }, places);
+    /** Each of these places shows the design, and once `edit` has made another one it does not stand as that. */
+    const marked = async (places, edit) => {
+      for (const [name, stands] of Object.entries(await standingIn(places)))
+        assert.ok(stands.length, `${name} shows its design`);
+      const release = await hold();
+      await edit();
+      await page.waitForFunction(() => document.body.classList.contains("other"));
+      const left = Object.entries(await standingIn(places)).filter(([, stands]) => stands.length);
+      assert.deepEqual(left, []);
+      return release;
+    };
+    const typing = (pointer, text) => async () => (await field(page, pointer)).fill(text);
 
-      await openDesign(page, service, { ...HELICAL, method: "three_dimensional_projected" });
-      await settled(page);
-      await page.locator("#chart-pattern button").click();
-      await page.locator("#chart-pattern svg").nth(1).waitFor();
-      const curves = {
-        headline: "#headline .value, #readout",
-        curves: "#charts canvas, #charts svg",
-        pattern: "#pattern svg",
-      };
-      await (
-        await marked({ ...curves, drawing: "#drawing .forces > *" }, typing("/output_torques_n_m", "130"))
-      )();
-      await tab(page, "compare");
-      await (
-        await marked({ compare: "#table .live" }, typing("/output_torques_n_m", "140"))
-      )();
-      await tab(page, "geometry");
-      await (
-        await marked({ geometry: "#geometry td:not(.unit)" }, typing("/output_torques_n_m", "150"))
-      )();
-      // In space the outline is that of the form as soon as it is there, and loads of another pair are not on it.
-      await page.locator("[data-view=space]").click();
-      const words = page.locator("#space-words");
-      await page.waitForFunction(() =>
-        /Colors are the load on each line/.test(document.querySelector("#space-words")?.textContent),
-      );
-      const outlined = page.waitForResponse(/v1\/outline$/);
-      const drawn = await marked({ space: "canvas.space, .in-space .legend" }, typing("/pair/helix_angle_deg", "18"));
-      await outlined;
-      await page.waitForFunction(() =>
-        /helical teeth of 18°.*Loads are not computed yet\.$/.test(document.querySelector("#space-words").textContent),
-      );
-      assert.doesNotMatch(await words.textContent(), /N\/mm/);
-      await drawn();
-      await page.waitForFunction(() =>
-        /helical teeth of 18°.*N\/mm/.test(document.querySelector("#space-words").textContent),
-      );
+    await openDesign(page, service, { ...HELICAL, method: "three_dimensional_projected" });
+    await settled(page);
+    await page.locator("#chart-pattern button").click();
+    await page.locator("#chart-pattern svg").nth(1).waitFor();
+    const curves = {
+      headline: "#headline .value, #readout",
+      curves: "#charts canvas, #charts svg",
+      pattern: "#pattern svg",
+    };
+    await (
+      await marked({ ...curves, drawing: "#drawing .forces > *" }, typing("/output_torques_n_m", "130"))
+    )();
+    await tab(page, "compare");
+    await (
+      await marked({ compare: "#table .live" }, typing("/output_torques_n_m", "140"))
+    )();
+    await tab(page, "geometry");
+    await (
+      await marked({ geometry: "#geometry td:not(.unit)" }, typing("/output_torques_n_m", "150"))
+    )();
+    // In space the outline is that of the form as soon as it is there, and loads of another pair are not on it.
+    await page.locator("[data-view=space]").click();
+    const words = page.locator("#space-words");
+    await page.waitForFunction(() =>
+      /Colors are the load on each line/.test(document.querySelector("#space-words")?.textContent),
+    );
+    const outlined = page.waitForResponse(/v1\/outline$/);
+    const drawn = await marked({ space: "canvas.space, .in-space .legend" }, typing("/pair/helix_angle_deg", "18"));
+    await outlined;
+    await page.waitForFunction(() =>
+      /helical teeth of 18°.*Loads are not computed yet\.$/.test(document.querySelector("#space-words").textContent),
+    );
+    assert.doesNotMatch(await words.textContent(), /N\/mm/);
+    await drawn();
+    await page.waitForFunction(() =>
+      /helical teeth of 18°.*N\/mm/.test(document.querySelector("#space-words").textContent),
+    );
 
-      await open(page, service);
-      await tab(page, "run-up");
-      await page.locator("#run-up-ask").click();
-      await page.locator("#run-up .waterfall").waitFor();
-      await settled(page);
-      await (
-        await marked(
-          { "run-up": "#run-up svg, #run-up td, #run-up th, #run-up caption, #run-up output, #speed-readout" },
-          typing("/output_torques_n_m", "90"),
-        )
-      )();
-    },
-  );
+    await open(page, service);
+    await tab(page, "run-up");
+    await page.locator("#run-up-ask").click();
+    await page.locator("#run-up .waterfall").waitFor();
+    await settled(page);
+    await (
+      await marked(
+        { "run-up": "#run-up svg, #run-up td, #run-up th, #run-up caption, #run-up output, #speed-readout" },
+        typing("/output_torques_n_m", "90"),
+      )
+    )();
+  });
 
   await step(
     "what takes over a second is computed at rest or at Enter, says how long it will take, and is stopped when it is overtaken",
-    service,
     async (page) => {
       await openDesign(page, service, HELICAL);
       await settled(page);
@@ -364,7 +356,7 @@ export async function shownSteps(service) {
     },
   );
 
-  await step("a mistake that is mended is red no more, however long the design takes", service, async (page) => {
+  await step("a mistake that is mended is red no more, however long the design takes", async (page) => {
     await openDesign(page, service, HELICAL);
     await settled(page);
     const width = await field(page, "/pair/driven/face_width_mm");
@@ -381,11 +373,9 @@ export async function shownSteps(service) {
     await settled(page);
   });
 
-  await step(
+  await opened(
     "a center distance that was typed stays when the helix angle changes, until its user takes the offer, over a reload too",
-    service,
     async (page) => {
-      await open(page, service);
       await page.locator("#start").selectOption("new pair");
       await settled(page);
       const type = async (pointer, text) => {
@@ -426,7 +416,6 @@ export async function shownSteps(service) {
 
   await step(
     "edits along the face are computed by the projected method, which is marked, and in full where that is asked for",
-    service,
     async (page) => {
       const asked = [];
       page.on("request", (request) => {
@@ -483,11 +472,9 @@ export async function shownSteps(service) {
     { viewport: { width: 1280, height: 800 } },
   );
 
-  await step(
+  await opened(
     "what was computed is found again after a reload: a sweep, a study, a population, a search that runs, kept designs and the way back",
-    service,
     async (page) => {
-      await open(page, service);
       const from = await answer(page, "p-p");
       await page.locator("#pin").click();
       await changing(page, async () => (await field(page, `${HOLES}/radius_mm`)).fill("6"));
@@ -575,8 +562,7 @@ export async function shownSteps(service) {
     },
   );
 
-  await step("a spectrum has levels, and the shares of pairs have no colors of designs", service, async (page) => {
-    await open(page, service);
+  await opened("a spectrum has levels, and the shares of pairs have no colors of designs", async (page) => {
     const shared = await page.evaluate(async () => {
       const { looks } = await import(new URL("web/draw/charts.js", document.baseURI).href);
       const { series, parts } = looks();
@@ -603,11 +589,9 @@ export async function shownSteps(service) {
     assert.ok(heights.length > 5 && least > 0.05 * most, heights.join());
   });
 
-  await step(
+  await opened(
     "files carry the name of their design, and however somebody prints, a report of one page comes of it",
-    service,
     async (page) => {
-      await open(page, service);
       await tab(page, "export");
       const { name } = await downloaded(page, () => page.locator("[data-download=csv]").click());
       assert.equal(name, "meshwright-50-50-10xr7.5-34-curves.csv");
@@ -638,7 +622,6 @@ export async function shownSteps(service) {
   ]) {
     await step(
       `nothing moves that somebody reads at ${width} px, and the design is near its answers`,
-      service,
       async (page) => {
         await page.addInitScript(() => {
           [window.shift, window.moved] = [0, []];
@@ -655,7 +638,7 @@ export async function shownSteps(service) {
         for (const design of [null, HELICAL]) {
           if (design) await openDesign(page, service, design);
           else await open(page, service);
-          await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+          await answered(page);
           await settled(page);
           await page.waitForTimeout(300);
           const shift = await page.evaluate(() => window.shift);
@@ -675,11 +658,9 @@ export async function shownSteps(service) {
     );
   }
 
-  await step(
+  await opened(
     "teeth are said to be drawn as a production makes them, where some are beyond their class",
-    service,
     async (page) => {
-      await open(page, service);
       await tab(page, "population");
       const words = await page.locator("#population").innerText();
       assert.doesNotMatch(words, /drawn within the class/);
@@ -689,7 +670,6 @@ export async function shownSteps(service) {
 
   await step(
     "where the largest stress stands is told, and what a warning would change is done by its button",
-    service,
     async (page) => {
       // What is warned of here is made up: a service of this version warns of no such thing of this pair.
       await page.route("**/v1/preview", async (route) => {
@@ -728,7 +708,6 @@ export async function shownSteps(service) {
 
   await step(
     "tips that nobody shortened are warned of, and the diameters that gear programs take are taken over by the button",
-    service,
     async (page) => {
       // A planet stage from a report, its tip diameters left out: 0.009 modules of clearance. The report has 978.808
       // and 905.470 mm.
@@ -765,11 +744,9 @@ export async function shownSteps(service) {
     },
   );
 
-  await step(
+  await opened(
     "thickness, hob, shaft and spokes are typed as drawings say them, each in place of what it excludes",
-    service,
     async (page) => {
-      await open(page, service);
       const typed = async (pointer, text) => {
         const input = await field(page, pointer);
         await input.click();
@@ -823,7 +800,6 @@ export async function shownSteps(service) {
 
   await step(
     "a stage of an electric drive is typed from a report, and what stands on the page is its own from the first number to the last",
-    service,
     async (page) => {
       page.setDefaultTimeout(900_000);
       await open(page, service);
@@ -887,9 +863,7 @@ export async function shownSteps(service) {
       const leads = page
         .locator("#form fieldset.list", { has: page.locator("legend", { hasText: /lead modifications/i }) })
         .first();
-      await leads.evaluate((element) => {
-        for (let at = element; at; at = at.parentElement) if (at.tagName === "DETAILS") at.open = true;
-      });
+      await unfold(leads);
       await leads.locator(":scope > button").click();
       await page.evaluate(() => {
         window.drawn = [];
@@ -948,7 +922,7 @@ export async function shownSteps(service) {
         ...HELICAL,
         resolution: { ...HELICAL.resolution, positions_per_mesh_period: 40 },
       });
-      await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+      await answered(page);
       await settled(page);
       const button = page.locator("#chart-pattern button");
       const clock = page.locator("#chart-pattern [role=status]", { hasText: /at every position, about \d+ s more/ });

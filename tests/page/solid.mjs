@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import {
   answer,
+  answered,
   axe,
   changing,
   designOf,
@@ -11,7 +12,7 @@ import {
   field,
   openDesign,
   settled,
-  step,
+  stepsOn,
   tab,
 } from "./harness.mjs";
 
@@ -57,7 +58,8 @@ const STRAIGHT = {
 
 /** @param service the service whose page is used */
 export async function solidSteps(service) {
-  await step("a pair becomes helical in one step, with its method, and straight again", service, async (page) => {
+  const { step } = stepsOn(service);
+  await step("a pair becomes helical in one step, with its method, and straight again", async (page) => {
     await openDesign(page, service, STRAIGHT);
     await settled(page);
     assert.ok(await page.locator("#answer-face").isHidden(), "the plane has no load along the face");
@@ -95,7 +97,6 @@ export async function solidSteps(service) {
 
   await step(
     "what a plane method does not know is marked, refused at its field, and cured by one button either way",
-    service,
     async (page) => {
       await openDesign(page, service, { ...HELICAL, method: "flexible" });
       await page.locator("#problem button", { hasText: "in three dimensions" }).waitFor();
@@ -135,9 +136,9 @@ export async function solidSteps(service) {
     },
   );
 
-  await step("the load along the face is a map under the cursor of the curves", service, async (page) => {
+  await step("the load along the face is a map under the cursor of the curves", async (page) => {
     await openDesign(page, service, HELICAL);
-    await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+    await answered(page);
     await settled(page);
     const map = page.locator("#chart-face");
     await map.scrollIntoViewIfNeeded();
@@ -270,7 +271,6 @@ export async function solidSteps(service) {
 
   await step(
     "a search begins with fields that the design has, each in the words of the form, and its lines stay lines",
-    service,
     async (page) => {
       const pair = {
         ...HELICAL.pair,
@@ -323,12 +323,11 @@ export async function solidSteps(service) {
 
   await step(
     "the pair is turned in space by mouse, keys and buttons, and its lines of contact carry what was computed",
-    service,
     async (page) => {
       const fetched = [];
       page.on("request", (request) => fetched.push(new URL(request.url()).pathname));
       await openDesign(page, service, HELICAL);
-      await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+      await answered(page);
       await settled(page);
       assert.ok(
         !fetched.includes("/web/draw/space.js") && !fetched.includes("/web/draw/raster.js"),
@@ -426,7 +425,7 @@ export async function solidSteps(service) {
     },
   );
 
-  await step("what is seen in space has the mass that was computed, with web, hub and holes", service, async (page) => {
+  await step("what is seen in space has the mass that was computed, with web, hub and holes", async (page) => {
     await openDesign(page, service, HELICAL);
     const ratios = await page.evaluate(async (submission) => {
       const of = (name) => import(new URL(`web/${name}.js`, document.baseURI).href);
@@ -455,7 +454,7 @@ export async function solidSteps(service) {
       assert.ok(Math.abs(density / 7850 - 1) < 0.01, `steel of ${ratios.join(" and ")} kg/m3`);
   });
 
-  await step("a helical pair is seen deformed in the section through the middle of its face", service, async (page) => {
+  await step("a helical pair is seen deformed in the section through the middle of its face", async (page) => {
     await openDesign(page, service, HELICAL);
     await settled(page);
     await page.locator("#deformed").click();
@@ -475,10 +474,9 @@ export async function solidSteps(service) {
 
   await step(
     "one finger turns the pair, and two zoom",
-    service,
     async (page, context) => {
       await openDesign(page, service, HELICAL);
-      await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+      await answered(page);
       await page.locator("[data-view=space]").click();
       await page.waitForFunction(() => /^fine/.test(document.querySelector("canvas.space")?.dataset.painted ?? ""));
       await page.locator("canvas.space").scrollIntoViewIfNeeded();
@@ -507,7 +505,6 @@ export async function solidSteps(service) {
 
   await step(
     "a pair along its face follows the hand by projection, and is computed by a job when it rests",
-    service,
     async (page) => {
       const asked = [];
       page.on("request", (request) => {
@@ -561,11 +558,11 @@ export async function solidSteps(service) {
     },
   );
 
-  await step("the lead that evens the load is told, and given to the design by one press", service, async (page) => {
+  await step("the lead that evens the load is told, and given to the design by one press", async (page) => {
     const askew = structuredClone(HELICAL);
     askew.pair.driving.lead_modifications = [{ kind: "crowning", amount_um: 2 }];
     await openDesign(page, service, askew);
-    await page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");
+    await answered(page);
     await settled(page);
     const before = await answer(page, "face");
     const told = await page.locator("#cure").innerText();

@@ -2,7 +2,7 @@
 // Which mesh periods are shown: a strip of the whole true period with a window on it, drawn over, moved, or set by
 // buttons.
 
-import { dress, h, s } from "./dom.js";
+import { button, dress, h, s } from "./dom.js";
 import { extent, number } from "../state/numbers.js";
 import { linesOf, PANELS } from "../state/series.js";
 
@@ -36,18 +36,17 @@ export class Brush {
     );
     this.words = h("output", { className: "note" });
     /** @type {(name: string, label: string, work: () => void) => HTMLButtonElement} */
-    const button = (name, label, work) =>
-      h("button", { type: "button", ariaLabel: label, title: label, on: { click: work } }, name);
+    const key = (name, label, work) => button(name, work, { ariaLabel: label, title: label });
     place.append(
       this.svg,
       h(
         "div",
         { className: "buttons" },
-        button("◀", "Earlier mesh periods", () => this.#move(-0.5)),
-        button("▶", "Later mesh periods", () => this.#move(0.5)),
-        button("+", "Zoom in", () => this.#scale(0.5)),
-        button("−", "Zoom out", () => this.#scale(2)),
-        button("All", "All mesh periods", () => this.onRange(null)),
+        key("◀", "Earlier mesh periods", () => this.#move(-0.5)),
+        key("▶", "Later mesh periods", () => this.#move(0.5)),
+        key("+", "Zoom in", () => this.#scale(0.5)),
+        key("−", "Zoom out", () => this.#scale(2)),
+        key("All", "All mesh periods", () => this.onRange(null)),
         this.words,
       ),
     );

@@ -2,7 +2,7 @@
 // Curves over the true period and the spectrum, one design beside the other, zoomed together.
 
 import uPlot from "../vendor/uplot.js";
-import { h, s } from "./dom.js";
+import { button, h, s } from "./dom.js";
 import { cellsOf, cssOf, faceOf, SCALE, scaleOf, wordsOfFace } from "./face.js";
 import { figure } from "./figure.js";
 import { extent, fixed, number } from "../state/numbers.js";
@@ -535,7 +535,7 @@ export class Charts {
       panel.canvas.replaceChildren(faceFigure(face, { title, y: `${title} in ${unit}`, panel }));
       panel.below.replaceChildren(
         "How it changes while the teeth pass is told where every position is asked for. ",
-        h("button", { type: "button", on: { click: () => this.onEveryPosition() } }, "Show every position"),
+        button("Show every position", () => this.onEveryPosition()),
       );
       return;
     }

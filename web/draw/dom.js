@@ -46,6 +46,96 @@ export function h(tag, properties = {}, ...children) {
 }
 
 /**
+ * A button that says `words` and does `click`.
+ *
+ * @param {Child} words
+ * @param {Listeners<HTMLButtonElement>["click"]} click
+ * @param {Properties<HTMLButtonElement>} [more]
+ */
+export const button = (words, click, { on, ...more } = {}) =>
+  h("button", { type: "button", ...more, on: { ...on, click } }, words);
+
+/**
+ * What is said beside controls and pictures.
+ *
+ * @param {(Child | Child[])[]} children
+ */
+export const note = (...children) => h("p", { className: "note" }, ...children);
+
+/**
+ * Controls and words in a line.
+ *
+ * @param {(Child | Child[])[]} children
+ */
+export const inLine = (...children) => h("div", { className: "line" }, ...children);
+
+/**
+ * A control behind its label.
+ *
+ * @template {HTMLElement} E
+ * @param {Child} words
+ * @param {E} control
+ * @returns {[HTMLLabelElement, E]}
+ */
+export const labelled = (words, control) => [h("label", { htmlFor: control.id }, words), control];
+
+/**
+ * What may be wider than its place and is scrolled there, by keys too.
+ *
+ * @param {string} ariaLabel
+ * @param {(Child | Child[])[]} children
+ */
+export const region = (ariaLabel, ...children) =>
+  h("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel }, ...children);
+
+/**
+ * What those alone hear who do not see.
+ *
+ * @param {string} words
+ */
+export const unseen = (words) => h("span", { className: "visually-hidden" }, words);
+
+/**
+ * A row of a table: what it is of, and its cells.
+ *
+ * @param {Child} of
+ * @param {(Child | Child[])[]} cells
+ */
+export const tableRow = (of, ...cells) =>
+  h("tr", {}, h("th", { scope: "row" }, of), ...cells.map((cell) => h("td", {}, cell)));
+
+/**
+ * A table of these rows below the names of its columns.
+ *
+ * @param {Child[]} names
+ * @param {HTMLTableRowElement[]} rows
+ * @param {string | null} [caption]
+ */
+export const table = (names, rows, caption = null) =>
+  h(
+    "table",
+    {},
+    caption && h("caption", {}, caption),
+    h("thead", {}, h("tr", {}, ...names.map((name) => h("th", { scope: "col" }, name)))),
+    h("tbody", {}, ...rows),
+  );
+
+/**
+ * A form whose answer is computed by `ask`, and which is not sent.
+ *
+ * @param {() => void} ask
+ * @param {(Child | Child[])[]} children
+ */
+export function asking(ask, ...children) {
+  /** @type {(event: SubmitEvent) => void} */
+  const submit = (event) => {
+    event.preventDefault();
+    ask();
+  };
+  return h("form", { on: { submit } }, ...children);
+}
+
+/**
  * An element of a drawing; all its properties are attributes.
  *
  * @template {keyof SVGElementTagNameMap} T

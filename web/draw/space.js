@@ -2,7 +2,7 @@
 // The pair in space: turned by hand, touch and keys, with its lines of contact at the position shown. Made when it is
 // first asked for, painted when something changes.
 
-import { debounced, h } from "./dom.js";
+import { button, debounced, h, inLine, labelled } from "./dom.js";
 import { indexAt } from "./drawing.js";
 import { faceOf, rampAt, scaleOf } from "./face.js";
 import { pixelOf, Raster } from "./raster.js";
@@ -74,8 +74,7 @@ export class Space {
     this.words = h("p", { className: "visually-hidden", id: "space-words" });
     this.legend = h("p", { className: "legend" });
     /** @type {(name: string, label: string, work: () => void) => HTMLButtonElement} */
-    const button = (name, label, work) =>
-      h("button", { type: "button", ariaLabel: label, title: label, on: { click: work } }, name);
+    const key = (name, label, work) => button(name, work, { ariaLabel: label, title: label });
     const gears = h(
       "select",
       { id: "space-gears", on: { change: ({ target }) => this.#choose(target.value) } },
@@ -89,18 +88,15 @@ export class Space {
       "div",
       { className: "in-space", hidden: true },
       this.canvas,
-      h(
-        "div",
-        { className: "line" },
-        button("◀", "Turn to the left", () => this.#turn(-15, 0)),
-        button("▶", "Turn to the right", () => this.#turn(15, 0)),
-        button("▲", "Turn up", () => this.#turn(0, 15)),
-        button("▼", "Turn down", () => this.#turn(0, -15)),
-        button("+", "Zoom in", () => this.#zoom(1.3)),
-        button("−", "Zoom out", () => this.#zoom(1 / 1.3)),
-        button("Reset", "Reset the view", () => this.#reset()),
-        h("label", { htmlFor: gears.id }, "Show"),
-        gears,
+      inLine(
+        key("◀", "Turn to the left", () => this.#turn(-15, 0)),
+        key("▶", "Turn to the right", () => this.#turn(15, 0)),
+        key("▲", "Turn up", () => this.#turn(0, 15)),
+        key("▼", "Turn down", () => this.#turn(0, -15)),
+        key("+", "Zoom in", () => this.#zoom(1.3)),
+        key("−", "Zoom out", () => this.#zoom(1 / 1.3)),
+        key("Reset", "Reset the view", () => this.#reset()),
+        ...labelled("Show", gears),
         this.legend,
       ),
       this.words,

@@ -1,7 +1,7 @@
 // @ts-check
 // The jobs of this client: submitted, followed by their events, cancelled, opened, run again.
 
-import { debounced, h } from "../draw/dom.js";
+import { button, debounced, h, inLine, labelled, note, table } from "../draw/dom.js";
 import { filesOf, saveFile } from "../draw/files.js";
 import { read } from "../draw/inputs.js";
 import { follow, hasEnded, isAborted, json, post, ProblemError, request } from "../state/api.js";
@@ -51,14 +51,12 @@ export function jobs(place, design, form, onOpen, onStudy) {
     spellcheck: false,
     on: { change: ({ target }) => design.set("/tags", read(target, { kind: "texts" }), "mend") },
   });
-  const submit = h(
-    "button",
-    { type: "button", className: "primary", on: { click: () => act(() => post("v1/jobs", design.submission)) } },
-    "Submit this design as a job",
-  );
+  const submit = button("Submit this design as a job", () => act(() => post("v1/jobs", design.submission)), {
+    className: "primary",
+  });
   const ofStudies = h("input", { type: "checkbox", id: "jobs-of-studies", on: { change: () => refresh() } });
-  const look = h("button", { type: "button", on: { click: () => refresh() } }, "Look again");
-  const older = h("button", { type: "button", hidden: true, on: { click: () => more() } }, "Older jobs");
+  const look = button("Look again", () => refresh());
+  const older = button("Older jobs", () => more(), { hidden: true });
   const studies = h("div", {
     className: "scroll",
     id: "studies",
@@ -66,15 +64,13 @@ export function jobs(place, design, form, onOpen, onStudy) {
     role: "region",
     ariaLabel: "Sweeps, studies, searches and populations",
   });
-  const olderStudies = h("button", { type: "button", hidden: true, on: { click: () => moreStudies() } }, "Older ones");
+  const olderStudies = button("Older ones", () => moreStudies(), { hidden: true });
   place.replaceChildren(
-    h(
-      "p",
-      { className: "note" },
+    note(
       "A job is kept: its results can be fetched and linked to for weeks. What the page shows while you change numbers is not. A design that is too large to follow the hand is submitted by itself when the hand rests.",
     ),
-    h("div", { className: "line" }, submit, h("label", { htmlFor: tags.id }, "with the tags"), tags),
-    h("div", { className: "line" }, look, h("label", {}, ofStudies, " those of studies too")),
+    inLine(submit, ...labelled("with the tags", tags)),
+    inLine(look, h("label", {}, ofStudies, " those of studies too")),
     state,
     out,
     older,
@@ -209,15 +205,10 @@ export function jobs(place, design, form, onOpen, onStudy) {
       listedStudies = [...listedStudies, ...page.items];
       nextStudies = page.next;
       olderStudies.hidden = !nextStudies;
-      const head = h(
-        "tr",
-        {},
-        ...["Submitted", "What", "State", "Actions"].map((name) => h("th", { scope: "col" }, name)),
-      );
       studies.replaceChildren(
         listedStudies.length
-          ? h("table", {}, h("thead", {}, head), h("tbody", {}, ...listedStudies.map(studyRow)))
-          : h("p", { className: "note" }, "There are none yet."),
+          ? table(["Submitted", "What", "State", "Actions"], listedStudies.map(studyRow))
+          : note("There are none yet."),
       );
     });
   }
@@ -226,12 +217,11 @@ export function jobs(place, design, form, onOpen, onStudy) {
   function studyRow({ id, name, status, done, total, submitted_at: at }) {
     const what = name ?? `study ${id.slice(-6)}`;
     /** @type {(words: string, work: () => unknown) => HTMLButtonElement} */
-    const button = (words, work) =>
-      h("button", { type: "button", ariaLabel: `${words} ${what}`, on: { click: () => attempt(work) } }, words);
-    const buttons = [button("Go to it", async () => onStudy(id, await json(`v1/studies/${id}/document`)))];
+    const doing = (words, work) => button(words, () => attempt(work), { ariaLabel: `${words} ${what}` });
+    const buttons = [doing("Go to it", async () => onStudy(id, await json(`v1/studies/${id}/document`)))];
     if (!hasEnded(status))
       buttons.push(
-        button("Cancel", async () => {
+        doing("Cancel", async () => {
           await request(`v1/studies/${id}/cancel`, { method: "POST" });
           await refresh();
         }),
@@ -257,7 +247,7 @@ export function jobs(place, design, form, onOpen, onStudy) {
       older.hidden = !next;
       /** @type {{ items: Job[] }} */
       const { items } = page;
-      out.replaceChildren(listed.length ? tableOf(listed) : h("p", { className: "note" }, "There are no jobs yet."));
+      out.replaceChildren(listed.length ? tableOf(listed) : note("There are no jobs yet."));
       tell();
       for (const job of items.filter(({ status }) => !hasEnded(status)).slice(-FOLLOWED)) watch(job);
     } catch (error) {
@@ -293,14 +283,8 @@ export function jobs(place, design, form, onOpen, onStudy) {
 
   /** @param {Job[]} items */
   function tableOf(items) {
-    const head = h(
-      "tr",
-      {},
-      ...["Submitted", "Design, and what differs from the one on the page", "State", "Actions"].map((name) =>
-        h("th", { scope: "col" }, name),
-      ),
-    );
-    return h("table", {}, h("thead", {}, head), h("tbody", {}, ...items.map(rowOf)));
+    const names = ["Submitted", "Design, and what differs from the one on the page", "State", "Actions"];
+    return table(names, items.map(rowOf));
   }
 
   /**
@@ -310,50 +294,37 @@ export function jobs(place, design, form, onOpen, onStudy) {
   function rowOf(job) {
     const address = `v1/jobs/${job.id}`;
     /** @type {(name: string, work: () => unknown) => HTMLButtonElement} */
-    const button = (name, work) =>
-      h("button", { type: "button", on: { click: () => act(work) }, ariaLabel: `${name} ${job.id.slice(-6)}` }, name);
+    const doing = (name, work) => button(name, () => act(work), { ariaLabel: `${name} ${job.id.slice(-6)}` });
     // A file changes no job: the rows stay as they are under the pointer.
     /** @type {(words: string, name: string) => HTMLButtonElement} */
     const file = (words, name) =>
-      h(
-        "button",
-        {
-          type: "button",
-          ariaLabel: `${words} ${job.id.slice(-6)}`,
-          on: {
-            click: () =>
-              attempt(() => {
-                const asked = documents.get(job.id);
-                return saveFile(job.id, name, fileOfDesign(asked ? nameOf(asked) : "", `${job.id.slice(-6)}-`));
-              }),
-          },
-        },
+      button(
         words,
+        () =>
+          attempt(() => {
+            const asked = documents.get(job.id);
+            return saveFile(job.id, name, fileOfDesign(asked ? nameOf(asked) : "", `${job.id.slice(-6)}-`));
+          }),
+        { ariaLabel: `${words} ${job.id.slice(-6)}` },
       );
     const open = async () =>
       onOpen((await json(address)).submission, job.status === "successful" ? await json(`${address}/results`) : null);
     // What else there is depends on what was asked for.
     /** @type {HTMLButtonElement} */
-    const more = h(
-      "button",
-      {
-        type: "button",
-        ariaLabel: `More files of ${job.id.slice(-6)}`,
-        on: {
-          click: () =>
-            attempt(async () => {
-              const files = filesOf((await json(address)).submission).filter(
-                ({ name }) => !IN_ROW.some(([, shown]) => shown === name),
-              );
-              more.replaceWith(...files.map(({ name, title }) => file(title, name)));
-            }),
-        },
-      },
+    const more = button(
       "More files",
+      () =>
+        attempt(async () => {
+          const files = filesOf((await json(address)).submission).filter(
+            ({ name }) => !IN_ROW.some(([, shown]) => shown === name),
+          );
+          more.replaceWith(...files.map(({ name, title }) => file(title, name)));
+        }),
+      { ariaLabel: `More files of ${job.id.slice(-6)}` },
     );
-    const buttons = [button("Open", open)];
-    if (!hasEnded(job.status)) buttons.push(button("Cancel", () => request(`${address}/cancel`, { method: "POST" })));
-    else buttons.push(button("Run again", async () => post("v1/jobs", (await json(address)).submission)));
+    const buttons = [doing("Open", open)];
+    if (!hasEnded(job.status)) buttons.push(doing("Cancel", () => request(`${address}/cancel`, { method: "POST" })));
+    else buttons.push(doing("Run again", async () => post("v1/jobs", (await json(address)).submission)));
     if (job.status === "successful") buttons.push(...IN_ROW.map(([words, name]) => file(words, name)), more);
     const took = job.links.same_as
       ? h("small", {}, " as computed before")

@@ -1,7 +1,7 @@
 // @ts-check
 // Which design an answer is of, where that design may change while the answer stands.
 
-import { h } from "../draw/dom.js";
+import { button, h } from "../draw/dom.js";
 import { apart, same, withValue } from "../state/design.js";
 
 /** @import { Design } from "../state/design.js" */
@@ -20,11 +20,7 @@ export function outdated(design, ignored = []) {
   /** @type {(submission: Submission) => Submission} */
   const bare = (submission) =>
     ignored.reduce((rest, pointer) => withValue(rest, pointer, undefined), apart(submission).curves);
-  const back = h(
-    "button",
-    { type: "button", on: { click: () => asked && design.replace(asked, "open") } },
-    "Go back to that design",
-  );
+  const back = button("Go back to that design", () => asked && design.replace(asked, "open"));
   const element = h(
     "p",
     { className: "note outdated", role: "status", hidden: true },

@@ -2,7 +2,7 @@
 // How good the pairs will be that are made by a design: members drawn from laws and classes of accuracy, and what they
 // come to.
 
-import { debounced, h, s } from "../draw/dom.js";
+import { button, debounced, h, inLine, labelled, note, region, s, table, tableRow, unseen } from "../draw/dom.js";
 import { figure } from "../draw/figure.js";
 import { allGiven, given, numeric } from "../draw/inputs.js";
 import { offer, options } from "./offer.js";
@@ -95,24 +95,20 @@ export function population(place, design, form, limits, onOpen) {
     inWords: (detail) => form.inWords(detail),
     ignored: NOT_ASKED,
   });
-  const ahead = h("p", { className: "note" });
+  const ahead = note();
   const quantity = h("select", { id: "population-quantity", on: { change: () => last && draw() } }, ...options(SHOWN));
   const torque = h("select", { id: "population-torque", on: { change: () => last && draw() } });
   const picker = h(
     "div",
     { className: "line", hidden: true },
-    h("label", { htmlFor: quantity.id }, "Look at"),
-    quantity,
-    h("label", { htmlFor: torque.id }, "at"),
-    torque,
+    ...labelled("Look at", quantity),
+    ...labelled("at", torque),
     h("span", { className: "unit" }, "N m"),
   );
   const missing = h("p", { className: "outdated", role: "status", hidden: true });
   const out = h("div", { className: "out" });
   place.replaceChildren(
-    h(
-      "p",
-      { className: "note" },
+    note(
       "Every member has teeth of its own, made by the class of ISO 1328-1 in place of those that the design may give, and fields that vary by a law. How many are beyond the total pitch tolerance F_pT of their class, or were rejected by its inspection, stands with what was found. ",
       h("a", { href: "guides/how-good-will-they-be" }, "How good will they be?"),
     ),
@@ -127,22 +123,13 @@ export function population(place, design, form, limits, onOpen) {
           input: () => foresee(),
         },
       },
-      h(
-        "div",
-        { className: "line" },
-        h("label", { htmlFor: size.id }, "Members"),
-        size,
+      inLine(
+        ...labelled("Members", size),
         ...classes.flatMap((each, i) => [h("label", { htmlFor: each.id }, `teeth of the ${MEMBERS[i]} gear`), each]),
       ),
       ...laws.map((each) => each.element),
-      h(
-        "div",
-        { className: "line" },
-        h("label", { htmlFor: torques.id }, "Torques"),
-        torques,
-        h("span", { className: "unit" }, "N m"),
-      ),
-      h("div", { className: "line" }, question.run, question.cancel),
+      inLine(...labelled("Torques", torques), h("span", { className: "unit" }, "N m")),
+      inLine(question.run, question.cancel),
     ),
     ahead,
     question.state,
@@ -320,8 +307,7 @@ export function population(place, design, form, limits, onOpen) {
           `${fixed(100 * (share ?? NaN), 1)} % of the ${gear} gears made were rejected by the inspection.`,
       );
     /** @type {(name: string, number: number) => HTMLButtonElement} */
-    const member = (name, number) =>
-      h("button", { type: "button", on: { click: () => open(address, number) } }, `Open the ${name} member`);
+    const member = (name, number) => button(`Open the ${name} member`, () => open(address, number));
     const pictures = [
       figure({
         lines: [outlineOf(one.histogram, factor)],
@@ -370,7 +356,7 @@ export function population(place, design, form, limits, onOpen) {
    * @param {QuantityResults} quantity
    */
   function influencesOf({ influences }) {
-    if (!influences.length) return h("p", { className: "note" }, "Nothing varies so far.");
+    if (!influences.length) return note("Nothing varies so far.");
     /** @type {(influence: QuantityResults["influences"][number]) => string} */
     const name = ({ path, accuracy }) => (path ? form.named(path) : `teeth of the ${accuracy} gear`);
     const rows = influences.map((each) => {
@@ -381,23 +367,12 @@ export function population(place, design, form, limits, onOpen) {
         s("rect", { x: 0, y: 3, width: 200 * each.share, height: 8, class: "dot" }),
         s("line", { x1: 200 * low, x2: 200 * high, y1: 7, y2: 7, stroke: "currentColor", "stroke-width": 1.5 }),
       );
-      return h(
-        "tr",
-        {},
-        h("th", { scope: "row" }, name(each)),
-        h("td", {}, bar),
-        h("td", {}, `${fixed(100 * each.share, 0)} %`),
-        h("td", {}, each.low === null ? "–" : `${fixed(100 * low, 0)} to ${fixed(100 * high, 0)} %`),
-      );
+      const limits = each.low === null ? "–" : `${fixed(100 * low, 0)} to ${fixed(100 * high, 0)} %`;
+      return tableRow(name(each), bar, `${fixed(100 * each.share, 0)} %`, limits);
     });
-    const head = ["Part of the variance by", "", "Share", "95 % limits"].map((words) =>
-      h("th", { scope: "col" }, words || h("span", { className: "visually-hidden" }, "Bar")),
-    );
-    return h(
-      "div",
-      { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Influences" },
-      h("table", { className: "influences" }, h("thead", {}, h("tr", {}, ...head)), h("tbody", {}, ...rows)),
-    );
+    const found = table(["Part of the variance by", unseen("Bar"), "Share", "95 % limits"], rows);
+    found.className = "influences";
+    return region("Influences", found);
   }
 
   /** @type {(address: string, member: number) => Promise<void>} */
@@ -444,15 +419,7 @@ function law(index, design, form) {
     h("option", { value: "triangular" }, "triangular, plus or minus"),
   );
   const spread = numeric({ id: `${id}-spread`, ariaLabel: "Spread" });
-  const element = h(
-    "div",
-    { className: "line" },
-    h("label", { htmlFor: id }, index ? "and" : "Vary"),
-    field,
-    h("label", { htmlFor: kind.id }, "by"),
-    kind,
-    spread,
-  );
+  const element = inLine(h("label", { htmlFor: id }, index ? "and" : "Vary"), field, ...labelled("by", kind), spread);
   /** @type {() => unknown} */
   const valueOf = () => at(design.submission, field.value);
   const suggested = () => {

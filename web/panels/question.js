@@ -2,7 +2,7 @@
 // What the panels share that ask for many designs: one question at a time, how far it is, why it was refused, and of
 // which design its answer is.
 
-import { h } from "../draw/dom.js";
+import { button, h } from "../draw/dom.js";
 import { outdated } from "./outdated.js";
 import { follow, hasEnded, json, post, ProblemError, request } from "../state/api.js";
 import { remaining } from "../state/numbers.js";
@@ -36,7 +36,7 @@ export class Question {
   constructor(design, { id, words, inWords = (detail) => detail, ignored = [] }) {
     this.inWords = inWords;
     this.run = h("button", { type: "submit", id: `${id}-run`, className: "primary" }, words);
-    this.cancel = h("button", { type: "button", hidden: true, on: { click: () => this.#cancel() } }, "Cancel");
+    this.cancel = button("Cancel", () => this.#cancel(), { hidden: true });
     this.state = h("p", { className: "note", role: "status", id: `${id}-state` });
     this.of = outdated(design, ignored);
   }

@@ -2,7 +2,7 @@
 // A search: fields that may differ, what is to be small and what has to hold; the service chooses which designs to
 // compute.
 
-import { h } from "../draw/dom.js";
+import { asking, button, h, inLine, labelled, note, region, table, tableRow, unseen } from "../draw/dom.js";
 import { figure } from "../draw/figure.js";
 import { given, numeric } from "../draw/inputs.js";
 import { offer, options } from "./offer.js";
@@ -81,40 +81,16 @@ export function search(place, design, form, onOpen) {
    */
   let further = {};
   place.replaceChildren(
-    h(
-      "p",
-      { className: "note" },
+    note(
       "Each generation of designs is chosen by what came of those before; it begins with this design. ",
       h("a", { href: "guides/find-a-design" }, "Find a design"),
     ),
-    h(
-      "form",
-      {
-        on: {
-          submit: (event) => {
-            event.preventDefault();
-            start();
-          },
-        },
-      },
+    asking(
+      start,
       ...variables.map((each) => each.element),
-      h(
-        "div",
-        { className: "line" },
-        h("label", { htmlFor: goals[0].id }, "for the least"),
-        goals[0],
-        h("label", { htmlFor: goals[1].id }, "and"),
-        goals[1],
-      ),
+      inLine(...labelled("for the least", goals[0]), ...labelled("and", goals[1])),
       ...conditions.map((each) => each.element),
-      h(
-        "div",
-        { className: "line" },
-        h("label", { htmlFor: evaluations.id }, "Designs"),
-        evaluations,
-        question.run,
-        question.cancel,
-      ),
+      inLine(...labelled("Designs", evaluations), question.run, question.cancel),
     ),
     question.state,
     question.of.element,
@@ -227,31 +203,16 @@ export function search(place, design, form, onOpen) {
     const missing = h("p", { className: "outdated", hidden: !failed.length }, failed.join(" "));
     if (!best) return out.replaceChildren(missing);
     const rows = Object.entries(best.values).map(([path, value]) =>
-      h(
-        "tr",
-        {},
-        h("th", { scope: "row" }, form.named(path)),
-        h("td", {}, number(at(about.base, path) ?? null, 5)),
-        h("td", {}, number(value, 5)),
-      ),
+      tableRow(form.named(path), number(at(about.base, path) ?? null, 5), number(value, 5)),
     );
-    const table = h(
-      "table",
-      {},
-      h(
-        "thead",
-        {},
-        h("tr", {}, ...["Field", "Begun with", "Best so far"].map((words) => h("th", { scope: "col" }, words))),
-      ),
-      h("tbody", {}, ...rows),
-    );
+
     const atEnd = about.search.variables
       .filter(({ path, low, high }) => [low, high].includes(at(best, "/values")?.[path]))
       .map(({ path }) => form.named(path));
     /** @type {(row: number) => Promise<void>} */
     const open = async (row) => void onOpen({ ...(await json(`${address}/designs/${row}`)), ...further }, null);
     /** @type {(row: number, words: string) => HTMLButtonElement} */
-    const use = (row, words) => h("button", { type: "button", on: { click: () => open(row) } }, words);
+    const use = (row, words) => button(words, () => open(row));
     drawBeside(address, best.row, about.base);
     const reached = generations.flatMap(({ best: value = null }, i) =>
       value === null ? [] : [[i + 1, parts[0].factor * value]],
@@ -301,9 +262,9 @@ export function search(place, design, form, onOpen) {
           : "",
       ),
       missing,
-      h("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Best design of the search" }, table),
+      region("Best design of the search", table(["Field", "Begun with", "Best so far"], rows)),
       ...(atEnd.length && parts.length === 1
-        ? [h("p", { className: "note" }, `At an end of its range: ${atEnd.join("; ")}. A wider one may find better.`)]
+        ? [note(`At an end of its range: ${atEnd.join("; ")}. A wider one may find better.`)]
         : []),
       h("div", { className: "buttons" }, use(best.row, "Use this design")),
       ...(fine ? [h("p", {}, fine)] : []),
@@ -384,9 +345,6 @@ export function search(place, design, form, onOpen) {
    * @param {(row: number, words: string) => HTMLButtonElement} use
    */
   function frontOf(front, parts, use) {
-    const head = [...parts.map(inUnit), ""].map((words) =>
-      h("th", { scope: "col" }, words || h("span", { className: "visually-hidden" }, "Actions")),
-    );
     const rows = front.map(({ row, goals }) =>
       h(
         "tr",
@@ -395,11 +353,7 @@ export function search(place, design, form, onOpen) {
         h("td", {}, use(row, "Use")),
       ),
     );
-    return h(
-      "div",
-      { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Designs of the front" },
-      h("table", {}, h("thead", {}, h("tr", {}, ...head)), h("tbody", {}, ...rows)),
-    );
+    return region("Designs of the front", table([...parts.map(inUnit), unseen("Actions")], rows));
   }
 
   const refresh = () => variables.forEach((each) => each.refresh());
@@ -422,14 +376,7 @@ function condition(end, index) {
     h("option", { value: "at_most" }, "at most"),
   );
   const bound = numeric({ id: `search-bound${end}`, ariaLabel: "Bound" });
-  const element = h(
-    "div",
-    { className: "line" },
-    h("label", { htmlFor: bounded.id }, index ? "and" : "with"),
-    bounded,
-    side,
-    bound,
-  );
+  const element = inLine(...labelled(index ? "and" : "with", bounded), side, bound);
   const read = () =>
     bounded.value && bound.value
       ? [
@@ -467,17 +414,12 @@ function variable(index, design, form) {
       ariaLabel: `${{ low: "Smallest", high: "Largest", step: "Step of the" }[name]} value of variable ${index + 1}`,
     }),
   );
-  const element = h(
-    "div",
-    { className: "line" },
+  const element = inLine(
     h("label", { htmlFor: id }, index ? "and" : "Choose"),
     field,
-    h("label", { htmlFor: low.id }, "from"),
-    low,
-    h("label", { htmlFor: high.id }, "to"),
-    high,
-    h("label", { htmlFor: step.id }, "in steps of"),
-    step,
+    ...labelled("from", low),
+    ...labelled("to", high),
+    ...labelled("in steps of", step),
   );
 
   function suggest() {

@@ -2,7 +2,7 @@
 // Many designs at once: axes of values over any fields, a table, a picture of two of its columns, and which designs no
 // other beats; or a search that chooses the values itself.
 
-import { h, within } from "../draw/dom.js";
+import { asking, button, h, inLine, labelled, note, region, table, unseen, within } from "../draw/dom.js";
 import { save } from "../draw/download.js";
 import { figure } from "../draw/figure.js";
 import { allGiven, given, numeric } from "../draw/inputs.js";
@@ -80,27 +80,15 @@ export function study(place, design, form, onOpen) {
   const picker = h(
     "div",
     { className: "line", hidden: true },
-    h("label", { htmlFor: up.id }, "Picture:"),
-    up,
-    h("label", { htmlFor: across.id }, "over"),
-    across,
+    ...labelled("Picture:", up),
+    ...labelled("over", across),
   );
   const out = h("div", { className: "out" });
   const searched = h("div", {});
-  const formOf = h(
-    "form",
-    {
-      on: {
-        submit: (event) => {
-          event.preventDefault();
-          start();
-        },
-      },
-    },
+  const formOf = asking(
+    start,
     ...axes.map((each) => each.element),
-    h(
-      "div",
-      { className: "line" },
+    inLine(
       constant,
       h("label", { htmlFor: "study-mass" }, "Same mass: holes remove"),
       removed,
@@ -108,12 +96,10 @@ export function study(place, design, form, onOpen) {
       gear,
       h("span", {}, "blank, all equally wide"),
     ),
-    h("div", { className: "line" }, question.run, question.cancel),
+    inLine(question.run, question.cancel),
   );
   place.replaceChildren(
-    h(
-      "p",
-      { className: "note" },
+    note(
       "Every combination of these values is computed from the design; values stand apart by spaces. “Best” is a design that no other beats: none is at least as good in mass, peak-to-peak and mean stiffness, and better in one.",
     ),
     formOf,
@@ -192,29 +178,10 @@ export function study(place, design, form, onOpen) {
   function show(results, address) {
     last = results;
     draw(results);
-    const csv = h(
-      "button",
-      {
-        type: "button",
-        on: {
-          click: async () =>
-            save(
-              fileOfDesign(called, "study.csv"),
-              "text/csv",
-              await (await request(`${address}/results/table.csv`)).blob(),
-            ),
-        },
-      },
-      "Table as CSV",
+    const csv = button("Table as CSV", async () =>
+      save(fileOfDesign(called, "study.csv"), "text/csv", await (await request(`${address}/results/table.csv`)).blob()),
     );
-    out.replaceChildren(
-      h(
-        "div",
-        { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Designs of the study" },
-        tableOf(results),
-      ),
-      h("div", { className: "buttons" }, csv),
-    );
+    out.replaceChildren(region("Designs of the study", tableOf(results)), h("div", { className: "buttons" }, csv));
   }
 
   /** @param {StudyResults} results */
@@ -241,19 +208,17 @@ export function study(place, design, form, onOpen) {
     const ofCurve = OF_CURVE.map(quantityOf);
     /** @type {(quantity: Quantity) => string} */
     const named = (quantity) => `${calledOf(quantity)} ${quantity.printed}`;
-    const names = ["Design", "Best", ...ofRow.map(named), "Torque N m", ...ofCurve.map(named), ""];
-    const head = h(
-      "tr",
-      {},
-      ...names.map((name) => h("th", { scope: "col" }, name || h("span", { className: "visually-hidden" }, "Actions"))),
-    );
+    const names = ["Design", "Best", ...ofRow.map(named), "Torque N m", ...ofCurve.map(named), unseen("Actions")];
     /** @type {(row: TableRow, curve: RowCurve) => string[]} */
     const cells = (row, curve) => {
       /** @type {(quantity: Quantity) => string} */
       const each = (quantity) => shown(quantity, inRow(quantity, row, curve, gear));
       return [...ofRow.map(each), number(curve.output_torque_n_m), ...ofCurve.map(each)];
     };
-    return h("table", {}, h("thead", {}, head), h("tbody", {}, ...rows.flatMap((row) => rowsOf(row, cells))));
+    return table(
+      names,
+      rows.flatMap((row) => rowsOf(row, cells)),
+    );
   }
 
   /**
@@ -284,11 +249,7 @@ export function study(place, design, form, onOpen) {
           h("td", { colSpan: 9 }, row.problem ? (row.problem.errors?.[0]?.detail ?? row.problem.detail) : row.status),
         ),
       ];
-    const open = h(
-      "button",
-      { type: "button", on: { click: () => openRow(row) }, ariaLabel: `Open ${nameOfRow(row)}` },
-      "Open",
-    );
+    const open = button("Open", () => openRow(row), { ariaLabel: `Open ${nameOfRow(row)}` });
     return row.curves.map((curve, i) =>
       h(
         "tr",
@@ -346,14 +307,7 @@ function axis(index, design, form) {
       },
     },
   });
-  const element = h(
-    "div",
-    { className: "line" },
-    h("label", { htmlFor: id }, index ? "and" : "Vary"),
-    field,
-    h("label", { htmlFor: values.id }, "over"),
-    values,
-  );
+  const element = inLine(h("label", { htmlFor: id }, index ? "and" : "Vary"), field, ...labelled("over", values));
 
   /** Values around the one that the design has. */
   function suggested() {

@@ -2,7 +2,7 @@
 // The peak-to-peak transmission error over the torque, and where it is least: a study over the torque, which is found
 // again as others are.
 
-import { h } from "../draw/dom.js";
+import { button, h, note } from "../draw/dom.js";
 import { figure } from "../draw/figure.js";
 import { given, numeric } from "../draw/inputs.js";
 import { Question } from "./question.js";
@@ -65,11 +65,7 @@ export function sweep(place, design) {
     question.cancel,
   );
   place.replaceChildren(
-    h(
-      "p",
-      { className: "note" },
-      "At which torque is the transmission error flattest? A tip relief suits one torque; this shows which.",
-    ),
+    note("At which torque is the transmission error flattest? A tip relief suits one torque; this shows which."),
     form,
     question.state,
     question.of.element,
@@ -160,11 +156,7 @@ export function sweep(place, design) {
     const least = points.reduce((best, point) => (point.y < best.y ? point : best));
     least.strong = true;
     least.label = `least: ${fixed(least.y, 3)} µm at ${number(least.x)} N m`;
-    const use = h(
-      "button",
-      { type: "button", on: { click: () => design.set(TORQUE, [least.x], "mend") } },
-      `Show ${number(least.x)} N m`,
-    );
+    const use = button(`Show ${number(least.x)} N m`, () => design.set(TORQUE, [least.x], "mend"));
     const atEnd = least === points[0] || least === points.at(-1);
     const words = atEnd ? "The least lies at an end of the sweep; a wider one may find less." : "";
     return [

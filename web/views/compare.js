@@ -2,7 +2,7 @@
 // Designs beside each other: their numbers under names that the user gives, and the fields in which they differ.
 
 import { looks } from "../draw/charts.js";
-import { h } from "../draw/dom.js";
+import { button, h, note } from "../draw/dom.js";
 import { save } from "../draw/download.js";
 import { differences, told } from "../state/design.js";
 import { extent, number } from "../state/numbers.js";
@@ -96,18 +96,18 @@ export class Compare {
       role: "region",
       ariaLabel: "Designs beside each other",
     });
-    this.note = h("p", { className: "note" });
-    /** @type {(name: string, id: string, work: () => void) => HTMLButtonElement} */
-    const button = (name, id, work) => h("button", { type: "button", id, on: { click: work } }, name);
+    this.note = note();
     place.append(
       this.table,
       this.note,
       h(
         "div",
         { className: "buttons wrap" },
-        button("Compare methods", "methods", onMethods),
-        button("Table as CSV", "table-csv", () =>
-          save(fileOfDesign(this.designs[0].name, "designs.csv"), "text/csv", designsCsv(this.designs)),
+        button("Compare methods", onMethods, { id: "methods" }),
+        button(
+          "Table as CSV",
+          () => save(fileOfDesign(this.designs[0].name, "designs.csv"), "text/csv", designsCsv(this.designs)),
+          { id: "table-csv" },
         ),
       ),
     );
@@ -229,21 +229,8 @@ export class Compare {
         "div",
         { className: "actions" },
         h("label", { title: "Show its curves" }, seen, " curves"),
-        h(
-          "button",
-          { type: "button", on: { click: () => this.onOpen(design) }, ariaLabel: `Open ${design.name}` },
-          "Open",
-        ),
-        h(
-          "button",
-          {
-            type: "button",
-            on: { click: () => this.onKept(i - 1, null) },
-            ariaLabel: `Remove ${design.name}`,
-            title: "Remove",
-          },
-          "×",
-        ),
+        button("Open", () => this.onOpen(design), { ariaLabel: `Open ${design.name}` }),
+        button("×", () => this.onKept(i - 1, null), { ariaLabel: `Remove ${design.name}`, title: "Remove" }),
       ),
     );
   }

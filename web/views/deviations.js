@@ -2,7 +2,7 @@
 // The deviations of a gear's teeth: drawn by an accuracy class, pasted from a spreadsheet, or dropped as a file of a
 // measurement.
 
-import { h } from "../draw/dom.js";
+import { button, h, inLine, note } from "../draw/dom.js";
 import { given, numeric } from "../draw/inputs.js";
 import { post, ProblemError } from "../state/api.js";
 import { fixed, number } from "../state/numbers.js";
@@ -135,7 +135,7 @@ export function deviations(member, design) {
     placeholder: "one number a tooth, in µm; or columns with names",
   });
   /** @type {(name: string, input: HTMLInputElement | HTMLSelectElement) => HTMLElement} */
-  const labelled = (name, input) => h("span", {}, h("label", { htmlFor: input.id }, name), " ", input);
+  const named = (name, input) => h("span", {}, h("label", { htmlFor: input.id }, name), " ", input);
 
   async function draw() {
     try {
@@ -191,28 +191,22 @@ export function deviations(member, design) {
     "details",
     { className: "tool", data: { pointer: `${pointer}/tool` } },
     h("summary", {}, "Draw or paste teeth"),
-    h(
-      "div",
-      { className: "line" },
-      labelled("ISO 1328 class", quality),
-      labelled("seed", seed),
-      labelled("capability", capability),
-      h("button", { type: "button", on: { click: draw } }, "Draw teeth"),
+    inLine(
+      named("ISO 1328 class", quality),
+      named("seed", seed),
+      named("capability", capability),
+      button("Draw teeth", draw),
     ),
-    h(
-      "p",
-      { className: "note" },
+    note(
       "Teeth as a production of the class makes them: a tolerance is three standard deviations over the capability wide. Another seed is another gear.",
     ),
-    h(
-      "div",
-      { className: "line" },
-      labelled("Measured", kind),
+    inLine(
+      named("Measured", kind),
       h("label", { htmlFor: text.id, className: "visually-hidden" }, "Measured deviations"),
       text,
-      h("button", { type: "button", on: { click: () => take(text.value) } }, "Take them"),
+      button("Take them", () => take(text.value)),
     ),
-    h("p", { className: "note" }, "Paste a column of a spreadsheet, or drop a CSV file here."),
+    note("Paste a column of a spreadsheet, or drop a CSV file here."),
     out,
   );
   element.addEventListener("dragover", (event) => {

@@ -3,7 +3,7 @@
 // program.
 
 import { looks } from "../draw/charts.js";
-import { h } from "../draw/dom.js";
+import { button, h, inLine, labelled, note } from "../draw/dom.js";
 import { copied, drawingOf, save } from "../draw/download.js";
 import { fileOf, pictureOf, stacked } from "../draw/figure.js";
 import { filesOf, saveFile } from "../draw/files.js";
@@ -62,7 +62,7 @@ export function exporting(place, { current, designs, drawing, charts, position, 
     page: ["Report page, SVG", (live) => save(called(live, "report.svg"), "image/svg+xml", fileOf(sheet(live)))],
   };
   const buttons = Object.entries(kinds).map(([kind, [name, work]]) =>
-    h("button", { type: "button", data: { download: kind }, on: { click: () => run(work) } }, name),
+    button(name, () => run(work), { data: { download: kind } }),
   );
   const ofJob = h("div", { className: "buttons wrap" });
   const code = h("pre", { id: "code", tabIndex: 0, ariaLabel: "Program" });
@@ -71,32 +71,19 @@ export function exporting(place, { current, designs, drawing, charts, position, 
     { id: "language", on: { change: () => void show() } },
     ...Object.entries(LANGUAGES).map(([value, name]) => h("option", { value }, name)),
   );
-  const copy = h(
-    "button",
-    {
-      type: "button",
-      on: {
-        click: async () => {
-          state.textContent = (await copied(code.textContent ?? ""))
-            ? "The program is copied."
-            : "Copying is not allowed here: select the text.";
-        },
-      },
-    },
-    "Copy it",
-  );
+  const copy = button("Copy it", async () => {
+    state.textContent = (await copied(code.textContent ?? ""))
+      ? "The program is copied."
+      : "Copying is not allowed here: select the text.";
+  });
   place.replaceChildren(
-    h(
-      "p",
-      { className: "note" },
-      "Everything is of one design: the one that is drawn, with the curves and numbers that are shown.",
-    ),
+    note("Everything is of one design: the one that is drawn, with the curves and numbers that are shown."),
     h("div", { className: "buttons wrap" }, ...buttons),
     h("h3", {}, "Files that a job makes"),
     ofJob,
     state,
     h("h3", {}, "This as a program"),
-    h("div", { className: "line" }, h("label", { htmlFor: language.id }, "Language"), language, copy),
+    inLine(...labelled("Language", language), copy),
     code,
   );
 
@@ -143,11 +130,7 @@ export function exporting(place, { current, designs, drawing, charts, position, 
     ) {
       ofJob.replaceChildren(
         ...files.map(({ name, title }) =>
-          h(
-            "button",
-            { type: "button", data: { download: name }, on: { click: () => run((live) => fileOfJob(live, name)) } },
-            title,
-          ),
+          button(title, () => run((live) => fileOfJob(live, name)), { data: { download: name } }),
         ),
       );
     }

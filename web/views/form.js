@@ -1,7 +1,7 @@
 // @ts-check
 // The form of a submission, made from the schema: every field with its unit, bounds, default and words.
 
-import { h } from "../draw/dom.js";
+import { button, h } from "../draw/dom.js";
 import { numeric, read, write } from "../draw/inputs.js";
 import { Beginnings } from "../state/beginnings.js";
 import { at, HELIX } from "../state/design.js";
@@ -319,14 +319,10 @@ export class Form {
     const mend =
       error.nearest === null || error.nearest === undefined
         ? null
-        : h(
-            "button",
-            {
-              type: "button",
-              className: "mend",
-              on: { click: () => this.design.set(error.pointer, error.nearest, "mend") },
-            },
+        : button(
             `Use ${number(error.nearest, 8)} ${unit(schema["x-unit"] ?? schema.items?.["x-unit"])}`.trim(),
+            () => this.design.set(error.pointer, error.nearest, "mend"),
+            { className: "mend" },
           );
     element.classList.add("wrong");
     const id = `error-${pointer}-${element.querySelectorAll(":scope > .field-error").length}`;
@@ -419,20 +415,14 @@ export class Form {
     const needed = (gear.required ?? []).includes(name);
     const locked = !this.#unlocked.has(name);
     const both = MEMBERS.map((member) => `/pair/${member}/${name}`);
-    const lock = h(
-      "button",
-      {
-        type: "button",
-        className: "lock",
-        ariaLabel: `${schema.title}: the same for both gears`,
-        aria: { pressed: String(locked) },
-        title: locked
-          ? "The same for both gears; press to give each its own"
-          : "Each gear has its own; press to give both that of the driving gear",
-        on: { click: () => this.#lock(name, !locked) },
-      },
-      locked ? "=" : "≠",
-    );
+    const lock = button(locked ? "=" : "≠", () => this.#lock(name, !locked), {
+      className: "lock",
+      ariaLabel: `${schema.title}: the same for both gears`,
+      aria: { pressed: String(locked) },
+      title: locked
+        ? "The same for both gears; press to give each its own"
+        : "Each gear has its own; press to give both that of the driving gear",
+    });
     if (!locked)
       return h(
         "div",
@@ -502,15 +492,15 @@ export class Form {
     for (const { pointer, value, angle } of offers(this.design)) {
       const words = `Typed for a helix angle of ${number(angle)}°; ${number(value, 7)} mm has the same teeth at ${number(this.design.get(HELIX) ?? 0)}°. `;
       /** @type {(name: string, work: () => void) => HTMLButtonElement} */
-      const button = (name, work) => h("button", { type: "button", className: "mend", on: { click: work } }, name);
+      const mend = (name, work) => button(name, work, { className: "mend" });
       this.#nearest(pointer)?.element.append(
         h(
           "p",
           { className: "field-offer", role: "status" },
           words,
-          button(`Use ${number(value, 7)} mm`, () => this.design.set(pointer, value, "mend")),
+          mend(`Use ${number(value, 7)} mm`, () => this.design.set(pointer, value, "mend")),
           " ",
-          button("Keep what was typed", () => this.design.confirm(pointer)),
+          mend("Keep what was typed", () => this.design.confirm(pointer)),
         ),
       );
     }
@@ -635,38 +625,27 @@ export class Form {
     const words = said ? h("p", { className: "help", id: `help-${pointer}`, hidden: true }, said, bounds(kind)) : null;
     if (words) input.setAttribute("aria-describedby", words.id);
     const more = words
-      ? h(
-          "button",
-          {
-            type: "button",
-            className: "about",
-            tabIndex: -1,
-            title: "What this is; in the field, the key ?",
-            ariaLabel: `About ${label.textContent}`,
-            aria: { expanded: "false", controls: words.id },
-            on: { click: (event) => toggle(event.currentTarget, words) },
-          },
-          "?",
-        )
+      ? button("?", (event) => toggle(event.currentTarget, words), {
+          className: "about",
+          tabIndex: -1,
+          title: "What this is; in the field, the key ?",
+          ariaLabel: `About ${label.textContent}`,
+          aria: { expanded: "false", controls: words.id },
+        })
       : null;
     // A value that has a default is marked as given, and goes back to it: by a button, or by the choice that it is.
     const clear =
       needed || ["flag", "choice"].includes(kind.kind)
         ? null
-        : h(
-            "button",
+        : button(
+            "×",
+            () => (pointer === HELIX ? this.#putHelix(undefined, "mend") : this.design.set(pointer, undefined, "mend")),
             {
-              type: "button",
               className: "clear",
               hidden: true,
               ariaLabel: `${label.textContent}: back to the default`,
               title: "Given; press for the default",
-              on: {
-                click: () =>
-                  pointer === HELIX ? this.#putHelix(undefined, "mend") : this.design.set(pointer, undefined, "mend"),
-              },
             },
-            "×",
           );
     const element = h(
       "div",
@@ -1098,11 +1077,7 @@ export class Form {
         "div",
         { className: "entry-of-list" },
         this.#field(`${pointer}/${i}`, kind.items?.schema ?? {}, true),
-        h(
-          "button",
-          { type: "button", on: { click: () => this.design.set(`${pointer}/${i}`, undefined, "mend") } },
-          "Remove",
-        ),
+        button("Remove", () => this.design.set(`${pointer}/${i}`, undefined, "mend")),
       ),
     );
     // The list as it is then: its entries may have changed since they were drawn.
@@ -1110,11 +1085,7 @@ export class Form {
       const now = this.design.get(pointer) ?? [];
       this.design.set(pointer, [...now, this.beginnings.further(pointer, kind, now)], "mend");
     };
-    const add = h(
-      "button",
-      { type: "button", on: { click: further } },
-      `Add to ${(kind.schema.title ?? "the list").toLowerCase()}`,
-    );
+    const add = button(`Add to ${(kind.schema.title ?? "the list").toLowerCase()}`, further);
     const element = h(
       "fieldset",
       { className: "field list" },

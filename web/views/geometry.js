@@ -7,7 +7,7 @@
  * @typedef {[name: string, symbol: string, unit: string, ...values: string[]]} Row
  */
 
-import { h } from "../draw/dom.js";
+import { button, h, note, table } from "../draw/dom.js";
 import { fixed, number } from "../state/numbers.js";
 
 /** @import { Gear, GearName, NamedDesign, Pair, Results } from "../state/documents.js" */
@@ -101,12 +101,8 @@ export class Geometry {
    */
   constructor(place, { onPrint, onPicture }) {
     this.out = h("div", { className: "columns" });
-    /** @type {(name: string, work: () => void) => HTMLButtonElement} */
-    const button = (name, work) => h("button", { type: "button", on: { click: work } }, name);
     place.append(
-      h(
-        "p",
-        { className: "note" },
+      note(
         "Computed from the true profile, without load. Specific sliding is the sliding velocity over the velocity at which the contact runs along a flank.",
       ),
       this.out,
@@ -125,26 +121,20 @@ export class Geometry {
     const { gears, both } = rowsOf(live);
     /** @type {(text: string) => HTMLElement} */
     const symbol = (text) => h("small", {}, ` ${text}`);
-    /** @type {(names: string[]) => HTMLElement} */
-    const head = (names) => h("thead", {}, h("tr", {}, ...names.map((name) => h("th", { scope: "col" }, name))));
-    /** @type {(list: Row[]) => HTMLElement} */
+    /** @type {(list: Row[]) => HTMLTableRowElement[]} */
     const rows = (list) =>
-      h(
-        "tbody",
-        {},
-        ...list.map(([name, mark, unit, ...values]) =>
-          h(
-            "tr",
-            {},
-            h("th", { scope: "row" }, name, mark ? symbol(mark) : null),
-            ...values.map((value) => h("td", {}, value)),
-            h("td", { className: "unit" }, unit),
-          ),
+      list.map(([name, mark, unit, ...values]) =>
+        h(
+          "tr",
+          {},
+          h("th", { scope: "row" }, name, mark ? symbol(mark) : null),
+          ...values.map((value) => h("td", {}, value)),
+          h("td", { className: "unit" }, unit),
         ),
       );
     this.out.replaceChildren(
-      h("table", {}, h("caption", {}, "Gears"), head(["", "Driving", "Driven", ""]), rows(gears)),
-      h("table", {}, h("caption", {}, "Pair"), head(["", "", ""]), rows(both)),
+      table(["", "Driving", "Driven", ""], rows(gears), "Gears"),
+      table(["", "", ""], rows(both), "Pair"),
     );
   }
 }

@@ -2,7 +2,7 @@
 // The answers in a line: what a designer looks at first, each with its change against the design that it is compared
 // with.
 
-import { h } from "../draw/dom.js";
+import { button, h } from "../draw/dom.js";
 import { extent, fixed, number } from "../state/numbers.js";
 import { inCurve, quantityOf } from "../state/quantities.js";
 
@@ -210,17 +210,11 @@ export class Headline {
       const value = h("span", { className: "value" }, "–");
       const change = h("span", { className: "change" });
       const about = h("p", { className: "about-answer", id: `about-${answer.id}`, hidden: true }, answer.about);
-      const name = h(
-        "button",
-        {
-          type: "button",
-          className: "name",
-          aria: { expanded: "false", controls: about.id },
-          title: answer.about,
-          on: { click: () => this.#tell(answer.id) },
-        },
-        answer.name,
-      );
+      const name = button(answer.name, () => this.#tell(answer.id), {
+        className: "name",
+        aria: { expanded: "false", controls: about.id },
+        title: answer.about,
+      });
       const tile = h(
         "div",
         { className: "tile", hidden: answer.some === true, id: `answer-${answer.id}` },

@@ -1,7 +1,7 @@
 // @ts-check
 // What else has happened, said for a while with a way back.
 
-import { h } from "../draw/dom.js";
+import { button } from "../draw/dom.js";
 
 /** @import { Design } from "../state/design.js" */
 
@@ -38,8 +38,8 @@ export class Notice {
     this.place.replaceChildren(
       words,
       " ",
-      ...(undoable ? [h("button", { type: "button", className: "undo", on: { click: undo } }, "Undo")] : []),
-      h("button", { type: "button", ariaLabel: "Close the notice", on: { click: close } }, "×"),
+      ...(undoable ? [button("Undo", undo, { className: "undo" })] : []),
+      button("×", close, { ariaLabel: "Close the notice" }),
     );
     this.place.hidden = false;
     if (undoable) clearTimeout(this.#timer);

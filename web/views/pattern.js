@@ -2,7 +2,7 @@
 // Where the flanks carry, and how much: the largest pressure of the period over face and diameter. A job tells it, so
 // it is asked for by a press.
 
-import { h, s } from "../draw/dom.js";
+import { button, h, note, s } from "../draw/dom.js";
 import { cssOf, scaleOf } from "../draw/face.js";
 import { figure } from "../draw/figure.js";
 import { hasEnded, isAborted, json, patiently, post, ProblemError, request, solved } from "../state/api.js";
@@ -34,11 +34,7 @@ export class Pattern {
   constructor(place, { live }) {
     this.live = live;
     this.legend = h("p", { className: "legend" });
-    this.button = h(
-      "button",
-      { type: "button", on: { click: () => (this.#asking ? this.#asking.abort() : this.#ask()) } },
-      SHOW,
-    );
+    this.button = button(SHOW, () => (this.#asking ? this.#asking.abort() : this.#ask()));
     this.state = h("p", { className: "note", role: "status" });
     this.flanks = h("div", { className: "columns" });
     this.element = h(
@@ -195,5 +191,5 @@ function flankOf(
       ),
     ),
   );
-  return h("div", { className: "flank" }, h("p", { className: "note" }, `The ${gear} flank`), svg);
+  return h("div", { className: "flank" }, note(`The ${gear} flank`), svg);
 }

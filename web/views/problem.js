@@ -1,7 +1,7 @@
 // @ts-check
 // What is wrong with the design: above the last good curve, and at its fields.
 
-import { byId, h } from "../draw/dom.js";
+import { button, byId, h } from "../draw/dom.js";
 
 /** @import { FieldError, Problem } from "../state/documents.js" */
 /** @import { Form } from "./form.js" */
@@ -46,18 +46,12 @@ export class ProblemBox {
         {},
         form?.inWords(error.detail) ?? error.detail,
         " ",
-        h("button", { type: "button", className: "mend", on: { click: focus } }, "Show the field"),
+        button("Show the field", focus, { className: "mend" }),
       );
     });
     const kept = ". Curves and numbers are those of the last design that could be computed; nothing is exported. ";
     this.#place.replaceChildren(
-      h(
-        "p",
-        {},
-        h("strong", {}, title),
-        behind ? kept : null,
-        behind && back ? h("button", { type: "button", on: { click: back } }, "Go back to it") : null,
-      ),
+      h("p", {}, h("strong", {}, title), behind ? kept : null, behind && back ? button("Go back to it", back) : null),
       entries.length ? h("ul", {}, ...entries) : h("p", {}, detail),
       ...this.#dimensions(new Set(errors.map(({ code }) => code))),
     );
@@ -70,8 +64,7 @@ export class ProblemBox {
    */
   #dimensions(codes) {
     /** @type {(inSolid: boolean, words: string) => HTMLElement} */
-    const turn = (inSolid, words) =>
-      h("button", { type: "button", on: { click: () => this.form()?.compute(inSolid) } }, words);
+    const turn = (inSolid, words) => button(words, () => this.form()?.compute(inSolid));
     /** @type {(solid: string, plane: string) => HTMLElement[]} */
     const both = (solid, plane) => [h("p", {}, turn(true, solid), " ", turn(false, plane))];
     if (codes.has("needs_three_dimensions"))

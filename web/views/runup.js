@@ -3,7 +3,20 @@
 // resonances named, and one speed that is looked at, turned and heard.
 
 import { looks } from "../draw/charts.js";
-import { debounced, dress, h, s } from "../draw/dom.js";
+import {
+  button,
+  debounced,
+  dress,
+  h,
+  inLine,
+  labelled,
+  note,
+  region,
+  s,
+  table,
+  tableRow,
+  unseen,
+} from "../draw/dom.js";
 import { figure, ticks } from "../draw/figure.js";
 import { Tones } from "../draw/sound.js";
 import { motionAt } from "../state/motion.js";
@@ -86,8 +99,6 @@ export class RunUp {
     this.designs = designs;
     this.stage = stage;
     this.tones = new Tones();
-    /** @type {(name: string, id: string, work: () => void) => HTMLButtonElement} */
-    const button = (name, id, work) => h("button", { type: "button", id, on: { click: work } }, name);
     /** @type {(id: string, options: Record<string, string>) => HTMLSelectElement} */
     const select = (id, options) =>
       h(
@@ -113,35 +124,29 @@ export class RunUp {
     });
     this.said = h("output", { htmlFor: "speed" });
     this.readout = h("p", { className: "note", id: "speed-readout" });
-    this.turning = button("Turn at this speed", "run-up-turn", () => this.#play(!this.#playing));
-    this.hear = button("Hear the excitation", "run-up-hear", () => this.#listen(!this.tones.on));
+    this.turning = button("Turn at this speed", () => this.#play(!this.#playing), { id: "run-up-turn" });
+    this.hear = button("Hear the excitation", () => this.#listen(!this.tones.on), { id: "run-up-hear" });
     for (const each of [this.turning, this.hear]) each.setAttribute("aria-pressed", "false");
     this.picture = h("div", { className: "speeds" });
     this.waterfall = h("div", { className: "speeds" });
-    this.ridges = h("p", { className: "note" });
-    this.resonances = h("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Resonances" });
+    this.ridges = note();
+    this.resonances = region("Resonances");
     this.body = h(
       "div",
       { hidden: true },
-      h(
-        "div",
-        { className: "line" },
-        h("label", { htmlFor: this.quantity.id }, "Look at"),
-        this.quantity,
-        h("label", { htmlFor: this.torque.id }, "at"),
-        this.torque,
+      inLine(
+        ...labelled("Look at", this.quantity),
+        ...labelled("at", this.torque),
         h("span", { className: "unit" }, "N m,"),
         h("label", { htmlFor: this.way.id, className: "visually-hidden" }, "Branch"),
         this.way,
-        button("Speeds and inertias", "run-up-fields", focus),
+        button("Speeds and inertias", focus, { id: "run-up-fields" }),
       ),
       this.picture,
       h("div", { className: "position" }, h("label", { htmlFor: "speed" }, "Speed"), this.slider, this.said),
       this.readout,
       h("div", { className: "buttons wrap" }, this.turning, this.hear),
-      h(
-        "p",
-        { className: "note" },
+      note(
         "What is heard is the excitation: the orders of the dynamic transmission error as pure tones. It is not the noise of a gearbox, which its housing makes.",
       ),
       this.ridges,
@@ -156,10 +161,14 @@ export class RunUp {
         {},
         "This design has no run-up yet: the motion of the gears over speed, on one torsional degree of freedom with backlash.",
       ),
-      button("Run it up", "run-up-ask", () => {
-        ask();
-        this.refresh();
-      }),
+      button(
+        "Run it up",
+        () => {
+          ask();
+          this.refresh();
+        },
+        { id: "run-up-ask" },
+      ),
     );
     this.coming = h(
       "p",
@@ -167,9 +176,7 @@ export class RunUp {
       "The run-up is being computed: the forces at every position first, then the motion at every speed. Above stands how far it is.",
     );
     place.replaceChildren(
-      h(
-        "p",
-        { className: "note" },
+      note(
         "Solid running up, dashed running down; thick where the flanks part. ",
         h("a", { href: "guides/will-it-rattle-or-whine" }, "Will it rattle or whine?"),
       ),
@@ -458,46 +465,19 @@ export class RunUp {
 
   #tableOf() {
     const values = this.#run.dynamic_transmission_error_um.peak_to_peak;
-    const head = h(
-      "tr",
-      {},
-      ...["Speed rpm", "Order", "What meets", "the natural frequency", "STE p-p there µm"].map((name) =>
-        h("th", { scope: "col" }, name),
-      ),
-      h("th", { scope: "col" }, h("span", { className: "visually-hidden" }, "Actions")),
-    );
     const rows = this.#named().map((each) =>
-      h(
-        "tr",
-        {},
-        h("th", { scope: "row" }, Math.round(each.driving_speed_rpm).toLocaleString("en")),
-        h("td", {}, each.label),
-        h("td", {}, each.what),
-        h("td", {}, each.kind === "forced" ? "once: forced" : "twice: parametric"),
-        h("td", {}, fixed(values[this.#index(each.driving_speed_rpm)], 2)),
-        h(
-          "td",
-          {},
-          h(
-            "button",
-            {
-              type: "button",
-              ariaLabel: `Look at ${each.words}`,
-              on: { click: () => this.#look(each.driving_speed_rpm) },
-            },
-            "Look",
-          ),
-        ),
+      tableRow(
+        Math.round(each.driving_speed_rpm).toLocaleString("en"),
+        each.label,
+        each.what,
+        each.kind === "forced" ? "once: forced" : "twice: parametric",
+        fixed(values[this.#index(each.driving_speed_rpm)], 2),
+        button("Look", () => this.#look(each.driving_speed_rpm), { ariaLabel: `Look at ${each.words}` }),
       ),
     );
     const caption = `Resonances: the natural frequency is ${number(this.#dynamics.natural_frequency_hz)} Hz, of ${number(this.#dynamics.equivalent_mass_kg, 3)} kg on the line of action`;
-    return h(
-      "table",
-      {},
-      h("caption", {}, caption),
-      h("thead", {}, head),
-      h("tbody", {}, ...(rows.length ? rows : [h("tr", {}, h("td", { colSpan: 6 }, "None at these speeds."))])),
-    );
+    const names = ["Speed rpm", "Order", "What meets", "the natural frequency", "STE p-p there µm", unseen("Actions")];
+    return table(names, rows.length ? rows : [h("tr", {}, h("td", { colSpan: 6 }, "None at these speeds."))], caption);
   }
 
   /**

@@ -1,7 +1,7 @@
 // @ts-check
 // What the service warns of, with what would mend it.
 
-import { byId, h } from "../draw/dom.js";
+import { button, byId, h } from "../draw/dom.js";
 import { cured, wordsOfCure } from "../draw/face.js";
 import { number } from "../state/numbers.js";
 
@@ -35,8 +35,6 @@ export class Warnings {
   /** @param {Warning} warning */
   #item({ code, detail, guide, changes = {} }) {
     const form = this.form();
-    /** @type {(work: () => void, words: string) => HTMLElement} */
-    const button = (work, words) => h("button", { type: "button", on: { click: work } }, words);
     // What would mend it, by the pointers of the fields.
     const values = Object.entries(changes).map(
       ([pointer, value]) => `${form?.named(pointer) ?? pointer} ${number(value, 7)}`,
@@ -47,9 +45,9 @@ export class Warnings {
       form?.inWords(detail) ?? detail,
       ...(guide ? [" ", h("a", { href: guide.replace(/^\//, "") }, "The guide says why")] : []),
       ...(code === "web_outside_plane_model"
-        ? [" ", button(() => form?.compute(true), "Compute it in three dimensions")]
+        ? [" ", button("Compute it in three dimensions", () => form?.compute(true))]
         : []),
-      ...(values.length ? [" ", button(() => form?.take(changes), `Use ${values.join(", ")}`)] : []),
+      ...(values.length ? [" ", button(`Use ${values.join(", ")}`, () => form?.take(changes))] : []),
     );
   }
 
@@ -71,6 +69,6 @@ export class Warnings {
     const { cure } = face;
     const leads = "/pair/driving/lead_modifications";
     const apply = () => this.design.set(leads, cured(this.design.get(leads), cure), "mend");
-    this.#cure.replaceChildren(words, " ", h("button", { type: "button", on: { click: apply } }, "Apply"));
+    this.#cure.replaceChildren(words, " ", button("Apply", apply));
   }
 }

@@ -101,7 +101,7 @@ impl Budget {
         amount: u64,
         is_wanted: impl Fn() -> bool,
     ) -> Option<Part> {
-        /// Who is told to stop does so in this time.
+        /// A waiter that is stopped ends in this time.
         const BETWEEN_LOOKS: Duration = Duration::from_millis(10);
         let (_place, mut part) = self.queue(client, amount);
         loop {

@@ -1,8 +1,8 @@
 //! The server: it accepts connections, serves them, and ends them.
 //!
 //! A connection is busy from the head of a request to the last byte of its answer, and idle otherwise; one whose client sends
-//! nothing of its request, or reads nothing of its answer, counts as idle. Idle ones cost little, but each holds a descriptor, of which a
-//! process has a limited number: an idle one is evicted where a new one finds no place, and ends by itself when its client sends no
+//! nothing of its request, or reads nothing of its answer, counts as idle. An idle connection costs little, but holds one of the
+//! descriptors that the process may have. It is evicted where a new one finds no place, and ends by itself when its client sends no
 //! request, or reads nothing, for a while.
 
 use std::convert::Infallible;

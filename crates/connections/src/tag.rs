@@ -1,4 +1,4 @@
-//! Entity tags: a client that has the answer already is told so (RFC 9110, section 13).
+//! Entity tags: a client that has the answer already gets 304 (RFC 9110, section 13).
 
 use hyper::header::{CACHE_CONTROL, CONTENT_ENCODING, ETAG, HeaderValue, IF_NONE_MATCH};
 use hyper::{HeaderMap, Response, StatusCode};

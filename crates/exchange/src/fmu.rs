@@ -21,32 +21,13 @@ include!(concat!(env!("OUT_DIR"), "/fmu.rs"));
 const NAME: &str = "meshwright_mesh";
 
 /// The name, the kind and the meaning of each variable, by its reference.
+#[rustfmt::skip]
 const VARIABLES: [(&str, &str, &str); 5] = [
-    (
-        "theta_1_rad",
-        "input",
-        "Angle of the driving gear, in the sense in which it turns",
-    ),
-    (
-        "theta_2_rad",
-        "input",
-        "Angle of the driven gear, in the sense in which it turns",
-    ),
-    (
-        "torque_1_n_m",
-        "output",
-        "Torque of the mesh on the driving gear",
-    ),
-    (
-        "torque_2_n_m",
-        "output",
-        "Torque of the mesh on the driven gear",
-    ),
-    (
-        "transmission_error_um",
-        "output",
-        "Approach along the line of action, positive where the driven gear lags",
-    ),
+    ("theta_1_rad", "input", "Angle of the driving gear, in the sense in which it turns"),
+    ("theta_2_rad", "input", "Angle of the driven gear, in the sense in which it turns"),
+    ("torque_1_n_m", "output", "Torque of the mesh on the driving gear"),
+    ("torque_2_n_m", "output", "Torque of the mesh on the driven gear"),
+    ("transmission_error_um", "output", "Approach along the line of action, positive where the driven gear lags"),
 ];
 
 /// The FMU of `forces`, which a `guid` tells from others.

@@ -188,7 +188,7 @@ async fn take_turn(
             inputs: BTreeSet::new(),
         };
         let (mut chosen, mut charge) = (Vec::new(), 0);
-        // One more tells whether there is one.
+        // One more shows whether there is one.
         let mut many = 2;
         let is_empty = 'lane: loop {
             let waiting = look.next(connection, many, reader).await?;

@@ -1,4 +1,4 @@
-//! What follows when a job ends: its study may have ended with it, and somebody may want to be told.
+//! What follows when a job ends: its study may have ended with it, and a webhook may want a message.
 
 use std::collections::BTreeMap;
 

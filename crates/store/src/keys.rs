@@ -151,7 +151,7 @@ impl Store {
         Ok(keys)
     }
 
-    /// Whether a key was ever made. One that was revoked does not open the door to everybody again.
+    /// Whether a key was ever made. A revoked key does not make the service open to everybody again.
     pub async fn has_keys(&self) -> Result<bool, StoreError> {
         let found = query("select 1 from keys limit 1")
             .exists(&self.readers)

@@ -2,12 +2,14 @@
 //!
 //! All SQL of the service stands here. Documents go in and out as text, states as the words of the database: the store knows no gear and no HTTP.
 //!
-//! In reading order: where the database is (`address`), how a statement is said to either kind (`statement`) and where the two differ
-//! (`dialect`); how the database is opened (`open`, `lock`), how it is written (`write`) and what can go wrong with it ([`StoreError`]);
-//! where things stand (`state`), what a [`Job`] and a [`StudyRecord`] are, and how they are read (`rows`); the transitions of a job: it is
-//! submitted (`submit`), claimed in its turn (`claim`, `shares`), attempted (`attempt`), and ends otherwise (`end`); those of a study
-//! (`studies`); what is read: lists, documents, tables; what other processes tell (`news`); what else is kept: keys, [`webhooks`], and the
-//! messages to them as they come to be (`outbox`); and what an operator needs: retention and backup.
+//! In reading order:
+//! - the database: where it is (`address`), statements for either kind (`statement`) and where the two differ (`dialect`), how it is opened
+//!   (`open`, `lock`) and written (`write`), and what can go wrong with it ([`StoreError`]);
+//! - the states (`state`), a [`Job`], a [`StudyRecord`], and how they are read (`rows`);
+//! - the transitions of a job: `submit`, `claim` in its turn (`shares`), `attempt`, and other ends (`end`); those of a study (`studies`);
+//! - what is read: lists, documents, tables; what other processes report (`news`);
+//! - keys, [`webhooks`], and the messages to them, which are written with what they report (`outbox`);
+//! - for operators: retention and backup.
 //!
 //! Each transition is one transaction that names the state it leaves; when the job is not in that state the transition does
 //! not happen, and says so. Time comes in as an argument.
@@ -106,7 +108,7 @@ impl Store {
         self.writer.close().await;
     }
 
-    /// Closes the connections that read: from here on a file tells nothing.
+    /// Closes the connections that read: from here on nothing can be read of a file.
     pub async fn close_readers(&self) {
         self.readers.close().await;
     }

@@ -41,7 +41,7 @@ pub struct StudyFilter {
     pub after: Option<Cursor>,
 }
 
-/// A span of time. Jobs come in the order in which they arrived, so that it is a stretch of the list: it begins with the
+/// A span of time. Jobs are listed in the order in which they arrived, so that it is a part of the list. It begins with the
 /// first that was submitted at `from` or later, and ends before the first that was submitted at `until` or later.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Span {

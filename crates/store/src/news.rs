@@ -1,4 +1,4 @@
-//! What other processes tell, where there are any: the server passes it on with each commit (see `migrations/postgres`).
+//! What other processes report, where there are any: the server passes it on with each commit (see `migrations/postgres`).
 
 use sqlx::postgres::PgListener;
 use uuid::Uuid;
@@ -6,7 +6,7 @@ use uuid::Uuid;
 use super::statement::Pool;
 use super::{Status, Store, StoreError};
 
-/// The channel on which the triggers tell.
+/// The channel on which the triggers notify.
 const CHANNEL: &str = "meshwright";
 
 /// Something that a process has done, this one perhaps.
@@ -40,9 +40,9 @@ impl Store {
 }
 
 impl Listener {
-    /// What is told next.
+    /// The next notice.
     pub async fn next(&mut self) -> Result<Notice, StoreError> {
-        // Without a connection something may be told that nobody hears.
+        // Without a connection a notice may be lost.
         let heard = self.0.try_recv().await?;
         Ok(heard.map_or(Notice::Missed, |heard| read(heard.payload())))
     }
@@ -53,7 +53,7 @@ fn read(words: &str) -> Notice {
     let mut words = words.split(' ');
     let notice = match words.next() {
         Some("work") => Some(Notice::Work),
-        // One at a time is how the version before told it.
+        // The version before sent one at a time.
         Some("jobs" | "job") => {
             let status = words.next().and_then(Status::of_word);
             let ids: Option<Vec<Uuid>> = words.by_ref().map(|id| id.parse().ok()).collect();

@@ -376,7 +376,7 @@ async fn is_to_be_done(
     }
 }
 
-/// Whether what is told to the server crosses a network.
+/// Whether what is sent to the server crosses a network.
 fn leaves_the_machine(options: &PgConnectOptions) -> bool {
     let host = options.get_host();
     let by_number = host.trim_matches(['[', ']']).parse::<IpAddr>();
@@ -404,7 +404,7 @@ fn refuse_other_files(path: &Path) -> Result<(), OpenError> {
     }
     let mut head = [0; MAGIC.len()];
     let Ok(mut file) = std::fs::File::open(path) else {
-        // What may not be read or made is told by SQLite.
+        // SQLite reports what may not be read or made.
         let _ = open_or_make(path);
         return Ok(());
     };

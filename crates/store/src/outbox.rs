@@ -1,5 +1,5 @@
-//! The messages to webhooks, as they come to be: each is written in the transaction of the change that it tells, so that none is lost
-//! and none tells what did not happen. How they leave is the business of `webhooks`.
+//! The messages to webhooks, as they come to be: each is written in the transaction of the change that it reports, so that none is lost
+//! and none reports what did not happen. How they leave is the business of `webhooks`.
 
 use jiff::Timestamp;
 use serde::Serialize;
@@ -8,7 +8,7 @@ use uuid::Uuid;
 use super::statement::{Connection, query, query_as};
 use super::{Status, Store, StoreError};
 
-/// What can be told.
+/// What can be reported.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EventKind {
     /// A job that stands alone has ended.
@@ -29,7 +29,7 @@ impl EventKind {
         }
     }
 
-    /// The kinds of a list of words as it is kept. Words of a later version are told by later versions.
+    /// The kinds of a list of words as it is kept. Later versions report the words that they add.
     pub(crate) fn of_words(words: &str) -> Vec<Self> {
         let words: Vec<String> = serde_json::from_str(words).unwrap_or_default();
         let known = |word: &String| Self::ALL.into_iter().find(|kind| kind.word() == word);
@@ -41,9 +41,9 @@ impl EventKind {
 pub(crate) struct NewMessage<'a> {
     /// The webhook.
     pub(crate) webhook: &'a str,
-    /// What it tells, in a word.
+    /// What it reports, in a word.
     pub(crate) kind: &'static str,
-    /// Whose end it tells, or the webhook itself.
+    /// Whose end it reports, or the webhook itself.
     pub(crate) subject: Uuid,
     /// Where that stands.
     pub(crate) status: Option<Status>,
@@ -95,7 +95,7 @@ impl NewMessage<'_> {
     }
 }
 
-/// Writes a message for each webhook of `client` that wants to be told.
+/// Writes a message for each webhook of `client` that wants it.
 pub(super) async fn tell(
     connection: &mut Connection,
     client: &str,

@@ -112,7 +112,7 @@ impl Store {
         Ok(jobs.len() as u64)
     }
 
-    /// What the database holds. A server gives the space of what is removed to what comes next, and does not tell how much
+    /// What the database holds. A server gives the space of what is removed to what comes next, and does not say how much
     /// of it is free.
     pub async fn space(&self) -> Result<Space, StoreError> {
         let count = |number: i64| u64::try_from(number).unwrap_or(0);

@@ -110,7 +110,7 @@ impl Record for LaneHere {
     }
 }
 
-/// The lanes with work to do, in the order in which they are due, and what runs in `process`, which is not told where nothing waits.
+/// The lanes with work to do, in the order in which they are due, and what runs in `process`, which is left out where nothing waits.
 pub(super) async fn lanes(
     connection: &mut Connection,
     process: &str,

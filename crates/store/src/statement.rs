@@ -166,7 +166,7 @@ impl Connection {
         }
     }
 
-    /// Begins a transaction by these words. Where SQLite cannot, that shows in the next statement, and `health` is told why.
+    /// Begins a transaction by these words. Where SQLite cannot, that shows in the next statement, and `health` gets the cause.
     pub(super) async fn begin(
         &mut self,
         words: Text,

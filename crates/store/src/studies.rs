@@ -42,7 +42,7 @@ pub struct NewStudy {
     pub document_version: i64,
     /// The hash of what was sent.
     pub body_hash: String,
-    /// The gear whose mass and holes its table tells, in a word.
+    /// The gear whose mass and holes its table shows, in a word.
     pub gear: String,
     /// Number of designs; of a search, the most that it may come to.
     pub total: u64,

@@ -16,7 +16,7 @@ pub struct StudyRecord {
     pub name: Option<String>,
     /// Short words of the client.
     pub tags: Vec<String>,
-    /// The gear whose mass and holes the table tells, in a word.
+    /// The gear whose mass and holes the table shows, in a word.
     pub gear: String,
     /// Number of designs; of a search that has not ended, the most that it may come to.
     pub total: u64,

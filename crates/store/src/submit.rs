@@ -134,7 +134,7 @@ impl Room {
         }
     }
 
-    /// Takes a place for `client`, of which `client_limit` jobs may wait, or tells who has none left.
+    /// Takes a place for `client`, of which `client_limit` jobs may wait, or says who has none left.
     async fn take(
         &mut self,
         connection: &mut Connection,

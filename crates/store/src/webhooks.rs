@@ -9,7 +9,7 @@ use super::rows::{Record, Row, instant, optional_instant, optional_uuid, small, 
 use super::statement::{Nothing, Statement, query, query_as, query_scalar};
 use super::{EventKind, Store, StoreError, dialect, micros};
 
-/// The kind of a message that tells nothing.
+/// The kind of a message that reports nothing.
 const PING: &str = "webhook.ping";
 
 /// Who has taken a message has it for so long: more than an attempt takes.
@@ -34,14 +34,14 @@ const PATIENCE_S: [i64; 9] = [
     12 * 3600,
 ];
 
-/// Where a client is told, and of what.
+/// Where a client wants messages sent, and of what.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Webhook {
     /// Its id on the wire.
     pub id: Uuid,
     /// Where messages are sent.
     pub url: String,
-    /// What is told.
+    /// What is reported.
     pub events: Vec<EventKind>,
     /// When it was made.
     pub created_at: Timestamp,
@@ -138,11 +138,11 @@ pub enum Outcome {
 pub struct Delivery {
     /// Its id, the same at every attempt.
     pub id: Uuid,
-    /// What it tells, in a word.
+    /// What it reports, in a word.
     pub kind: String,
-    /// Whose end it tells: a job or a study; or the webhook itself.
+    /// Whose end it reports: a job or a study; or the webhook itself.
     pub subject: Option<Uuid>,
-    /// When what it tells happened.
+    /// When what it reports happened.
     pub created_at: Timestamp,
     /// Attempts so far.
     pub attempts: u32,

@@ -77,54 +77,28 @@ mod tests {
     #[test]
     fn the_examples_of_real_drawings_say_what_their_names_say() {
         let (driving, driven) = ("/pair/driving", "/pair/driven");
-        for (name, within, place) in [
+        #[rustfmt::skip]
+        let cases = [
             ("tip-diameter", driving, "/tip_diameter_mm"),
             ("tip-diameter", driven, "/tooth_thickness_deviation_um"),
             ("tip-edges", driving, "/tip_rounding_mm"),
             ("tip-edges", driven, "/tip_chamfer_mm"),
-            (
-                "profile-modifications",
-                driving,
-                "/profile_modifications/2/amount_um",
-            ),
-            (
-                "profile-modifications",
-                driven,
-                "/profile_modifications/0/removed_um/5",
-            ),
-            (
-                "pitch-deviations",
-                driving,
-                "/tooth_deviations/pitch_single_um/49",
-            ),
-            (
-                "pitch-deviations",
-                driven,
-                "/tooth_deviations/pitch_cumulative_um/49",
-            ),
-            (
-                "pitch-deviations",
-                driven,
-                "/tooth_deviations/profile_slope_um/49",
-            ),
-            (
-                "eccentricity",
-                driven,
-                "/tooth_deviations/eccentricity/amount_um",
-            ),
+            ("profile-modifications", driving, "/profile_modifications/2/amount_um"),
+            ("profile-modifications", driven, "/profile_modifications/0/removed_um/5"),
+            ("pitch-deviations", driving, "/tooth_deviations/pitch_single_um/49"),
+            ("pitch-deviations", driven, "/tooth_deviations/pitch_cumulative_um/49"),
+            ("pitch-deviations", driven, "/tooth_deviations/profile_slope_um/49"),
+            ("eccentricity", driven, "/tooth_deviations/eccentricity/amount_um"),
             ("light-load", "", "/output_torques_n_m/2"),
             ("web", driven, "/blank/web/thickness_mm"),
             ("unequal-holes", driven, "/blank/holes/1/at_deg/1"),
             ("unequal-spacing", driven, "/blank/holes/at_deg/1"),
             ("slots", driven, "/blank/holes/slot/width_mm"),
             ("spokes", driven, "/blank/spokes/fillet_radius_mm"),
-            (
-                "interface-radii",
-                "",
-                "/resolution/interface_radius_mm/driving",
-            ),
+            ("interface-radii", "", "/resolution/interface_radius_mm/driving"),
             ("run-up", "", "/dynamics/driving_speed_rpm/to"),
-        ] {
+        ];
+        for (name, within, place) in cases {
             let place = &format!("{within}{place}");
             let echo = filled_in(name);
             let said = echo.pointer(place).and_then(serde_json::Value::as_f64);

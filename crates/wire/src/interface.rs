@@ -85,8 +85,8 @@ impl InterfaceRadii {
         Member::BOTH.map(|member| self.of(member).map(from_mm))
     }
 
-    /// What is wrong with them on `pair`, whose submission has them at `pointer`: the interface has to stay clear of the holes and
-    /// of the roots by a quarter of the material between them, or of a module where that is less.
+    /// What is wrong with them on `pair`, whose submission has them at `pointer`. The interface has to stay clear of the holes and
+    /// of the roots, by a quarter of the material between them or a quarter of a module, whichever is less.
     pub(super) fn faults(&self, pair: &GearPair, pointer: &str) -> Vec<FieldError> {
         match self {
             Self::Common(None) => Vec::new(),

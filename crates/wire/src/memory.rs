@@ -11,8 +11,8 @@ use meshwright_engine::grid::GridLevel;
 use super::problem::{Code, Problem};
 use super::submission::Submission;
 
-/// Plane pairs of so many teeth together, on the standard grid or a coarser one without an error estimate, take no more than
-/// [`USUAL_MB`] where their rims are not thin, holes are round or slots, and there are so many positions times torques.
+/// Plane pairs of at most so many teeth together and so many positions times torques take no more than [`USUAL_MB`]. Their grid is the
+/// standard one or a coarser one, without an error estimate. Their rims are not thin, and their holes are round or slots.
 const USUAL_TEETH: u32 = 120;
 const USUAL_POSITIONS: u64 = 20_000;
 

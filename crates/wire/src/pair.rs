@@ -393,8 +393,8 @@ fn deviates(gear: &SpurGear) -> bool {
     !gear.deviations().is_none()
 }
 
-/// The first center distance in mm, from the bound inward in units of the fifth digit, at which the gears mesh; where it is the `backlash` that decides, in
-/// units of a tenth of a micrometer, which is less than printed digits leave open.
+/// The first center distance in mm, from the bound inward in units of the fifth digit, at which the gears mesh. Where the `backlash` decides, the
+/// unit is a tenth of a micrometer, which is less than printed digits leave open.
 fn nearest_distance(
     gears: [&SpurGear; 2],
     overlap_ratio: f64,

@@ -172,7 +172,7 @@ document! {
 }
 
 impl ResolutionDocument {
-    /// What the engine is told.
+    /// The same for the engine.
     pub(super) fn data(&self) -> Resolution {
         Resolution {
             positions_per_mesh_period: self.positions_per_mesh_period,

@@ -75,12 +75,17 @@ pub fn faults(problem: Problem) -> Vec<(String, Code, Option<f64>)> {
         .collect()
 }
 
-/// The first thing that is wrong with `document`, which is this at this place.
+/// The first thing that is wrong with `document`.
+pub fn first_fault(document: &Value) -> FieldError {
+    let mut problem = parse(document).expect_err("it is refused");
+    problem.errors.remove(0)
+}
+
+/// The same, which is this at this place.
 pub fn fault(document: &Value, place: &str, code: Code) -> FieldError {
-    let problem = parse(document).expect_err(place);
-    let fault = &problem.errors[0];
-    assert_eq!((&*fault.pointer, fault.code), (place, code), "{problem:?}");
-    fault.clone()
+    let fault = first_fault(document);
+    assert_eq!((&*fault.pointer, fault.code), (place, code), "{fault:?}");
+    fault
 }
 
 /// A table of what is refused, a line each: what is sent, the place and the code that are told, and the nearest value that would do.

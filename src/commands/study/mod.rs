@@ -27,9 +27,9 @@ use crate::jobs::{search_state, shown_status, why_failed};
 pub(crate) struct Study {
     /// The study; - reads standard input.
     study: PathBuf,
-    /// Where to write table.json, table.csv and picture.svg, of a population population.json, of a search search.json with how it went and best.json with the
-    /// submission of the best design, and, unless the study keeps statistics only, each result; the folder is made if it is absent. Without it, only a
-    /// short table is printed.
+    /// Folder for table.json, table.csv and picture.svg, and each result unless the study keeps statistics only. A population adds population.json. A search
+    /// adds search.json, how it went, and best.json, the submission of the best design. The folder is made if it is absent. Without it, only a short table is
+    /// printed.
     #[arg(long, short, value_name = "DIR")]
     output: Option<PathBuf>,
 }

@@ -17,8 +17,8 @@ const BASE: Color = PALETTE[2];
 const BEST: Color = PALETTE[1];
 const OTHER: Color = PALETTE[0];
 
-/// The picture of a study: of a search how its goal fell, and the front of two goals; of a population the spread of the peak-to-peak value over
-/// torque, or over itself where there is one torque; of others the peak-to-peak value over mass. None where nothing was computed.
+/// The picture of a study. A search shows how its goal fell, and the front of two goals. A population shows the spread of the peak-to-peak value over
+/// torque, or a histogram where there is one torque. Other studies show the peak-to-peak value over mass. None where nothing was computed.
 pub(super) fn picture(
     study: &StudyDocument,
     results: &StudyResults,

@@ -120,7 +120,7 @@ pub(super) fn search_table(
     text
 }
 
-/// What is told of some that have no results, behind what is told of those that have some.
+/// What is said of some that have no results, behind what is said of those that have some.
 fn why_others_failed(what: &str, refusals: &[RefusalState]) -> String {
     let count: u64 = refusals.iter().map(|refusal| refusal.count).sum();
     if count == 0 {

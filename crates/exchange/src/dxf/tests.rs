@@ -268,47 +268,25 @@ fn an_open_loop_is_refused_where_it_is_open_with_what_is_missing() {
 
 #[test]
 fn what_may_change_the_outline_and_is_not_read_is_refused_by_its_name() {
-    for (name, groups, expected) in [
-        (
-            "SPLINE",
-            vec![(70, 8.0)],
-            "SPLINE on layer A, line 88 is not read",
-        ),
+    #[rustfmt::skip]
+    let cases = [
+        ("SPLINE", vec![(70, 8.0)], "SPLINE on layer A, line 88 is not read"),
         ("ELLIPSE", vec![], "ELLIPSE on layer A, line 88 is not read"),
         ("SURVEYED_CURVE", vec![], "SURVEYED_CURVE on layer A"),
-        (
-            "INSERT",
-            vec![(2, 7.0)],
-            "INSERT on layer A, line 88 stands for the block 7: explode it",
-        ),
+        ("INSERT", vec![(2, 7.0)], "INSERT on layer A, line 88 stands for the block 7: explode it"),
         ("POLYLINE", vec![(70, 4.0)], "is a spline or a surface"),
-        (
-            "LINE",
-            vec![(10, 1.0), (20, 1.0), (11, 2.0), (21, 1.0), (31, 1.0)],
-            "does not lie in the plane",
-        ),
-        (
-            "CIRCLE",
-            vec![(10, 1.0), (20, 1.0), (40, 1.0), (210, 1.0), (230, 0.0)],
-            "does not lie in the plane",
-        ),
-        (
-            "CIRCLE",
-            vec![(10, 1.0), (20, 1.0), (40, f64::NAN)],
-            "has a group 40 that is no number",
-        ),
+        ("LINE", vec![(10, 1.0), (20, 1.0), (11, 2.0), (21, 1.0), (31, 1.0)], "does not lie in the plane"),
+        ("CIRCLE", vec![(10, 1.0), (20, 1.0), (40, 1.0), (210, 1.0), (230, 0.0)], "does not lie in the plane"),
+        ("CIRCLE", vec![(10, 1.0), (20, 1.0), (40, f64::NAN)], "has a group 40 that is no number"),
         ("CIRCLE", vec![(10, 1.0), (40, 1.0)], "has no group 20"),
-        (
-            "CIRCLE",
-            vec![(10, 1.0), (20, 1.0), (40, 0.0)],
-            "has the radius 0",
-        ),
+        ("CIRCLE", vec![(10, 1.0), (20, 1.0), (40, 0.0)], "has the radius 0"),
         (
             "LWPOLYLINE",
             vec![(10, 1.0), (20, 1.0), (42, 1e9), (10, 1.0)],
             "has the bulge 1000000000 at its corner 1",
         ),
-    ] {
+    ];
+    for (name, groups, expected) in cases {
         let text = file(Some(4), &[opening(), vec![entity(name, &groups)]].concat());
         let told = refused(&text);
         assert!(told.contains(expected), "{told}");

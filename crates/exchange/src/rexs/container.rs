@@ -222,26 +222,19 @@ mod tests {
                 .collect()
         };
         let latin = |text: &str| -> Vec<u8> { text.chars().map(|c| c as u8).collect() };
-        for (bytes, text) in [
+        #[rustfmt::skip]
+        let cases = [
             (declared("UTF-8").into_bytes(), declared("UTF-8")),
             (declared("utf-16").into_bytes(), declared("utf-16")),
             (latin(&declared("ISO-8859-1")), declared("ISO-8859-1")),
             (latin(&declared("windows-1252")), declared("windows-1252")),
-            (
-                utf_16(&declared("UTF-16"), b"\xFF\xFE", u16::to_le_bytes),
-                declared("UTF-16"),
-            ),
-            (
-                utf_16(&declared("UTF-16"), b"\xFE\xFF", u16::to_be_bytes),
-                declared("UTF-16"),
-            ),
-            (
-                utf_16(&declared("UTF-16"), b"", u16::to_le_bytes),
-                declared("UTF-16"),
-            ),
+            (utf_16(&declared("UTF-16"), b"\xFF\xFE", u16::to_le_bytes), declared("UTF-16")),
+            (utf_16(&declared("UTF-16"), b"\xFE\xFF", u16::to_be_bytes), declared("UTF-16")),
+            (utf_16(&declared("UTF-16"), b"", u16::to_le_bytes), declared("UTF-16")),
             ("\u{FEFF}<µ/>".to_owned().into_bytes(), "<µ/>".to_owned()),
             (b"{}".to_vec(), "{}".to_owned()),
-        ] {
+        ];
+        for (bytes, text) in cases {
             assert_eq!(decoded(&bytes).expect("known"), text);
         }
         let unknown = decoded(b"<?xml version='1.0' encoding='EBCDIC-X'?>");

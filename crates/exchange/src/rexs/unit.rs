@@ -277,6 +277,7 @@ mod tests {
     #[test]
     fn every_unit_of_the_standards_lists_converts_to_those_of_its_quantity_alone() {
         let pi = std::f64::consts::PI;
+        #[rustfmt::skip]
         let quantities: [(Unit, &[(&str, f64)]); 7] = [
             (NONE, &[("none", 1.0)]),
             (MM, &[("mm", 1.0), ("mum", 1e-3)]),
@@ -284,15 +285,7 @@ mod tests {
             (MPA, &[("MPa", 1.0), ("N / mm^2", 1.0), ("Pa", 1e-6)]),
             (KG_PER_DM3, &[("kg / dm^3", 1.0)]),
             (N_M, &[("N m", 1.0)]),
-            (
-                PER_MINUTE,
-                &[
-                    ("1 / min", 1.0),
-                    ("1 / s", 60.0),
-                    ("Hz", 60.0),
-                    ("rad / s", 30.0 / pi),
-                ],
-            ),
+            (PER_MINUTE, &[("1 / min", 1.0), ("1 / s", 60.0), ("Hz", 60.0), ("rad / s", 30.0 / pi)]),
         ];
         let powers = |unit: &str| unit.replace("^2", "²").replace("^3", "³");
         for (unit, own) in quantities {

@@ -125,8 +125,8 @@ pairs! {
     lock_turn = LOCK_TURN;
     /// From here to its end, no other transaction changes the shares of the client $1.
     lock_shares = LOCK_SHARES;
-    /// The lanes with work to do, in the order in which they are due, and beside each of them how many jobs run here, how many of those are to
-    /// run alone, and 1 if one that is to run alone waits. $1: the process.
+    /// The lanes with work to do, in the order in which they are due. Beside each: how many jobs run here, how many of those are to run alone,
+    /// and 1 if one that is to run alone waits. $1: the process.
     lanes = LANES;
     /// The next job that is to be run alone. $1: the latest version of documents that is read.
     next_suspect = NEXT_SUSPECT;

@@ -25,58 +25,18 @@ async fn no_list_walks_the_history_or_sorts_it() {
         until: Some(at(2)),
     };
     let tag = || Some("a".to_owned());
-    for (filter, status, index) in [
+    #[rustfmt::skip]
+    let cases = [
         (Filter::default(), None, "jobs_of_client"),
-        (
-            Filter {
-                span,
-                ..Filter::default()
-            },
-            None,
-            "jobs_of_client",
-        ),
+        (Filter { span, ..Filter::default() }, None, "jobs_of_client"),
         (Filter::default(), Some(Status::Failed), "jobs_by_status"),
-        (
-            Filter {
-                study,
-                ..Filter::default()
-            },
-            None,
-            "jobs_of_study",
-        ),
-        (
-            Filter {
-                study,
-                ..Filter::default()
-            },
-            Some(Status::Failed),
-            "jobs_of_study_by_status",
-        ),
-        (
-            Filter {
-                study: alone,
-                ..Filter::default()
-            },
-            None,
-            "jobs_alone",
-        ),
-        (
-            Filter {
-                study: alone,
-                ..Filter::default()
-            },
-            Some(Status::Failed),
-            "jobs_alone_by_status",
-        ),
-        (
-            Filter {
-                tag: tag(),
-                ..Filter::default()
-            },
-            None,
-            "job_tags",
-        ),
-    ] {
+        (Filter { study, ..Filter::default() }, None, "jobs_of_study"),
+        (Filter { study, ..Filter::default() }, Some(Status::Failed), "jobs_of_study_by_status"),
+        (Filter { study: alone, ..Filter::default() }, None, "jobs_alone"),
+        (Filter { study: alone, ..Filter::default() }, Some(Status::Failed), "jobs_alone_by_status"),
+        (Filter { tag: tag(), ..Filter::default() }, None, "job_tags"),
+    ];
+    for (filter, status, index) in cases {
         let steps = plan(&store, &filter, status).await;
         let told = format!("{filter:?} {status:?}: {steps:#?}");
         assert!(steps.iter().any(|step| step.contains(index)), "{told}");

@@ -62,7 +62,7 @@ enum Way {
     Two(Evolution),
 }
 
-/// CMA-ES, and what conditions weigh in what it is told.
+/// CMA-ES, and what conditions weigh in the values that it gets.
 struct Descent {
     cmaes: Cmaes,
     size: usize,
@@ -208,7 +208,7 @@ impl Driver {
         self.problem.look_beside(&mut designs, generation);
         let designs = self.without_repeats(designs);
         if let Way::One(descent) = &mut self.way {
-            // It is told where designs were moved to.
+            // It gets the points to which designs were moved.
             descent.points.truncate(designs.len());
             for ((point, design), snapped) in descent.points.iter_mut().zip(&designs).zip(&snapped)
             {

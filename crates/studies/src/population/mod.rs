@@ -151,8 +151,8 @@ impl Population {
 
     /// The teeth that `gear` has in a member; none if none of very many gears passes.
     ///
-    /// The eccentricity, two numbers that act on the whole, stands on axes of the points behind those of the fields; the teeth, hundreds
-    /// of numbers of which none matters by itself, are random, and so is all of a gear that is drawn again.
+    /// The eccentricity is two numbers that act on the whole: they have axes of the points, behind those of the fields. The teeth are hundreds
+    /// of numbers of which none matters by itself: they are random, and so is all of a gear that is drawn again.
     pub(crate) fn teeth(&self, member: u32, gear: Member, accuracy: &Accuracy) -> Option<Passed> {
         let drawn = self.drawn_for(member, gear);
         let first = self.varied.len() as u32 + 2 * gear as u32;

@@ -10,7 +10,7 @@ const MOST_NEIGHBORS: usize = 16;
 
 /// Members in the order of a number that is an input of theirs.
 ///
-/// Its share is found by ranks: members that stand next to each other here have nearly the same input and nothing else in common, so that the
+/// Its share is found by ranks. Members that stand next to each other here have nearly the same input and nothing else in common. So the
 /// covariance of their results is the variance of E[y | x] (Gamboa, Gremaud, Klein and Lagnoux 2022, averaged over some neighbors).
 #[derive(Debug, Clone)]
 pub struct Ranked {
@@ -30,7 +30,7 @@ impl Ranked {
     /// The share of the input in the variance of `results`, those that are no number left out. Limits follow from the same estimate in each
     /// batch. None where nothing varies.
     pub fn share(&self, results: &[f64]) -> Option<Estimate> {
-        // A few members tell nothing of how far the estimate is off.
+        // A few members say nothing of how far the estimate is off.
         const FEWEST: usize = 8;
         let sorted: Vec<(u32, f64)> = self
             .order
@@ -74,10 +74,10 @@ fn share_of(sorted: &[(u32, f64)]) -> Option<f64> {
     // Each member counts alike, those at the ends too, which have neighbors on one side only.
     let (mut sum, mut count) = (0.0, 0_u64);
     for (i, (member, y)) in sorted.iter().enumerate() {
-        // Neighbors of one replicate of Sobol' points are no strangers: their other coordinates are kept apart from each other.
-        let stranger = |other: &&(u32, f64)| other.0 % REPLICATES != member % REPLICATES;
-        let behind = sorted[i + 1..].iter().filter(stranger).take(neighbors);
-        let before = sorted[..i].iter().rev().filter(stranger).take(neighbors);
+        // Neighbors of one replicate of Sobol' points are not independent: their other coordinates are kept apart from each other.
+        let of_another = |other: &&(u32, f64)| other.0 % REPLICATES != member % REPLICATES;
+        let behind = sorted[i + 1..].iter().filter(of_another).take(neighbors);
+        let before = sorted[..i].iter().rev().filter(of_another).take(neighbors);
         let (total, met) = behind
             .chain(before)
             .fold((0.0, 0), |(total, met), (_, other)| {

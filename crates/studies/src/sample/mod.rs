@@ -1,10 +1,10 @@
-//! Populations: members drawn from laws, and what the results of some of them tell of all.
+//! Populations: members drawn from laws, and what the results of some of them say of all.
 //!
 //! Read [`law`] (how a quantity is spread), [`points`] (where the members stand), then what is made of their results: [`percentile`] with
 //! its confidence limits, [`histogram`], and [`influence`], the part of the variance that an input makes.
 //!
 //! Members come in [`REPLICATES`] replicates, member n in replicate n mod 16. Of Sobol' points each replicate is scrambled by itself, so that the
-//! spread between replicates tells how far the whole is to be trusted. Two neighbors n and n xor 1 stand in a [`batch`]; members of a batch
+//! spread between replicates says how far the whole is to be trusted. Two neighbors n and n xor 1 stand in a [`batch`]; members of a batch
 //! may share a part of their inputs, batches share nothing.
 //!
 //! Everything is a pure function: the same seed gives the same members on every machine, because generators are specified by their bits, and

@@ -31,9 +31,9 @@ pub fn of_independent(sorted: &[f64], percent: f64, effect: f64) -> Estimate {
     }
 }
 
-/// A percentile of replicated scramblings, of members and their values, sorted by value: order statistics once more, drawn together as far as the share of
-/// members below the percentile varies less from replicate to replicate than that of independent members would. `effect` is that of shared inputs, as
-/// for [`of_independent`].
+/// A percentile of replicated scramblings, of members and their values, sorted by value. The limits are order statistics again. They are narrower
+/// as far as the share of members below the percentile varies less between replicates than between sets of independent members. `effect` is that of
+/// shared inputs, as for [`of_independent`].
 ///
 /// Without shared inputs limits are never wider than those of independent members, and there are none where those have none.
 pub fn of_replicates(sorted: &[(u32, f64)], percent: f64, effect: f64) -> Estimate {

@@ -31,7 +31,7 @@ pub struct Searching {
     /// The designs of the generation that is being looked at, and what came of the first of them.
     asked: Vec<Asked>,
     fresh: Vec<Outcome>,
-    /// The design whose rows are being told, and how many rows of the generation follow.
+    /// The design whose rows are being read, and how many rows of the generation follow.
     looked: Option<Looked>,
     rows_left: usize,
     ended_by: Option<SearchEnd>,
@@ -107,7 +107,7 @@ impl Searching {
         Role::of_label(label) == Some(Role::Confirmed)
     }
 
-    /// Goes on to the next generation, once all rows of the one before have been told: so many rows it has, none once every design has been asked for.
+    /// Goes on to the next generation, once all rows of the one before have been read: so many rows it has, none once every design has been asked for.
     pub fn ask(&mut self) -> usize {
         let points = self.driver.ask();
         if points.is_empty() {
@@ -199,7 +199,7 @@ impl Searching {
         }
     }
 
-    /// Judges the design whose rows have all been told.
+    /// Judges the design whose rows have all been read.
     fn finish_design(&mut self) {
         let Some(looked) = self.looked.take() else {
             return;

@@ -1,4 +1,4 @@
-//! What is told of a search.
+//! The state of a search, as clients see it.
 
 use meshwright_wire::problem::Problem;
 use meshwright_wire::results::ErrorEstimateDocument;

@@ -42,7 +42,7 @@ pub(super) const KEEP: Declared<OneWord<Kept>> = Declared::new(
     word("Keep").or(Kept::Results),
 );
 
-/// What stands in the lists of a document, as it is written there: values are told as they were sent, and read one at a time,
+/// What stands in the lists of a document, as it is written there: values are kept as they were sent, and read one at a time,
 /// since those of a hundred thousand designs take fifty times their text.
 #[derive(Default, Deserialize)]
 struct Written<'a> {
@@ -61,7 +61,7 @@ struct WrittenAxis<'a> {
 
 /// The item `i` of what is written.
 fn value_at(written: Option<&[&RawValue]>, i: usize) -> Value {
-    // What is no list has been told as such.
+    // What is no list has been refused as such.
     let item = written.and_then(|items| items.get(i));
     let value = item.and_then(|item| serde_json::from_str(item.get()).ok());
     value.unwrap_or_default()

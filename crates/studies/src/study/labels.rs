@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use super::Axis;
 
-/// The most characters of an object or list that stands in a label; a longer one is told by its number.
+/// The most characters of an object or list that stands in a label; a longer one is shown by its number.
 const LONGEST_VALUE: usize = 32;
 
 /// Gives every value of every axis the words that a label says it with: the last part of the path, or as many parts as

@@ -1,12 +1,14 @@
 //! A study: one submission in many variants, each of which is computed.
 //!
-//! A study has a `base`, and says by `axes`, by `designs`, by a `population` or by a `search` what changes in it. Axes give every combination of their
-//! values, the last axis changing fastest, as nested loops written in their order would; designs are listed with their
-//! labels; the members of a population are drawn from laws; a search chooses its designs by what came of those before. What changes is named by JSON pointers (RFC 6901) into the submission.
+//! A study has a `base`, and says in one of four ways what changes in it, by JSON pointers (RFC 6901) into the submission:
+//! - `axes`: every combination of their values, the last axis changing fastest, as nested loops written in their order would;
+//! - `designs`: a list with labels;
+//! - `population`: members drawn from laws;
+//! - `search`: designs chosen by what came of those before.
 //!
-//! What is wrong with the study itself is refused: a pointer that names no field, a value of the wrong type, a field of
-//! the base that a design does not set, a label that stands twice, more designs than the limit. What is wrong with one design
-//! is not: a tooth that is undercut, holes that overlap. Such a design stands in the table with its problem.
+//! A fault of the study itself is refused: a pointer that names no field, a value of the wrong type, a label that stands twice. So are a field of
+//! the base that a design does not set, and more designs than the limit. A fault of one design is not refused: a tooth that is undercut, holes that
+//! overlap. Such a design stands in the table with its problem.
 
 mod constant_mass;
 mod document;
@@ -230,7 +232,7 @@ impl Study {
         Self { keep, ..self }
     }
 
-    /// The gear that the table tells mass and holes of: the one of constant mass, else the only one that changes, else
+    /// The gear whose mass and holes the table shows: the one of constant mass, else the only one that changes, else
     /// the driven one.
     pub fn gear(&self) -> GearName {
         if let Some(rule) = &self.constant_mass {

@@ -44,13 +44,13 @@ pub(super) fn refuse_too_many(document: &[u8]) -> Result<(), Problem> {
                 .sum::<usize>()
                 .max(self.designs.len())
                 .max(combined);
-            // Too many combinations are told by their number, when the axes are read.
+            // Too many combinations are refused with their number, when the axes are read.
             let variants = if combined > MOST_DESIGNS { 1 } else { variants };
             too_much_work(self.base.0, variants as u64)
         }
     }
 
-    // What is not of this form is told later, with its place.
+    // What is not of this form is refused later, with its place.
     if let Ok(counted) = serde_json::from_slice::<Counted>(document) {
         let long = counted
             .axes

@@ -287,38 +287,25 @@ fn values_of_the_wrong_type_are_refused_with_their_place() {
             "/designs/1/changes/~1method"
         ]
     );
-    for (document, pointer) in [
+    #[rustfmt::skip]
+    let cases = [
         (json!([]), ""),
-        (
-            json!({ "base": [], "axes": [{ "path": "/method", "values": ["flexible"] }] }),
-            "/base",
-        ),
+        (json!({ "base": [], "axes": [{ "path": "/method", "values": ["flexible"] }] }), "/base"),
         (json!({ "base": base() }), "/designs"),
         (json!({ "base": base(), "axes": {} }), "/axes"),
         (axes(json!([])), "/axes"),
         (axes(json!([5])), "/axes/0"),
         (axes(json!([{ "path": 5, "values": [1] }])), "/axes/0/path"),
-        (
-            axes(json!([{ "path": "/method", "values": "flexible" }])),
-            "/axes/0/values",
-        ),
-        (
-            axes(json!([{ "path": "/method", "values": [] }])),
-            "/axes/0/values",
-        ),
-        (
-            axes(json!([{ "path": "/method", "values": ["flexible"], "x": 1 }])),
-            "/axes/0/x",
-        ),
+        (axes(json!([{ "path": "/method", "values": "flexible" }])), "/axes/0/values"),
+        (axes(json!([{ "path": "/method", "values": [] }])), "/axes/0/values"),
+        (axes(json!([{ "path": "/method", "values": ["flexible"], "x": 1 }])), "/axes/0/x"),
         (listed(json!([])), "/designs"),
         (listed(json!([{ "label": 1 }])), "/designs/0/label"),
         (listed(json!([{ "label": "" }])), "/designs/0/label"),
         (listed(json!([{ "changes": {} }])), "/designs/0/label"),
-        (
-            listed(json!([{ "label": "a", "changes": [] }])),
-            "/designs/0/changes",
-        ),
-    ] {
+        (listed(json!([{ "label": "a", "changes": [] }])), "/designs/0/changes"),
+    ];
+    for (document, pointer) in cases {
         assert_eq!(refused(&document).1, [pointer], "{document}");
     }
     // JSON has no NaN.

@@ -27,7 +27,7 @@ pub struct KnownQuantities(u64);
 const _: () = assert!(QUANTITIES.len() <= u64::BITS as usize);
 
 impl KnownQuantities {
-    /// Looks at what the next row tells.
+    /// Looks at the numbers of the next row.
     pub(super) fn add(&mut self, summary: &Summary) {
         for (i, quantity) in QUANTITIES.iter().enumerate() {
             let Of::Curve(of) = quantity.of else { continue };

@@ -1,4 +1,4 @@
-//! The numbers of a design by name: what tables have columns of, populations tell and searches go by.
+//! The numbers of a design by name: columns of tables, statistics of populations, goals and bounds of searches.
 
 use meshwright_engine::analysis::Method;
 use meshwright_wire::declare::{Choice as _, document};
@@ -352,262 +352,83 @@ const STRESS: &[Needs] = &[
     Needs::Load,
 ];
 
-const MASS: [Quantity; 2] = of_gears!("mass_kg", "Mass", "m_", "kg", |gear| gear.mass_kg);
-const REMOVED: [Quantity; 2] = of_gears!(
-    "mass_removed_percent",
-    "Mass removed by holes",
-    "Δm_",
-    "%",
-    |gear| gear.mass_removed_percent
-);
-const LIGAMENT: [Quantity; 2] =
-    of_gears!("least_ligament_mm", "Least ligament", "s_", "mm", |gear| {
-        gear.least_ligament_mm
-    });
-const INERTIA: [Quantity; 2] = of_gears!(
-    "polar_inertia_kg_m2",
-    "Polar inertia",
-    "J_",
-    "kg m^2",
-    |gear| gear.polar_inertia_kg_m2
-);
-const ROOT: [Quantity; 2] = stresses!("root_mpa", "Root stress", "σ_root", |stress| Some(
-    stress.root_mpa
-));
-const TENSION: [Quantity; 2] =
-    stresses!("root_tension_mpa", "Root tension", "σ_tension", |stress| {
-        stress.root_tension_mpa
-    });
-const COMPRESSION: [Quantity; 2] = stresses!(
-    "root_compression_mpa",
-    "Root compression",
-    "σ_compression",
-    |stress| stress.root_compression_mpa
-);
-const HOLE: [Quantity; 2] = stresses!("hole_mpa", "Hole stress", "σ_hole", |stress| stress
-    .hole_mpa);
+const MASS: [Quantity; 2] = of_gears! { "mass_kg", "Mass", "m_", "kg", |gear| gear.mass_kg };
+const REMOVED: [Quantity; 2] = of_gears! {
+    "mass_removed_percent", "Mass removed by holes", "Δm_", "%", |gear| gear.mass_removed_percent
+};
+const LIGAMENT: [Quantity; 2] = of_gears! {
+    "least_ligament_mm", "Least ligament", "s_", "mm", |gear| gear.least_ligament_mm
+};
+const INERTIA: [Quantity; 2] = of_gears! {
+    "polar_inertia_kg_m2", "Polar inertia", "J_", "kg m^2", |gear| gear.polar_inertia_kg_m2
+};
+const ROOT: [Quantity; 2] = stresses! {
+    "root_mpa", "Root stress", "σ_root", |stress| Some(stress.root_mpa)
+};
+const TENSION: [Quantity; 2] = stresses! {
+    "root_tension_mpa", "Root tension", "σ_tension", |stress| stress.root_tension_mpa
+};
+const COMPRESSION: [Quantity; 2] = stresses! {
+    "root_compression_mpa", "Root compression", "σ_compression", |stress| stress.root_compression_mpa
+};
+const HOLE: [Quantity; 2] = stresses! {
+    "hole_mpa", "Hole stress", "σ_hole", |stress| stress.hole_mpa
+};
 
-/// Every number that has a name, in the order of the columns of a table.
+/// Every number that has a name, in the order of the columns of a table: a row each.
+#[rustfmt::skip]
 pub(crate) const QUANTITIES: &[Quantity] = &[
-    MASS[0].smaller(),
-    MASS[1].smaller(),
-    REMOVED[0].larger(),
-    REMOVED[1].larger(),
-    LIGAMENT[0].larger().or(|_| Some(f64::INFINITY)),
-    LIGAMENT[1].larger().or(|_| Some(f64::INFINITY)),
-    INERTIA[0],
-    INERTIA[1],
-    pair(
-        ["pair_mass_kg", "Mass of both gears", "m", "kg"],
-        Summary::pair_mass,
-    )
-    .smaller(),
-    pair(["contact_ratio", "Contact ratio", "ε", "1"], |design| {
-        design.contact_ratio
-    })
-    .larger(),
-    pair(["backlash_mm", "Backlash", "j_bn", "mm"], |design| {
-        design.backlash_mm
-    }),
-    curve(
-        [
-            "transmission_error_um.mean",
-            "Mean transmission error",
-            "STE mean",
-            "um",
-        ],
-        |curve, _| Some(ste(curve)?.mean),
-    )
-    .in_statistics(),
-    curve(
-        [
-            "transmission_error_um.rms",
-            "Rms of the transmission error",
-            "STE rms",
-            "um",
-        ],
-        |curve, _| Some(ste(curve)?.rms),
-    )
-    .in_statistics()
-    .smaller(),
-    curve(
-        [
-            "transmission_error_um.peak_to_peak",
-            "Peak-to-peak transmission error",
-            "STE p-p",
-            "um",
-        ],
-        |curve, _| Some(ste(curve)?.peak_to_peak),
-    )
-    .in_statistics()
-    .smaller(),
-    curve(
-        [
-            "mesh_stiffness_tangent_n_per_m.mean",
-            "Mean mesh stiffness",
-            "k mean",
-            "N/m",
-        ],
-        |curve, _| Some(stiffness(curve)?.mean),
-    )
-    .in_statistics()
-    .larger(),
-    curve(
-        [
-            "mesh_stiffness_tangent_n_per_m.rms",
-            "Rms of the mesh stiffness",
-            "k rms",
-            "N/m",
-        ],
-        |curve, _| Some(stiffness(curve)?.rms),
-    )
-    .in_statistics()
-    .smaller(),
-    curve(
-        [
-            "mesh_stiffness_tangent_n_per_m.peak_to_peak",
-            "Peak-to-peak mesh stiffness",
-            "k p-p",
-            "N/m",
-        ],
-        |curve, _| Some(stiffness(curve)?.peak_to_peak),
-    )
-    .in_statistics()
-    .smaller(),
-    ROOT[0].smaller(),
-    TENSION[0].smaller(),
-    COMPRESSION[0].larger(),
-    HOLE[0]
-        .smaller()
-        .or(|design| design.driving.has_no_holes().then_some(0.0)),
-    ROOT[1].smaller(),
-    TENSION[1].smaller(),
-    COMPRESSION[1].larger(),
-    HOLE[1]
-        .smaller()
-        .or(|design| design.driven.has_no_holes().then_some(0.0)),
-    curve(
-        ["face_load_factor", "Face load factor", "K_Hβ", "1"],
-        |curve, _| curve.face_load_factor,
-    )
-    .smaller()
-    .where_known()
-    .needs(&[Needs::Method(Method::sees_faces), Needs::Load]),
-    curve(
-        [
-            "hole_order_of_holes_um",
-            "Amplitude of the holes alone",
-            "H_N of holes",
-            "um",
-        ],
-        CurveSummary::hole_order_of_holes,
-    )
-    .smaller()
-    .where_known()
-    .needs(&[
-        Needs::Method(Method::sees_holes),
-        Needs::WholePeriods,
-        Needs::Deviations,
-    ]),
-    curve(
-        [
-            "hole_order_um",
-            "Amplitude at the order of the holes",
-            "H_N",
-            "um",
-        ],
-        CurveSummary::hole_order,
-    )
-    .smaller()
-    .needs(&[Needs::Method(Method::sees_holes), Needs::WholePeriods])
-    .or(|design| {
-        let none = design.driving.has_no_holes() && design.driven.has_no_holes();
-        none.then_some(0.0)
-    }),
-    curve(
-        ["mesh_order_um", "Amplitude at the mesh order", "H_Z2", "um"],
-        |curve, _| curve.mesh_order(),
-    )
-    .smaller()
-    .needs(&[Needs::WholePeriods]),
-    curve(
-        [
-            "peak_contact_pressure_mpa",
-            "Largest contact pressure",
-            "p_max",
-            "MPa",
-        ],
-        |curve, _| curve.peak_contact_pressure_mpa,
-    )
-    .smaller()
-    .where_known()
-    .or(|_| Some(f64::INFINITY)),
-    curve(
-        [
-            "dynamic_transmission_error_um.peak_to_peak",
-            "Peak-to-peak dynamic transmission error",
-            "DTE p-p",
-            "um",
-        ],
-        |curve, _| curve.dynamic_peak_to_peak_um,
-    )
-    .smaller()
-    .where_known()
-    .needs(&[Needs::Dynamics]),
-    curve(
-        [
-            "transmission_error_um.tooth_to_tooth",
-            "Tooth-to-tooth transmission error",
-            "f_i'",
-            "um",
-        ],
-        |curve, _| ste(curve)?.tooth_to_tooth,
-    )
-    .in_statistics()
-    .smaller()
-    .where_known(),
-    curve(
-        [
-            "transmission_error_um.long_wave",
-            "Long-wave transmission error",
-            "f_l'",
-            "um",
-        ],
-        |curve, _| ste(curve)?.long_wave,
-    )
-    .in_statistics()
-    .smaller()
-    .where_known()
-    .needs(&[Needs::WholePeriods]),
-    curve(
-        [
-            "transmission_error_um.short_wave",
-            "Short-wave transmission error",
-            "f_k'",
-            "um",
-        ],
-        |curve, _| ste(curve)?.short_wave,
-    )
-    .in_statistics()
-    .smaller()
-    .where_known()
-    .needs(&[Needs::WholePeriods]),
-    curve(
-        [
-            "transmission_error_um.mesh_harmonics_rms",
-            "Rms of the mesh harmonics",
-            "STE mesh rms",
-            "um",
-        ],
-        |curve, _| ste(curve)?.mesh_harmonics_rms,
-    )
-    .in_statistics()
-    .smaller()
-    .where_known()
-    .needs(&[Needs::WholePeriods]),
+    MASS[0].smaller(), MASS[1].smaller(),
+    REMOVED[0].larger(), REMOVED[1].larger(),
+    LIGAMENT[0].larger().or(|_| Some(f64::INFINITY)), LIGAMENT[1].larger().or(|_| Some(f64::INFINITY)),
+    INERTIA[0], INERTIA[1],
+    pair(["pair_mass_kg", "Mass of both gears", "m", "kg"], Summary::pair_mass).smaller(),
+    pair(["contact_ratio", "Contact ratio", "ε", "1"], |design| design.contact_ratio).larger(),
+    pair(["backlash_mm", "Backlash", "j_bn", "mm"], |design| design.backlash_mm),
+    curve(["transmission_error_um.mean", "Mean transmission error", "STE mean", "um"],
+        |curve, _| Some(ste(curve)?.mean)).in_statistics(),
+    curve(["transmission_error_um.rms", "Rms of the transmission error", "STE rms", "um"],
+        |curve, _| Some(ste(curve)?.rms)).in_statistics().smaller(),
+    curve(["transmission_error_um.peak_to_peak", "Peak-to-peak transmission error", "STE p-p", "um"],
+        |curve, _| Some(ste(curve)?.peak_to_peak)).in_statistics().smaller(),
+    curve(["mesh_stiffness_tangent_n_per_m.mean", "Mean mesh stiffness", "k mean", "N/m"],
+        |curve, _| Some(stiffness(curve)?.mean)).in_statistics().larger(),
+    curve(["mesh_stiffness_tangent_n_per_m.rms", "Rms of the mesh stiffness", "k rms", "N/m"],
+        |curve, _| Some(stiffness(curve)?.rms)).in_statistics().smaller(),
+    curve(["mesh_stiffness_tangent_n_per_m.peak_to_peak", "Peak-to-peak mesh stiffness", "k p-p", "N/m"],
+        |curve, _| Some(stiffness(curve)?.peak_to_peak)).in_statistics().smaller(),
+    ROOT[0].smaller(), TENSION[0].smaller(), COMPRESSION[0].larger(),
+    HOLE[0].smaller().or(|design| design.driving.has_no_holes().then_some(0.0)),
+    ROOT[1].smaller(), TENSION[1].smaller(), COMPRESSION[1].larger(),
+    HOLE[1].smaller().or(|design| design.driven.has_no_holes().then_some(0.0)),
+    curve(["face_load_factor", "Face load factor", "K_Hβ", "1"],
+        |curve, _| curve.face_load_factor).smaller().where_known()
+        .needs(&[Needs::Method(Method::sees_faces), Needs::Load]),
+    curve(["hole_order_of_holes_um", "Amplitude of the holes alone", "H_N of holes", "um"],
+        CurveSummary::hole_order_of_holes).smaller().where_known()
+        .needs(&[Needs::Method(Method::sees_holes), Needs::WholePeriods, Needs::Deviations]),
+    curve(["hole_order_um", "Amplitude at the order of the holes", "H_N", "um"],
+        CurveSummary::hole_order).smaller()
+        .needs(&[Needs::Method(Method::sees_holes), Needs::WholePeriods])
+        .or(|design| (design.driving.has_no_holes() && design.driven.has_no_holes()).then_some(0.0)),
+    curve(["mesh_order_um", "Amplitude at the mesh order", "H_Z2", "um"],
+        |curve, _| curve.mesh_order()).smaller().needs(&[Needs::WholePeriods]),
+    curve(["peak_contact_pressure_mpa", "Largest contact pressure", "p_max", "MPa"],
+        |curve, _| curve.peak_contact_pressure_mpa).smaller().where_known().or(|_| Some(f64::INFINITY)),
+    curve(["dynamic_transmission_error_um.peak_to_peak", "Peak-to-peak dynamic transmission error", "DTE p-p", "um"],
+        |curve, _| curve.dynamic_peak_to_peak_um).smaller().where_known().needs(&[Needs::Dynamics]),
+    curve(["transmission_error_um.tooth_to_tooth", "Tooth-to-tooth transmission error", "f_i'", "um"],
+        |curve, _| ste(curve)?.tooth_to_tooth).in_statistics().smaller().where_known(),
+    curve(["transmission_error_um.long_wave", "Long-wave transmission error", "f_l'", "um"],
+        |curve, _| ste(curve)?.long_wave).in_statistics().smaller().where_known().needs(&[Needs::WholePeriods]),
+    curve(["transmission_error_um.short_wave", "Short-wave transmission error", "f_k'", "um"],
+        |curve, _| ste(curve)?.short_wave).in_statistics().smaller().where_known().needs(&[Needs::WholePeriods]),
+    curve(["transmission_error_um.mesh_harmonics_rms", "Rms of the mesh harmonics", "STE mesh rms", "um"],
+        |curve, _| ste(curve)?.mesh_harmonics_rms).in_statistics().smaller().where_known()
+        .needs(&[Needs::WholePeriods]),
 ];
 
-/// All of them, as they are told.
+/// All of them, as clients see them.
 pub fn quantities() -> impl Iterator<Item = QuantityEntry> {
     QUANTITIES.iter().map(QuantityEntry::of)
 }

@@ -151,8 +151,8 @@ impl TableDocument {
         Some(FieldError::new(pointer, Code::WrongLength, detail).nearest(needed as f64))
     }
 
-    /// The first diameter that is below the base circle, where there is no flank that it could name, and each entry that does not
-    /// stand beyond the one before it; each with a value such that all of them together make a table.
+    /// The first diameter below the base circle, where there is no flank, and each entry that is not beyond the one before it. Each comes with a
+    /// value such that all of them together make a table.
     fn place_faults(&self, pointer: &str, step: f64, base_radius: f64) -> Vec<FieldError> {
         const ROUNDING: f64 = 1e-9;
         let (name, places) = self.places();

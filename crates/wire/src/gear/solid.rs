@@ -25,7 +25,7 @@ impl GearDocument {
         match SolidGear::new(data, helix, 0.0, None) {
             Ok(gear) => Ok(gear.section().clone()),
             Err(SolidGearError::Section(error)) => Err(error),
-            // What is wrong with its blank along the axis is told elsewhere.
+            // What is wrong with its blank along the axis is reported elsewhere.
             Err(_) => match SolidGear::new(on_solid, helix, 0.0, None) {
                 Err(SolidGearError::Section(error)) => Err(error),
                 Ok(gear) => Ok(gear.section().clone()),
@@ -54,7 +54,7 @@ impl GearDocument {
         made.map_err(|error| self.solid_faults(pointer, &error))
     }
 
-    /// Its lead modifications as the engine is told.
+    /// Its lead modifications for the engine.
     pub(crate) fn leads(&self) -> Vec<LeadModification> {
         let leads = self.lead_modifications.iter();
         leads.map(LeadModificationDocument::data).collect()

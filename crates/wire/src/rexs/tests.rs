@@ -97,43 +97,15 @@ fn the_model_of_test_case_2_is_its_submission() {
 
 #[test]
 fn units_are_converted_and_unknown_ones_refused() {
-    for (id, unit, said, pointer, value) in [
-        (
-            "center_distance",
-            "m",
-            "0.1005",
-            "/pair/center_distance_mm",
-            100.5,
-        ),
-        (
-            "elastic_modulus",
-            "MPa",
-            "205000",
-            "/pair/driven/material/youngs_modulus_gpa",
-            205.0,
-        ),
-        (
-            "density",
-            "kg / m^3",
-            "7850",
-            "/pair/driven/material/density_kg_m3",
-            7850.0,
-        ),
-        (
-            "torque_around_u_axis",
-            "kN m",
-            "-0.115",
-            "/output_torques_n_m/0",
-            115.0,
-        ),
-        (
-            "tip_relief_depth",
-            "mum",
-            "5.1",
-            "/pair/driving/tip_relief/amount_um",
-            5.1,
-        ),
-    ] {
+    #[rustfmt::skip]
+    let cases = [
+        ("center_distance", "m", "0.1005", "/pair/center_distance_mm", 100.5),
+        ("elastic_modulus", "MPa", "205000", "/pair/driven/material/youngs_modulus_gpa", 205.0),
+        ("density", "kg / m^3", "7850", "/pair/driven/material/density_kg_m3", 7850.0),
+        ("torque_around_u_axis", "kN m", "-0.115", "/output_torques_n_m/0", 115.0),
+        ("tip_relief_depth", "mum", "5.1", "/pair/driving/tip_relief/amount_um", 5.1),
+    ];
+    for (id, unit, said, pointer, value) in cases {
         let found = field(&taken(&saying(id, unit, said)), pointer);
         assert_eq!(found.as_f64(), Some(value), "{said}");
     }
@@ -997,8 +969,8 @@ fn a_helical_pinion_of_one_piece_with_its_shaft_is_computed_along_its_face() {
     let on_shaft = computed(&[]);
     let at_one_end = computed(&[(shaft, json!({ "radius_mm": 12.0, "torque_at": "plus" }))]);
     let bored = computed(&[("/pair/driving/blank", json!({ "bore_radius_mm": 12.0 }))]);
-    // A rigid bore holds more than a shaft, and this more where the torque leaves it at both ends: the teeth bend and press, and the body turns, by φ = T/(4 π G b)
-    // (1/R² − 1/r²) around a bore and (4/(3 R²) − 1/r²) around a shaft, and T b/(12 G J) more.
+    // A rigid bore is stiffer than a shaft, and a shaft is stiffer where the torque leaves it at both ends. Beside what the teeth yield, the body turns by
+    // φ = T/(4 π G b) (1/R² − 1/r²) around a bore and (4/(3 R²) − 1/r²) around a shaft, and T b/(12 G J) more.
     assert!(
         bored.0 < on_shaft.0 && on_shaft.0 < at_one_end.0,
         "{bored:?} {on_shaft:?} {at_one_end:?}"

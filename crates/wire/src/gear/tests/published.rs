@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::testing::{and, parse, put, with};
+use crate::testing::{and, fault, first_fault, parse, put, with};
 use crate::warning::WarningCode;
 use crate::{Code, Validation, validate};
 
@@ -122,16 +122,13 @@ fn what_the_last_digits_do_not_explain_is_refused_with_a_distance_that_is_no_ten
         warning.code == WarningCode::ZeroBacklash && warning.detail.contains("0.47 um"),
         "{warning:?}"
     );
-    let error = parse(&at(99.999_29)).expect_err("jams").errors.remove(0);
+    let error = first_fault(&at(99.999_29));
     assert_eq!(
         (error.code, error.nearest),
         (Code::NegativeBacklash, Some(100.0))
     );
     // At 125 mm the pair of KHK lacks 0.9 nm of backlash: by the closed form it fits from 125.000001 mm on.
-    let error = parse(&khk(124.99, &json!({})))
-        .expect_err("jams")
-        .errors
-        .remove(0);
+    let error = first_fault(&khk(124.99, &json!({})));
     let nearest = error.nearest.expect("a distance");
     assert_eq!(nearest, 125.0001, "{error:?}");
     assert!(error.detail.contains("125.0001 mm"), "{}", error.detail);
@@ -170,10 +167,7 @@ fn a_module_that_differs_in_printed_digits_only_is_that_with_more_of_them() {
 
 #[test]
 fn numbers_that_differ_are_told_with_the_digits_that_differ() {
-    let error = parse(&inches(2.1168, &json!({})))
-        .expect_err("differ")
-        .errors
-        .remove(0);
+    let error = first_fault(&inches(2.1168, &json!({})));
     assert_eq!(error.code, Code::ModuleMismatch);
     assert!(
         error.detail.contains("2.1168 mm") && error.detail.contains("2.11667 mm"),
@@ -279,7 +273,7 @@ fn gears_at_the_bounds_of_teeth_and_of_pressure_angles_are_taken_and_one_beyond_
             10.0,
         ),
     ] {
-        let error = parse(&document).expect_err("beyond").errors.remove(0);
+        let error = first_fault(&document);
         assert_eq!(
             (&*error.pointer, error.code, error.nearest),
             (pointer, Code::OutOfRange, Some(nearest))
@@ -292,11 +286,7 @@ fn a_rack_that_comes_to_a_point_is_told_the_dedendum_that_does_not() {
     let steep = json!({ "pressure_angle_deg": 38 });
     let gear = gear(25, 4.0, 30.0, 20.0, &steep);
     let document = pair("flexible", 100.0, 300.0, [gear.clone(), gear]);
-    let error = parse(&document).expect_err("no tip land").errors.remove(0);
-    assert_eq!(
-        (&*error.pointer, error.code),
-        ("/pair/driving/dedendum_mm", Code::OutOfRange)
-    );
+    let error = fault(&document, "/pair/driving/dedendum_mm", Code::OutOfRange);
     // (π/4 m − 0.05 m (1 − sin α)/cos α)/tan α.
     let nearest = error.nearest.expect("a dedendum");
     near(nearest, 3.8962, 1e-4);
@@ -334,7 +324,7 @@ fn a_ligament_is_judged_in_modules() {
             "/pair/driven/blank/holes/radius_mm",
             json!(2.24 * scale),
         );
-        let error = parse(&thin).expect_err("0.1 modules").errors.remove(0);
+        let error = first_fault(&thin);
         assert_eq!(error.code, Code::HolesOverlap);
         // Five digits, inward.
         near(
@@ -365,10 +355,7 @@ fn hunting_teeth_on_uneven_blanks_are_computed_where_the_holes_superpose() {
     let validation = taken(&hunting("projected_decomposition"));
     assert_eq!(validation.pair.period_mesh_periods, 2419);
     taken(&hunting("three_dimensional_projected"));
-    let error = parse(&hunting("flexible"))
-        .expect_err("too many")
-        .errors
-        .remove(0);
+    let error = first_fault(&hunting("flexible"));
     assert_eq!(error.code, Code::TooLarge);
     let span = ("/resolution", json!({ "span_mesh_periods": 500 }));
     taken(&with(hunting("flexible"), &[span]));
@@ -481,11 +468,7 @@ fn tips_that_nobody_shortened_are_told_with_the_diameters_that_programs_give_the
 fn a_negative_number_of_teeth_is_answered_as_the_internal_gear_that_it_is() {
     let mut document = nrel();
     put(&mut document, "/pair/driven/tooth_count", json!(-93));
-    let error = parse(&document).expect_err("internal").errors.remove(0);
-    assert_eq!(
-        (&*error.pointer, error.code),
-        ("/pair/driven/tooth_count", Code::OutOfRange)
-    );
+    let error = fault(&document, "/pair/driven/tooth_count", Code::OutOfRange);
     assert!(
         error.detail.contains("internal gears are not computed"),
         "{}",
@@ -497,14 +480,7 @@ fn a_negative_number_of_teeth_is_answered_as_the_internal_gear_that_it_is() {
 fn the_wrong_tip_diameter_of_a_helical_gear_is_told_at_its_own_field() {
     let mut document = khk(125.0, &json!({}));
     put(&mut document, "/pair/driving/tip_diameter_mm", json!(1.0));
-    let error = parse(&document)
-        .expect_err("a placeholder")
-        .errors
-        .remove(0);
-    assert_eq!(
-        (&*error.pointer, error.code),
-        ("/pair/driving/tip_diameter_mm", Code::OutOfRange)
-    );
+    let error = fault(&document, "/pair/driving/tip_diameter_mm", Code::OutOfRange);
     // 0.2 modules of addendum on 36 mm/cos 30° and two shifts.
     let least = 36.0 / 30_f64.to_radians().cos() + 2.0 * 3.0 * (0.09809 + 0.2);
     near(error.nearest.expect("a diameter"), least, 1e-2);
@@ -536,7 +512,7 @@ fn a_thickness_may_be_said_by_a_span_or_by_balls_and_at_most_once() {
     let by_span = taken(&straight(&span)).pair;
     near(by_span.backlash_mm, deviation.backlash_mm, 2e-6);
     let both = and(span, &json!({ "tooth_thickness_deviation_um": -50.0 }));
-    let error = parse(&straight(&both)).expect_err("twice").errors.remove(0);
+    let error = first_fault(&straight(&both));
     assert_eq!(error.code, Code::ConflictingFields);
     // Over balls of 3.5 mm (DIN 3960): d_b/cos α_K cos(90°/z) + D, inv α_K = inv α + D/(z m cos α) − e/(z m), with spaces 50 um wider.
     let inv = |angle: f64| angle.tan() - angle;
@@ -558,13 +534,10 @@ fn a_thickness_may_be_said_by_a_span_or_by_balls_and_at_most_once() {
     near(by_balls.backlash_mm, deviation.backlash_mm, 1e-9);
     // A span over a tooth more or less is told with what the rack leaves.
     let wrong = json!({ "span_measurement": { "teeth": 4, "length_mm": length } });
-    let error = parse(&straight(&wrong))
-        .expect_err("too thin")
-        .errors
-        .remove(0);
-    assert_eq!(
-        (&*error.pointer, error.code),
-        ("/pair/driving/span_measurement/length_mm", Code::OutOfRange)
+    let error = fault(
+        &straight(&wrong),
+        "/pair/driving/span_measurement/length_mm",
+        Code::OutOfRange,
     );
     assert!(
         error
@@ -575,10 +548,7 @@ fn a_thickness_may_be_said_by_a_span_or_by_balls_and_at_most_once() {
     );
     // Balls of 7 mm on the same teeth touch at a roll length of 13.76 mm; the tip is at 13.31 mm.
     let large = json!({ "ball_measurement": { "ball_diameter_mm": 7.0, "over_balls_mm": 65.19 } });
-    let error = parse(&straight(&large))
-        .expect_err("beyond the tip")
-        .errors
-        .remove(0);
+    let error = first_fault(&straight(&large));
     assert_eq!(
         error.pointer,
         "/pair/driving/ball_measurement/ball_diameter_mm"
