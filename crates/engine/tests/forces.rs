@@ -220,7 +220,10 @@ fn along_faces_delta_rises_with_the_load_at_every_position_of_gears_whose_pitch_
         for j in 1..table.loads().len() {
             assert!(row(j) > row(j - 1), "at {eta}, load {j}");
         }
-        let touch = model.flanks().least_touch(eta).expect("they face each other");
+        let touch = model
+            .flanks()
+            .least_touch(eta)
+            .expect("they face each other");
         assert!((row(0) - touch).abs() < 1e-12, "at {eta}");
     }
 }

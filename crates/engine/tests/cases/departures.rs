@@ -6,8 +6,8 @@ use meshwright_engine::analysis::Case;
 use meshwright_engine::assembly::FaceResolution;
 use meshwright_engine::gear::{
     Alignment, Eccentricity, FaceEnds, GearData, GearPair, Helix, LeadModification,
-    ModificationData, ReliefData, ReliefShape, ReliefStart,
-    SolidGear, SolidPair, SpurGear, TablePlaces, TipEdge,
+    ModificationData, ReliefData, ReliefShape, ReliefStart, SolidGear, SolidPair, SpurGear,
+    TablePlaces, TipEdge,
 };
 use meshwright_engine::grid::GridLevel;
 

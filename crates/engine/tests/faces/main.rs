@@ -253,7 +253,10 @@ fn every_position_of_pairs_drawn_at_random_comes_to_a_balance_that_penetrates_no
                 contact.slices.iter().all(|slice| slice.force > 0.0),
                 "{what}"
             );
-            let touch = model.flanks().least_touch(*eta).expect("they face each other");
+            let touch = model
+                .flanks()
+                .least_touch(*eta)
+                .expect("they face each other");
             let pressed = mesh.transmission_error - touch;
             assert!(pressed > 0.0, "{what}");
             assert!(mesh.complementarity < 1e-9 * load * pressed, "{what}");
@@ -284,7 +287,10 @@ fn flanks_of_pairs_drawn_at_random_penetrate_nowhere_on_a_net_of_points_over_bot
         let load = model.pair().common_face_width() * drawing.scale * load;
         let positions = [0.1, 0.43, 0.77];
         for (eta, contact) in positions.iter().zip(contacts(&model, load, &positions)) {
-            let touch = model.flanks().least_touch(*eta).expect("they face each other");
+            let touch = model
+                .flanks()
+                .least_touch(*eta)
+                .expect("they face each other");
             let pressed = contact.mesh.transmission_error - touch;
             let net = net::Net::new(&model, &contact, |member| {
                 Manufactured::of(model.pair().gear(member))
@@ -632,7 +638,10 @@ fn finer_slices_change_little() {
             let (coarse, fine) = (at(40), at(160));
             let finest = drawing.model_of(640);
             for ((eta, coarse), fine) in positions.iter().zip(&coarse).zip(&fine) {
-                let touch = finest.flanks().least_touch(*eta).expect("they face each other");
+                let touch = finest
+                    .flanks()
+                    .least_touch(*eta)
+                    .expect("they face each other");
                 assert!(
                     (coarse - fine).abs() < part * (fine - touch),
                     "{load} N at {eta}: {coarse} {fine} {touch}"
