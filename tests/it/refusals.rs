@@ -131,7 +131,7 @@ async fn what_is_not_there_is_said_so() {
         for part in ["results", "events", "results/ste.csv"] {
             problem(bench.get(&format!("{path}/{part}")), 404, "job_not_found").await;
         }
-        problem(bench.cancel(&path), 404, "job_not_found").await;
+        problem(bench.cancel(path), 404, "job_not_found").await;
     }
 }
 

@@ -404,11 +404,11 @@ impl Problem<'_> {
             of.weighed += point.weight * point.force;
         }
         let mut gaps = Vec::with_capacity(size);
-        for i in 0..size {
+        for (i, carried) in carried.iter_mut().enumerate() {
             gaps.push(-self.depths(&state, i, 0)[0]);
             for (end, sign) in [-1.0, 1.0].into_iter().enumerate() {
                 let [middle, outer] = self.depths(&state, i, end);
-                let [low, high] = &mut carried[i].part;
+                let [low, high] = &mut carried.part;
                 for place in loaded_part(middle, outer).into_iter().flatten() {
                     (*low, *high) = (low.min(sign * place), high.max(sign * place));
                 }
