@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use meshwright::config::Config;
+use reqwest::RequestBuilder;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 
@@ -125,8 +126,10 @@ async fn one_client_has_a_quarter_of_the_connections_busy_and_health_is_answered
     for client in ["hog", "b", "c", "d", "other"] {
         keys.push(key_of(&bench, client).await);
     }
-    // Requests that last, each on a connection of its own.
-    let preview = |key: &str| bench.post("/v1/preview", &submission(1.0)).bearer_auth(key);
+    // Requests that last, each on a connection of its own: one that is kept alive could be evicted while the next request is sent on it.
+    let alone =
+        |request: RequestBuilder, key: &str| request.bearer_auth(key).header("connection", "close");
+    let preview = |key: &str| alone(bench.post("/v1/preview", &submission(1.0)), key);
     let mut lasting = tokio::task::JoinSet::new();
     let (refused, mut refusals) = tokio::sync::mpsc::unbounded_channel();
     let mut begin = |key: &str, count: usize| {
@@ -143,7 +146,8 @@ async fn one_client_has_a_quarter_of_the_connections_busy_and_health_is_answered
         assert_eq!(refusal.headers()["retry-after"], "1");
         problem(refusal, 503, "overloaded").await;
     }
-    let answer = bench.get("/v1/jobs").bearer_auth(&keys[4]).answer().await;
+    let jobs = || alone(bench.get("/v1/jobs"), &keys[4]);
+    let answer = jobs().answer().await;
     assert_eq!(answer.status(), 200, "it leaves three quarters to others");
     // Four clients have them all.
     for key in &keys[1..4] {
@@ -156,8 +160,7 @@ async fn one_client_has_a_quarter_of_the_connections_busy_and_health_is_answered
         assert_eq!(request.answer().await.status(), 200);
         assert!(start.elapsed() < Duration::from_secs(1), "{path}");
     }
-    let request = bench.get("/v1/jobs").bearer_auth(&keys[4]);
-    problem(request.header("connection", "close"), 503, "overloaded").await;
+    problem(jobs(), 503, "overloaded").await;
 }
 
 #[tokio::test]
