@@ -208,7 +208,6 @@ fn narrow_and_wide_straight_faces_have_what_the_plane_has_of_every_departure_and
                 stiffer: 0.95,
                 of_deflection: 0.05,
                 of_mean: 0.03,
-                ..WIDE
             },
             Limit {
                 name: "wide and unequally wide",
