@@ -320,7 +320,7 @@ fn web_errors(case: &WebCase) -> Vec<f64> {
             axial: &across,
         };
         let largest = HOLE_ORDERS as usize;
-        let (ring, _) = HoledRing::new(&grid, &prism, None, largest).expect("definite");
+        let ring = HoledRing::new(&grid, &prism, None, (largest, &[])).expect("definite");
         let web = ring.on_outer(0.0, &Run::unattended());
         let web = web.expect("definite");
         let low: Vec<usize> = (0..orders.len())

@@ -9,10 +9,9 @@ use crate::assembly::inside::Answer;
 use crate::assembly::{Blanks, Inside, PartError, Parts, Probes};
 use crate::contact::placement::Placement;
 use crate::contact::{FlankLoad, Stage, WarmStart};
-use crate::fem::body::{Load, Plate};
-use crate::fem::condensation::condense;
-use crate::fem::recovery::{Functional, stresses, vectors};
-use crate::fem::{FemError, Interface};
+use crate::fem::FemError;
+use crate::fem::prescribed::{Load, displacements};
+use crate::fem::recovery::{Functional, stresses};
 use crate::gear::{Member, SpurGear, Vector, radial, tangential};
 use crate::grid::{BlankGrid, Element, Grid, ToothGrid};
 use crate::ring::teeth::FARTHEST_COUPLED;
@@ -116,7 +115,7 @@ fn of_gear(
     let grids = spec.grids(member)?;
     let along =
         |node: u32| [Vector::x(), Vector::y()].map(|axis| Functional::displacement(node, axis));
-    let interface = grids.tooth.interface().into_iter();
+    let interface = interface_of(&grids.tooth).into_iter();
     let probes = Probes {
         in_tooth: interface.flat_map(along).collect(),
         in_blank: Vec::new(),
@@ -126,14 +125,7 @@ fn of_gear(
     let loaded = inside.loaded(setup.run).map_err(fem)?;
     let answer = loaded.under(loads);
     let mut field = GearField::default();
-    add_teeth(
-        &mut field,
-        gear,
-        &grids.tooth,
-        loads,
-        (&inside, &answer),
-        stand,
-    );
+    add_teeth(&mut field, gear, &grids.tooth, loads, &answer, stand).map_err(fem)?;
     setup.run.check()?;
     if let Some(blank) = &grids.blank {
         add_blank(&mut field, gear, blank, &inside, &answer, stand).map_err(fem)?;
@@ -141,24 +133,32 @@ fn of_gear(
     Ok(field)
 }
 
+/// The nodes at which a tooth meets its neighbors and the blank.
+fn interface_of(tooth: &ToothGrid) -> Vec<u32> {
+    let (right, left) = &tooth.side_nodes;
+    let sides = right.iter().chain(left);
+    sides.chain(&tooth.arc_nodes).copied().collect()
+}
+
 fn add_teeth(
     field: &mut GearField,
     gear: &SpurGear,
     tooth: &ToothGrid,
     loads: &[FlankLoad],
-    (inside, answer): (&Inside, &Answer<'_>),
+    answer: &Answer<'_>,
     stand: Stand,
-) {
+) -> Result<(), FemError> {
+    let interface = interface_of(tooth);
     let count = gear.tooth_count() as usize;
     let flank = gear.flank();
-    let on_flank = |forces: &[f64]| -> Vec<(Functional, f64)> {
+    let on_flank = |forces: &[f64]| -> Vec<(u32, Vec<f64>)> {
         let nodes = tooth.flank_nodes.iter().zip(&tooth.flank_roll_lengths);
         nodes
             .zip(forces.chunks_exact(2))
             .map(|((node, &s), force)| {
                 let to_tip = radial(flank.tangent_angle(s));
                 let force = force[0] * flank.normal(s) + force[1] * to_tip;
-                (Functional::displacement(*node, force), 1.0)
+                (*node, force.as_slice().to_vec())
             })
             .collect()
     };
@@ -170,17 +170,14 @@ fn add_teeth(
         }
     };
     let acting: Vec<Load> = (0..count).map(of_tooth).collect();
-    let edges = free_edges(&tooth.grid, &tooth.interface());
-    for (number, moved) in inside.tooth().displacements(&acting).iter().enumerate() {
+    let plate = (gear.material(), gear.face_width());
+    let moved = displacements("the tooth", &tooth.grid, plate, &interface, &acting)?;
+    let edges = free_edges(&tooth.grid, &interface);
+    for (number, moved) in moved.iter().enumerate() {
         let turn = TAU * number as f64 / count as f64;
-        field.add(
-            &tooth.grid,
-            &edges,
-            &vectors(moved),
-            gear,
-            stand.turned(turn),
-        );
+        field.add(&tooth.grid, &edges, moved, gear, stand.turned(turn));
     }
+    Ok(())
 }
 
 fn add_blank(
@@ -214,25 +211,11 @@ fn add_blank(
         .chain(&whole.bore_nodes)
         .copied()
         .collect();
-    let plate = Plate {
-        grid: &whole.grid,
-        material: gear.material(),
-        thickness: gear.face_width(),
-    };
-    let interface = Interface {
-        kept: &moved,
-        ..Default::default()
-    };
-    let condensed = condense("the blank", &plate, &interface)?;
+    let plate = (gear.material(), gear.face_width());
+    let answers = displacements("the blank", &whole.grid, plate, &moved, &[acting])?;
     let edges = free_edges(&whole.grid, &whole.arc_nodes);
-    for moved in &condensed.displacements(&[acting]) {
-        field.add(
-            &whole.grid,
-            &edges,
-            &vectors(moved),
-            gear,
-            stand.turned(first),
-        );
+    for moved in &answers {
+        field.add(&whole.grid, &edges, moved, gear, stand.turned(first));
     }
     Ok(())
 }

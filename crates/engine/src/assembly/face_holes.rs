@@ -5,17 +5,13 @@
 
 use std::f64::consts::TAU;
 
-use faer::{Mat, c64};
+use faer::c64;
 
 use super::flank_forces::FlankForces;
 use super::holed::{HoledSection, block};
 use super::{FaceYield, FaceYieldSpec, PartError};
-use crate::fem::body::Body as _;
-use crate::fem::condensation::Condensed;
-use crate::fem::prism::Prism;
-use crate::fem::recovery::Functional;
 use crate::fem::surface::{Surface, SurfaceStress};
-use crate::ring::sector::Sector;
+use crate::ring::solid::sector::SolidSector;
 use crate::ring::solid::web::ClassRows;
 use crate::run::Run;
 
@@ -49,9 +45,8 @@ impl FaceHoles {
         run.check()?;
         let edges: Vec<&[u32]> = holed.grid.hole_edges.iter().map(Vec::as_slice).collect();
         let edges = Surface::new(&holed.prism(), &edges, true);
-        let (ring, condensed) = holed.ring()?;
         Ok(Self {
-            classes: ring.inside(&of_edges(&condensed, &edges, &holed.prism()), run)?,
+            classes: holed.ring(&edges.nodes())?.inside(run)?,
             sector_count: holed.grid.sector_count as usize,
             phase: holed.phase,
             edges,
@@ -80,13 +75,6 @@ impl FaceHoles {
     }
 }
 
-/// How the nodes of `edges` move, by what the sector of the web `prism` is condensed to.
-fn of_edges(condensed: &Condensed, edges: &Surface, prism: &Prism<'_>) -> Mat<f64> {
-    let nodes = Functional::unknowns(&edges.nodes(), prism.unknowns_of_node());
-    let [_, rows] = condensed.rows(&[], &nodes);
-    rows.by_kept
-}
-
 impl HoleAnswer<'_> {
     /// The stresses along all edges of holes, all across the web: polar angles are those from the centerline of tooth 0.
     pub fn stresses(&self) -> Vec<SurfaceStress> {
@@ -110,14 +98,14 @@ impl HoleAnswer<'_> {
         let mut moved = vec![0.0; holes.classes.first().map_or(0, |class| class.rows.nrows())];
         for of in &holes.classes {
             let size = of.rows.ncols() / of.orders.len();
-            let turn = Sector::part(of.class, sector, holes.sector_count);
+            let turn = SolidSector::part(of.class, sector, holes.sector_count);
             let columns = of.orders.iter().flat_map(|&order| {
-                let seen = Sector::turn(order, holes.phase) * turn;
+                let seen = SolidSector::turn(order, holes.phase) * turn;
                 (0..size).map(move |i| seen * self.amplitude(order, i, size))
             });
             for (j, by) in columns.enumerate() {
                 for (moved, row) in moved.iter_mut().zip(of.rows.col_as_slice(j)) {
-                    // Forces press into the teeth, and the circle answers to forces outward.
+                    // Forces press into the teeth, and the circle is told of forces outward.
                     *moved -= (row * by).re;
                 }
             }
@@ -144,6 +132,7 @@ pub(super) mod tests {
     use super::*;
     use crate::assembly::{FaceResolution, MakeAll, Parts as _};
     use crate::fem::axial::AxialBasis;
+    use crate::fem::prism::Prism;
     use crate::gear::spur::tests::paper_gear;
     use crate::gear::{Helix, Hole, HolePattern, HoleShape, Material, SolidGear, Web};
     use crate::grid::{BlankGrid, GridLevel};
@@ -171,10 +160,10 @@ pub(super) mod tests {
             };
             let edges: Vec<&[u32]> = grid.hole_edges.iter().map(Vec::as_slice).collect();
             let edges = Surface::new(&prism, &edges, true);
-            let (ring, condensed) = HoledRing::new(&grid, &prism, None, largest).expect("sound");
-            let rows = of_edges(&condensed, &edges, &prism);
+            let ring =
+                HoledRing::new(&grid, &prism, None, (largest, &edges.nodes())).expect("sound");
             let holes = FaceHoles {
-                classes: ring.inside(&rows, &Run::unattended()).expect("sound"),
+                classes: ring.inside(&Run::unattended()).expect("sound"),
                 sector_count: 5,
                 phase,
                 edges,

@@ -16,23 +16,22 @@ use super::stack::Stack;
 use super::{FaceYield, FaceYieldSpec, PartError, Parts, PlainFace};
 use crate::fem::FemError;
 use crate::fem::axial::AxialBasis;
-use crate::fem::body::{Body as _, Load};
-use crate::fem::condensation::Condensed;
+use crate::fem::prescribed::Load;
 use crate::fem::prism::Prism;
 use crate::fem::volume::{Level, Place, Volume};
 use crate::gear::Material;
-use crate::grid::Grid;
-use crate::ring::sector::Sector;
+use crate::grid::{Grid, GridLevel, ToothGrid};
 use crate::ring::solid::gear::forced;
 use crate::ring::solid::joint::below;
 use crate::ring::solid::revolution::{Circles, Revolution};
-use crate::ring::solid::tooth::DividedTooth;
+use crate::ring::solid::sector::SolidSector;
+use crate::ring::solid::tooth::{SolidTooth, flank_normals};
 use crate::ring::solid::web::conjugate_below_zero;
 use crate::run::Run;
 
-/// The orders for which the radii are chosen at which rim and the parts below it are shown, as parts of the number of teeth: elements of the rim
-/// follow the fields of single teeth, which do not reach farther. It moves no displacement, only where they are given.
-const SHOWN_ORDERS: [f64; 2] = [0.75, 0.25];
+/// The orders for which the radii are chosen at which the rim and the parts below it are told, as parts of the number of teeth: elements of the rim
+/// follow the fields of single teeth, which do not reach farther.
+const TOLD_ORDERS: [f64; 2] = [0.75, 0.25];
 
 /// A solid gear that can be asked how all of it moves.
 pub struct FaceInside {
@@ -40,7 +39,7 @@ pub struct FaceInside {
     stack: Stack,
     plain: Arc<PlainFace>,
     yields: Arc<FaceYield>,
-    tooth: DividedTooth,
+    grid: ToothGrid,
     pressed: PressedFlank,
 }
 
@@ -77,12 +76,18 @@ impl FaceInside {
         run: &Run,
     ) -> Result<Self, PartError> {
         let stack = spec.stack();
-        let tooth = stack.stressed_tooth()?;
+        let section = stack.gear.section().without_blank();
+        let radius = stack.interface_radius;
+        let grid = ToothGrid::of_stressed_prism(&section, radius, GridLevel::Standard)?;
         Ok(Self {
             plain: parts.plain_face(&stack, run)?,
             yields,
-            pressed: PressedFlank::of(&tooth),
-            tooth,
+            pressed: PressedFlank {
+                axial: stack.face.clone(),
+                flank: *section.flank(),
+                roll_lengths: grid.flank_roll_lengths.clone(),
+            },
+            grid,
             stack,
             spec,
         })
@@ -104,11 +109,9 @@ impl FaceInside {
     /// [`PartError`].
     pub fn under(&self, loads: &[FlankForces], run: &Run) -> Result<Vec<MovedParts>, PartError> {
         let on_web = self.forces_of_holes(loads);
-        let condensed = self.tooth.condensed()?;
-        let teeth = self.teeth(&condensed, loads, on_web.as_deref(), run)?;
+        let teeth = self.teeth(loads, on_web.as_deref(), run)?;
         run.check()?;
-        let mut parts = vec![self.inside_teeth(&condensed, teeth.interfaces, loads)];
-        drop(condensed);
+        let mut parts = vec![self.inside_teeth(&teeth.interfaces, loads)?];
         run.check()?;
 
         let Stack { layers, across, .. } = &self.stack;
@@ -142,7 +145,7 @@ impl FaceInside {
         let size = forces.len() / (2 * web.largest() + 1);
         let of = |order: usize| {
             Mat::from_fn(size, 1, |i, _| match order {
-                // Forces press into the teeth, and answers are to forces outward.
+                // Forces press into the teeth, and what is told of is told of forces outward.
                 0 => c64::new(-forces[i], 0.0),
                 _ => {
                     let at = block(order) * size + i;
@@ -155,15 +158,14 @@ impl FaceInside {
 
     fn teeth(
         &self,
-        condensed: &Condensed,
         loads: &[FlankForces],
         on_web: Option<&[Mat<c64>]>,
         run: &Run,
     ) -> Result<MovedTeeth, PartError> {
-        let (tooth, _) = self.tooth.substructure(condensed, &[]);
+        let tooth = SolidTooth::new(&self.stack.gear, &self.grid, &self.stack.face)?;
         let (sector, z) = (&tooth.sector, tooth.sector.count);
         let turned = |class: usize, tooth: usize| {
-            Sector::turn(1, TAU * (class * tooth % z) as f64 / z as f64)
+            SolidSector::turn(1, TAU * (class * tooth % z) as f64 / z as f64)
         };
         let on_flank = |class: usize| {
             let mut sum = Mat::<c64>::zeros(tooth.rows.nrows(), 1);
@@ -206,38 +208,51 @@ impl FaceInside {
     /// The teeth, whose interfaces move.
     fn inside_teeth(
         &self,
-        condensed: &Condensed,
-        interfaces: Vec<Vec<f64>>,
+        interfaces: &[Vec<f64>],
         loads: &[FlankForces],
-    ) -> MovedParts {
-        let z = interfaces.len();
-        let normals = self.tooth.normals();
-        let acting = |(number, moves): (usize, Vec<f64>)| {
+    ) -> Result<MovedParts, PartError> {
+        let gear = &self.stack.gear;
+        let (m, z) = (self.stack.face.len(), interfaces.len());
+        let normals = flank_normals(gear, &self.grid);
+        let acting = |(number, moves): (usize, &Vec<f64>)| {
             let own = loads.iter().filter(|load| load.tooth % z == number);
-            // Forces press into the tooth.
             let forces = own.flat_map(|load| {
                 normals
                     .iter()
-                    .cloned()
-                    .zip(load.nodal.iter().map(|force| -force))
+                    .zip(load.nodal.chunks_exact(m))
+                    .map(|((node, normal), forces)| {
+                        let along = normal
+                            .iter()
+                            .flat_map(|n| forces.iter().map(move |f| -n * f));
+                        (*node, along.collect())
+                    })
             });
             Load {
-                moves,
+                moves: moves.clone(),
                 forces: forces.collect(),
             }
         };
-        let acting: Vec<Load> = interfaces.into_iter().enumerate().map(acting).collect();
-        let unknowns = condensed.displacements(&acting);
-        let angles = (0..z).map(|number| TAU / z as f64 * number as f64);
-        let prism = self.tooth.prism();
-        MovedParts {
-            material: *prism.material,
-            twist: prism.twist,
-            joints: self.tooth.grid.interface(),
+        let acting: Vec<Load> = interfaces.iter().enumerate().map(acting).collect();
+        let (right, left) = &self.grid.side_nodes;
+        let joints = [right, left, &self.grid.arc_nodes]
+            .map(Vec::as_slice)
+            .concat();
+        let parts = MovedParts {
+            grid: self.grid.grid.clone(),
+            material: *gear.section().material(),
+            axial: self.stack.face.clone(),
+            twist: gear.twist(),
+            parts: Vec::new(),
+            joints,
+        };
+        let prism = parts.prism();
+        let unknowns = prism.displacements("the tooth", &parts.joints, &acting)?;
+        let pitch = TAU / z as f64;
+        let angles = (0..z).map(|number| pitch * number as f64);
+        Ok(MovedParts {
             parts: angles.zip(unknowns).collect(),
-            grid: self.tooth.grid.grid.clone(),
-            axial: self.tooth.axial.clone(),
-        }
+            ..parts
+        })
     }
 
     /// Adds layer `index` to `parts`, a body that is alike all around, whose outer circle moves by the amplitudes `outer` of the orders 0 …;
@@ -257,9 +272,8 @@ impl FaceInside {
             body.inside(order as i64, (carried.as_ref(), force), &outer[order])
         })?;
         let z = self.stack.gear.section().tooth_count();
-        let radii = body.circles((SHOWN_ORDERS[index.min(1)] * f64::from(z)) as i64);
-        let arc = &self.tooth.grid.arc_angles;
-        let arc = &arc[..arc.len() - 1];
+        let told = body.circles((TOLD_ORDERS[index.min(1)] * f64::from(z)) as i64);
+        let arc = &self.grid.arc_angles[..self.grid.arc_angles.len() - 1];
         let turns = (0..z).map(|tooth| TAU * f64::from(tooth) / f64::from(z));
         let mut angles: Vec<f64> = turns
             .flat_map(|turn| arc.iter().map(move |angle| angle + turn))
@@ -268,7 +282,7 @@ impl FaceInside {
         if index > 0 && angles.len().is_multiple_of(4) {
             angles = angles.into_iter().step_by(2).collect();
         }
-        let grid = Grid::polar(&radii, &angles);
+        let grid = Grid::polar(&told, &angles);
         let (nodes, around_circle) = (grid.nodes.len() as u32, angles.len() as u32);
         let outermost = nodes - around_circle..nodes;
         // The last part ends at the bore.
@@ -277,7 +291,7 @@ impl FaceInside {
             false => 0..around_circle,
         };
         parts.push(MovedParts {
-            parts: vec![(0.0, around(&circles, &radii, &angles))],
+            parts: vec![(0.0, around(&circles, &told, &angles))],
             joints: outermost.chain(innermost).collect(),
             grid,
             material: *body.material,
@@ -296,15 +310,30 @@ impl FaceInside {
     ) -> Result<Vec<Mat<c64>>, PartError> {
         let largest = self.stack.hole_orders.unwrap_or(0);
         let holed = HoledSection::new(&self.stack, self.spec.gear().section(), largest)?;
-        let (ring, condensed) = holed.ring()?;
-        let moved = ring.moved(holed.phase, outer, run)?;
+        let ring = holed.ring(&[])?.moved(holed.phase, outer, run)?;
         run.check()?;
         let (grid, prism) = (&holed.grid, holed.prism());
-        let acting = moved.sectors.into_iter().map(|moves| Load {
-            moves,
-            forces: Vec::new(),
-        });
-        let unknowns = condensed.displacements(&acting.collect::<Vec<_>>());
+        let (right, left) = &grid.side_nodes;
+        let (inner, held): (&[u32], usize) = match ring.hub {
+            Some(_) => (&grid.bore_nodes, 0),
+            None => (&[], grid.bore_nodes.len() * prism.unknowns_of_node()),
+        };
+        let mut moved = [right, left, inner, &grid.arc_nodes].concat();
+        if held > 0 {
+            moved.extend(&grid.bore_nodes);
+        }
+        let acting: Vec<Load> = ring
+            .sectors
+            .into_iter()
+            .map(|mut moves| {
+                moves.extend(std::iter::repeat_n(0.0, held));
+                Load {
+                    moves,
+                    forces: Vec::new(),
+                }
+            })
+            .collect();
+        let unknowns = prism.displacements("the web", &moved, &acting)?;
         let size = prism.unknowns_of_node();
         let own = grid.own();
         let of_sector = |unknowns: &Vec<f64>| -> Vec<f64> {
@@ -314,7 +343,7 @@ impl FaceInside {
                 .collect()
         };
         let whole = grid.unrolled();
-        let hub = if moved.hub.is_some() {
+        let hub = if ring.hub.is_some() {
             whole.bore_nodes
         } else {
             Vec::new()
@@ -327,7 +356,7 @@ impl FaceInside {
             axial: prism.axial.clone(),
             twist: 0.0,
         });
-        Ok(moved.hub.unwrap_or_default())
+        Ok(ring.hub.unwrap_or_default())
     }
 }
 
@@ -392,7 +421,7 @@ fn around(circles: &[Circles], radii: &[f64], angles: &[f64]) -> Vec<f64> {
             for (order, of) in (0..).zip(&orders) {
                 // Of the opposite orders, the conjugates.
                 let share = if order == 0 { 1.0 } else { 2.0 };
-                let turn = Sector::turn(order, *angle) * share;
+                let turn = SolidSector::turn(order, *angle) * share;
                 for (sum, of) in sum.iter_mut().zip(of.col_as_slice(0)) {
                     *sum += (turn * *of).re;
                 }
@@ -401,8 +430,8 @@ fn around(circles: &[Circles], radii: &[f64], angles: &[f64]) -> Vec<f64> {
         }
         unknowns
     };
-    let of_radii: Vec<Vec<f64>> = radii.par_iter().enumerate().map(of_radius).collect();
-    of_radii.concat()
+    let told: Vec<Vec<f64>> = radii.par_iter().enumerate().map(of_radius).collect();
+    told.concat()
 }
 
 #[cfg(test)]
@@ -719,8 +748,8 @@ mod tests {
                 let [low, high] = shaft.heights;
                 0.5 * TAU * shaft.outer_radius.powi(2) * (high - low)
             });
-            let volume = gear.mass() / gear.section().material().density - shaft;
-            assert!((filled / volume - 1.0).abs() < 0.01, "{filled} {volume}");
+            let told = gear.mass() / gear.section().material().density - shaft;
+            assert!((filled / told - 1.0).abs() < 0.01, "{filled} {told}");
         }
     }
 }

@@ -12,10 +12,12 @@ use super::stack::Stack;
 use super::{FaceResolution, FaceYield, PartError, PlainFace};
 use crate::fem::axial::AxialBasis;
 use crate::fem::dense::entries;
+use crate::fem::prism::{COMPONENTS, Prism};
 use crate::fem::surface::{Surface, SurfaceStress};
 use crate::gear::{SolidGear, Vector};
+use crate::grid::{GridLevel, ToothGrid};
 use crate::ring::solid::gear::{interfaces, motions};
-use crate::ring::solid::tooth::DividedTooth;
+use crate::ring::solid::tooth::{SolidTooth, flank_compliance_alone};
 use crate::run::Run;
 
 /// How far from a loaded tooth, in teeth, the roots are stressed by it.
@@ -29,7 +31,7 @@ const BLURRED: f64 = 1.0;
 /// The roots of the teeth of a gear, by the loads on its flanks.
 #[derive(Debug)]
 pub struct FaceRoots {
-    /// The fillets: first the one next to the loaded flank.
+    /// The fillets: first the one beside the loaded flank.
     fillets: Surface,
     near: Nearness,
     pressed: PressedFlank,
@@ -60,10 +62,12 @@ impl FaceRoots {
     /// [`PartError`].
     pub fn new(stack: &Stack, plain: &PlainFace, run: &Run) -> Result<Self, PartError> {
         let gear = &stack.gear;
-        let divided = stack.stressed_tooth()?;
+        let section = gear.section().without_blank();
+        let grid =
+            ToothGrid::of_stressed_prism(&section, stack.interface_radius, GridLevel::Standard)?;
         run.check()?;
-        let fillets = fillets(&divided);
-        let (tooth, rows) = divided.substructure(&divided.condensed()?, &fillets.nodes());
+        let fillets = fillets(gear, &grid, &stack.face);
+        let (tooth, rows) = SolidTooth::with_nodes(gear, &grid, &stack.face, &fillets.nodes())?;
         run.check()?;
         let seen = plain.web().map(|web| web.largest());
         let classes = motions(&tooth, plain.stiffness_below(), seen, run)?;
@@ -73,7 +77,7 @@ impl FaceRoots {
             .iter()
             .map(|class| (class.class, class.orders.as_slice(), &class.by_flank));
         let own = interfaces(sector, by_flank, &[0]);
-        let own = rows.by_forces + &rows.by_kept * &own[0];
+        let own = rows.by_points + &rows.by_kept * &own[0];
 
         let smoothing = FlankFit::new(gear, &stack.face, &tooth.roll_lengths).smoothing();
         let lower: Vec<_> = classes
@@ -118,7 +122,11 @@ impl FaceRoots {
         Ok(Self {
             fillets,
             near: Nearness::new(gear, &stack.face),
-            pressed: PressedFlank::of(&divided),
+            pressed: PressedFlank {
+                axial: stack.face.clone(),
+                flank: *section.flank(),
+                roll_lengths: tooth.roll_lengths,
+            },
             tooth_count: z,
             own,
             others,
@@ -137,19 +145,25 @@ impl FaceRoots {
         inner_radius: f64,
         resolution: FaceResolution,
     ) -> Result<Self, PartError> {
-        let stack = Stack::of_sector(gear, inner_radius, resolution);
-        let tooth = stack.stressed_tooth()?;
-        let fillets = fillets(&tooth);
-        let [_, own] = tooth.alone(&fillets.nodes())?;
+        let axial = Stack::new(gear, resolution).face;
+        let section = gear.section().without_blank().with_plain_flanks();
+        let grid = ToothGrid::of_stressed_prism(&section, inner_radius, GridLevel::Standard)?;
+        let fillets = fillets(gear, &grid, &axial);
+        let (_, rows) = flank_compliance_alone(gear, &grid, &axial, &fillets.nodes())?;
+        let nodes = grid.grid.nodes.len() - grid.arc_nodes.len();
         Ok(Self {
             fillets,
-            near: Nearness::new(gear, &stack.face),
+            near: Nearness::new(gear, &axial),
             tooth_count: 1,
-            own,
+            own: rows.by_points,
             others: vec![Mat::zeros(0, 0)],
             by_web: None,
-            degrees_of_freedom: tooth.free_unknowns(),
-            pressed: PressedFlank::of(&tooth),
+            degrees_of_freedom: (COMPONENTS * axial.len() * nodes) as u64,
+            pressed: PressedFlank {
+                axial,
+                flank: *section.flank(),
+                roll_lengths: grid.flank_roll_lengths,
+            },
         })
     }
 
@@ -256,10 +270,19 @@ impl RootAnswer<'_> {
     }
 }
 
-/// The surface of both fillets of `tooth`: first the one next to the loaded flank.
-fn fillets(tooth: &DividedTooth) -> Surface {
-    let edges = [&tooth.grid.fillet_nodes, &tooth.grid.back_fillet_nodes];
-    Surface::new(&tooth.prism(), &edges.map(Vec::as_slice), false)
+/// The surface of both fillets of `grid`, a sector of the section of `gear`: first the one beside the loaded flank.
+fn fillets(gear: &SolidGear, grid: &ToothGrid, axial: &AxialBasis) -> Surface {
+    let prism = Prism {
+        grid: &grid.grid,
+        material: gear.section().material(),
+        twist: gear.twist(),
+        axial,
+    };
+    Surface::new(
+        &prism,
+        &[&grid.fillet_nodes, &grid.back_fillet_nodes],
+        false,
+    )
 }
 
 /// How near to a contact a place is under it: in the section, and along the face.
@@ -286,13 +309,11 @@ mod tests {
     use super::*;
     use crate::assembly::face_holes::tests::webbed;
     use crate::assembly::{FaceYieldSpec, MakeAll, Parts as _};
-    use crate::fem::Interface;
-    use crate::fem::body::{Load, Plate};
-    use crate::fem::condensation::condense;
-    use crate::fem::recovery::{Functional, edge_stresses, vectors};
+    use crate::fem::prescribed::{Load, displacements};
+    use crate::fem::recovery::{Functional, edge_stresses};
     use crate::gear::spur::tests::paper_gear;
     use crate::gear::{Helix, HolePattern, Material};
-    use crate::grid::{BlankGrid, GridLevel, ToothGrid};
+    use crate::grid::BlankGrid;
     use crate::ring::blank::BlankSubstructure;
     use crate::ring::cyclic::Harmonics;
     use crate::ring::motion::InterfaceMotion;
@@ -382,23 +403,15 @@ mod tests {
             let load = Load {
                 moves: vec![0.0; 2 * grid.arc_nodes.len()],
                 forces: vec![(
-                    Functional::displacement(grid.flank_nodes[7], section.flank().normal(s)),
-                    -1.0,
+                    grid.flank_nodes[7],
+                    (-section.flank().normal(s)).as_slice().to_vec(),
                 )],
             };
-            let plate = Plate {
-                grid: &grid.grid,
-                material,
-                thickness: 1.0,
-            };
-            let interface = Interface {
-                kept: &grid.arc_nodes,
-                ..Default::default()
-            };
-            let condensed = condense("a tooth", &plate, &interface).expect("sound");
-            let moved = vectors(&condensed.displacements(&[load])[0]);
+            let plate = (material, 1.0);
+            let moved = displacements("a tooth", &grid.grid, plate, &grid.arc_nodes, &[load]);
+            let moved = &moved.expect("sound")[0];
             let plane = along_edges(&grid, material).into_iter();
-            let plane: Vec<f64> = plane.map(|of| of.value(&moved)).collect();
+            let plane: Vec<f64> = plane.map(|of| of.value(moved)).collect();
             assert_alike(&found, &plane, most);
         }
     }
@@ -432,9 +445,8 @@ mod tests {
             let grid = ToothGrid::of_stressed_prism(&plain, radius, GridLevel::Standard);
             let grid = grid.expect("a usable grid");
             let probes = along_edges(&grid, &Material::STEEL);
-            let condensed = ToothSubstructure::condensed(section, &grid).expect("sound");
-            let tooth = ToothSubstructure::with_recovery(section, &grid, &condensed, &probes);
-            let (tooth, rows) = tooth.expect("sound");
+            let (tooth, rows) =
+                ToothSubstructure::with_recovery(section, &grid, &probes).expect("sound");
             let harmonics = Harmonics { largest: 90 };
             let ring = TeethRing::new(&tooth, harmonics, &run).expect("sound");
             let inside = TeethRecovery::new(&tooth, &rows, harmonics, &run).expect("sound");
@@ -489,10 +501,10 @@ mod tests {
         let at_foot = |of: &&SurfaceStress| {
             (of.edge == 0) && (of.angle - twist * of.z - foot.y.atan2(foot.x)).abs() < 1e-9
         };
-        let left: Vec<f64> = own.iter().filter(at_foot).map(|of| of.z).collect();
+        let told: Vec<f64> = own.iter().filter(at_foot).map(|of| of.z).collect();
         assert!(
-            left.iter().all(|z| *z < 1.6e-3) && !left.is_empty(),
-            "{left:?}"
+            told.iter().all(|z| *z < 1.6e-3) && !told.is_empty(),
+            "{told:?}"
         );
         assert!(neighbor.iter().filter(at_foot).any(|of| of.z > 4e-3));
     }

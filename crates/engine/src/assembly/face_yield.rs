@@ -13,9 +13,9 @@ use super::{FaceResolution, PartError};
 use crate::fem::axial::AxialBasis;
 use crate::fem::dense::{entries, symmetrize};
 use crate::gear::SolidGear;
-use crate::ring::sector::between;
-use crate::ring::solid::gear::{ClassAnswers, answers};
-use crate::ring::solid::tooth::SolidTooth;
+use crate::grid::ToothGrid;
+use crate::ring::solid::gear::{ClassAnswers, answers, between_teeth};
+use crate::ring::solid::tooth::{SolidTooth, flank_compliance_alone};
 use crate::ring::teeth::FARTHEST_COUPLED;
 use crate::run::Run;
 
@@ -31,7 +31,7 @@ pub struct FaceYieldSpec {
 pub struct PlainFace {
     /// The squares of the roll lengths at which the flank begins and ends.
     squares: [f64; 2],
-    /// What it yields more than a half space where it ends.
+    /// What it yields beside a half space where it ends.
     ends: FlankEnds,
     /// What tooth d yields to tooth 0, d = 0 … [`farthest`], or half way around.
     blocks: Vec<Mat<f64>>,
@@ -124,13 +124,14 @@ impl PlainFace {
     /// As [`FaceYield::of`].
     pub fn new(stack: &Stack, run: &Run) -> Result<Self, PartError> {
         let gear = &stack.gear;
-        let divided = stack.tooth()?;
+        let section = gear.section().without_blank();
+        let grid = ToothGrid::of_prism(&section, stack.interface_radius, stack.sections)?;
         run.check()?;
         let (tooth, below) = rayon::join(
-            || divided.condensed().map(|of| divided.substructure(&of, &[])),
+            || SolidTooth::new(gear, &grid, &stack.face),
             || StackStiffness::new(stack, run),
         );
-        let ((tooth, _), below) = (tooth?, below?);
+        let (tooth, below) = (tooth?, below?);
         let seen = below.web.as_ref().map(|web| web.largest);
         let classes = answers(&tooth, &below.stiffness, seen, run)?;
         let flank = FlankFit::new(gear, &stack.face, &tooth.roll_lengths);
@@ -200,20 +201,22 @@ impl FaceYield {
         inner_radius: f64,
         resolution: FaceResolution,
     ) -> Result<Self, PartError> {
-        let stack = Stack::of_sector(gear, inner_radius, resolution);
-        let tooth = stack.tooth()?;
-        let [compliance, _] = tooth.alone(&[])?;
-        let flank = FlankFit::new(gear, &stack.face, &tooth.grid.flank_roll_lengths);
+        let axial = Stack::new(gear, resolution).face;
+        let section = gear.section().without_blank().with_plain_flanks();
+        let grid = ToothGrid::of_prism(&section, inner_radius, resolution.sections)?;
+        let (compliance, _) = flank_compliance_alone(gear, &grid, &axial, &[])?;
+        let flank = FlankFit::new(gear, &axial, &grid.flank_roll_lengths);
+        let degrees_of_freedom = 3 * axial.len() * (grid.grid.nodes.len() - grid.arc_nodes.len());
         let plain = PlainFace {
             squares: flank.squares,
             ends: FlankEnds::new(gear),
             blocks: vec![flank.own(&compliance)],
             stiffness_below: Vec::new(),
             web: None,
-            degrees_of_freedom: tooth.free_unknowns(),
+            degrees_of_freedom: degrees_of_freedom as u64,
         };
         Ok(Self {
-            axial: stack.face,
+            axial,
             tooth_count: 1,
             plain: Arc::new(plain),
             holes: None,
@@ -257,7 +260,7 @@ impl FaceYield {
         }
     }
 
-    /// What a unit force moves a point on the same flank, a roll length and a height, by its ends: in addition to the smooth compliance and a half
+    /// What a unit force moves a point on the same flank, a roll length and a height, by its ends: beside the smooth compliance and a half
     /// space; the force spread over a piece of a contact line of the length `along` about another such point.
     pub fn at_ends(&self, point: (f64, f64), loaded: (f64, f64), along: f64) -> f64 {
         self.plain.ends.of_piece(point, loaded, along)
@@ -355,11 +358,11 @@ fn blocks(
 ) -> Vec<Mat<f64>> {
     let z = tooth.sector.count;
     let of_classes = || classes.iter().map(|answer| (answer.class, &answer.flank));
-    let own = &tooth.held + between(of_classes(), z, 0);
+    let own = &tooth.held + between_teeth(of_classes(), z, 0);
     let (smoothing, m) = (flank.smoothing(), flank.axial.len());
     let mut blocks = vec![flank.own(&own)];
     for distance in 1..=farthest.min(z / 2) {
-        let other = between(of_classes(), z, distance);
+        let other = between_teeth(of_classes(), z, distance);
         blocks.push(smoothed(&smoothing, &other, m));
     }
     blocks

@@ -23,7 +23,7 @@ use crate::gear::{Material, SolidGear};
 /// The distance, in modules, within which a load beyond the tip is blurred: contacts are wider.
 const BLUR: f64 = 0.02;
 
-/// What a flank yields more than a half space, because it ends.
+/// What a flank yields beside a half space.
 #[derive(Debug, Clone)]
 pub(super) struct FlankEnds {
     base_radius: f64,
@@ -86,7 +86,7 @@ impl FlankEnds {
         }
     }
 
-    /// The same if the load stands as far beyond the tip, and what becomes of the inverse of the distances.
+    /// The same if the load stands as far beyond the tip, and what is made of the inverse of the distances.
     pub(super) fn beyond_tip(&self, s: f64, loaded: f64) -> (Lines, f64) {
         let level = (s * s - loaded * loaded) / (2.0 * self.base_radius);
         let below = self.below_tip(s) + self.below_tip(loaded);
@@ -113,7 +113,7 @@ impl FlankEnds {
         -self.plate / stretch * (((b + far) / self.module).ln() - (far - reach) / b)
     }
 
-    /// What a unit force does at the roll length `s` and the height `z` in addition to that of a half space, spread over a piece of the contact line of the
+    /// What a unit force does at the roll length `s` and the height `z` beside that of a half space, spread over a piece of the contact line of the
     /// length `along` about the roll length and the height `loaded`.
     pub(super) fn of_piece(&self, (s, z): (f64, f64), loaded: (f64, f64), along: f64) -> f64 {
         let (lines, factor) = self.beyond_tip(s, loaded.0);
@@ -121,8 +121,8 @@ impl FlankEnds {
         // The line leans against the tip, and beyond it the other way.
         let (sin, cos) = (slope / lines.stretch, self.along / lines.stretch);
         let out = (self.below_tip(s) + self.below_tip(loaded.0)) * cos;
-        let sideways = lines.stretch * (z - loaded.1 - lines.nearest);
-        let (middle, off) = (out * sin + sideways * cos, out * cos - sideways * sin);
+        let beside = lines.stretch * (z - loaded.1 - lines.nearest);
+        let (middle, off) = (out * sin + beside * cos, out * cos - beside * sin);
         let off = off.hypot(self.blur);
         let [to, from] = [0.5, -0.5].map(|part| ((middle + part * along) / off).asinh());
         factor * (to - from) / along + self.of_plate(s, loaded.0)

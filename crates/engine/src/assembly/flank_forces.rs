@@ -5,7 +5,6 @@ use super::flank_polynomials::{OWN_DEGREE, up_the_flank};
 use crate::fem::axial::AxialBasis;
 use crate::gear::{Involute, Vector};
 use crate::quadrature::parabola;
-use crate::ring::solid::tooth::DividedTooth;
 
 /// A flank that can be pressed: nodes in the section, functions across the face.
 #[derive(Debug)]
@@ -34,15 +33,6 @@ impl FlankForces {
 }
 
 impl PressedFlank {
-    /// That of `tooth`.
-    pub(super) fn of(tooth: &DividedTooth) -> Self {
-        Self {
-            axial: tooth.axial.clone(),
-            flank: *tooth.flank(),
-            roll_lengths: tooth.grid.flank_roll_lengths.clone(),
-        }
-    }
-
     /// What presses the flank of `tooth` where forces normal to it act: roll lengths, heights from the middle of the gear's own face, and forces.
     pub(super) fn forces(
         &self,

@@ -12,7 +12,6 @@ use super::PartError;
 use super::stack::{Stack, WebPorts};
 use crate::fem::FemError;
 use crate::fem::axial::AxialBasis;
-use crate::fem::condensation::Condensed;
 use crate::fem::dense::entries;
 use crate::fem::prism::{COMPONENTS, Prism};
 use crate::gear::{BlankRegion, Core, Material, SpurGear, gcd};
@@ -192,8 +191,7 @@ impl HoledChange {
             ..
         } = web;
         let holed = HoledSection::new(stack, section, largest)?;
-        let (ring, _) = holed.ring()?;
-        let mut change = ring.on_outer(holed.phase, run)?;
+        let mut change = holed.ring(&[])?.on_outer(holed.phase, run)?;
         for order in -(largest as i64)..=largest as i64 {
             let plain = of_order(&web.plain, order);
             let first = (order + largest as i64) as usize * size;
@@ -332,9 +330,10 @@ impl HoledSection {
         }
     }
 
-    /// The ring of it, and its sector condensed.
-    pub(super) fn ring(&self) -> Result<(HoledRing<'_>, Condensed), FemError> {
-        HoledRing::new(&self.grid, &self.prism(), self.hub.as_deref(), self.largest)
+    /// The ring of it, which can be asked for the nodes `told`.
+    pub(super) fn ring(&self, told: &[u32]) -> Result<HoledRing<'_>, FemError> {
+        let told = (self.largest, told);
+        HoledRing::new(&self.grid, &self.prism(), self.hub.as_deref(), told)
     }
 }
 

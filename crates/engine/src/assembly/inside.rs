@@ -7,7 +7,6 @@ use super::cut::{CutBlank, CutGear};
 use super::{GearGrids, GearSpec, PartError, Parts};
 use crate::contact::FlankLoad;
 use crate::fem::FemError;
-use crate::fem::condensation::Condensed;
 use crate::fem::recovery::Functional;
 use crate::ring::blank::BlankRecovery;
 use crate::ring::motion::InterfaceMotion;
@@ -27,7 +26,6 @@ pub struct Probes {
 /// A gear that can be asked what goes on inside it.
 pub struct Inside {
     cut: CutGear,
-    tooth: Condensed,
     in_tooth: TeethRecovery,
     /// `None` if the blank is rigid.
     in_blank: Option<BlankRecovery>,
@@ -64,9 +62,7 @@ impl Inside {
     ) -> Result<Self, PartError> {
         let gear = spec.teeth.gear();
         let teeth = parts.teeth(&spec.teeth, run)?;
-        let (grid, asked) = (&grids.tooth, &probes.in_tooth);
-        let condensed = ToothSubstructure::condensed(gear, grid)?;
-        let (tooth, rows) = ToothSubstructure::with_recovery(gear, grid, &condensed, asked)?;
+        let (tooth, rows) = ToothSubstructure::with_recovery(gear, &grids.tooth, &probes.in_tooth)?;
         run.check()?;
         let in_tooth = TeethRecovery::new(&tooth, &rows, teeth.ring.harmonics, run)?;
         let blank = spec.blank.as_ref().zip(grids.blank.as_ref());
@@ -78,7 +74,6 @@ impl Inside {
         let (blank, in_blank) = made.transpose()?.unzip();
         Ok(Self {
             cut: CutGear { teeth, blank },
-            tooth: condensed,
             in_tooth,
             in_blank,
         })
@@ -94,11 +89,6 @@ impl Inside {
             inside: self,
             motion: self.cut.motion(run)?,
         })
-    }
-
-    /// A tooth on its interface ([`crate::grid::ToothGrid::interface`]).
-    pub fn tooth(&self) -> &Condensed {
-        &self.tooth
     }
 
     /// The angles from the centerline of tooth 0 to the frames of the equal sectors of its blank; none of a rigid one.

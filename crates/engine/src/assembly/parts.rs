@@ -154,8 +154,8 @@ pub fn make_gears<P: Parts + ?Sized>(
         .collect();
     // No part needs another. Teeth come first: they take longest.
     let (teeth, blanks) = rayon::join(
-        || each_once(&teeth, |spec| parts.teeth(spec, run)),
-        || each_once(&blanks, |spec| parts.blank(spec, run)),
+        || made(&teeth, |spec| parts.teeth(spec, run)),
+        || made(&blanks, |spec| parts.blank(spec, run)),
     );
     let mut blanks = blanks?.into_iter();
     let blanks: Vec<Vec<_>> = wanted
@@ -173,7 +173,7 @@ pub fn make_gears<P: Parts + ?Sized>(
 }
 
 /// The parts of `wanted`, in its order, made by `make` in parallel; equal ones are made once, for the gear that comes first.
-fn each_once<S: PartialEq + Sync, P: Send + Sync>(
+fn made<S: PartialEq + Sync, P: Send + Sync>(
     wanted: &[(Member, S)],
     make: impl Fn(&S) -> Result<Arc<P>, PartError> + Sync,
 ) -> Result<Vec<Arc<P>>, AssemblyError> {

@@ -8,11 +8,10 @@ use crate::fem::FemError;
 use crate::fem::axial::AxialBasis;
 use crate::fem::dense::Cholesky;
 use crate::gear::{FaceEnds, Layer, SolidGear};
-use crate::grid::{GridError, GridLevel, ToothGrid};
+use crate::grid::GridLevel;
 use crate::ring::solid::joint::{carried, trace};
 use crate::ring::solid::revolution::{Revolution, last_of};
 use crate::ring::solid::shaft::SolidShaft;
-use crate::ring::solid::tooth::DividedTooth;
 use crate::run::Run;
 
 /// The orders that the interface circle carries: fields of the teeth fall to e^−this on their way to it.
@@ -98,32 +97,6 @@ impl Stack {
             hole_orders,
             sections: resolution.sections,
         }
-    }
-
-    /// That of one tooth alone, as far as teeth go: down to `inner_radius`.
-    pub(super) fn of_sector(
-        gear: &SolidGear,
-        inner_radius: f64,
-        resolution: FaceResolution,
-    ) -> Self {
-        Self {
-            interface_radius: inner_radius,
-            ..Self::new(gear, resolution)
-        }
-    }
-
-    /// One of its teeth, divided to say what its flank yields.
-    pub(super) fn tooth(&self) -> Result<DividedTooth, GridError> {
-        let section = self.gear.section().without_blank();
-        let grid = ToothGrid::of_prism(&section, self.interface_radius, self.sections)?;
-        Ok(DividedTooth::new(&self.gear, grid, &self.face))
-    }
-
-    /// One of its teeth, divided to say how its fillets are stressed.
-    pub(super) fn stressed_tooth(&self) -> Result<DividedTooth, GridError> {
-        let (section, level) = (self.gear.section().without_blank(), GridLevel::Standard);
-        let grid = ToothGrid::of_stressed_prism(&section, self.interface_radius, level)?;
-        Ok(DividedTooth::new(&self.gear, grid, &self.face))
     }
 
     /// The orders that the interface circle carries.
@@ -342,7 +315,7 @@ mod tests {
     use nalgebra::SMatrix;
 
     use super::*;
-    use crate::fem::law::Law;
+    use crate::fem::prism::Law3;
     use crate::gear::spur::tests::paper_gear;
     use crate::gear::{Core, Helix, Material, Web};
     use crate::quadrature::gauss_legendre;
@@ -454,7 +427,7 @@ mod tests {
                 count += moves.last().map_or(0, |(_, ahead, _)| ahead + 1);
             }
         }
-        let law = Law::in_space(&Material::STEEL);
+        let law = Law3::new(&Material::STEEL);
         let shape = |x: f64| {
             [
                 [x * (x - 1.0) / 2.0, x - 0.5],

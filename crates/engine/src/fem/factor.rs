@@ -11,10 +11,11 @@ use faer::sparse::linalg::cholesky::{
 use faer::{Conj, Mat, Par, Side};
 
 use super::FemError;
+use super::element::COMPONENTS;
+use super::recovery::Functional;
 use super::sparse::{BlockMatrix, Failure, Numbering};
 
 /// The supernodal Cholesky factor of a sparse matrix, the unknowns from `interior` on last.
-#[derive(Debug)]
 pub(super) struct Factor {
     symbolic: SymbolicCholesky<u32>,
     values: Vec<f64>,
@@ -123,6 +124,30 @@ impl Factor {
         l_22
     }
 
+    /// b₂ − L₂₁ L₁₁⁻¹ b₁ for each functional b, a column each: L₂₂ times the trailing part of L⁻¹ b.
+    pub(super) fn on_kept(
+        &self,
+        asked: &[Functional],
+        numbering: &Numbering,
+        trailing: &Mat<f64>,
+    ) -> Mat<f64> {
+        let place = self.places();
+        let mut solved = Mat::<f64>::zeros(self.symbolic.nrows(), asked.len());
+        for (column, functional) in asked.iter().enumerate() {
+            for &(node, weight) in functional.terms() {
+                // What is fixed does not move.
+                let Some(node) = numbering.place(node) else {
+                    continue;
+                };
+                solved[(place[COMPONENTS * node] as usize, column)] += weight.x;
+                solved[(place[COMPONENTS * node + 1] as usize, column)] += weight.y;
+            }
+        }
+        self.half_solve_in_place(&mut solved);
+        let on_kept = solved.subrows(self.interior, trailing.nrows());
+        trailing * on_kept
+    }
+
     /// Where each unknown stands in the order of the factor.
     pub(super) fn places(&self) -> &[u32] {
         self.order.as_ref().arrays().1
@@ -130,25 +155,38 @@ impl Factor {
 
     /// Overwrites `columns`, which stand in the order of the factor, with L⁻¹ times them.
     pub(super) fn half_solve_in_place(&self, columns: &mut Mat<f64>) {
-        let mut memory = self.memory(columns.ncols());
-        let (columns, stack) = (columns.as_mut(), MemStack::new(&mut memory));
-        self.supernodal()
-            .l_solve_with_conj(Conj::No, columns, Par::Seq, stack);
-    }
-
-    /// Overwrites `columns`, which stand in the order of the factor, with L⁻ᵀ times them.
-    pub(super) fn other_half_solve_in_place(&self, columns: &mut Mat<f64>) {
-        let mut memory = self.memory(columns.ncols());
-        let (columns, stack) = (columns.as_mut(), MemStack::new(&mut memory));
-        self.supernodal()
-            .l_transpose_solve_with_conj(Conj::No, columns, Par::Seq, stack);
-    }
-
-    /// What it takes to solve for so many columns.
-    fn memory(&self, columns: usize) -> MemBuffer {
         let scratch = self
             .symbolic
-            .solve_in_place_scratch::<f64>(columns, Par::Seq);
-        MemBuffer::new(scratch)
+            .solve_in_place_scratch::<f64>(columns.ncols(), Par::Seq);
+        let mut memory = MemBuffer::new(scratch);
+        self.supernodal().l_solve_with_conj(
+            Conj::No,
+            columns.as_mut(),
+            Par::Seq,
+            MemStack::new(&mut memory),
+        );
+    }
+
+    /// The solutions of the whole system, in place of the right-hand sides `columns` on the numbered unknowns.
+    pub(super) fn solve_in_place(&self, columns: &mut Mat<f64>) {
+        let (factor, (numbers, _)) = (self.supernodal(), self.order.as_ref().arrays());
+        let mut ordered = Mat::from_fn(columns.nrows(), columns.ncols(), |i, j| {
+            columns[(numbers[i] as usize, j)]
+        });
+        let scratch = self
+            .symbolic
+            .solve_in_place_scratch::<f64>(columns.ncols(), Par::Seq);
+        let mut memory = MemBuffer::new(scratch);
+        factor.solve_in_place_with_conj(
+            Conj::No,
+            ordered.as_mut(),
+            Par::Seq,
+            MemStack::new(&mut memory),
+        );
+        for (i, &number) in numbers.iter().enumerate() {
+            for j in 0..columns.ncols() {
+                columns[(number as usize, j)] = ordered[(i, j)];
+            }
+        }
     }
 }

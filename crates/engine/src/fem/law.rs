@@ -1,15 +1,13 @@
 //! The material law: what stress a strain makes.
 
-use std::ops::{Add, Mul};
-
 use crate::gear::Material;
 
-/// An isotropic law, in Pa: σ_x = d ε_x + c (ε_y + ε_z), and so on around, τ = g γ. In the plane there is no z.
+/// An isotropic law in the plane: σ_x = d ε_x + c ε_y, σ_y = c ε_x + d ε_y, τ = g γ, in Pa.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Law {
     /// d: of the strain along.
     pub along: f64,
-    /// c: of the strains across.
+    /// c: of the strain across.
     pub across: f64,
     /// g: of the shear.
     pub shear: f64,
@@ -25,35 +23,6 @@ impl Law {
             across: along * nu,
             shear: e / (2.0 * (1.0 + nu)),
         }
-    }
-
-    /// In space: c = λ = E ν/((1 + ν)(1 − 2ν)), g = G, d = λ + 2 G.
-    pub fn in_space(material: &Material) -> Self {
-        let (e, nu) = (material.youngs_modulus, material.poisson_ratio);
-        let across = e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
-        let shear = material.shear_modulus();
-        Self {
-            along: across + 2.0 * shear,
-            across,
-            shear,
-        }
-    }
-
-    /// The stress (xx, yy, zz, xy, xz, yz) of a strain in space; of any orthogonal directions.
-    pub fn stress<T>(&self, [xx, yy, zz, xy, xz, yz]: [T; 6]) -> [T; 6]
-    where
-        T: Copy + Add<Output = T> + Mul<f64, Output = T>,
-    {
-        let sum = (xx + yy + zz) * self.across;
-        let twice = self.along - self.across;
-        [
-            sum + xx * twice,
-            sum + yy * twice,
-            sum + zz * twice,
-            xy * self.shear,
-            xz * self.shear,
-            yz * self.shear,
-        ]
     }
 }
 

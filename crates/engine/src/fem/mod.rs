@@ -1,23 +1,23 @@
 //! The kernel of finite elements: from the elements of a grid to what is left of it on some of its unknowns.
 //!
-//! Read in this order: [`law`] (what strains stress), [`element`] (one element), [`body`] (a grid with a law), `sparse` (its matrix) and `factor`,
-//! [`recovery`] (what can be asked of displacements), and [`condensation`] (a body on the unknowns that are kept, and what all others do); of bodies
-//! with an extent along an axis [`axial`], [`prism`], [`surface`] and [`volume`]; [`dense`] for matrices without zeros. It knows grids and materials, and nothing of gears.
+//! Read in this order: [`law`] (what strains stress), [`element`] (one element), `sparse` (the matrix of a grid) and `factor`,
+//! [`condensation`] (a grid's stiffness on the unknowns that are kept), [`recovery`] (displacements and stresses of the others), and
+//! [`prescribed`] (at every node); of bodies with an extent along an axis [`axial`], [`prism`], [`surface`] and [`volume`]. Beside them: [`dense`]. It knows grids and materials, and nothing of gears.
 
 pub mod axial;
-pub mod body;
 pub mod condensation;
 pub mod dense;
 pub mod element;
 mod factor;
 pub mod law;
+pub mod prescribed;
 pub mod prism;
 pub mod recovery;
 mod sparse;
 pub mod surface;
 pub mod volume;
 
-pub use sparse::{Followers, Interface};
+pub use sparse::Followers;
 
 use crate::run::Stopped;
 

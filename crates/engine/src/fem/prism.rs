@@ -12,15 +12,17 @@
 //! and M, C, D the integrals of products of the functions ([`super::axial`]). Straight bodies are those of τ = 0. The unknowns are
 //! the components along e_r, e_t and the axis at each node, for each function along the axis: node by node, component by component.
 
-use std::rc::Rc;
-
+use faer::linalg::matmul::matmul;
+use faer::linalg::matmul::triangular::{self, BlockStructure};
+use faer::{Accum, Mat, Par};
 use nalgebra::SMatrix;
 
+use super::FemError;
 use super::axial::{AxialBasis, AxialMatrices};
-use super::body::Body;
+use super::condensation::squared;
 use super::element::gradients;
-use super::law::Law;
-use super::recovery::Functional;
+use super::factor::Factor;
+use super::sparse::{BlockMatrix, Followers, Numbering};
 use crate::gear::{Material, Vector};
 use crate::grid::element::MOST_NODES;
 use crate::grid::{Element, Grid};
@@ -50,6 +52,43 @@ pub struct Prism<'a> {
     pub axial: &'a AxialBasis,
 }
 
+/// What a prism is condensed to.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Interface<'a> {
+    /// Nodes whose unknowns are kept.
+    pub kept: &'a [u32],
+    /// Nodes that follow unknowns of their own, which are kept after those.
+    pub followers: &'a [Followers<'a>],
+    /// Nodes that are held.
+    pub fixed: &'a [u32],
+}
+
+/// A prism on the unknowns that are kept, and what becomes of displacements at points.
+#[derive(Debug, Clone)]
+pub struct CondensedPrism {
+    /// The stiffness on the kept unknowns, in N/m: node by node, component by component, function by function.
+    pub stiffness: Mat<f64>,
+    /// The displacements asked for, by the kept unknowns: a row for each point and function along the axis.
+    pub rows: Mat<f64>,
+    /// Their compliance among each other with what is kept held, in m/N.
+    pub held: Mat<f64>,
+}
+
+/// All unknowns of some nodes of a prism: node by node, component by component, a row for each function along the axis.
+#[derive(Debug, Clone)]
+pub struct NodeRows {
+    /// By the kept unknowns.
+    pub by_kept: Mat<f64>,
+    /// By forces on the points that were asked for, with what is kept held, in m/N.
+    pub by_points: Mat<f64>,
+}
+
+/// Takes an element and its stiffness by its unknowns.
+pub(super) type TakeElement<'a> = dyn FnMut(&Element, &dyn Fn(usize, usize) -> f64) + 'a;
+
+/// Unknowns that go through the factor together, about.
+const ROWS_AT_ONCE: usize = 64;
+
 /// The matrices of one element: K_00, K_01 and K_11 on polar components at its nodes.
 struct SectionMatrices {
     plain: SectionMatrix,
@@ -58,59 +97,72 @@ struct SectionMatrices {
 }
 
 impl Prism<'_> {
-    /// The displacement at each of `points`, a node and a direction in polar components, for every function along the axis.
-    pub fn along(&self, points: &[(u32, [f64; COMPONENTS])]) -> Vec<Functional> {
-        let functions = self.axial.len();
-        let each = |&(node, direction): &(u32, [f64; COMPONENTS])| {
-            (0..functions).map(move |p| {
-                let components = direction.into_iter().enumerate();
-                let terms = components.map(|(c, along)| (node, c * functions + p, along));
-                Functional::of_unknowns(terms.collect())
-            })
-        };
-        points.iter().flat_map(each).collect()
-    }
-}
-
-impl Body for Prism<'_> {
-    fn grid(&self) -> &Grid {
-        self.grid
-    }
-
-    fn unknowns_of_node(&self) -> usize {
+    /// The unknowns of a node.
+    pub fn unknowns_of_node(&self) -> usize {
         COMPONENTS * self.axial.len()
     }
 
-    fn scale(&self) -> f64 {
-        self.material.youngs_modulus
+    /// Condenses the prism to its interface, and asks for the displacement at each of `points`: a node and a direction in polar
+    /// components, for every function along the axis.
+    ///
+    /// # Errors
+    ///
+    /// [`FemError::NotPositiveDefinite`] if the grid is degenerate.
+    pub fn condense(
+        &self,
+        part: &'static str,
+        interface: &Interface<'_>,
+        points: &[(u32, [f64; COMPONENTS])],
+    ) -> Result<CondensedPrism, FemError> {
+        let (condensed, _) = self.condense_with(part, interface, points, &[])?;
+        Ok(condensed)
     }
 
-    fn stiffnesses(&self) -> impl Iterator<Item = impl Fn(usize, usize) -> f64> {
-        let law = Law::in_space(self.material);
-        let matrices = Rc::new(self.axial.matrices());
-        let functions = self.axial.len();
-        self.grid.elements.iter().map(move |element| {
-            let matrices = Rc::clone(&matrices);
-            let SectionMatrices {
-                plain,
-                mixed,
-                axial,
-            } = section_matrices(element, self.grid, &law, self.twist);
-            move |i: usize, j: usize| {
-                let AxialMatrices { slope, slopes } = &*matrices;
-                let ((a, p), (b, q)) = (
-                    (i / functions, i % functions),
-                    (j / functions, j % functions),
-                );
-                let same = if p == q { plain[(a, b)] } else { 0.0 };
-                same + mixed[(a, b)] * slope[(p, q)]
-                    + mixed[(b, a)] * slope[(q, p)]
-                    + axial[(a, b)] * slopes[(p, q)]
-            }
-        })
+    /// The same, and all unknowns of the nodes `told`.
+    ///
+    /// # Errors
+    ///
+    /// As [`Prism::condense`].
+    pub fn condense_with(
+        &self,
+        part: &'static str,
+        interface: &Interface<'_>,
+        points: &[(u32, [f64; COMPONENTS])],
+        told: &[u32],
+    ) -> Result<(CondensedPrism, NodeRows), FemError> {
+        let Interface {
+            kept,
+            followers,
+            fixed,
+        } = *interface;
+        let numbering = Numbering::with_followers(self.grid.nodes.len(), kept, followers, fixed);
+        let kept = self.unknowns_of_node() * (numbering.count - numbering.interior);
+        let (asked, told_rows) = (
+            points.len() * self.axial.len(),
+            told.len() * self.unknowns_of_node(),
+        );
+        let mut condensed = CondensedPrism {
+            stiffness: Mat::zeros(kept, kept),
+            rows: Mat::zeros(asked, kept),
+            held: Mat::zeros(asked, asked),
+        };
+        let mut rows = NodeRows {
+            by_kept: Mat::zeros(told_rows, kept),
+            by_points: Mat::zeros(told_rows, asked),
+        };
+        for unknowns in self.independent() {
+            let alone = Independent {
+                prism: self,
+                unknowns,
+                numbering: &numbering,
+            };
+            alone.condense(part, points, told, (&mut condensed, &mut rows))?;
+        }
+        Ok((condensed, rows))
     }
 
-    /// A straight body is its own image in its middle: what is even in the plane and odd along the axis has nothing to do with the opposite.
+    /// The unknowns of a node, in sets that do not stiffen each other. A straight body is its own image in its middle: what is even in the
+    /// plane and odd along the axis has nothing to do with the opposite.
     fn independent(&self) -> Vec<Vec<usize>> {
         let functions = self.axial.len();
         let all = 0..self.unknowns_of_node();
@@ -124,9 +176,246 @@ impl Body for Prism<'_> {
         let (even, odd) = all.partition(is_even);
         vec![even, odd]
     }
+
+    /// The energy ½ uᵀ K u of the displacements `u` of all nodes, node by node.
+    pub fn energy(&self, u: &[f64]) -> f64 {
+        let size = self.unknowns_of_node();
+        let mut energy = 0.0;
+        self.each_element(&mut |element, k| {
+            let place = |i: usize| size * element.nodes()[i / size] as usize + i % size;
+            let count = size * element.nodes().len();
+            for j in 0..count {
+                for i in 0..count {
+                    energy += 0.5 * u[place(i)] * k(i, j) * u[place(j)];
+                }
+            }
+        });
+        energy
+    }
+
+    /// Hands each element with its stiffness to `take`.
+    pub(super) fn each_element(&self, take: &mut TakeElement<'_>) {
+        let law = Law3::new(self.material);
+        let AxialMatrices { slope, slopes } = self.axial.matrices();
+        let functions = self.axial.len();
+        for element in &self.grid.elements {
+            let SectionMatrices {
+                plain,
+                mixed,
+                axial,
+            } = section_matrices(element, self.grid, &law, self.twist);
+            take(element, &|i, j| {
+                let ((a, p), (b, q)) = (
+                    (i / functions, i % functions),
+                    (j / functions, j % functions),
+                );
+                let same = if p == q { plain[(a, b)] } else { 0.0 };
+                same + mixed[(a, b)] * slope[(p, q)]
+                    + mixed[(b, a)] * slope[(q, p)]
+                    + axial[(a, b)] * slopes[(p, q)]
+            });
+        }
+    }
 }
 
-fn section_matrices(element: &Element, grid: &Grid, law: &Law, twist: f64) -> SectionMatrices {
+/// Those unknowns of each node of a prism that have nothing to do with the others.
+struct Independent<'a> {
+    prism: &'a Prism<'a>,
+    unknowns: Vec<usize>,
+    numbering: &'a Numbering,
+}
+
+impl Independent<'_> {
+    /// Adds what becomes of these unknowns to what all become.
+    fn condense(
+        &self,
+        part: &'static str,
+        points: &[(u32, [f64; COMPONENTS])],
+        told: &[u32],
+        (condensed, rows): (&mut CondensedPrism, &mut NodeRows),
+    ) -> Result<(), FemError> {
+        let Self {
+            prism,
+            unknowns,
+            numbering,
+        } = self;
+        let (size, all) = (unknowns.len(), prism.unknowns_of_node());
+        let mut matrix = BlockMatrix::new(size, &prism.grid.elements, numbering);
+        prism.each_element(&mut |element, k| {
+            let place = |i: usize| all * (i / size) + unknowns[i % size];
+            matrix.add(element, |i, j| k(place(i), place(j)), numbering);
+        });
+        // Springs on the kept unknowns make a floating grid definite; they add to the Schur complement exactly and are taken
+        // off again below.
+        let spring = if numbering.holds() {
+            0.0
+        } else {
+            prism.material.youngs_modulus
+        };
+        for node in numbering.interior..numbering.count {
+            matrix.add_to_diagonal(node, spring);
+        }
+        let factor = Factor::new(part, matrix, numbering)?;
+        let trailing = factor.trailing();
+        let interior = size * numbering.interior;
+        let on_kept = |i: usize| all * (i / size) + unknowns[i % size];
+
+        let mut stiffness = squared(&trailing);
+        for i in 0..stiffness.nrows() {
+            stiffness[(i, i)] -= spring;
+        }
+        for j in 0..stiffness.ncols() {
+            for i in 0..stiffness.nrows() {
+                condensed.stiffness[(on_kept(i), on_kept(j))] = stiffness[(i, j)];
+            }
+        }
+
+        let asked = self.asked(points);
+        let mut columns = self.forces(&factor, asked.len(), |add| {
+            for (column, (point, p)) in asked.iter().enumerate() {
+                let (node, direction) = points[*point];
+                for (c, along) in direction.into_iter().enumerate() {
+                    add(node, c * prism.axial.len() + p, column, along);
+                }
+            }
+        });
+        let asked: Vec<usize> = asked
+            .into_iter()
+            .map(|(point, p)| point * prism.axial.len() + p)
+            .collect();
+        factor.half_solve_in_place(&mut columns);
+        let inside = columns.subrows(0, interior);
+        let mut held = Mat::<f64>::zeros(columns.ncols(), columns.ncols());
+        triangular::matmul(
+            held.as_mut(),
+            BlockStructure::TriangularLower,
+            Accum::Replace,
+            inside.transpose(),
+            BlockStructure::Rectangular,
+            inside,
+            BlockStructure::Rectangular,
+            1.0,
+            Par::Seq,
+        );
+        super::dense::mirror_lower(&mut held);
+        let by_kept = &trailing * columns.subrows(interior, trailing.nrows());
+        for (j, &column) in asked.iter().enumerate() {
+            for (i, &row) in asked.iter().enumerate() {
+                condensed.held[(row, column)] += held[(i, j)];
+            }
+            for i in 0..by_kept.nrows() {
+                condensed.rows[(column, on_kept(i))] = by_kept[(i, j)];
+            }
+        }
+
+        let at_once = (ROWS_AT_ONCE / size).max(1);
+        for (chunk, nodes) in told.chunks(at_once).enumerate() {
+            let mut units = self.forces(&factor, nodes.len() * size, |add| {
+                for (i, node) in nodes.iter().enumerate() {
+                    for (c, unknown) in unknowns.iter().enumerate() {
+                        add(*node, *unknown, i * size + c, 1.0);
+                    }
+                }
+            });
+            factor.half_solve_in_place(&mut units);
+            let by_kept = &trailing * units.subrows(interior, trailing.nrows());
+            let mut by_points = Mat::<f64>::zeros(units.ncols(), inside.ncols());
+            matmul(
+                by_points.as_mut(),
+                Accum::Replace,
+                units.subrows(0, interior).transpose(),
+                inside,
+                1.0,
+                Par::Seq,
+            );
+            for row in 0..units.ncols() {
+                let to = on_kept(chunk * at_once * size + row);
+                for i in 0..by_kept.nrows() {
+                    rows.by_kept[(to, on_kept(i))] = by_kept[(i, row)];
+                }
+                for (j, &column) in asked.iter().enumerate() {
+                    rows.by_points[(to, column)] = by_points[(row, j)];
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The points and functions along the axis whose displacements these unknowns have a part in.
+    fn asked(&self, points: &[(u32, [f64; COMPONENTS])]) -> Vec<(usize, usize)> {
+        let functions = self.prism.axial.len();
+        let has_part = |direction: &[f64; COMPONENTS], p: usize| {
+            let mut components = direction.iter().enumerate();
+            components
+                .any(|(c, along)| *along != 0.0 && self.unknowns.contains(&(c * functions + p)))
+        };
+        let each = points.iter().enumerate();
+        each.flat_map(|(point, (_, direction))| {
+            let own = (0..functions).filter(move |p| has_part(direction, *p));
+            own.map(move |p| (point, p))
+        })
+        .collect()
+    }
+
+    /// Columns of forces in the order of `factor`: `each` is handed what adds to them, by node, unknown of it and column.
+    fn forces(
+        &self,
+        factor: &Factor,
+        count: usize,
+        each: impl FnOnce(&mut dyn FnMut(u32, usize, usize, f64)),
+    ) -> Mat<f64> {
+        let (size, places) = (self.unknowns.len(), factor.places());
+        let mut forces = Mat::<f64>::zeros(size * self.numbering.count, count);
+        each(&mut |node, unknown, column, force| {
+            let Some(own) = self.unknowns.iter().position(|of| *of == unknown) else {
+                return;
+            };
+            for (place, share) in self.numbering.terms(node) {
+                forces[(places[place * size + own] as usize, column)] += share * force;
+            }
+        });
+        forces
+    }
+}
+
+/// An isotropic law in space: what the normal strains and the shears make.
+pub(crate) struct Law3 {
+    along: f64,
+    across: f64,
+    shear: f64,
+}
+
+impl Law3 {
+    pub(crate) fn new(material: &Material) -> Self {
+        let (e, nu) = (material.youngs_modulus, material.poisson_ratio);
+        let across = e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
+        let shear = material.shear_modulus();
+        Self {
+            along: across + 2.0 * shear,
+            across,
+            shear,
+        }
+    }
+
+    /// The stress (xx, yy, zz, xy, xz, yz) of a strain; of any orthogonal directions.
+    pub(crate) fn stress<T>(&self, [xx, yy, zz, xy, xz, yz]: [T; 6]) -> [T; 6]
+    where
+        T: Copy + std::ops::Add<Output = T> + std::ops::Mul<f64, Output = T>,
+    {
+        let sum = (xx + yy + zz) * self.across;
+        let twice = self.along - self.across;
+        [
+            sum + xx * twice,
+            sum + yy * twice,
+            sum + zz * twice,
+            xy * self.shear,
+            xz * self.shear,
+            yz * self.shear,
+        ]
+    }
+}
+
+fn section_matrices(element: &Element, grid: &Grid, law: &Law3, twist: f64) -> SectionMatrices {
     let kind = element.kind();
     let places = element.places(&grid.nodes);
     let count = element.nodes().len();
@@ -200,11 +489,7 @@ fn section_matrices(element: &Element, grid: &Grid, law: &Law, twist: f64) -> Se
 
 #[cfg(test)]
 mod tests {
-    use faer::Mat;
-
     use super::*;
-    use crate::fem::Interface;
-    use crate::fem::condensation::{Rows, condense};
 
     const HALF: f64 = 10e-3;
 
@@ -263,22 +548,6 @@ mod tests {
         all
     }
 
-    /// The energy ½ uᵀ K u of the displacements `u` of all nodes, node by node.
-    fn energy(prism: &Prism<'_>, u: &[f64]) -> f64 {
-        let size = prism.unknowns_of_node();
-        let mut energy = 0.0;
-        for (element, k) in prism.grid.elements.iter().zip(prism.stiffnesses()) {
-            let place = |i: usize| size * element.nodes()[i / size] as usize + i % size;
-            let count = size * element.nodes().len();
-            for j in 0..count {
-                for i in 0..count {
-                    energy += 0.5 * u[place(i)] * k(i, j) * u[place(j)];
-                }
-            }
-        }
-        energy
-    }
-
     #[test]
     fn rigid_motions_strain_nothing() {
         let square = square();
@@ -294,7 +563,7 @@ mod tests {
                     axial: &axial,
                 };
                 // A stretch as large as the motions.
-                let strained = energy(&prism, &unknowns(&prism, |x, _, _| [x, 0.0, 0.0]));
+                let strained = prism.energy(&unknowns(&prism, |x, _, _| [x, 0.0, 0.0]));
                 let motions: [Motion; 5] = [
                     |_, _, _| [1e-3, 0.0, 0.0],
                     |_, _, _| [0.0, 0.0, 1e-3],
@@ -303,7 +572,7 @@ mod tests {
                     |x, _, z| [z, 0.0, -x],
                 ];
                 for motion in motions {
-                    let energy = energy(&prism, &unknowns(&prism, motion));
+                    let energy = prism.energy(&unknowns(&prism, motion));
                     assert!(energy.abs() < 1e-12 * strained, "{energy:e} {strained:e}");
                 }
             }
@@ -326,8 +595,7 @@ mod tests {
                 twist,
                 axial: &axial,
             };
-            let energy =
-                |u: &dyn Fn(f64, f64, f64) -> [f64; 3]| energy(&prism, &unknowns(&prism, u));
+            let energy = |u: &dyn Fn(f64, f64, f64) -> [f64; 3]| prism.energy(&unknowns(&prism, u));
             let tension = energy(&|x, y, z| [-nu * x, -nu * y, z]);
             let bending =
                 energy(&|x, y, z| [-(z * z + nu * (x * x - y * y)) / 2.0, -nu * x * y, x * z]);
@@ -343,7 +611,7 @@ mod tests {
     }
 
     #[test]
-    fn even_and_odd_motions_of_a_straight_body_apart_make_the_same_of_it_as_together() {
+    fn even_and_odd_motions_of_a_straight_body_are_told_apart_and_make_the_same_of_it() {
         let grid = square();
         let axial = AxialBasis::new(&[-7e-3, 13e-3], 4);
         // A turn that nobody feels keeps them together.
@@ -361,20 +629,17 @@ mod tests {
                 ..Default::default()
             };
             let points = [(12, [0.6, -0.3, 0.7]), (20, [0.0, 1.0, 0.0])];
-            let (points, nodes) = (
-                prism.along(&points),
-                Functional::unknowns(&[13, 5, 25], prism.unknowns_of_node()),
-            );
-            let condensed = condense("a bar", &prism, &interface).expect("definite");
-            (condensed.stiffness(), condensed.rows(&points, &nodes))
+            let made = prism.condense_with("a bar", &interface, &points, &[13, 5, 25]);
+            made.expect("definite")
         });
-        let matrices = |(stiffness, rows): &(Mat<f64>, [Rows; 2])| {
-            let rows = rows.iter();
-            let rows = rows.flat_map(|of| [of.by_kept.clone(), of.by_forces.clone()]);
-            [stiffness.clone()]
-                .into_iter()
-                .chain(rows)
-                .collect::<Vec<_>>()
+        let matrices = |(condensed, rows): &(CondensedPrism, NodeRows)| {
+            [
+                condensed.stiffness.clone(),
+                condensed.rows.clone(),
+                condensed.held.clone(),
+                rows.by_kept.clone(),
+                rows.by_points.clone(),
+            ]
         };
         for (one, other) in matrices(&apart).iter().zip(&matrices(&together)) {
             assert!(one.norm_max() > 0.0);
@@ -396,12 +661,17 @@ mod tests {
             axial: &axial,
         };
         let kept: Vec<u32> = (0..grid.nodes.len() as u32).collect();
-        let interface = Interface {
-            kept: &kept,
-            ..Default::default()
-        };
-        let condensed = condense("a bar", &prism, &interface);
-        let k = condensed.expect("definite").stiffness();
+        let k = prism
+            .condense(
+                "a bar",
+                &Interface {
+                    kept: &kept,
+                    ..Default::default()
+                },
+                &[],
+            )
+            .expect("definite")
+            .stiffness;
         // Consistent loads of a uniform stress on both ends.
         let m = axial.len();
         let (low, high) = (axial.values(-HALF), axial.values(HALF));

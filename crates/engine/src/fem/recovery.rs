@@ -1,7 +1,7 @@
 //! Functionals of the displacements of a grid: a displacement, a stress.
 //!
 //! A substructure that is condensed together with functionals offers them as rows on its ports
-//! ([`super::condensation::condense`]); displacement and stress then need no second solution.
+//! ([`super::condensation::condense_with`]); displacement and stress then need no second solution.
 //!
 //! From the contact forces of one position to the stresses of a gear:
 //!
@@ -24,30 +24,16 @@ use super::law::Law;
 use crate::gear::{Material, Vector};
 use crate::grid::{Element, Grid};
 
-/// A linear functional of the displacements of some nodes: a sum of their unknowns, each with a weight.
+/// A linear functional Σ w·u of the displacements u of some nodes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Functional {
-    terms: Vec<(u32, usize, f64)>,
+    terms: Vec<(u32, Vector)>,
 }
 
 impl Functional {
-    /// The sum of w·u over the (node, w) in `terms`, in the plane.
+    /// The sum of w·u over the (node, w) in `terms`.
     pub fn new(terms: Vec<(u32, Vector)>) -> Self {
-        let of_unknowns = |(node, w): (u32, Vector)| [(node, 0, w.x), (node, 1, w.y)];
-        Self::of_unknowns(terms.into_iter().flat_map(of_unknowns).collect())
-    }
-
-    /// The sum of weight times unknown over `terms`: nodes, the number of an unknown of each, and its weight.
-    pub fn of_unknowns(terms: Vec<(u32, usize, f64)>) -> Self {
         Self { terms }
-    }
-
-    /// Each of the `size` unknowns of each of `nodes`.
-    pub fn unknowns(nodes: &[u32], size: usize) -> Vec<Self> {
-        let each = |&node: &u32| {
-            (0..size).map(move |unknown| Self::of_unknowns(vec![(node, unknown, 1.0)]))
-        };
-        nodes.iter().flat_map(each).collect()
     }
 
     /// The displacement of `node` along `direction`.
@@ -55,24 +41,18 @@ impl Functional {
         Self::new(vec![(node, direction)])
     }
 
-    /// The nodes, the number of an unknown of each, and its weight.
-    pub fn terms(&self) -> &[(u32, usize, f64)] {
+    /// The nodes and their weights w.
+    pub fn terms(&self) -> &[(u32, Vector)] {
         &self.terms
     }
 
-    /// The value for the displacements `u` of all nodes of the plane.
+    /// The value for the displacements `u` of all nodes.
     pub fn value(&self, u: &[Vector]) -> f64 {
         let terms = self.terms.iter();
         terms
-            .map(|(node, unknown, weight)| weight * u[*node as usize][*unknown])
+            .map(|(node, weight)| weight.dot(&u[*node as usize]))
             .sum()
     }
-}
-
-/// The displacements of nodes in the plane, of which `unknowns` are the components.
-pub fn vectors(unknowns: &[f64]) -> Vec<Vector> {
-    let nodes = unknowns.chunks_exact(2);
-    nodes.map(Vector::from_column_slice).collect()
 }
 
 /// The stress in Pa along a free edge at each of its nodes: positive is tension.

@@ -220,19 +220,7 @@ pub struct Followers<'a> {
     pub weights: Mat<f64>,
 }
 
-/// What a body is condensed to.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Interface<'a> {
-    /// Nodes whose unknowns are kept.
-    pub kept: &'a [u32],
-    /// Nodes that follow unknowns of their own, which are kept after those.
-    pub followers: &'a [Followers<'a>],
-    /// Nodes that are held.
-    pub fixed: &'a [u32],
-}
-
 /// The places of the nodes that move: interior ones first, kept ones and what others follow last, fixed ones nowhere.
-#[derive(Debug)]
 pub(super) struct Numbering {
     /// Of each node where its terms begin, and where they end.
     ranges: Vec<Range<usize>>,
@@ -244,13 +232,16 @@ pub(super) struct Numbering {
 }
 
 impl Numbering {
-    /// Of a grid of so many `nodes` on its `interface`.
-    pub(super) fn new(nodes: usize, interface: &Interface<'_>) -> Self {
-        let Interface {
-            kept,
-            followers,
-            fixed,
-        } = *interface;
+    pub(super) fn new(nodes: usize, kept: &[u32], fixed: &[u32]) -> Self {
+        Self::with_followers(nodes, kept, &[], fixed)
+    }
+
+    pub(super) fn with_followers(
+        nodes: usize,
+        kept: &[u32],
+        followers: &[Followers<'_>],
+        fixed: &[u32],
+    ) -> Self {
         let mut is_interior = vec![true; nodes];
         let following = followers.iter().flat_map(|of| of.nodes);
         for &node in kept.iter().chain(fixed).chain(following) {
@@ -284,11 +275,6 @@ impl Numbering {
         numbering
     }
 
-    /// The number of nodes of the grid.
-    pub(super) fn nodes(&self) -> usize {
-        self.ranges.len()
-    }
-
     /// Whether any node is held.
     pub(super) fn holds(&self) -> bool {
         self.holds
@@ -303,6 +289,14 @@ impl Numbering {
     /// Where the unknowns stand that a node follows, and by how much; a node that moves by itself follows its own.
     pub(super) fn terms(&self, node: u32) -> &[(usize, f64)] {
         &self.terms[self.ranges[node as usize].clone()]
+    }
+
+    /// Where the unknowns of a node stand that moves by itself.
+    pub(super) fn place(&self, node: u32) -> Option<usize> {
+        match self.terms(node) {
+            [(place, _)] => Some(*place),
+            _ => None,
+        }
     }
 
     /// All places that an element reaches, each once.
@@ -325,12 +319,7 @@ mod tests {
             Element::triangle([0, 1, 2, 3, 4, 5]),
             Element::triangle([2, 1, 6, 4, 7, 8]),
         ];
-        let interface = Interface {
-            kept: &[4, 0],
-            fixed: &[8],
-            ..Default::default()
-        };
-        let numbering = Numbering::new(9, &interface);
+        let numbering = Numbering::new(9, &[4, 0], &[8]);
         let k = |e: usize, i: usize, j: usize| {
             let (low, high) = (i.min(j), i.max(j));
             (1.0 + (7 * e + 3 * low) as f64 + 0.1 * high as f64).sin()
@@ -341,8 +330,7 @@ mod tests {
             matrix.add(element, |i, j| k(e, i, j), &numbering);
             for (a, node) in element.nodes().iter().enumerate() {
                 for (b, other) in element.nodes().iter().enumerate() {
-                    let place = |node: &u32| numbering.terms(*node).first().map(|term| term.0);
-                    let places = place(node).zip(place(other));
+                    let places = numbering.place(*node).zip(numbering.place(*other));
                     let Some((row, column)) = places else {
                         continue;
                     };
@@ -391,12 +379,7 @@ mod tests {
             nodes: &[2, 6, 8],
             weights: weights.clone(),
         }];
-        let interface = Interface {
-            kept: &[4],
-            followers: &followers,
-            fixed: &[0],
-        };
-        let numbering = Numbering::new(9, &interface);
+        let numbering = Numbering::with_followers(9, &[4], &followers, &[0]);
         assert_eq!((numbering.interior, numbering.count), (4, 7));
         // Every node by the numbered unknowns: fixed ones by none.
         let mut by = Mat::<f64>::zeros(9, 7);

@@ -9,7 +9,7 @@ use super::axial::AxialBasis;
 use super::prism::{COMPONENTS, Prism};
 use crate::gear::{Vector, radial, tangential};
 
-/// Heights across the body at which stresses are computed, for each degree of its functions.
+/// Heights across the body at which stresses are told, for each degree of its functions.
 const HEIGHTS_PER_DEGREE: usize = 4;
 
 /// The free surface over some edges of the section of a prism.

@@ -4,8 +4,7 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use super::axial::AxialBasis;
 use super::element::gradients;
-use super::law::Law;
-use super::prism::{COMPONENTS, Prism};
+use super::prism::{COMPONENTS, Law3, Prism};
 use crate::gear::{Vector, radial, tangential};
 use crate::grid::{Element, ElementKind};
 
@@ -170,7 +169,7 @@ impl Prism<'_> {
         at: &[Vector3<f64>],
         rise: &[Vector3<f64>],
     ) -> Vec<Matrix3<f64>> {
-        let law = Law::in_space(self.material);
+        let law = Law3::new(self.material);
         let mut sums = vec![(Matrix3::zeros(), 0.0); at.len()];
         for (element, gradients) in self.grid.elements.iter().zip(gradients) {
             for (node, gradient) in element.nodes().iter().zip(gradients) {

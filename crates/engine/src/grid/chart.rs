@@ -16,7 +16,7 @@ pub(super) const GROWTH: f64 = 0.35;
 pub(super) const LARGEST: f64 = 0.12;
 /// The least number of layers between a hole and what is next to it, at the standard level: enough to bend.
 pub(super) const LAYERS: usize = 6;
-/// Lines nearer than this, in the chart, are one: no thickness is found between them.
+/// Lines nearer than this, in the chart, are one: no thickness can be told between them.
 const ON_LINE: f64 = 1e-6;
 
 /// The ring in its chart: from `bore` < 0 to 0 at the interface circle.

@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn a_clockwise_or_folded_element_is_recognized_by_its_jacobian() {
+    fn a_clockwise_or_folded_element_is_told_by_its_jacobian() {
         let clockwise = single([(0.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, 0.0)]);
         assert!(clockwise.quality().smallest_jacobian < 0.0);
         let folded = single([(0.0, 0.0), (2.0, 0.0), (0.5, 0.5), (0.0, 2.0)]);

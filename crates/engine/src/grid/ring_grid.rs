@@ -11,7 +11,7 @@ pub const ELEMENTS_PER_TOOTH: f64 = 4.0;
 
 impl BlankGrid {
     /// Divides the blank `region` inside `interface_radius`, under `tooth_count` teeth with `elements_per_tooth` elements on the
-    /// interface circle for each at the standard level. `face_width` is the thickness outside the web.
+    /// interface circle for each at the standard level. `face_width` is the thickness beside the web.
     ///
     /// A blank without holes is divided by one pitch, a pattern of round holes by the sector of one hole; any other, and one
     /// whose web ends across the holes or close to them, as a whole. The frame is that of hole 0 of a pattern, so that patterns

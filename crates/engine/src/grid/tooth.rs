@@ -19,12 +19,6 @@ impl ToothGrid {
         Self::of_sizes(gear, interface_radius, &Sizes::OF_SECTION, level)
     }
 
-    /// The nodes at which it meets its neighbors and what is below it: right side, left side, arc.
-    pub fn interface(&self) -> Vec<u32> {
-        let (right, left) = &self.side_nodes;
-        [right.as_slice(), left, &self.arc_nodes].concat()
-    }
-
     /// The same in fewer elements, even ones: for a section that carries polynomials along the axis.
     ///
     /// # Errors

@@ -3,14 +3,12 @@
 use faer::Mat;
 
 use super::axes::{in_axes, polar_axes, rows_in_axes};
-use super::cyclic::{Component, Harmonics};
-use super::sector::{Arc, Sector};
+use super::cyclic::{Component, Harmonics, Sector};
 use super::shaft::{OnShaft, ShaftSection, orders_of_edge};
-use crate::fem::body::Plate;
-use crate::fem::condensation::condense;
-use crate::fem::element::COMPONENTS;
+use crate::fem::FemError;
+use crate::fem::condensation::condense_with;
 use crate::fem::recovery::Functional;
-use crate::fem::{FemError, Interface};
+
 use crate::gear::{Core, Material};
 use crate::grid::BlankGrid;
 use crate::run::Run;
@@ -73,40 +71,32 @@ impl BlankSubstructure {
             Core::Bore => (&[][..], grid.bore_nodes.as_slice()),
             Core::Shaft { .. } => (grid.bore_nodes.as_slice(), &[][..]),
         };
-        let kept = [right.as_slice(), left, &grid.arc_nodes, edge].concat();
-        let plate = Plate {
-            grid: &grid.grid,
-            material,
-            thickness,
-        };
-        let interface = Interface {
-            kept: &kept,
-            fixed: held,
-            ..Default::default()
-        };
-        let condensed = condense("the blank", &plate, &interface)?;
-        let [_, rows] = condensed.rows(&[], asked);
+        let kept: Vec<u32> = right
+            .iter()
+            .chain(left)
+            .chain(&grid.arc_nodes)
+            .chain(edge)
+            .copied()
+            .collect();
+        let condensed = condense_with(
+            "the blank",
+            &grid.grid,
+            (material, thickness),
+            &kept,
+            held,
+            asked,
+        )?;
         let axes: Vec<_> = kept
             .iter()
             .map(|&node| polar_axes(grid.grid.nodes[node as usize]))
             .collect();
-        let orders = orders_of_edge(grid);
-        let mut arcs = vec![Arc::Nodes(grid.arc_angles.clone(), harmonics.largest)];
-        if !edge.is_empty() {
-            let angle = |node: &u32| {
-                let point = grid.grid.nodes[*node as usize];
-                point.y.atan2(point.x)
-            };
-            arcs.push(Arc::Nodes(edge.iter().map(angle).collect(), orders.largest));
-        }
         let sector = Sector {
             count: grid.sector_count as usize,
-            size: COMPONENTS,
-            stiffness: in_axes(&condensed.stiffness(), &axes),
+            stiffness: in_axes(&condensed.stiffness, &axes),
             side_nodes: right.len(),
-            arcs,
+            arc_angles: grid.arc_angles.clone(),
         };
-        let asked_rows = rows_in_axes(&rows.by_kept, &axes);
+        let asked_rows = rows_in_axes(&condensed.rows, &axes);
         let (stiffness, rows, edge) = match core {
             Core::Bore => {
                 let rows = if asked.is_empty() {
@@ -117,13 +107,26 @@ impl BlankSubstructure {
                 (sector.ring_stiffness(&harmonics, run)?, rows, None)
             }
             Core::Shaft { .. } => {
+                let angles: Vec<f64> = edge
+                    .iter()
+                    .map(|node| {
+                        let point = grid.grid.nodes[*node as usize];
+                        point.y.atan2(point.x)
+                    })
+                    .collect();
                 let shaft = ShaftSection::new(material, thickness);
-                let on_shaft =
-                    OnShaft::new(&sector, [&harmonics, &orders], &shaft, &asked_rows, run)?;
+                let made = OnShaft::new(
+                    &sector,
+                    (&angles, orders_of_edge(grid)),
+                    &shaft,
+                    &harmonics,
+                    &asked_rows,
+                    run,
+                )?;
                 (
-                    on_shaft.stiffness,
-                    on_shaft.rows,
-                    Some((orders, on_shaft.edge_moved)),
+                    made.stiffness,
+                    made.rows,
+                    Some((made.edge, made.edge_moved)),
                 )
             }
         };

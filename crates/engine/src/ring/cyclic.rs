@@ -8,14 +8,124 @@
 use faer::{Mat, MatRef, c64};
 
 pub use super::harmonics::{Component, Harmonics};
-use super::sector::{ClassOnArcs, Sector};
 use crate::fem::FemError;
+use crate::fem::dense::Cholesky;
 use crate::run::Run;
 
 /// Columns of a product between two looks at the run: a tenth of a second for the largest rings of one sector.
 const PANEL: usize = 32;
 
+/// One sector of a ring: its stiffness on the unknowns (right side, left side, arc) in polar components.
+#[derive(Debug, Clone)]
+pub struct Sector {
+    /// The number S of sectors in the ring.
+    pub count: usize,
+    /// The stiffness, in N/m.
+    pub stiffness: Mat<f64>,
+    /// The number of nodes on each side.
+    pub side_nodes: usize,
+    /// The angles of the nodes on the arc.
+    pub arc_angles: Vec<f64>,
+}
+
+/// The displacements of the sides of one class of a ring when its arc moves or its sides are loaded.
+pub struct ClassSolution {
+    /// The factor of the sides' stiffness with the turn of the class across a sector; `None` without side nodes.
+    pub sides: Option<Cholesky<c64>>,
+    /// The stiffness between sides and the harmonics of the class.
+    pub sides_to_harmonics: Mat<c64>,
+    /// The orders of the class.
+    pub orders: Vec<i64>,
+}
+
 impl Sector {
+    /// The factor e^{i class 2πd/S} from a sector to the one `distance` places counter-clockwise of it; with 1, from the right side of
+    /// a sector to its left one.
+    pub fn turn(&self, class: usize, distance: usize) -> c64 {
+        let part = ((class * distance) % self.count) as f64 / self.count as f64;
+        let (sin, cos) = (2.0 * std::f64::consts::PI * part).sin_cos();
+        c64::new(cos, sin)
+    }
+
+    /// E: the polar displacements of the arc's nodes for unit amplitudes of `orders`; two columns an order.
+    pub fn arc_of_harmonics(&self, orders: &[i64]) -> Mat<c64> {
+        at_angles(&self.arc_angles, orders)
+    }
+
+    /// Condenses one class to its harmonics: returns the Hermitian stiffness of one sector and the way back to the sides.
+    ///
+    /// # Errors
+    ///
+    /// [`FemError::NotPositiveDefinite`], or [`FemError::Stopped`].
+    pub fn condense_class(
+        &self,
+        class: usize,
+        harmonics: &Harmonics,
+        run: &Run,
+    ) -> Result<(Mat<c64>, ClassSolution), FemError> {
+        let orders = harmonics.orders_of_class(class, self.count);
+        let e = self.arc_of_harmonics(&orders);
+        self.condense_class_on(class, &e, orders, run)
+    }
+
+    /// As [`Sector::condense_class`], with the unknowns behind both sides moved by the columns of `e`; `orders` are those that the way back is told of.
+    pub(super) fn condense_class_on(
+        &self,
+        class: usize,
+        e: &Mat<c64>,
+        orders: Vec<i64>,
+        run: &Run,
+    ) -> Result<(Mat<c64>, ClassSolution), FemError> {
+        let ns = 2 * self.side_nodes;
+        let na = e.nrows();
+        let k = &self.stiffness;
+        // Displacements of (right, left) are (1, turn) times those of the right side.
+        let turn = self.turn(class, 1);
+        let real = |i: usize, j: usize| c64::new(k[(i, j)], 0.0);
+        let arc = Mat::<c64>::from_fn(na, na, |i, j| real(2 * ns + i, 2 * ns + j));
+        let mut condensed = Mat::<c64>::zeros(e.ncols(), e.ncols());
+        // A ring of one sector has all orders in one class: its products take long and are done in panels.
+        for start in (0..e.ncols()).step_by(PANEL) {
+            run.check()?;
+            let width = PANEL.min(e.ncols() - start);
+            let forces = &arc * e.subcols(start, width);
+            condensed
+                .subcols_mut(start, width)
+                .copy_from(e.adjoint() * forces);
+        }
+        let solution = if ns == 0 {
+            ClassSolution {
+                sides: None,
+                sides_to_harmonics: Mat::zeros(0, e.ncols()),
+                orders,
+            }
+        } else {
+            let sides = Mat::<c64>::from_fn(ns, ns, |i, j| {
+                real(i, j)
+                    + real(ns + i, ns + j)
+                    + turn * real(i, ns + j)
+                    + turn.conj() * real(ns + i, j)
+            });
+            let sides_to_arc = Mat::<c64>::from_fn(ns, na, |i, j| {
+                real(i, 2 * ns + j) + turn.conj() * real(ns + i, 2 * ns + j)
+            });
+            let sides_to_harmonics = &sides_to_arc * e;
+            let sides = Cholesky::new(sides).ok_or(FemError::NotPositiveDefinite {
+                part: "a ring's sides",
+                unknowns: ns,
+            })?;
+            let mut half = sides_to_harmonics.clone();
+            sides.half_solve_in_place(half.as_mut());
+            condensed -= half.adjoint() * &half;
+            ClassSolution {
+                sides: Some(sides),
+                sides_to_harmonics,
+                orders,
+            }
+        };
+        Ok((condensed, solution))
+    }
+
     /// The stiffness of the whole ring on the real unknowns of `harmonics`.
     ///
     /// # Errors
@@ -28,9 +138,14 @@ impl Sector {
         let mut stiffness = Mat::zeros(harmonics.unknowns(), harmonics.unknowns());
         // Classes c and S − c are each other's conjugates; both are visited only through their orders, so half suffice.
         for class in 0..=self.count / 2 {
-            run.check()?;
-            let on_arc = self.condense_class(class, self.orders(class, harmonics.largest))?;
-            self.add_class(&mut stiffness, harmonics, class, &on_arc);
+            let (condensed, solution) = self.condense_class(class, harmonics, run)?;
+            self.add_class(
+                &mut stiffness,
+                harmonics,
+                class,
+                &condensed,
+                &solution.orders,
+            );
         }
         Ok(stiffness)
     }
@@ -38,7 +153,7 @@ impl Sector {
     /// The stiffness of a ring that is one sector without sides: Eᵀ K E with the real harmonics, at a quarter of the work of
     /// the complex ones.
     fn closed_stiffness(&self, harmonics: &Harmonics, run: &Run) -> Result<Mat<f64>, FemError> {
-        let e = harmonics.on_circle(self.arcs[0].angles());
+        let e = harmonics.on_circle(&self.arc_angles);
         let mut stiffness = Mat::zeros(e.ncols(), e.ncols());
         for start in (0..e.ncols()).step_by(PANEL) {
             run.check()?;
@@ -66,18 +181,52 @@ impl Sector {
         run: &Run,
     ) -> Result<Mat<f64>, FemError> {
         if self.count == 1 && self.side_nodes == 0 {
-            return Ok(rows * harmonics.on_circle(self.arcs[0].angles()));
+            return Ok(rows * harmonics.on_circle(&self.arc_angles));
         }
         let mut ring = Mat::zeros(rows.nrows(), harmonics.unknowns());
         for class in 0..=self.count / 2 {
-            run.check()?;
-            let on_arc = self.condense_class(class, self.orders(class, harmonics.largest))?;
-            let rows = on_arc.on_arcs(&self.on_class(rows, class, &on_arc.orders));
-            for (j, &n) in on_arc.orders.iter().enumerate() {
-                harmonics.set_rows(&mut ring, n, rows.subcols(2 * j, 2));
+            let (_, solution) = self.condense_class(class, harmonics, run)?;
+            let on_harmonics = self.class_rows(rows, class, &solution);
+            for (j, &n) in solution.orders.iter().enumerate() {
+                harmonics.set_rows(&mut ring, n, on_harmonics.subcols(2 * j, 2));
             }
         }
         Ok(ring)
+    }
+
+    /// Rows on the unknowns of sector 0 as rows on the complex amplitudes of the orders of one class.
+    pub fn class_rows(&self, rows: &Mat<f64>, class: usize, solution: &ClassSolution) -> Mat<c64> {
+        let e = self.arc_of_harmonics(&solution.orders);
+        self.class_rows_on(rows, class, &e, solution)
+    }
+
+    /// As [`Sector::class_rows`], of a class that was condensed with the columns of `e`.
+    pub(super) fn class_rows_on(
+        &self,
+        rows: &Mat<f64>,
+        class: usize,
+        e: &Mat<c64>,
+        solution: &ClassSolution,
+    ) -> Mat<c64> {
+        let ns = 2 * self.side_nodes;
+        let on_arc = Mat::<c64>::from_fn(rows.nrows(), e.nrows(), |i, j| {
+            c64::new(rows[(i, 2 * ns + j)], 0.0)
+        });
+        let mut on_harmonics = on_arc * e;
+        if let Some(sides) = &solution.sides {
+            let mut moved = solution.sides_to_harmonics.clone();
+            sides.solve_in_place(moved.as_mut());
+            on_harmonics -= self.side_rows(rows, class) * moved;
+        }
+        on_harmonics
+    }
+
+    /// Rows on both sides of sector 0 as rows on the amplitudes of its right side in one class.
+    pub fn side_rows(&self, rows: &Mat<f64>, class: usize) -> Mat<c64> {
+        let (ns, turn) = (2 * self.side_nodes, self.turn(class, 1));
+        Mat::<c64>::from_fn(rows.nrows(), ns, |i, j| {
+            c64::new(rows[(i, j)], 0.0) + turn * rows[(i, ns + j)]
+        })
     }
 
     /// How often a condensed class counts in the stiffness of the ring: it stands for all sectors, and for its conjugate.
@@ -93,12 +242,31 @@ impl Sector {
         stiffness: &mut Mat<f64>,
         harmonics: &Harmonics,
         class: usize,
-        on_arc: &ClassOnArcs,
+        condensed: &Mat<c64>,
+        orders: &[i64],
     ) {
-        let (orders, weight) = (&on_arc.orders[..], self.class_weight(class));
-        let condensed = on_arc.stiffness.as_ref();
-        add_orders(stiffness, harmonics, condensed, [orders, orders], weight);
+        let weight = self.class_weight(class);
+        add_orders(
+            stiffness,
+            harmonics,
+            condensed.as_ref(),
+            [orders, orders],
+            weight,
+        );
     }
+}
+
+/// The polar displacements of nodes at `angles` for unit amplitudes of `orders`; two columns an order.
+pub(super) fn at_angles(angles: &[f64], orders: &[i64]) -> Mat<c64> {
+    let mut e = Mat::<c64>::zeros(2 * angles.len(), 2 * orders.len());
+    for (j, &n) in orders.iter().enumerate() {
+        for (i, &angle) in angles.iter().enumerate() {
+            let (sin, cos) = (n as f64 * angle).sin_cos();
+            e[(2 * i, 2 * j)] = c64::new(cos, sin);
+            e[(2 * i + 1, 2 * j + 1)] = c64::new(cos, sin);
+        }
+    }
+    e
 }
 
 /// Adds the blocks of `condensed`, of one set of orders by another, to a real `stiffness` so many times.
@@ -127,7 +295,6 @@ pub(super) mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::ring::sector::Arc;
 
     /// A sector of `count` with any symmetric positive definite stiffness: nothing below depends on where it comes from.
     pub(in crate::ring) fn sector(count: usize, side_nodes: usize) -> Sector {
@@ -138,10 +305,9 @@ pub(super) mod tests {
         let dense = &factor * factor.transpose() + DMatrix::identity(n, n);
         Sector {
             count,
-            size: 2,
             stiffness: Mat::from_fn(n, n, |i, j| dense[(i, j)]),
             side_nodes,
-            arcs: vec![Arc::Nodes(arc_angles, usize::MAX)],
+            arc_angles,
         }
     }
 
@@ -150,7 +316,7 @@ pub(super) mod tests {
     /// The unknowns of side i are shared by sector i − 1, on its left, and sector i, on its right.
     pub(in crate::ring) fn assembled(sector: &Sector, harmonics: &Harmonics) -> DMatrix<f64> {
         let (ns, s) = (2 * sector.side_nodes, sector.count);
-        let (na, nq) = (2 * sector.arcs[0].angles().len(), harmonics.unknowns());
+        let (na, nq) = (2 * sector.arc_angles.len(), harmonics.unknowns());
         let n = s * ns + nq;
         let mut ring = DMatrix::<f64>::zeros(n, n);
         for i in 0..s {
@@ -170,8 +336,8 @@ pub(super) mod tests {
 
     /// The polar displacements of the arc of sector `i` for unit amplitudes: a_n cos nθ + b_n sin nθ as documented.
     pub(in crate::ring) fn arc(sector: &Sector, harmonics: &Harmonics, i: usize) -> DMatrix<f64> {
-        let mut arc = DMatrix::zeros(2 * sector.arcs[0].angles().len(), harmonics.unknowns());
-        for (node, angle) in sector.arcs[0].angles().iter().enumerate() {
+        let mut arc = DMatrix::zeros(2 * sector.arc_angles.len(), harmonics.unknowns());
+        for (node, angle) in sector.arc_angles.iter().enumerate() {
             let angle = angle + 2.0 * std::f64::consts::PI * i as f64 / sector.count as f64;
             for n in 0..=harmonics.largest {
                 for (c, component) in [Component::Radial, Component::Tangential]

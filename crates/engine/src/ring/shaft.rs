@@ -4,10 +4,9 @@
 //! over it, a torque by a tangential force f = T r/(b J) that rises with the radius, as torsion leaves it. Both do work on the mean displacement of the
 //! section and on its mean rotation, ∫ r u_t dA/∫ r² dA; these are held at zero. Order by order that is a closed form in plane stress.
 
-use faer::Mat;
+use faer::{Mat, c64};
 
-use super::cyclic::{Component, Harmonics, add_orders};
-use super::sector::Sector;
+use super::cyclic::{Component, Harmonics, Sector, add_orders, at_angles};
 use crate::fem::FemError;
 use crate::fem::dense::{Cholesky, symmetrize};
 use crate::gear::Material;
@@ -32,16 +31,19 @@ pub(super) struct OnShaft {
     pub(super) stiffness: Mat<f64>,
     /// Rows on the unknowns of sector 0 as rows on them.
     pub(super) rows: Mat<f64>,
-    /// How the edge of the shaft moves, by the harmonics of the outer circle.
+    /// The orders of the edge of the shaft.
+    pub(super) edge: Harmonics,
+    /// How that edge moves, by the harmonics of the outer circle.
     pub(super) edge_moved: Mat<f64>,
 }
 
 impl OnShaft {
-    /// Condenses the ring of `sector`, whose arcs are the outer circle and the edge of `shaft`.
+    /// Condenses the ring of `sector`, whose stiffness and whose `rows` go on behind the arc with the nodes of the edge of `shaft` at `edge_angles`.
     pub(super) fn new(
         sector: &Sector,
-        [outer, edge]: [&Harmonics; 2],
+        (edge_angles, edge): (&[f64], Harmonics),
         shaft: &ShaftSection,
+        outer: &Harmonics,
         rows: &Mat<f64>,
         run: &Run,
     ) -> Result<Self, FemError> {
@@ -51,17 +53,20 @@ impl OnShaft {
         let (mut outer_rows, mut edge_rows) =
             (Mat::zeros(rows.nrows(), o), Mat::zeros(rows.nrows(), i));
         for class in 0..=sector.count / 2 {
-            run.check()?;
-            let largest = outer.largest.max(edge.largest);
-            let on_arcs = sector.condense_class(class, sector.orders(class, largest))?;
-            let orders = [outer, edge].map(|each| each.orders_of_class(class, sector.count));
+            let orders = [outer, &edge].map(|each| each.orders_of_class(class, sector.count));
+            let arcs = [
+                sector.arc_of_harmonics(&orders[0]),
+                at_angles(edge_angles, &orders[1]),
+            ];
+            let e = beside(&arcs);
+            let first = arcs[0].ncols();
+            let (condensed, solution) =
+                sector.condense_class_on(class, &e, orders[0].clone(), run)?;
+            let weight = sector.class_weight(class);
+            let count = arcs[1].ncols();
             let [a, b] = [&orders[0][..], &orders[1][..]];
-            let (first, count, weight) = (2 * a.len(), 2 * b.len(), sector.class_weight(class));
             let part = |row: usize, column: usize, rows: usize, columns: usize| {
-                on_arcs
-                    .stiffness
-                    .as_ref()
-                    .submatrix(row, column, rows, columns)
+                condensed.as_ref().submatrix(row, column, rows, columns)
             };
             add_orders(
                 &mut on_outer,
@@ -72,29 +77,29 @@ impl OnShaft {
             );
             add_orders(
                 &mut between,
-                edge,
+                &edge,
                 part(first, 0, count, first),
                 [b, a],
                 weight,
             );
             add_orders(
                 &mut on_edge,
-                edge,
+                &edge,
                 part(first, first, count, count),
                 [b, b],
                 weight,
             );
             if rows.nrows() > 0 {
-                let of_class = on_arcs.on_arcs(&sector.on_class(rows, class, &on_arcs.orders));
+                let told = sector.class_rows_on(rows, class, &e, &solution);
                 for (j, &n) in a.iter().enumerate() {
-                    outer.set_rows(&mut outer_rows, n, of_class.subcols(2 * j, 2));
+                    outer.set_rows(&mut outer_rows, n, told.subcols(2 * j, 2));
                 }
                 for (j, &n) in b.iter().enumerate() {
-                    edge.set_rows(&mut edge_rows, n, of_class.subcols(first + 2 * j, 2));
+                    edge.set_rows(&mut edge_rows, n, told.subcols(first + 2 * j, 2));
                 }
             }
         }
-        shaft.add_to(&mut on_edge, edge);
+        shaft.add_to(&mut on_edge, &edge);
         let factor = Cholesky::new(on_edge).ok_or(FemError::NotPositiveDefinite {
             part: "the edge of a shaft",
             unknowns: i,
@@ -108,9 +113,20 @@ impl OnShaft {
         Ok(Self {
             stiffness,
             rows: outer_rows + edge_rows * &edge_moved,
+            edge,
             edge_moved,
         })
     }
+}
+
+/// Two matrices on the diagonal of one.
+fn beside([one, other]: &[Mat<c64>; 2]) -> Mat<c64> {
+    let (rows, columns) = (one.nrows(), one.ncols());
+    let mut both = Mat::zeros(rows + other.nrows(), columns + other.ncols());
+    both.submatrix_mut(0, 0, rows, columns).copy_from(one);
+    both.submatrix_mut(rows, columns, other.nrows(), other.ncols())
+        .copy_from(other);
+    both
 }
 
 /// The disc of one material inside the shaft's radius. How large it is does not matter to the forces that displacements of its edge take.
@@ -266,15 +282,15 @@ mod tests {
         let shear_modulus = Material::STEEL.youngs_modulus / 2.6;
         // Turned by φ the edge takes T = 12 π G b R² φ: at r = R that is φ = T/(4 π G b) (4/3 − 1)/R².
         let [_, [_, turned]] = section().stiffness(0);
-        let expected = 12.0 * std::f64::consts::PI * shear_modulus * 20e-3;
-        assert!((turned / expected - 1.0).abs() < 1e-12);
+        let told = 12.0 * std::f64::consts::PI * shear_modulus * 20e-3;
+        assert!((turned / told - 1.0).abs() < 1e-12);
         // Held at a rigid edge the even force p on it makes u = p (R² − r²)/(6 G + 2 λ) along it and so a mean of half that at the axis: moved by d
         // the edge takes F = π R² b p = 4 π b (3 G + λ) d, with λ of plane stress.
         let [[a, b], [c, d]] = section().stiffness(1);
         let lame = 2.0 * shear_modulus * 0.3 / 0.7;
         let force = (a - b) - (c - d);
-        let expected = 4.0 * std::f64::consts::PI * 20e-3 * (3.0 * shear_modulus + lame);
-        assert!((force / expected - 1.0).abs() < 1e-12, "{force} {expected}");
+        let told = 4.0 * std::f64::consts::PI * 20e-3 * (3.0 * shear_modulus + lame);
+        assert!((force / told - 1.0).abs() < 1e-12, "{force} {told}");
     }
 
     #[test]

@@ -6,7 +6,6 @@ use super::axes::tooth_angle;
 use super::blank::BlankSubstructure;
 use super::cyclic::{Component, Harmonics};
 use super::modes::compress;
-use super::sector::between;
 use super::tooth::ToothSubstructure;
 use crate::fem::FemError;
 use crate::fem::dense::Cholesky;
@@ -47,26 +46,45 @@ impl TeethRing {
     ) -> Result<Self, FemError> {
         let sector = &tooth.sector;
         let (z, r) = (sector.count, tooth.mode_count());
-        let forces = tooth.mode_forces.transpose().to_owned();
+        let ns = 2 * sector.side_nodes;
+        let forces = &tooth.mode_forces;
         let mut stiffness = Mat::zeros(harmonics.unknowns(), harmonics.unknowns());
         let mut tooth_forces = Mat::<f64>::zeros(harmonics.unknowns(), r);
         let mut class_compliance = Vec::with_capacity(z / 2 + 1);
         for class in 0..=z / 2 {
-            run.check()?;
-            let on_arc = sector.condense_class(class, sector.orders(class, harmonics.largest))?;
-            sector.add_class(&mut stiffness, &harmonics, class, &on_arc);
+            let (condensed, solution) = sector.condense_class(class, &harmonics, run)?;
+            sector.add_class(
+                &mut stiffness,
+                &harmonics,
+                class,
+                &condensed,
+                &solution.orders,
+            );
 
             // Work of the modes on the sides and on the arc, as amplitudes of this class.
-            let work = sector.on_class(&forces, class, &on_arc.orders);
-            let mut half = work.subcols(0, 2 * sector.side_nodes).adjoint().to_owned();
-            on_arc.sides.half_solve_in_place(half.as_mut());
-            class_compliance.push(half.adjoint() * &half);
-            let on_harmonics = on_arc.on_arcs(&work).adjoint().to_owned();
-            add_forces(&mut tooth_forces, &harmonics, &on_harmonics, &on_arc.orders);
+            let turn = sector.turn(class, 1);
+            let mut on_sides = Mat::<c64>::from_fn(ns, r, |i, j| {
+                c64::new(forces[(i, j)], 0.0) + turn.conj() * forces[(ns + i, j)]
+            });
+            let arc = Mat::<c64>::from_fn(2 * sector.arc_angles.len(), r, |i, j| {
+                c64::new(forces[(2 * ns + i, j)], 0.0)
+            });
+            let mut on_harmonics = sector.arc_of_harmonics(&solution.orders).adjoint() * arc;
+            let loads = on_sides.clone();
+            if let Some(sides) = &solution.sides {
+                sides.solve_in_place(on_sides.as_mut());
+                on_harmonics -= solution.sides_to_harmonics.adjoint() * &on_sides;
+            }
+            class_compliance.push(loads.adjoint() * &on_sides);
+            add_forces(
+                &mut tooth_forces,
+                &harmonics,
+                &on_harmonics,
+                &solution.orders,
+            );
         }
-        // X_d = (1/Z) Σ_classes e^{−i class 2π d/Z} ĝᴴ K_s⁻¹ ĝ.
         let held_coupling = (0..=FARTHEST_COUPLED)
-            .map(|d| between(class_compliance.iter().enumerate(), z, z - d % z))
+            .map(|d| held_coupling(&class_compliance, z, d))
             .collect();
         // Modes that hardly show at the flank need fewer digits, and on their way to the interface circle their fields grow
         // alike: they exert about half as many patterns as they are.
@@ -232,6 +250,28 @@ fn add_forces(
             }
         }
     }
+}
+
+/// X_d = (1/Z) Σ_classes e^{−i class 2π d/Z} ĝᴴ K_s⁻¹ ĝ.
+fn held_coupling(class_compliance: &[Mat<c64>], z: usize, d: usize) -> Mat<f64> {
+    let r = class_compliance[0].nrows();
+    let mut sum = Mat::<f64>::zeros(r, r);
+    for (class, compliance) in class_compliance.iter().enumerate() {
+        let weight = if (2 * class).is_multiple_of(z) {
+            1.0
+        } else {
+            2.0
+        } / z as f64;
+        let (sin, cos) =
+            (2.0 * std::f64::consts::PI * ((class * d) % z) as f64 / z as f64).sin_cos();
+        let turn = c64::new(cos, -sin);
+        for j in 0..r {
+            for i in 0..r {
+                sum[(i, j)] += weight * (turn * compliance[(i, j)]).re;
+            }
+        }
+    }
+    sum
 }
 
 #[cfg(test)]

@@ -1,9 +1,8 @@
 //! What loads on the flanks and the motion of the interface circle do inside the teeth.
 
-use faer::Mat;
+use faer::{Mat, c64};
 
 use super::cyclic::Harmonics;
-use super::sector::add_class;
 use super::teeth::FARTHEST_COUPLED;
 use super::tooth::{ToothRows, ToothSubstructure};
 use crate::fem::FemError;
@@ -40,27 +39,39 @@ impl TeethRecovery {
     ) -> Result<Self, FemError> {
         let sector = &tooth.sector;
         let (z, r, ns) = (sector.count, tooth.mode_count(), 2 * sector.side_nodes);
-        let forces = tooth.mode_forces.transpose().to_owned();
-        let rows_b = &rows.by_interface;
+        let (forces, rows_b) = (&tooth.mode_forces, &rows.by_interface);
         let reach = FARTHEST_COUPLED.min((z - 1) / 2);
         let mut by_harmonics = Mat::zeros(rows_b.nrows(), harmonics.unknowns());
         let mut by_modes = vec![Mat::<f64>::zeros(rows_b.nrows(), r); 2 * reach + 1];
         for class in 0..=z / 2 {
-            run.check()?;
-            let on_arc = sector.condense_class(class, sector.orders(class, harmonics.largest))?;
-            let on_class = sector.on_class(rows_b, class, &on_arc.orders);
-            let on_harmonics = on_arc.on_arcs(&on_class);
-            for (j, &n) in on_arc.orders.iter().enumerate() {
+            let (_, solution) = sector.condense_class(class, &harmonics, run)?;
+            let on_harmonics = sector.class_rows(rows_b, class, &solution);
+            for (j, &n) in solution.orders.iter().enumerate() {
                 harmonics.set_rows(&mut by_harmonics, n, on_harmonics.subcols(2 * j, 2));
             }
+            let Some(sides) = &solution.sides else {
+                continue;
+            };
             // The sides of this class under unit modal loads.
-            let work = sector.on_class(&forces, class, &on_arc.orders);
-            let mut moved = work.subcols(0, ns).adjoint().to_owned();
-            on_arc.sides.solve_in_place(moved.as_mut());
-            let answer = on_class.subcols(0, ns) * moved;
+            let turn = sector.turn(class, 1);
+            let mut moved = Mat::<c64>::from_fn(ns, r, |i, j| {
+                c64::new(forces[(i, j)], 0.0) + turn.conj() * forces[(ns + i, j)]
+            });
+            sides.solve_in_place(moved.as_mut());
+            let answer = sector.side_rows(rows_b, class) * moved;
+            let classes = if (2 * class).is_multiple_of(z) {
+                1.0
+            } else {
+                2.0
+            };
             for (place, rows) in by_modes.iter_mut().enumerate() {
-                // From the loaded tooth to this one.
-                add_class(rows, (class, &answer), z, z + reach - place);
+                let distance = place + z - reach;
+                let turn = sector.turn(class, distance).conj();
+                for j in 0..r {
+                    for i in 0..rows.nrows() {
+                        rows[(i, j)] += classes / z as f64 * (turn * answer[(i, j)]).re;
+                    }
+                }
             }
         }
         Ok(Self {

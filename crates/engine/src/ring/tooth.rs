@@ -3,13 +3,12 @@
 use faer::Mat;
 
 use super::axes::{in_axes, polar_axes, rows_in_axes};
+use super::cyclic::Sector;
 use super::modes::compress;
-use super::sector::{Arc, Sector};
-use crate::fem::body::Plate;
-use crate::fem::condensation::{Condensed, condense};
-use crate::fem::element::COMPONENTS;
+use crate::fem::FemError;
+use crate::fem::condensation::condense_with;
+use crate::fem::dense::{Cholesky, mirror_lower, symmetrize};
 use crate::fem::recovery::Functional;
-use crate::fem::{FemError, Interface};
 use crate::gear::{SpurGear, Vector, radial};
 use crate::grid::ToothGrid;
 
@@ -51,29 +50,10 @@ impl ToothSubstructure {
     ///
     /// [`FemError`] if the grid is degenerate.
     pub fn new(gear: &SpurGear, grid: &ToothGrid) -> Result<Self, FemError> {
-        let (tooth, _) = Self::with_recovery(gear, grid, &Self::condensed(gear, grid)?, &[])?;
-        Ok(tooth)
+        Ok(Self::with_recovery(gear, grid, &[])?.0)
     }
 
-    /// Condenses `grid`, a sector of `gear`, to its sides and its arc.
-    ///
-    /// # Errors
-    ///
-    /// As [`ToothSubstructure::new`].
-    pub fn condensed(gear: &SpurGear, grid: &ToothGrid) -> Result<Condensed, FemError> {
-        let plate = Plate {
-            grid: &grid.grid,
-            material: gear.material(),
-            thickness: gear.face_width(),
-        };
-        let interface = Interface {
-            kept: &grid.interface(),
-            ..Default::default()
-        };
-        condense("the tooth", &plate, &interface)
-    }
-
-    /// That of `grid`, a sector of `gear` that is `condensed`, and what the functionals `asked` of its displacements become.
+    /// Condenses `grid`, a sector of `gear`, and with it the functionals `asked` of its displacements.
     ///
     /// # Errors
     ///
@@ -81,50 +61,89 @@ impl ToothSubstructure {
     pub fn with_recovery(
         gear: &SpurGear,
         grid: &ToothGrid,
-        condensed: &Condensed,
         asked: &[Functional],
     ) -> Result<(Self, ToothRows), FemError> {
+        let (right, left) = &grid.side_nodes;
+        let kept: Vec<u32> = grid
+            .flank_nodes
+            .iter()
+            .chain(right)
+            .chain(left)
+            .chain(&grid.arc_nodes)
+            .copied()
+            .collect();
+        let condensed = condense_with(
+            "the tooth",
+            &grid.grid,
+            (gear.material(), gear.face_width()),
+            &kept,
+            &[],
+            asked,
+        )?;
+
         // Components: normal and towards the tip on the flank, polar elsewhere.
         let flank = gear.flank();
-        let on_flank = grid.flank_nodes.iter().zip(&grid.flank_roll_lengths);
-        let on_flank: Vec<Functional> = on_flank
-            .flat_map(|(&node, &s)| {
-                let axes = [flank.normal(s), radial(flank.tangent_angle(s))];
-                axes.map(|axis| Functional::displacement(node, axis))
-            })
-            .collect();
-        let [on_flank, asked] = condensed.rows(&on_flank, asked);
-        let place = |node: &u32| grid.grid.nodes[*node as usize];
         let axes: Vec<[Vector; 2]> = grid
-            .interface()
+            .flank_roll_lengths
             .iter()
-            .map(|node| polar_axes(place(node)))
+            .map(|&s| [flank.normal(s), radial(flank.tangent_angle(s))])
+            .chain(
+                kept[grid.flank_nodes.len()..]
+                    .iter()
+                    .map(|&node| polar_axes(grid.grid.nodes[node as usize])),
+            )
             .collect();
+        let schur = in_axes(&condensed.stiffness, &axes);
+        let rows = rows_in_axes(&condensed.rows, &axes);
+
+        let f = 2 * grid.flank_nodes.len();
+        let b = schur.nrows() - f;
+        let failure = FemError::NotPositiveDefinite {
+            part: "the flank",
+            unknowns: f,
+        };
+        let flank_factor = Cholesky::new(schur.submatrix(0, 0, f, f).to_owned()).ok_or(failure)?;
+        let mut fixed_compliance = Mat::<f64>::identity(f, f);
+        flank_factor.solve_in_place(fixed_compliance.as_mut());
+        symmetrize(&mut fixed_compliance);
+
+        // With a unit displacement of the interface the flank follows by Ψ = −S_ff⁻¹ S_fb.
+        let coupling = schur.submatrix(0, f, f, b);
+        let mut half = coupling.to_owned();
+        flank_factor.half_solve_in_place(half.as_mut());
+        let mut stiffness = schur.submatrix(f, f, b, b).to_owned();
+        stiffness -= half.transpose() * &half;
+        mirror_lower(&mut stiffness);
+        flank_factor.other_half_solve_in_place(half.as_mut());
         // u_f = H_0 p + Ψ u_b.
-        let follows = rows_in_axes(&on_flank.by_kept, &axes);
-        let (modes, mode_forces) = compress(&follows).ok_or(FemError::NotPositiveDefinite {
+        let on_flank = rows.subcols(0, f);
+        let rows = ToothRows {
+            by_flank: on_flank * &fixed_compliance,
+            by_interface: rows.subcols(f, b).to_owned() - on_flank * &half,
+        };
+        let (modes, mode_forces) = compress(&(-half)).ok_or(FemError::NotPositiveDefinite {
             part: "the flank's modes",
-            unknowns: follows.ncols(),
+            unknowns: b,
         })?;
+
         let sector = Sector {
             count: gear.tooth_count() as usize,
-            stiffness: in_axes(&condensed.stiffness(), &axes),
-            size: COMPONENTS,
-            side_nodes: grid.side_nodes.0.len(),
-            arcs: vec![Arc::Nodes(grid.arc_angles.clone(), usize::MAX)],
+            stiffness,
+            side_nodes: right.len(),
+            arc_angles: grid.arc_angles.clone(),
         };
         let tooth = Self {
-            fixed_compliance: on_flank.by_forces,
+            fixed_compliance,
             modes,
             roll_lengths: grid.flank_roll_lengths.clone(),
-            flank_points: grid.flank_nodes.iter().map(place).collect(),
+            flank_points: grid
+                .flank_nodes
+                .iter()
+                .map(|&node| grid.grid.nodes[node as usize])
+                .collect(),
             grid_nodes: grid.grid.nodes.len(),
             mode_forces,
             sector,
-        };
-        let rows = ToothRows {
-            by_flank: asked.by_forces,
-            by_interface: rows_in_axes(&asked.by_kept, &axes),
         };
         Ok((tooth, rows))
     }

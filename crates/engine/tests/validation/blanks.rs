@@ -7,9 +7,7 @@
 use std::f64::consts::{PI, TAU};
 
 use faer::Mat;
-use meshwright_engine::fem::Interface;
-use meshwright_engine::fem::body::Plate;
-use meshwright_engine::fem::condensation::condense;
+use meshwright_engine::fem::condensation::condense_with;
 use meshwright_engine::fem::recovery::{Functional, edge_stresses, nodal_stresses};
 use meshwright_engine::gear::{
     BlankRegion, Contour, Core, Hole, HolePattern, HoleShape, Material, Spokes, SpurGear, Vector,
@@ -438,18 +436,16 @@ fn answers(grid: &BlankGrid, forces: &[(u32, Vector)], asked: &[Functional]) -> 
         .chain(&grid.bore_nodes)
         .copied()
         .collect();
-    let plate = Plate {
-        grid: &grid.grid,
-        material: &Material::STEEL,
-        thickness: FACE_WIDTH,
-    };
-    let interface = Interface {
-        kept: &kept,
-        ..Default::default()
-    };
-    let condensed = condense("a ring", &plate, &interface).expect("sound");
-    let (stiffness, [_, rows]) = (condensed.stiffness(), condensed.rows(&[], asked));
-    let n = stiffness.nrows();
+    let condensed = condense_with(
+        "a ring",
+        &grid.grid,
+        (&Material::STEEL, FACE_WIDTH),
+        &kept,
+        &[],
+        asked,
+    )
+    .expect("sound");
+    let n = condensed.stiffness.nrows();
     let mut load = nalgebra::DVector::zeros(n);
     for (node, force) in forces {
         let place = kept
@@ -460,7 +456,7 @@ fn answers(grid: &BlankGrid, forces: &[(u32, Vector)], asked: &[Functional]) -> 
         load[2 * place + 1] += force.y;
     }
     // Springs on the rigid motions only: balanced forces do not feel them.
-    let mut stiffness = nalgebra::DMatrix::from_fn(n, n, |i, j| stiffness[(i, j)]);
+    let mut stiffness = nalgebra::DMatrix::from_fn(n, n, |i, j| condensed.stiffness[(i, j)]);
     for motion in 0..3 {
         let rigid = nalgebra::DVector::from_fn(n, |i, _| {
             let p = grid.grid.nodes[kept[i / 2] as usize] / INTERFACE;
@@ -475,7 +471,7 @@ fn answers(grid: &BlankGrid, forces: &[(u32, Vector)], asked: &[Functional]) -> 
             &rigid * rigid.transpose() * (Material::STEEL.youngs_modulus * FACE_WIDTH / n as f64);
     }
     let u = stiffness.cholesky().expect("held").solve(&load);
-    let row = |i: usize| (0..n).map(|j| rows.by_kept[(i, j)] * u[j]).sum();
+    let row = |i: usize| (0..n).map(|j| condensed.rows[(i, j)] * u[j]).sum();
     (0..asked.len()).map(row).collect()
 }
 

@@ -67,9 +67,8 @@ fn by_recovery(level: GridLevel, teeth: &[usize], orders: (usize, usize)) -> Str
         &tooth_grid.fillet_nodes,
         false,
     );
-    let condensed = ToothSubstructure::condensed(&gear, &tooth_grid).expect("a tooth");
-    let tooth = ToothSubstructure::with_recovery(&gear, &tooth_grid, &condensed, &fillet);
-    let (tooth, rows) = tooth.expect("a tooth");
+    let (tooth, rows) =
+        ToothSubstructure::with_recovery(&gear, &tooth_grid, &fillet).expect("a tooth");
     let (harmonics, low) = (
         Harmonics { largest: orders.0 },
         Harmonics { largest: orders.1 },

@@ -6,11 +6,11 @@ use faer::{Mat, c64};
 use rayon::prelude::*;
 
 use super::revolution::add_block;
+use super::sector::SolidSector;
 use super::tooth::SolidTooth;
 use super::web::of_order;
 use crate::fem::FemError;
 use crate::fem::dense::Cholesky;
-use crate::ring::sector::{Sector, add_class};
 use crate::run::Run;
 
 /// What the loads on the flank of tooth 0 do to the flanks of all, and to the interface circle, class by class.
@@ -86,7 +86,7 @@ struct ClassOfRing {
 }
 
 impl ClassOfRing {
-    fn new(sector: &Sector, below: &[Mat<c64>], class: usize) -> Result<Self, FemError> {
+    fn new(sector: &SolidSector, below: &[Mat<c64>], class: usize) -> Result<Self, FemError> {
         let orders = sector.orders(class, below.len() - 1);
         let sides = sector.size * sector.side_nodes;
         let mut stiffness = sector.class_stiffness(class, &orders);
@@ -109,7 +109,7 @@ impl ClassOfRing {
     }
 
     /// Unit forces on the orders up to `wanted` of the interface circle, and these orders.
-    fn units(&self, sector: &Sector, wanted: Option<usize>) -> (Vec<i64>, Mat<c64>) {
+    fn units(&self, sector: &SolidSector, wanted: Option<usize>) -> (Vec<i64>, Mat<c64>) {
         let (size, sides) = (sector.size, sector.size * sector.side_nodes);
         let kept: Vec<usize> = self
             .orders
@@ -220,7 +220,7 @@ pub fn forced(
 /// How the interfaces of the teeth at each of `distances` counter-clockwise of tooth 0 move, of what each class does: its number, its orders
 /// and its unknowns.
 pub fn interfaces<'a>(
-    sector: &Sector,
+    sector: &SolidSector,
     classes: impl Iterator<Item = (usize, &'a [i64], &'a Mat<c64>)>,
     distances: &[usize],
 ) -> Vec<Mat<f64>> {
@@ -228,8 +228,42 @@ pub fn interfaces<'a>(
     for (class, orders, motion) in classes {
         let moved = sector.off_class(motion, class, orders);
         for (sum, distance) in sums.iter_mut().zip(distances) {
+            if sum.nrows() == 0 {
+                *sum = Mat::zeros(moved.nrows(), moved.ncols());
+            }
             add_class(sum, (class, &moved), sector.count, *distance);
         }
     }
     sums
+}
+
+/// The sum over all classes of `of` turned by their share of `distance` teeth, over Z: the block between the tooth `distance`
+/// places counter-clockwise of another, and that one.
+pub fn between_teeth<'a>(
+    classes: impl Iterator<Item = (usize, &'a Mat<c64>)>,
+    tooth_count: usize,
+    distance: usize,
+) -> Mat<f64> {
+    let mut sum = Mat::zeros(0, 0);
+    for (class, of) in classes {
+        if sum.nrows() == 0 {
+            sum = Mat::zeros(of.nrows(), of.ncols());
+        }
+        add_class(&mut sum, (class, of), tooth_count, distance);
+    }
+    sum
+}
+
+fn add_class(
+    sum: &mut Mat<f64>,
+    (class, of): (usize, &Mat<c64>),
+    tooth_count: usize,
+    distance: usize,
+) {
+    let turn = SolidSector::part(class, distance, tooth_count) * (1.0 / tooth_count as f64);
+    for j in 0..of.ncols() {
+        for (sum, of) in sum.col_as_slice_mut(j).iter_mut().zip(of.col_as_slice(j)) {
+            *sum += (turn * *of).re;
+        }
+    }
 }

@@ -8,6 +8,7 @@
 pub mod gear;
 pub mod joint;
 pub mod revolution;
+pub mod sector;
 pub mod shaft;
 pub mod tooth;
 pub mod web;

@@ -2,25 +2,12 @@
 
 use faer::Mat;
 
+use super::sector::{Arc, SolidSector};
+use crate::fem::FemError;
 use crate::fem::axial::AxialBasis;
-use crate::fem::body::Body as _;
-use crate::fem::condensation::{Condensed, Rows, condense};
-use crate::fem::prism::Prism;
-use crate::fem::recovery::Functional;
-use crate::fem::{FemError, Interface};
-use crate::gear::{Involute, SolidGear, radial, tangential};
+use crate::fem::prism::{COMPONENTS, Interface, NodeRows, Prism};
+use crate::gear::{SolidGear, radial, tangential};
 use crate::grid::ToothGrid;
-use crate::ring::sector::{Arc, Sector};
-
-/// A tooth and its part of the rim divided into elements: a sector of the section of a gear, times functions along the axis.
-#[derive(Debug, Clone)]
-pub struct DividedTooth {
-    gear: SolidGear,
-    /// The sector.
-    pub grid: ToothGrid,
-    /// The functions.
-    pub axial: AxialBasis,
-}
 
 /// A tooth and its part of the rim, condensed to its interface, with the normal displacements of its loaded flank.
 ///
@@ -28,7 +15,7 @@ pub struct DividedTooth {
 #[derive(Debug, Clone)]
 pub struct SolidTooth {
     /// The sector on its interface.
-    pub sector: Sector,
+    pub sector: SolidSector,
     /// The normal displacements of the flank by those of the interface.
     pub rows: Mat<f64>,
     /// The compliance of the flank with the interface held, in m/N.
@@ -39,97 +26,98 @@ pub struct SolidTooth {
     pub grid_nodes: usize,
 }
 
-impl DividedTooth {
-    /// The sector `grid` of the section of `gear`, times the functions `axial`.
-    pub fn new(gear: &SolidGear, grid: ToothGrid, axial: &AxialBasis) -> Self {
-        Self {
-            gear: gear.clone(),
-            grid,
-            axial: axial.clone(),
-        }
-    }
-
-    /// It as a prism.
-    pub fn prism(&self) -> Prism<'_> {
-        Prism {
-            grid: &self.grid.grid,
-            material: self.gear.section().material(),
-            twist: self.gear.twist(),
-            axial: &self.axial,
-        }
-    }
-
-    /// Its loaded flank.
-    pub fn flank(&self) -> &Involute {
-        self.gear.section().flank()
-    }
-
-    /// Its unknowns with its arc held.
-    pub fn free_unknowns(&self) -> u64 {
-        let nodes = self.grid.grid.nodes.len() - self.grid.arc_nodes.len();
-        (self.prism().unknowns_of_node() * nodes) as u64
-    }
-
-    /// It on its interface.
+impl SolidTooth {
+    /// Condenses `grid`, a sector of the section of `gear`, times the functions `axial`.
     ///
     /// # Errors
     ///
     /// [`FemError`] if the grid is degenerate.
-    pub fn condensed(&self) -> Result<Condensed, FemError> {
-        let interface = Interface {
-            kept: &self.grid.interface(),
-            ..Default::default()
-        };
-        condense("the tooth", &self.prism(), &interface)
+    pub fn new(gear: &SolidGear, grid: &ToothGrid, axial: &AxialBasis) -> Result<Self, FemError> {
+        let (tooth, _) = Self::with_nodes(gear, grid, axial, &[])?;
+        Ok(tooth)
     }
 
-    /// It as a substructure, `condensed` to its interface, and how `nodes` move.
-    pub fn substructure(&self, condensed: &Condensed, nodes: &[u32]) -> (SolidTooth, Rows) {
-        let [on_flank, on_nodes] = self.rows(condensed, nodes);
-        let tooth = SolidTooth {
-            sector: Sector {
-                count: self.gear.section().tooth_count() as usize,
-                size: self.prism().unknowns_of_node(),
-                stiffness: condensed.stiffness(),
-                side_nodes: self.grid.side_nodes.0.len(),
-                arcs: vec![Arc::Nodes(self.grid.arc_angles.clone(), usize::MAX)],
-            },
-            rows: on_flank.by_kept,
-            held: on_flank.by_forces,
-            roll_lengths: self.grid.flank_roll_lengths.clone(),
-            grid_nodes: self.grid.grid.nodes.len(),
-        };
-        (tooth, on_nodes)
-    }
-
-    /// The compliance of the loaded flank with the sides of the sector free and its arc held, and how `nodes` move by the same forces.
+    /// The same, and how the nodes `told` move, by the interface and by the flank.
     ///
     /// # Errors
     ///
-    /// As [`DividedTooth::condensed`].
-    pub fn alone(&self, nodes: &[u32]) -> Result<[Mat<f64>; 2], FemError> {
+    /// As [`SolidTooth::new`].
+    pub fn with_nodes(
+        gear: &SolidGear,
+        grid: &ToothGrid,
+        axial: &AxialBasis,
+        told: &[u32],
+    ) -> Result<(Self, NodeRows), FemError> {
+        let section = gear.section();
+        let (right, left) = &grid.side_nodes;
+        let kept: Vec<u32> = [right, left, &grid.arc_nodes]
+            .into_iter()
+            .flatten()
+            .copied()
+            .collect();
+        let prism = Prism {
+            grid: &grid.grid,
+            material: section.material(),
+            twist: gear.twist(),
+            axial,
+        };
+        let points = flank_normals(gear, grid);
         let interface = Interface {
-            fixed: &self.grid.arc_nodes,
+            kept: &kept,
             ..Default::default()
         };
-        let condensed = condense("the tooth", &self.prism(), &interface)?;
-        Ok(self.rows(&condensed, nodes).map(|rows| rows.by_forces))
+        let (condensed, rows) = prism.condense_with("the tooth", &interface, &points, told)?;
+        let tooth = Self {
+            sector: SolidSector {
+                count: section.tooth_count() as usize,
+                size: prism.unknowns_of_node(),
+                stiffness: condensed.stiffness,
+                side_nodes: right.len(),
+                arcs: vec![Arc::Nodes(grid.arc_angles.clone())],
+            },
+            rows: condensed.rows,
+            held: condensed.held,
+            roll_lengths: grid.flank_roll_lengths.clone(),
+            grid_nodes: grid.grid.nodes.len(),
+        };
+        Ok((tooth, rows))
     }
+}
 
-    /// The normal displacements of the loaded flank, and all unknowns of `nodes`.
-    fn rows(&self, condensed: &Condensed, nodes: &[u32]) -> [Rows; 2] {
-        let nodes = Functional::unknowns(nodes, self.prism().unknowns_of_node());
-        condensed.rows(&self.normals(), &nodes)
-    }
+/// The compliance of the loaded flank of `grid` with the sides of the sector free and its arc held, and how the nodes `told` move.
+///
+/// # Errors
+///
+/// [`FemError`] if the grid is degenerate.
+pub fn flank_compliance_alone(
+    gear: &SolidGear,
+    grid: &ToothGrid,
+    axial: &AxialBasis,
+    told: &[u32],
+) -> Result<(Mat<f64>, NodeRows), FemError> {
+    let prism = Prism {
+        grid: &grid.grid,
+        material: gear.section().material(),
+        twist: gear.twist(),
+        axial,
+    };
+    let points = flank_normals(gear, grid);
+    let interface = Interface {
+        fixed: &grid.arc_nodes,
+        ..Default::default()
+    };
+    let (condensed, rows) = prism.condense_with("the tooth", &interface, &points, told)?;
+    Ok((condensed.held, rows))
+}
 
-    /// The displacement of each node of the loaded flank along its outward normal, in polar components (n cos β_b, −τ r_b cos β_b), n that of the
-    /// section; for every function along the axis.
-    pub fn normals(&self) -> Vec<Functional> {
-        let flank = self.flank();
-        let (sin, cos) = (self.gear.twist() * flank.base_radius()).atan().sin_cos();
-        let nodes = self.grid.flank_nodes.iter();
-        let points = nodes.zip(&self.grid.flank_roll_lengths).map(|(&node, &s)| {
-            let place = self.grid.grid.nodes[node as usize];
+/// The nodes of the loaded flank with their outward normals in polar components: (n cos β_b, −τ r_b cos β_b), n that of the section.
+pub fn flank_normals(gear: &SolidGear, grid: &ToothGrid) -> Vec<(u32, [f64; COMPONENTS])> {
+    let flank = gear.section().flank();
+    let (sin, cos) = (gear.twist() * flank.base_radius()).atan().sin_cos();
+    let nodes = grid.flank_nodes.iter().zip(&grid.flank_roll_lengths);
+    nodes
+        .map(|(&node, &s)| {
+            let place = grid.grid.nodes[node as usize];
             let angle = place.y.atan2(place.x);
             let normal = flank.normal(s) * cos;
             let along = [
@@ -138,7 +126,6 @@ impl DividedTooth {
                 -sin,
             ];
             (node, along)
-        });
-        self.prism().along(&points.collect::<Vec<_>>())
-    }
+        })
+        .collect()
 }

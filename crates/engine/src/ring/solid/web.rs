@@ -4,22 +4,25 @@ use faer::{Mat, c64};
 use rayon::prelude::*;
 
 use super::revolution::{add_block, last_of};
-use crate::fem::body::Body as _;
-use crate::fem::condensation::{Condensed, condense};
+use super::sector::{Arc, SolidSector};
+use crate::fem::FemError;
+use crate::fem::Followers;
 use crate::fem::dense::Cholesky;
-use crate::fem::prism::Prism;
-use crate::fem::{FemError, Followers, Interface};
+use crate::fem::prism::{Interface, Prism};
 use crate::grid::BlankGrid;
-use crate::ring::sector::{Arc, Sector};
 use crate::run::Run;
 
 /// A ring of sectors with holes, each condensed to its interface.
 ///
-/// Its circles move by the orders up to the largest that is asked for. Where one sector is all of the ring, which has many nodes
+/// On its circles it is told the orders up to the largest that is asked for. Where one sector is all of the ring, which has many nodes
 /// around it, these take the place of the nodes before it is condensed.
 #[derive(Debug)]
 pub struct HoledRing<'a> {
-    sector: Sector,
+    sector: SolidSector,
+    /// The angles of the nodes of each of its arcs.
+    angles: Vec<Vec<f64>>,
+    /// How the nodes that are told move, by the interface of their sector.
+    rows: Mat<f64>,
     /// The largest order that is asked for.
     largest: usize,
     /// What carries the inner circle, one of each order 0 …; without it that circle is held.
@@ -40,15 +43,15 @@ pub struct ClassRows {
 /// How a ring moves.
 #[derive(Debug, Clone)]
 pub struct MovedRing {
-    /// The unknowns to which each sector is condensed, in its own axes: right side, left side, inner circle unless it is held, outer circle.
+    /// The interface of each sector, in its own axes: right side, left side, inner circle unless it is held, outer circle.
     pub sectors: Vec<Vec<f64>>,
     /// The amplitudes of the orders 0 … of the inner circle; `None` where it is held.
     pub hub: Option<Vec<Mat<c64>>>,
 }
 
 impl<'a> HoledRing<'a> {
-    /// The ring of sectors `grid`, and the sector condensed, which can be asked for what moves inside; `prism` is its section with the functions
-    /// across it. The ring is asked for the orders up to `largest`.
+    /// The ring of sectors `grid`; `prism` is its section with the functions across it, and the nodes `told` can be asked for. It is asked
+    /// for the orders up to `largest`.
     ///
     /// `hub` is what carries the inner circle, one of each of these orders; without it that circle is held.
     ///
@@ -59,8 +62,8 @@ impl<'a> HoledRing<'a> {
         grid: &BlankGrid,
         prism: &Prism<'_>,
         hub: Option<&'a [Mat<c64>]>,
-        largest: usize,
-    ) -> Result<(Self, Condensed), FemError> {
+        (largest, told): (usize, &[u32]),
+    ) -> Result<Self, FemError> {
         let (right, left) = &grid.side_nodes;
         let angle = |node: &u32| {
             let place = grid.grid.nodes[*node as usize];
@@ -88,23 +91,25 @@ impl<'a> HoledRing<'a> {
             followers: &followers,
             fixed: held,
         };
-        let condensed = condense("the web", prism, &interface)?;
-        let arcs = circles.into_iter().map(|(_, angles)| match is_whole {
+        let (condensed, rows) = prism.condense_with("the web", &interface, &[], told)?;
+        let angles: Vec<_> = circles.into_iter().map(|(_, angles)| angles).collect();
+        let arcs = angles.iter().map(|angles| match is_whole {
             true => Arc::Harmonics(largest),
-            false => Arc::Nodes(angles, largest),
+            false => Arc::Nodes(angles.clone()),
         });
-        let ring = Self {
-            sector: Sector {
+        Ok(Self {
+            sector: SolidSector {
                 count: grid.sector_count as usize,
                 size: prism.unknowns_of_node(),
-                stiffness: condensed.stiffness(),
+                stiffness: condensed.stiffness,
                 side_nodes: right.len(),
                 arcs: arcs.collect(),
             },
+            angles,
+            rows: rows.by_kept,
             largest,
             hub,
-        };
-        Ok((ring, condensed))
+        })
     }
 
     /// Its Hermitian stiffness on the orders of the outer circle, from the lowest negative one on. Hole 0 of a pattern stands at the angle
@@ -124,7 +129,7 @@ impl<'a> HoledRing<'a> {
         for (orders, outer) in &classes {
             for (a, &n) in orders.iter().enumerate() {
                 for (b, &m) in orders.iter().enumerate() {
-                    let turn = Sector::turn(m - n, phase);
+                    let turn = SolidSector::turn(m - n, phase);
                     for j in 0..size {
                         for i in 0..size {
                             let value = outer[(a * size + i, b * size + j)] * turn;
@@ -139,16 +144,16 @@ impl<'a> HoledRing<'a> {
         Ok(ring)
     }
 
-    /// `rows` on the unknowns to which sector 0 is condensed, by the orders of the outer circle, class by class.
+    /// How the nodes that are told move by the orders of the outer circle, class by class.
     ///
     /// # Errors
     ///
     /// [`FemError`].
-    pub fn inside(&self, rows: &Mat<f64>, run: &Run) -> Result<Vec<ClassRows>, FemError> {
+    pub fn inside(&self, run: &Run) -> Result<Vec<ClassRows>, FemError> {
         let sector = &self.sector;
         self.each_class(run, |class, orders, stiffness| {
             let follows = following(&stiffness, orders.len() * sector.size)?;
-            let rows = sector.on_class(rows, class, &orders);
+            let rows = sector.on_class(&self.rows, class, &orders);
             let (inner, outer) = (follows.nrows(), follows.ncols());
             let by_inner = rows.subcols(0, inner) * follows;
             Ok(ClassRows {
@@ -171,7 +176,7 @@ impl<'a> HoledRing<'a> {
         amplitudes: &[Mat<c64>],
         run: &Run,
     ) -> Result<MovedRing, FemError> {
-        let sector = &self.sector;
+        let sector = &self.sector.with_nodes(&self.angles);
         let (size, sides) = (sector.size, sector.size * sector.side_nodes);
         let classes = self.each_class(run, |class, orders, stiffness| {
             let outer = orders.len() * size;
@@ -179,7 +184,8 @@ impl<'a> HoledRing<'a> {
             let inner = follows.nrows();
             let mut motion = Mat::<c64>::zeros(inner + outer, 1);
             for (k, &order) in orders.iter().enumerate() {
-                let seen = of_order(amplitudes, order) * faer::Scale(Sector::turn(order, phase));
+                let seen =
+                    of_order(amplitudes, order) * faer::Scale(SolidSector::turn(order, phase));
                 motion.subrows_mut(inner + k * size, size).copy_from(&seen);
             }
             let moved = follows * motion.subrows(inner, outer);
@@ -194,7 +200,7 @@ impl<'a> HoledRing<'a> {
             for (k, &order) in orders.iter().enumerate() {
                 if self.hub.is_some() {
                     let of = motion.subrows(sides + k * size, size);
-                    let of = of * faer::Scale(Sector::turn(-order, phase));
+                    let of = of * faer::Scale(SolidSector::turn(-order, phase));
                     hub[order.unsigned_abs() as usize] = conjugate_below_zero(&of, order);
                 }
             }
@@ -277,7 +283,6 @@ pub fn conjugate_below_zero(of: &Mat<c64>, order: i64) -> Mat<c64> {
 mod tests {
     use super::*;
     use crate::fem::axial::AxialBasis;
-    use crate::fem::body::Load;
     use crate::gear::{HolePattern, Material};
     use crate::grid::GridLevel;
 
@@ -318,9 +323,9 @@ mod tests {
                     twist: 0.0,
                     axial: &axial,
                 };
-                HoledRing::new(grid, &prism, hub, largest).expect("sound")
+                HoledRing::new(grid, &prism, hub, (largest, &[])).expect("sound")
             });
-            let [sectors, as_one] = rings.each_ref().map(|(ring, _)| ring.on_outer(phase, &run));
+            let [sectors, as_one] = rings.each_ref().map(|ring| ring.on_outer(phase, &run));
             let (sectors, as_one) = (sectors.expect("sound"), as_one.expect("sound"));
             assert!((&sectors - &as_one).norm_max() < 1e-9 * sectors.norm_max());
 
@@ -331,28 +336,16 @@ mod tests {
                     Mat::from_fn(size, 1, |i, _| c64::new(real(i), imaginary(i)) * 1e-6)
                 })
                 .collect();
-            let grids = [&grid, &whole];
-            let [sectors, as_one] = std::array::from_fn(|i| {
-                let (ring, condensed) = &rings[i];
+            let [sectors, as_one] = rings.map(|ring| {
                 let moved = ring.moved(phase, &amplitudes, &run).expect("sound");
-                let loads = moved.sectors.into_iter().map(|moves| Load {
-                    moves,
-                    forces: Vec::new(),
-                });
-                let sectors = condensed.displacements(&loads.collect::<Vec<_>>());
+                let outer = |of: &Vec<f64>, nodes: usize| of[of.len() - nodes * size..].to_vec();
                 // The last node of the arc of a sector is the next one's first.
-                let nodes = grids[i].arc_nodes.len() - usize::from(ring.sector.count > 1);
-                let outer = |of: &Vec<f64>| -> Vec<f64> {
-                    let nodes = grids[i].arc_nodes[..nodes].iter();
-                    nodes
-                        .flat_map(|node| &of[*node as usize * size..][..size])
-                        .copied()
-                        .collect()
-                };
-                (
-                    sectors.iter().flat_map(outer).collect::<Vec<f64>>(),
-                    moved.hub,
-                )
+                let nodes = ring.angles.last().map_or(0, Vec::len);
+                let sectors = moved.sectors.iter().flat_map(|of| {
+                    let last = usize::from(ring.sector.count > 1);
+                    outer(of, nodes)[..(nodes - last) * size].to_vec()
+                });
+                (sectors.collect::<Vec<f64>>(), moved.hub)
             });
             assert_eq!(sectors.0.len(), as_one.0.len());
             for (one, other) in sectors.0.iter().zip(&as_one.0) {

@@ -1,19 +1,13 @@
-//! One of equal sectors around an axis, and the classes of their ring.
+//! One of equal sectors around an axis, with functions along it, and the classes of their ring.
 //!
-//! The displacement of a class k turns by e^{ik2π/S} from a sector to the next, and on a circle it holds the orders n ≡ k (mod S). A node has the
-//! polar components of the plane, or those of space for each of some functions along the axis.
-
-use std::f64::consts::TAU;
+//! As [`crate::ring::cyclic`] has it for the plane: the displacement of a class k turns by e^{ik2π/S} from a sector to the next, and on
+//! the circle it holds the orders n ≡ k (mod S).
 
 use faer::{Mat, c64};
 
-use super::harmonics::Harmonics;
-use crate::fem::FemError;
-use crate::fem::dense::Cholesky;
-
 /// A sector on its interface: right side, left side, arcs, node by node.
 #[derive(Debug, Clone)]
-pub struct Sector {
+pub struct SolidSector {
     /// The number S of sectors in the ring.
     pub count: usize,
     /// The unknowns of a node.
@@ -29,40 +23,25 @@ pub struct Sector {
 /// What stands for the displacement of an arc: blocks of unknowns.
 #[derive(Debug, Clone)]
 pub enum Arc {
-    /// The nodes at these angles, which move by the orders up to a largest one.
-    Nodes(Vec<f64>, usize),
+    /// The nodes at these angles.
+    Nodes(Vec<f64>),
     /// The amplitudes a_0, a_1, b_1, … of Σ a_n cos nφ + b_n sin nφ up to an order: of a whole circle.
     Harmonics(usize),
 }
 
 impl Arc {
-    /// The angles of its nodes.
-    pub fn angles(&self) -> &[f64] {
-        match self {
-            Self::Nodes(angles, _) => angles,
-            Self::Harmonics(_) => &[],
-        }
-    }
-
     fn blocks(&self) -> usize {
         match self {
-            Self::Nodes(angles, _) => angles.len(),
+            Self::Nodes(angles) => angles.len(),
             Self::Harmonics(largest) => 2 * largest + 1,
         }
-    }
-
-    /// Those of `orders` by which it moves.
-    fn orders(&self, orders: &[i64]) -> impl Iterator<Item = i64> {
-        let (Self::Nodes(_, largest) | Self::Harmonics(largest)) = *self;
-        let orders = orders.iter().copied();
-        orders.filter(move |n| n.unsigned_abs() as usize <= largest)
     }
 
     /// The blocks in which e^{i order φ} is seen, and how.
     fn trace(&self, order: i64) -> Vec<(usize, c64)> {
         match self {
-            Self::Nodes(angles, _) => {
-                let turn = |angle: &f64| Sector::turn(order, *angle);
+            Self::Nodes(angles) => {
+                let turn = |angle: &f64| SolidSector::turn(order, *angle);
                 angles.iter().map(turn).enumerate().collect()
             }
             Self::Harmonics(_) => {
@@ -88,10 +67,20 @@ impl Arc {
     }
 }
 
-impl Sector {
+impl SolidSector {
+    /// The interface alone, its arcs told node by node at these angles.
+    pub fn with_nodes(&self, angles: &[Vec<f64>]) -> Self {
+        Self {
+            stiffness: Mat::zeros(0, 0),
+            arcs: angles.iter().cloned().map(Arc::Nodes).collect(),
+            ..*self
+        }
+    }
+
     /// The orders of `class` up to `largest`.
     pub fn orders(&self, class: usize, largest: usize) -> Vec<i64> {
-        Harmonics { largest }.orders_of_class(class, self.count)
+        let harmonics = crate::ring::cyclic::Harmonics { largest };
+        harmonics.orders_of_class(class, self.count)
     }
 
     /// e^{i order angle}.
@@ -100,8 +89,8 @@ impl Sector {
         c64::new(cos, sin)
     }
 
-    /// The factor of a class in the sector `ahead` places counter-clockwise of `count`, the opposite class, its conjugate, included: the real part is
-    /// to be taken.
+    /// By what a class adds to the sector `ahead` places counter-clockwise of `count`, if it is told together with the opposite one, its conjugate:
+    /// the real part is to be taken.
     pub fn part(class: usize, ahead: usize, count: usize) -> c64 {
         // The class may be its own opposite.
         let share = match (2 * class).is_multiple_of(count) {
@@ -109,19 +98,18 @@ impl Sector {
             false => 2.0,
         };
         let place = (class * ahead % count) as f64;
-        Self::turn(1, TAU * place / count as f64) * share
+        Self::turn(1, std::f64::consts::TAU * place / count as f64) * share
     }
 
-    /// The unknowns of a class: those of one side, and on each arc those of each of `orders` by which it moves.
+    /// The unknowns of a class: those of one side, and on each arc those of each of `orders`.
     pub fn unknowns(&self, orders: &[i64]) -> usize {
-        let arcs = self.arcs.iter().map(|arc| arc.orders(orders).count());
-        self.size * (self.side_nodes + arcs.sum::<usize>())
+        self.size * (self.side_nodes + self.arcs.len() * orders.len())
     }
 
     /// `rows` on the interface as rows on the unknowns of the class: sides, then arc by arc, order by order.
     pub fn on_class(&self, rows: &Mat<f64>, class: usize, orders: &[i64]) -> Mat<c64> {
         let (size, sides) = (self.size, self.size * self.side_nodes);
-        let angle = TAU * (class % self.count) as f64 / self.count as f64;
+        let angle = std::f64::consts::TAU * (class % self.count) as f64 / self.count as f64;
         let across = Self::turn(1, angle);
         let mut on_class = Mat::<c64>::zeros(rows.nrows(), self.unknowns(orders));
         for j in 0..sides {
@@ -133,7 +121,7 @@ impl Sector {
         }
         let (mut from, mut first) = (2 * sides, sides);
         for arc in &self.arcs {
-            for order in arc.orders(orders) {
+            for &order in orders {
                 for (block, turn) in arc.trace(order) {
                     for c in 0..size {
                         let from = rows.col_as_slice(from + block * size + c);
@@ -153,7 +141,7 @@ impl Sector {
     /// How the interface moves where the unknowns of the class are `motion`, a column for each of several.
     pub fn off_class(&self, motion: &Mat<c64>, class: usize, orders: &[i64]) -> Mat<c64> {
         let (size, sides) = (self.size, self.size * self.side_nodes);
-        let angle = TAU * (class % self.count) as f64 / self.count as f64;
+        let angle = std::f64::consts::TAU * (class % self.count) as f64 / self.count as f64;
         let across = Self::turn(1, angle);
         let blocks: usize = self.arcs.iter().map(Arc::blocks).sum();
         let mut off = Mat::<c64>::zeros(2 * sides + blocks * size, motion.ncols());
@@ -166,7 +154,7 @@ impl Sector {
         }
         let (mut first, mut from) = (2 * sides, sides);
         for arc in &self.arcs {
-            for order in arc.orders(orders) {
+            for &order in orders {
                 for (block, turn) in arc.trace(order) {
                     for j in 0..motion.ncols() {
                         let from = &motion.col_as_slice(j)[from..from + size];
@@ -208,83 +196,5 @@ impl Sector {
         Mat::from_fn(n, n, |i, j| {
             real[(i, j)] + c64::new(0.0, 1.0) * imaginary[(i, j)]
         })
-    }
-
-    /// Condenses one class to the orders on its arcs.
-    ///
-    /// # Errors
-    ///
-    /// [`FemError::NotPositiveDefinite`].
-    pub fn condense_class(&self, class: usize, orders: Vec<i64>) -> Result<ClassOnArcs, FemError> {
-        let k = self.class_stiffness(class, &orders);
-        let sides = self.size * self.side_nodes;
-        let arcs = k.nrows() - sides;
-        let factor = Cholesky::new(k.submatrix(0, 0, sides, sides).to_owned()).ok_or(
-            FemError::NotPositiveDefinite {
-                part: "a ring's sides",
-                unknowns: sides,
-            },
-        )?;
-        let mut follows = k.submatrix(0, sides, sides, arcs).to_owned();
-        factor.half_solve_in_place(follows.as_mut());
-        let stiffness = k.submatrix(sides, sides, arcs, arcs) - follows.adjoint() * &follows;
-        factor.other_half_solve_in_place(follows.as_mut());
-        Ok(ClassOnArcs {
-            stiffness,
-            sides: factor,
-            follows: -follows,
-            orders,
-        })
-    }
-}
-
-/// One class of a ring on the orders of its arcs: no force acts on its sides.
-pub struct ClassOnArcs {
-    /// The Hermitian stiffness of one sector.
-    pub stiffness: Mat<c64>,
-    /// The factor of the stiffness of the right side.
-    pub sides: Cholesky<c64>,
-    /// How that side follows the arcs.
-    follows: Mat<c64>,
-    /// The orders of the class.
-    pub orders: Vec<i64>,
-}
-
-impl ClassOnArcs {
-    /// Rows on all unknowns of the class ([`Sector::on_class`]) as rows on those of its arcs.
-    pub fn on_arcs(&self, rows: &Mat<c64>) -> Mat<c64> {
-        let sides = self.follows.nrows();
-        let arcs = rows.ncols() - sides;
-        rows.subcols(sides, arcs) + rows.subcols(0, sides) * &self.follows
-    }
-}
-
-/// The sum over all classes, each with its number, of `of` turned by their part in `distance` sectors, over their number: the block between the sector
-/// `distance` places counter-clockwise of another, and that one.
-pub fn between<'a>(
-    classes: impl Iterator<Item = (usize, &'a Mat<c64>)>,
-    count: usize,
-    distance: usize,
-) -> Mat<f64> {
-    let mut sum = Mat::zeros(0, 0);
-    for (class, of) in classes {
-        add_class(&mut sum, (class, of), count, distance);
-    }
-    sum
-}
-
-/// Adds one class to such a sum.
-pub(super) fn add_class(
-    sum: &mut Mat<f64>,
-    (class, of): (usize, &Mat<c64>),
-    count: usize,
-    distance: usize,
-) {
-    sum.resize_with(of.nrows(), of.ncols(), |_, _| 0.0);
-    let turn = Sector::part(class, distance, count) * (1.0 / count as f64);
-    for j in 0..of.ncols() {
-        for (sum, of) in sum.col_as_slice_mut(j).iter_mut().zip(of.col_as_slice(j)) {
-            *sum += (turn * *of).re;
-        }
     }
 }
