@@ -914,9 +914,8 @@ export async function shownSteps(service) {
 
   // Previews of a second: the flanks of a job may take four of these, or as long as the job.
   const short = await start({ MESHWRIGHT_PREVIEW_TIME_LIMIT_SECONDS: "1" });
-  await step(
+  await stepsOn(short).step(
     "the contact pattern of a job comes however long it takes, with a clock, can be stopped, and is asked for again after a reload",
-    short,
     async (page) => {
       await openDesign(page, short, {
         ...HELICAL,
