@@ -148,6 +148,23 @@ export const settled = (page) =>
     () => !document.body.classList.contains("busy") && history.state?.changes === Number(document.body.dataset.changes),
   );
 
+/** Holds all previews until what it answers is called, which waits for what was asked last. */
+export async function heldPreviews(page) {
+  let go = (_ = null) => {};
+  const waits = new Promise((resolve) => {
+    go = resolve;
+  });
+  await page.route("**/v1/preview", async (route) => {
+    await waits;
+    await route.continue();
+  });
+  return async () => {
+    go();
+    await settled(page);
+    await page.unroute("**/v1/preview");
+  };
+}
+
 /** Waits until the headline has numbers. */
 export const answered = (page) =>
   page.waitForFunction(() => document.querySelector("#answer-p-p .value").textContent !== "–");

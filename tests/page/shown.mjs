@@ -11,6 +11,7 @@ import {
   downloaded,
   ends,
   field,
+  heldPreviews,
   open,
   openDesign,
   settled,
@@ -213,21 +214,6 @@ export async function shownSteps(service) {
   );
 
   await step("every view shows one design: while the form has another one it says so, or is empty", async (page) => {
-    const hold = async () => {
-      let go = (_ = null) => {};
-      const waits = new Promise((resolve) => {
-        go = resolve;
-      });
-      await page.route("**/v1/preview", async (route) => {
-        await waits;
-        await route.continue();
-      });
-      return async () => {
-        go();
-        await settled(page);
-        await page.unroute("**/v1/preview");
-      };
-    };
     /**
      * What stands in each of these places as if it were of the design in the form: words that are not gray, and
      * pictures that are not pale.
@@ -260,7 +246,7 @@ export async function shownSteps(service) {
     const marked = async (places, edit) => {
       for (const [name, stands] of Object.entries(await standingIn(places)))
         assert.ok(stands.length, `${name} shows its design`);
-      const release = await hold();
+      const release = await heldPreviews(page);
       await edit();
       await page.waitForFunction(() => document.body.classList.contains("other"));
       const left = Object.entries(await standingIn(places)).filter(([, stands]) => stands.length);
@@ -503,20 +489,11 @@ export async function shownSteps(service) {
       await page.waitForTimeout(500);
 
       // The page has not asked for anything yet, and the kept designs are there.
-      let go = (_ = null) => {};
-      const waits = new Promise((resolve) => {
-        go = resolve;
-      });
-      await page.route("**/v1/preview", async (route) => {
-        await waits;
-        await route.continue();
-      });
+      const release = await heldPreviews(page);
       await page.reload();
       await page.waitForFunction(() => document.querySelector("#undo").disabled === false);
       assert.equal(await page.locator("#against option").count(), 0);
-      go();
-      await settled(page);
-      await page.unroute("**/v1/preview");
+      await release();
       await tab(page, "compare");
       assert.equal(await page.locator("#table thead textarea").count(), 2);
       // A third one has a color of its own, as have a tenth and all between.

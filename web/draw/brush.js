@@ -2,7 +2,7 @@
 // Which mesh periods are shown: a strip of the whole true period with a window on it, drawn over, moved, or set by
 // buttons.
 
-import { button, dress, h, s } from "./dom.js";
+import { dress, h, s, signButton } from "./dom.js";
 import { extent, number } from "../state/numbers.js";
 import { linesOf, PANELS } from "../state/series.js";
 
@@ -35,18 +35,16 @@ export class Brush {
       this.window,
     );
     this.words = h("output", { className: "note" });
-    /** @type {(name: string, label: string, work: () => void) => HTMLButtonElement} */
-    const key = (name, label, work) => button(name, work, { ariaLabel: label, title: label });
     place.append(
       this.svg,
       h(
         "div",
         { className: "buttons" },
-        key("◀", "Earlier mesh periods", () => this.#move(-0.5)),
-        key("▶", "Later mesh periods", () => this.#move(0.5)),
-        key("+", "Zoom in", () => this.#scale(0.5)),
-        key("−", "Zoom out", () => this.#scale(2)),
-        key("All", "All mesh periods", () => this.onRange(null)),
+        signButton("◀", "Earlier mesh periods", () => this.#move(-0.5)),
+        signButton("▶", "Later mesh periods", () => this.#move(0.5)),
+        signButton("+", "Zoom in", () => this.#scale(0.5)),
+        signButton("−", "Zoom out", () => this.#scale(2)),
+        signButton("All", "All mesh periods", () => this.onRange(null)),
         this.words,
       ),
     );

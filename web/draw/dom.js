@@ -56,6 +56,15 @@ export const button = (words, click, { on, ...more } = {}) =>
   h("button", { type: "button", ...more, on: { ...on, click } }, words);
 
 /**
+ * A button with a sign on it, which is named by `label`.
+ *
+ * @param {string} sign
+ * @param {string} label
+ * @param {() => void} click
+ */
+export const signButton = (sign, label, click) => button(sign, click, { ariaLabel: label, title: label });
+
+/**
  * What is said beside controls and pictures.
  *
  * @param {(Child | Child[])[]} children

@@ -2,7 +2,7 @@
 // The pair in space: turned by hand, touch and keys, with its lines of contact at the position shown. Made when it is
 // first asked for, painted when something changes.
 
-import { button, debounced, h, inLine, labelled } from "./dom.js";
+import { debounced, h, inLine, labelled, signButton } from "./dom.js";
 import { indexAt } from "./drawing.js";
 import { faceOf, rampAt, scaleOf } from "./face.js";
 import { pixelOf, Raster } from "./raster.js";
@@ -73,8 +73,6 @@ export class Space {
     });
     this.words = h("p", { className: "visually-hidden", id: "space-words" });
     this.legend = h("p", { className: "legend" });
-    /** @type {(name: string, label: string, work: () => void) => HTMLButtonElement} */
-    const key = (name, label, work) => button(name, work, { ariaLabel: label, title: label });
     const gears = h(
       "select",
       { id: "space-gears", on: { change: ({ target }) => this.#choose(target.value) } },
@@ -89,13 +87,13 @@ export class Space {
       { className: "in-space", hidden: true },
       this.canvas,
       inLine(
-        key("◀", "Turn to the left", () => this.#turn(-15, 0)),
-        key("▶", "Turn to the right", () => this.#turn(15, 0)),
-        key("▲", "Turn up", () => this.#turn(0, 15)),
-        key("▼", "Turn down", () => this.#turn(0, -15)),
-        key("+", "Zoom in", () => this.#zoom(1.3)),
-        key("−", "Zoom out", () => this.#zoom(1 / 1.3)),
-        key("Reset", "Reset the view", () => this.#reset()),
+        signButton("◀", "Turn to the left", () => this.#turn(-15, 0)),
+        signButton("▶", "Turn to the right", () => this.#turn(15, 0)),
+        signButton("▲", "Turn up", () => this.#turn(0, 15)),
+        signButton("▼", "Turn down", () => this.#turn(0, -15)),
+        signButton("+", "Zoom in", () => this.#zoom(1.3)),
+        signButton("−", "Zoom out", () => this.#zoom(1 / 1.3)),
+        signButton("Reset", "Reset the view", () => this.#reset()),
         ...labelled("Show", gears),
         this.legend,
       ),

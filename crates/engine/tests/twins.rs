@@ -170,8 +170,8 @@ fn narrow_and_wide_straight_faces_have_what_the_plane_has_of_every_departure_and
     let mut table: Vec<Twins> = every().map(|of| Twins::of(of, NARROW)).collect();
     table.extend(every().map(|of| Twins::of(of, WIDE)));
     for row in &mut table {
-        // Where a tip corner of a tooth that stands out by 12 µm takes the load over, a gap off the line of action grows faster than in proportion to the
-        // turn of the tooth: the plane turns it, faces open it at first order, and the next pair touches 0.14 µm later without load.
+        // A tip corner of a tooth that stands out by 12 µm takes the load over. The plane turns the tooth, faces open the gap at first order, and a gap off
+        // the line of action grows faster than that: without load both differ by up to 0.14 µm.
         if row.departure.name == "pitch of the driven gear" {
             row.limit.of_deflection = 0.13;
         }

@@ -120,7 +120,7 @@ pub(super) fn search_table(
     text
 }
 
-/// What is said of some that have no results, behind what is said of those that have some.
+/// How many have no results, and why, as a sentence behind that on those that have.
 fn why_others_failed(what: &str, refusals: &[RefusalState]) -> String {
     let count: u64 = refusals.iter().map(|refusal| refusal.count).sum();
     if count == 0 {

@@ -10,8 +10,8 @@ use crate::dynamics::{ForceTable, RunUp, RunUpData};
 use crate::gear::{GearPair, Member};
 use crate::run::Run;
 
-/// Orders of a pair in its results, at most, for each mesh period of its true period: speeds are as many fewer as that is longer, so that this bounds what
-/// a run-up answers in all. Those that are known are never more.
+/// Orders of a pair in its results, at most, for each mesh period of its true period: speeds are as many fewer as that is longer, so that this bounds the
+/// results of a run-up. Those that are known are never more.
 const ORDERS_A_PERIOD: usize = 12;
 
 /// Rings into which the band of a hole is divided.
@@ -192,7 +192,7 @@ pub fn dynamics(
     };
     let mut run_up = data.run_up(table, run)?;
     if data.speeds.first() == Some(&0.0) {
-        // The curve as it is answered, at its own positions.
+        // The curve as it stands in the results, at its own positions.
         let still = &curve.transmission_error_statistics;
         for branch in [&mut run_up.up, &mut run_up.down].into_iter().flatten() {
             branch.rms[0] = still.rms;
@@ -212,7 +212,7 @@ pub fn dynamics(
     })
 }
 
-/// The orders of `pair` that are answered whatever their amplitude, with their labels and per mesh period, rising: of the mesh to the tenth, of holes, of the
+/// The orders of `pair` that are given whatever their amplitude, with their labels and per mesh period, rising: of the mesh to the tenth, of holes, of the
 /// first revolutions of gears that deviate, and the sidebands of both.
 fn known(pair: &GearPair) -> Vec<(String, f64)> {
     let known = Orders::of(pair).known().into_iter();
@@ -225,7 +225,7 @@ fn per_mesh_period(pair: &GearPair, order: f64) -> f64 {
     order / f64::from(pair.driven().tooth_count())
 }
 
-/// The orders that are answered: those that are known, and what else stands out of the static curve but for the mesh, as far as there is room.
+/// The orders that are given: those that are known, and what else stands out of the static curve but for the mesh, as far as there is room.
 fn orders_at_speed(pair: &GearPair, curve: &Curve) -> Vec<(String, f64)> {
     let mut orders = known(pair);
     let most = ORDERS_A_PERIOD * pair.period() as usize;

@@ -489,8 +489,8 @@ impl<'a> ContactCells<'a> {
         Some(touching.collect())
     }
 
-    /// What the cells of pairs lack: room, if the contact reaches beyond them or flanks penetrate beside them, and there is room for more; if no pair lacks
-    /// room, half the width, if flanks penetrate deeper than `deep` between cells.
+    /// What the cells of pairs lack. They lack room if the contact reaches beyond them or flanks penetrate beside them, and there is room for more. If no
+    /// pair lacks room, cells between which flanks penetrate deeper than `deep` lack half their width.
     pub(super) fn lacks(
         &self,
         solution: &ContactSolution,

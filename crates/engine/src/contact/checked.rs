@@ -64,7 +64,7 @@ pub(super) struct CheckedStretch {
 #[derive(Debug)]
 pub(super) struct CheckedStretches {
     pub(super) stretches: Vec<CheckedStretch>,
-    /// The probes of those that have one: as the seat of the pair sees them, and as its mate does.
+    /// The probes of those that have one, by the flank on which they lie: that of the seat of the pair, and the other one.
     pub(super) probes: [Probes; 2],
     /// Row by row what unit forces on the cells of the pair do to each with the interfaces held, and W V of each gear.
     pub(super) yields: Vec<f64>,

@@ -102,8 +102,8 @@ impl<T: Numbers> Push<T> {
     }
 }
 
-/// A point of the seat's flank as drawn and as placed, with all that is needed to say how it meets the other flank once both gears have turned
-/// on a little and their teeth deviate: the same as [`placement::Placement`] says, without an angle to be taken.
+/// A point of the seat's flank as drawn and as placed, with all that is needed to say how it meets the other flank. Both gears may have turned on a
+/// little since, and their teeth may deviate. It says the same as [`placement::Placement`], without an angle to be taken.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Probe<T = f64> {
     /// The roll length on the seat, as placed.

@@ -102,8 +102,8 @@ pub(super) fn angles(pair: &GearPair, phase: f64) -> [f64; 2] {
     ]
 }
 
-/// The weights of the normals of the driving and of the driven flank of a pair at `phase` in the direction in which they push: equal, but for the corner
-/// of an undercut flank, which pushes along the normal of the smooth flank that it touches.
+/// The weights of the normals of the driving and of the driven flank of a pair at `phase` in the direction in which they push. They are equal, but for the
+/// corner of an undercut flank, which pushes along the normal of the smooth flank that it touches.
 pub(super) fn weights(pair: &GearPair, phase: f64) -> [f64; 2] {
     /// The part of the roll length of the corner over which the weights change as the nominal contact passes it.
     const CHANGES_OVER: f64 = 0.1;

@@ -32,6 +32,19 @@ const STRAIGHT: Alignment = Alignment {
     out_of_plane: 0.0,
 };
 
+impl Departure {
+    /// Of the gears alone, on straight leads and parallel axes.
+    fn of_gears(name: &'static str, driving: fn(&mut GearData), driven: fn(&mut GearData)) -> Self {
+        Self {
+            name,
+            driving,
+            driven,
+            leads: no_leads,
+            alignment: STRAIGHT,
+        }
+    }
+}
+
 fn plain(_: &mut GearData) {}
 
 fn no_leads() -> [Vec<LeadModification>; 2] {
@@ -40,13 +53,7 @@ fn no_leads() -> [Vec<LeadModification>; 2] {
 
 /// Of the profile of either gear, which the plane sees too.
 pub(crate) fn of_profiles() -> Vec<Departure> {
-    let of = |name, driving, driven| Departure {
-        name,
-        driving,
-        driven,
-        leads: no_leads,
-        alignment: STRAIGHT,
-    };
+    let of = Departure::of_gears;
     vec![
         of("nothing", plain, plain),
         of("pitch of the driving gear", pitch, plain),
@@ -63,13 +70,7 @@ pub(crate) fn of_profiles() -> Vec<Departure> {
 
 /// Of the other gear, or of one gear alone, and of both tip edges.
 pub(crate) fn of_either_gear() -> Vec<Departure> {
-    let of = |name, driving, driven| Departure {
-        name,
-        driving,
-        driven,
-        leads: no_leads,
-        alignment: STRAIGHT,
-    };
+    let of = Departure::of_gears;
     vec![
         of("broken tip edges", broken_edges, broken_edges),
         of("pitch of the driven gear", plain, pitch),

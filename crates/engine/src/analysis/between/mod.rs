@@ -2,8 +2,8 @@
 //!
 //! δ and k are known at equal steps. Between them a pair takes up or leaves the load, contact reaches the start of a relief or a tip edge, and
 //! the extremes of a curve often stand there. So the curve is divided where the loaded pairs change ([`events`]), a polynomial stands between
-//! two neighboring positions or events ([`sections`]), and the contact is solved at some more positions, where it says most of the extremes
-//! and then of the rest. The arrays of a curve stay on the equal steps; its statistics and its spectrum are those of the sections.
+//! two neighboring positions or events ([`sections`]), and the contact is solved at some more positions, where
+//! the extremes, and then the rest, are least known. The arrays of a curve stay on the equal steps; its statistics and its spectrum are those of the sections.
 
 mod cubic;
 mod events;

@@ -28,7 +28,7 @@ const STEP: f64 = 4.0;
 const LIGHTEST: i32 = 5;
 const SOLVED: usize = 8;
 
-/// The slice under a spring.
+/// The piece of a contact line that a spring stands for.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Line {
     /// Its length along the contact line.
