@@ -13,7 +13,7 @@ const only = process.env.ONLY ? new RegExp(process.env.ONLY) : null;
 
 const browser = await chromium.launch({ executablePath: process.env.BROWSER, args: ["--no-sandbox"] });
 let passed = 0;
-let failed = 0;
+const failed = [];
 
 /**
  * What runs a step on a service, in a page of its own, which must neither log an error nor ask another host; and what does
@@ -63,11 +63,11 @@ async function run(name, service, work, options, others) {
     passed += 1;
     console.log(`page: ok: ${name}`);
   } catch (error) {
-    failed += 1;
     const said = await page
       .locator("[role=status]:visible, [role=alert]:visible")
       .allInnerTexts()
       .catch(() => []);
+    failed.push(`${name}: ${error.message.split("\n")[0]}`);
     console.log(
       `page: FAILED: ${name}\n${error.stack}\n${faults.join("\n")}\nThe page says: ${said.filter(Boolean).join(" | ")}`,
     );
@@ -93,8 +93,8 @@ async function fromDisk(page, { url }) {
 /** Ends the browser and tells how it went. */
 export async function end() {
   await browser.close();
-  console.log(`${passed} passed, ${failed} failed`);
-  process.exitCode = failed ? 1 : 0;
+  console.log([`${passed} passed, ${failed.length} failed`, ...failed].join("\n"));
+  process.exitCode = failed.length ? 1 : 0;
 }
 
 /** An answer of the headline, as a number. */

@@ -1,8 +1,8 @@
 //! The evolution of a front of two goals: of parents and children those stay that leave the largest area behind the front.
 //!
 //! A child is a parent moved by a part of the difference of two others, as in differential evolution (Storn and Price 1997), so that steps follow the shape
-//! and the size of the front. Half of the children mutate as well (polynomial mutation, Deb and Agrawal 1999). Those stay that no other beats; of the last front those
-//! go first whose loss costs the least area (SMS-EMOA; Beume, Naujoks and Emmerich 2007). What is not feasible comes behind everything that is.
+//! and the size of the front. Half of the children mutate as well (polynomial mutation, Deb and Agrawal 1999). Those stay that no other beats; of the last
+//! front those go first whose loss costs the least area (SMS-EMOA; Beume, Naujoks and Emmerich 2007). What is not feasible comes behind everything that is.
 
 use std::cmp::Ordering;
 
