@@ -156,51 +156,44 @@ pub(super) fn nearer_tip(gears: &GearPair, phase: f64) -> Member {
 pub(super) struct Touching<'a> {
     pub(super) view: View<'a>,
     pub(super) facing: Facing,
-    /// How far the driven gear lags there, and how much farther until they touch: no more than is rounded.
-    lag: f64,
-    rest: f64,
+    /// How far the driven gear lags there. The rest of the way, [`Facing::touch`], is so short that it is straight.
+    pub(super) lag: f64,
 }
 
 impl<'a> Touching<'a> {
-    /// The flanks of `pair` with these `deviations` in a `section`, seen from that of `seat`.
+    /// The flanks of `pair` with these `deviations` in a `section`, seen from that of `seat`: turned on from a lag that may be nearly right until
+    /// δ errs by less than `error`.
     pub(super) fn of(
         (pair, deviations): (&'a GearPair, &'a PairDeviations),
         section: Section,
         seat: Member,
+        (nearly, error): (f64, f64),
     ) -> Option<Self> {
         let at = |lag: f64| {
             let placement = Placement::real(pair, deviations, section, lag);
             let view = View { placement, seat };
-            Some((view, view.facing(section.phase)?))
+            let facing = view.facing(section.phase)?;
+            Some(Self { view, facing, lag })
         };
-        // Seen from afar a corner touches elsewhere than it does: by the square of the way.
-        let mut lag = 0.0;
-        let mut seen = at(lag)?;
+        // Off the line of action the way to where flanks touch is a parabola over the phase: δ = x²/(2 R). The arms differ by its slope x/R, and straight
+        // on it errs by δ²/(2 R), a quarter of δ times the square of that slope.
+        let missed = |touching: &Self| {
+            let [driving, driven] = touching.arms();
+            0.25 * touching.facing.touch().abs() * (driving / driven - 1.0).powi(2)
+        };
+        let mut touching = at(nearly)?;
         for _ in 0..MOST_TURNS {
-            let step = seen.1.touch();
-            if step.abs() < ROUNDING {
+            if missed(&touching) < error {
                 break;
             }
-            lag += step;
-            seen = at(lag)?;
+            touching = at(touching.delta())?;
         }
-        let (view, facing) = seen;
-        Some(Self {
-            rest: facing.touch(),
-            view,
-            facing,
-            lag,
-        })
+        Some(touching)
     }
 
     /// The δ at which they touch.
     pub(super) fn delta(&self) -> f64 {
-        self.lag + self.rest
-    }
-
-    /// How far the driven gear has turned back.
-    pub(super) fn lag(&self) -> f64 {
-        self.lag
+        self.lag + self.facing.touch()
     }
 
     /// The arms about both axes of a force where they touch.

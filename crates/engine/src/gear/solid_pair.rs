@@ -205,12 +205,12 @@ impl SolidPair {
                 .map(|lead| lead.turned_over(width))
                 .collect::<Vec<_>>()
         });
-        // The axes open from −z on; seen from the other side they have opened there already.
+        // The axes open from −z on; seen from the other side they have opened there already. So far the driven gear lags.
         let alpha = self.section.working_pressure_angle();
         let opened = in_plane * alpha.sin() - out_of_plane * alpha.cos();
         if opened != 0.0 {
-            let half = 0.5 * self.gears[0].face_width();
-            leads[0].push(LeadModification::Table {
+            let half = 0.5 * self.gears[1].face_width();
+            leads[1].push(LeadModification::Table {
                 places: vec![-half, half],
                 removed: vec![opened; 2],
             });

@@ -100,9 +100,22 @@ impl FaceFlanks {
     /// The flanks in a `section` where they just touch, and a force between them drives the driven gear on. Far off the path of contact it may turn that
     /// back; flanks touch elsewhere long before they do there.
     pub(super) fn touching(&self, section: Section) -> Option<Touching<'_>> {
-        let gears = &self.plane_strain;
+        const ERROR: f64 = 2e-10;
+        let (gears, deviations) = (&self.plane_strain, &self.deviations);
+        let [tooth_1, tooth_2] = gears.teeth(section.pair);
+        let s_1 = gears.roll_length_of(section.phase);
+        let nominal = [(tooth_1, s_1), (tooth_2, gears.line_of_action() - s_1)];
+        // On the path of contact they just touch so.
+        let nearly = Member::BOTH.map(|member| {
+            let (g, gear) = (member.index(), gears.gear(member));
+            let (tooth, s) = nominal[g];
+            let of = deviations.of_gear(member);
+            let s = s.clamp(gear.form_roll_length(), gear.tip_roll_length());
+            section.removed[g] - of.at(tooth, s) - of.runout(gear, tooth, s, section.twists[g])
+        });
         let seat = nearer_tip(gears, section.phase);
-        let touching = Touching::of((gears, &self.deviations), section, seat);
+        let nearly = nearly[0] + nearly[1];
+        let touching = Touching::of((gears, deviations), section, seat, (nearly, ERROR));
         touching.filter(|touching| touching.arms()[1] > 0.0)
     }
 

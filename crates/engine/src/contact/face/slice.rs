@@ -299,7 +299,7 @@ impl<'a> Slicer<'a> {
         };
         Some(Place {
             roll_lengths: minimum.roll_lengths,
-            gap: gap + weights[1] * touching.lag(),
+            gap: gap + weights[1] * touching.lag,
             weights,
             spring: Arc::new(spring),
         })
