@@ -36,8 +36,8 @@ use crate::jobs::{Job, Resource as _};
 const PREVIEWS_LONG: u32 = 4;
 const LONGEST: Duration = Duration::from_secs(60);
 
-/// What takes the job longer by its estimate may take so many times of that here: all of its positions are solved again.
-const ESTIMATES_LONG: f64 = 4.0;
+/// What takes longer by the estimate of the job, or took it longer, may take so many times of that here: all of its positions are solved again.
+const JOBS_LONG: f64 = 4.0;
 
 /// What volumes of both gears take until they are written, in bytes for each tooth, and what their file has at most, packed.
 const VOLUME_BYTES: [u64; 2] = [4 << 20, 1 << 20];
@@ -267,7 +267,8 @@ impl Done {
             return Err(too_much_memory(memory, limit).into());
         }
         app.bodies.check_answer(sent)?;
-        let again = Duration::try_from_secs_f64(ESTIMATES_LONG * seconds).unwrap_or(LONGEST);
+        let took = job.elapsed.map_or(0.0, |elapsed| elapsed.as_secs_f64());
+        let again = Duration::try_from_secs_f64(JOBS_LONG * seconds.max(took)).unwrap_or(LONGEST);
         let made = async {
             let held = app.bodies.for_answer(client.name(), sent).await?;
             let library = app.library.clone();

@@ -6,7 +6,7 @@ import { AxeBuilder } from "@axe-core/playwright";
 import { chromium } from "playwright-core";
 
 /** In milliseconds, for a machine that has much else to do. */
-const PATIENCE = 120_000;
+const PATIENCE = 300_000;
 /** What is computed says something new at least once in so many milliseconds. */
 const STANDSTILL = 180_000;
 const only = process.env.ONLY ? new RegExp(process.env.ONLY) : null;
@@ -45,8 +45,8 @@ async function run(name, service, work, options, others) {
   if (process.env.WEB) await fromDisk(page, service);
   const faults = [];
   page.on("console", (message) => {
-    // The browser itself logs a refusal and a service that is away; the page shows both.
-    if (message.type() === "error" && !/status of 4(01|22)|ERR_INTERNET_DISCONNECTED/.test(message.text()))
+    // The browser itself logs a refusal, a service that is away or too busy for a preview; the page shows each.
+    if (message.type() === "error" && !/status of (401|422|503)|ERR_INTERNET_DISCONNECTED/.test(message.text()))
       faults.push(message.text());
   });
   page.on("pageerror", (error) => faults.push(error.stack));
