@@ -186,7 +186,11 @@ impl<'a> Touching<'a> {
             if missed(&touching) < error {
                 break;
             }
-            touching = at(touching.delta())?;
+            // Where flanks cease to face each other on the way they touch about where it was straight.
+            let Some(nearer) = at(touching.delta()) else {
+                break;
+            };
+            touching = nearer;
         }
         Some(touching)
     }
