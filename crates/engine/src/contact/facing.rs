@@ -161,13 +161,13 @@ pub(super) struct Touching<'a> {
 }
 
 impl<'a> Touching<'a> {
-    /// The flanks of `pair` with these `deviations` in a `section`, seen from that of `seat`: turned on from a lag that may be nearly right until
-    /// δ errs by less than `error`.
+    /// The flanks of `pair` with these `deviations` in a `section`, seen from that of `seat`: turned on from the lag `from` until they are `near`.
     pub(super) fn of(
         (pair, deviations): (&'a GearPair, &'a PairDeviations),
         section: Section,
         seat: Member,
-        (nearly, error): (f64, f64),
+        from: f64,
+        near: impl Fn(&Self) -> bool,
     ) -> Option<Self> {
         let at = |lag: f64| {
             let placement = Placement::real(pair, deviations, section, lag);
@@ -175,15 +175,10 @@ impl<'a> Touching<'a> {
             let facing = view.facing(section.phase)?;
             Some(Self { view, facing, lag })
         };
-        // Off the line of action the way to where flanks touch is a parabola over the phase: δ = x²/(2 R). The arms differ by its slope x/R, and straight
-        // on it errs by δ²/(2 R), a quarter of δ times the square of that slope.
-        let missed = |touching: &Self| {
-            let [driving, driven] = touching.arms();
-            0.25 * touching.facing.touch().abs() * (driving / driven - 1.0).powi(2)
-        };
-        let mut touching = at(nearly)?;
+        // Seen from afar a corner touches elsewhere than it does: by the square of the way.
+        let mut touching = at(from)?;
         for _ in 0..MOST_TURNS {
-            if missed(&touching) < error {
+            if near(&touching) {
                 break;
             }
             // Where flanks cease to face each other on the way they touch about where it was straight.
@@ -198,6 +193,13 @@ impl<'a> Touching<'a> {
     /// The δ at which they touch.
     pub(super) fn delta(&self) -> f64 {
         self.lag + self.facing.touch()
+    }
+
+    /// About how far straight on from here they miss where they touch. Off the line of action the way there is a parabola over the phase, δ = x²/(2 R).
+    /// The arms differ by its slope x/R, and straight on it errs by δ²/(2 R): a quarter of δ times the square of that slope.
+    pub(super) fn missed(&self) -> f64 {
+        let [driving, driven] = self.arms();
+        0.25 * self.facing.touch().abs() * (driving / driven - 1.0).powi(2)
     }
 
     /// The arms about both axes of a force where they touch.

@@ -100,7 +100,8 @@ impl FaceFlanks {
     /// The flanks in a `section` where they just touch, and a force between them drives the driven gear on. Far off the path of contact it may turn that
     /// back; flanks touch elsewhere long before they do there.
     pub(super) fn touching(&self, section: Section) -> Option<Touching<'_>> {
-        const ERROR: f64 = 2e-10;
+        // In modules: 0.2 nm at 2 mm.
+        const NEAR: f64 = 1e-7;
         let (gears, deviations) = (&self.plane_strain, &self.deviations);
         let [tooth_1, tooth_2] = gears.teeth(section.pair);
         let s_1 = gears.roll_length_of(section.phase);
@@ -114,8 +115,10 @@ impl FaceFlanks {
             section.removed[g] - of.at(tooth, s) - of.runout(gear, tooth, s, section.twists[g])
         });
         let seat = nearer_tip(gears, section.phase);
-        let nearly = nearly[0] + nearly[1];
-        let touching = Touching::of((gears, deviations), section, seat, (nearly, ERROR));
+        let error = NEAR * gears.driving().data().rack.module;
+        let near = |touching: &Touching<'_>| touching.missed() < error;
+        let from = nearly[0] + nearly[1];
+        let touching = Touching::of((gears, deviations), section, seat, from, near);
         touching.filter(|touching| touching.arms()[1] > 0.0)
     }
 
