@@ -29,7 +29,7 @@ pub(super) struct PatternParameters {
 ///
 /// The largest pressure over the period on both flanks of a pair that was computed along its faces, and the lines of contact at each position with
 /// the load and the pressure along them. It is computed anew from the submission, while the request waits, and bounded as previews are, but for four
-/// times their time, or that of the job by its estimate.
+/// times their time, or that of the job, as estimated or as it was.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/results/contact-pattern.json", tag = "Results", operation_id = "get_contact_pattern",
     params(PatternParameters, IfNoneMatch),

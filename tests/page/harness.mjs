@@ -45,9 +45,13 @@ async function run(name, service, work, options, others) {
   if (process.env.WEB) await fromDisk(page, service);
   const faults = [];
   page.on("console", (message) => {
-    // The browser itself logs a refusal, a service that is away or too busy for a preview; the page shows each.
-    if (message.type() === "error" && !/status of (401|422|503)|ERR_INTERNET_DISCONNECTED/.test(message.text()))
-      faults.push(message.text());
+    // The browser itself logs a refusal, a service that is away, and one that is too busy for a preview; the page shows each.
+    const logged = `${message.text()} ${message.location().url}`;
+    if (
+      message.type() === "error" &&
+      !/status of 4(01|22)|ERR_INTERNET_DISCONNECTED|status of 503 .*\/v1\/preview$/.test(logged)
+    )
+      faults.push(logged);
   });
   page.on("pageerror", (error) => faults.push(error.stack));
   page.on("request", (request) => {
