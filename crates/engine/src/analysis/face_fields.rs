@@ -9,7 +9,7 @@ use super::{AnalysisError, Case};
 use crate::assembly::face_inside::MovedParts;
 use crate::assembly::{FaceInside, FaceYield, FaceYieldSpec, Parts};
 use crate::contact::face::FaceContact;
-use crate::contact::placement::Placement;
+use crate::contact::placement::{Placement, Section};
 use crate::fem::volume::{Place, Volume, von_mises};
 use crate::gear::{Member, Vector};
 use crate::run::Run;
@@ -79,7 +79,7 @@ fn of_gears<T: Send>(
         return Ok(None);
     };
     let deviations = case.pair.deviations();
-    let placement = Placement::real(&case.pair, &deviations, eta, 0, 0.0);
+    let placement = Placement::real(&case.pair, &deviations, Section::straight(eta, 0), 0.0);
     let of = |member: Member| {
         let (axis, angle) = placement.frame(member);
         // The gear's own middle stands beside that of the common face.

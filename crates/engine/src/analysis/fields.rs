@@ -7,7 +7,7 @@ use super::setup::Setup;
 use super::{AnalysisError, Case};
 use crate::assembly::inside::Answer;
 use crate::assembly::{Blanks, Inside, PartError, Parts, Probes};
-use crate::contact::placement::Placement;
+use crate::contact::placement::{Placement, Section};
 use crate::contact::{FlankLoad, Stage, WarmStart};
 use crate::fem::FemError;
 use crate::fem::prescribed::{Load, displacements};
@@ -86,7 +86,7 @@ pub fn fields(
             Member::BOTH.map(|member| cells.flank_loads(member, &solution.forces))
         })
         .map_err(at)?;
-    let placement = Placement::real(&case.pair, deviations, eta, 0, 0.0);
+    let placement = Placement::real(&case.pair, deviations, Section::straight(eta, 0), 0.0);
     let of = |member: Member| {
         let (origin, angle) = placement.frame(member);
         of_gear(

@@ -1,12 +1,18 @@
 //! Two flanks that face each other: where they are nearest, and how far either sees the other.
 
 use super::meeting::{Meeting, Probe};
-use super::placement::{FlankPlace, Placement, Sight};
+use super::placement::{FlankPlace, Placement, Section, Sight};
 use crate::gear::{GearPair, Member, PairDeviations, SpurGear};
 use crate::root_finding::bisect;
 
 /// Places besides kinks between which minima of the gap are searched on flanks that are not convex.
 const PLACES: u32 = 64;
+
+/// What coordinates may be rounded by, in meters.
+pub(super) const ROUNDING: f64 = 1e-12;
+
+/// Turns to the flanks that touch; each squares what is left.
+pub(super) const MOST_TURNS: u32 = 4;
 
 /// What ends the part of a flank from which the other flank is seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -103,20 +109,10 @@ impl Facing {
         n: i64,
         lag: f64,
     ) -> Option<Self> {
-        let seat = nearer_tip(gears, eta - n as f64);
-        Self::real_on((gears, deviations), eta, n, lag, seat)
-    }
-
-    /// As [`Facing::real`], seen from the flank of `seat`.
-    pub(super) fn real_on(
-        (gears, deviations): (&GearPair, &PairDeviations),
-        eta: f64,
-        n: i64,
-        lag: f64,
-        seat: Member,
-    ) -> Option<Self> {
-        let placement = Placement::real(gears, deviations, eta, n, lag);
-        View { placement, seat }.facing(eta - n as f64)
+        let section = Section::straight(eta, n);
+        let seat = nearer_tip(gears, section.phase);
+        let placement = Placement::real(gears, deviations, section, lag);
+        View { placement, seat }.facing(section.phase)
     }
 
     /// About how much memory it takes beside itself, in bytes.
@@ -155,6 +151,56 @@ pub(super) fn nearer_tip(gears: &GearPair, phase: f64) -> Member {
     }
 }
 
+/// Two flanks as they face each other where they just touch.
+#[derive(Debug, Clone)]
+pub(super) struct Touching<'a> {
+    pub(super) view: View<'a>,
+    pub(super) facing: Facing,
+    /// How far the driven gear lags there. The rest of the way, [`Facing::touch`], is so short that it is straight.
+    pub(super) lag: f64,
+}
+
+impl<'a> Touching<'a> {
+    /// The flanks of `pair` with these `deviations` in a `section`, seen from that of `seat`: turned on from the lag `from` until they are `near`.
+    pub(super) fn of(
+        (pair, deviations): (&'a GearPair, &'a PairDeviations),
+        section: Section,
+        seat: Member,
+        from: f64,
+        near: impl Fn(&Self) -> bool,
+    ) -> Option<Self> {
+        let at = |lag: f64| {
+            let placement = Placement::real(pair, deviations, section, lag);
+            let view = View { placement, seat };
+            let facing = view.facing(section.phase)?;
+            Some(Self { view, facing, lag })
+        };
+        // Seen from afar a corner touches elsewhere than it does: by the square of the way.
+        let mut touching = at(from)?;
+        for _ in 0..MOST_TURNS {
+            if near(&touching) {
+                break;
+            }
+            // Where flanks cease to face each other on the way they touch about where it was straight.
+            let Some(nearer) = at(touching.delta()) else {
+                break;
+            };
+            touching = nearer;
+        }
+        Some(touching)
+    }
+
+    /// The δ at which they touch.
+    pub(super) fn delta(&self) -> f64 {
+        self.lag + self.facing.touch()
+    }
+
+    /// The arms about both axes of a force where they touch.
+    pub(super) fn arms(&self) -> [f64; 2] {
+        self.view.arms(&self.facing)
+    }
+}
+
 impl<'a> View<'a> {
     /// The same flanks, seen from the other gear.
     pub(super) fn seen_from_mate(&self) -> Self {
@@ -177,7 +223,8 @@ impl<'a> View<'a> {
         }
     }
 
-    fn facing(&self, phase: f64) -> Option<Facing> {
+    /// How they face each other, `phase` mesh periods after they passed the pitch point.
+    pub(super) fn facing(&self, phase: f64) -> Option<Facing> {
         let gears = self.gears();
         let s_1 = gears.roll_length_of(phase);
         let [nominal, _] = self.on_both(s_1, gears.line_of_action() - s_1);
@@ -209,6 +256,13 @@ impl<'a> View<'a> {
             sight: self.placement.sight(self.seat.other(), place.point)?,
             place,
         })
+    }
+
+    /// The arms about both axes of a force where the gap of `facing` is least.
+    pub(super) fn arms(&self, facing: &Facing) -> [f64; 2] {
+        // The place is found wherever flanks face each other.
+        let point = self.point(facing.minima[0].arc);
+        point.map_or([1.0, 1.0], |point| self.meeting(&point).arms)
     }
 
     /// How the flanks meet at `point`.

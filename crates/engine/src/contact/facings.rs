@@ -1,15 +1,12 @@
 //! All pairs whose flanks face each other at one mesh position, and which of them come near.
 
 use super::drawn::DrawnPair;
-use super::facing::{Facing, GapMinimum, RangeEnd, nearer_tip};
+use super::facing::{Facing, GapMinimum, MOST_TURNS, ROUNDING, RangeEnd, Touching, nearer_tip};
 use super::meeting::Standing;
 use super::model::{DeviatingPair, MeshPosition};
 use super::patch::Extent;
-use super::placement;
+use super::placement::{self, Section};
 use crate::gear::Member;
-
-/// What coordinates may be rounded by, in meters.
-const ROUNDING: f64 = 1e-12;
 
 /// Pairs whose teeth deviate are placed as drawn at the nearest of so many phases a mesh period.
 const PHASES: f64 = 64.0;
@@ -21,9 +18,6 @@ const MOST_RUNOUT: f64 = 2.0;
 /// If the eccentricities of both gears together exceed this part of a phase, the minimum of the gap is searched on the displaced flanks. The minimum of
 /// the nearest drawn phase is wrong by the square of the distance from it, and by much more across a kink or beside a corner.
 const DISPLACED: f64 = 0.25;
-
-/// Turns to the flanks that touch; each squares what is left.
-const MOST_TURNS: u32 = 4;
 
 /// The pairs whose flanks face each other at one fraction of the mesh period; numbered from the reference pair of the
 /// period. They are found outward from the path of contact, as far as is asked.
@@ -315,8 +309,8 @@ impl<'a> Facings<'a> {
 
     /// Finds where and when the displaced flanks of `near` touch first in mesh period `period`.
     fn find_on_displaced(&self, near: &mut Near, period: i64) -> Option<()> {
-        let (mut delta, mut real) = self.real(near, period)?;
-        if real.is_at_mate_tip() {
+        let mut real = self.real(near, period)?;
+        if real.facing.is_at_mate_tip() {
             // On its own flank a gear's tip is where cells end, however the gears stand.
             let model = self.deviating.model;
             let seat = near.drawn.seat.other();
@@ -328,10 +322,10 @@ impl<'a> Facings<'a> {
                 && let Some(found) = self.real(&on_other, period)
             {
                 *near = on_other;
-                (delta, real) = found;
+                real = found;
             }
         }
-        let first = &real.minima[0];
+        let first = &real.facing.minima[0];
         let away = |minimum: &GapMinimum| first.arc - minimum.arc;
         let minima = &near.drawn.facing()?.minima;
         let nearest = |a: &&GapMinimum, b: &&GapMinimum| away(a).abs().total_cmp(&away(b).abs());
@@ -339,28 +333,17 @@ impl<'a> Facings<'a> {
             .iter()
             .enumerate()
             .min_by(|a, b| nearest(&a.1, &b.1))?;
-        near.touches[i] = delta;
+        near.touches[i] = real.delta();
         near.away = (i == 0).then(|| away(minimum));
         Some(())
     }
 
-    /// The δ at which the flanks of `near` touch first in mesh period `period`, and how they face each other there.
-    fn real(&self, near: &Near, period: i64) -> Option<(f64, Facing)> {
+    /// The flanks of `near` where they touch first in mesh period `period`.
+    fn real(&self, near: &Near, period: i64) -> Option<Touching<'a>> {
         let pair = (&self.deviating.model.pair, self.deviating.deviations);
-        let (eta, n) = (self.at(period).eta(), period + near.pair);
-        let at = |lag: f64| Facing::real_on(pair, eta, n, lag, near.drawn.seat);
-        // Seen from afar a corner touches elsewhere than it does: by the square of the way.
-        let mut lag = 0.0;
-        let mut real = at(lag)?;
-        for _ in 0..MOST_TURNS {
-            let step = real.touch();
-            if step.abs() < ROUNDING {
-                break;
-            }
-            lag += step;
-            real = at(lag)?;
-        }
-        Some((lag + real.touch(), real))
+        let section = Section::straight(self.at(period).eta(), period + near.pair);
+        let there = |touching: &Touching<'_>| touching.facing.touch().abs() < ROUNDING;
+        Touching::of(pair, section, near.drawn.seat, 0.0, there)
     }
 
     /// Finds the pairs that touch as drawn before δ is `reach`.

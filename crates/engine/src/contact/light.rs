@@ -26,11 +26,11 @@ pub(super) struct FirstTouch {
 }
 
 impl FirstTouch {
-    /// That of the flanks of `pair` as they face each other in a transverse section.
-    pub(super) fn of(pair: i64, facing: &Facing) -> Self {
+    /// That of the flanks of `pair` as they face each other in a transverse section, `delta` that at which they touch.
+    pub(super) fn of(pair: i64, facing: &Facing, delta: f64) -> Self {
         Self {
             pair,
-            delta: facing.touch(),
+            delta,
             tip_corner: facing.off_path.then_some(facing.seat),
         }
     }
@@ -53,7 +53,7 @@ pub fn light_contact(
     let rounding = TOGETHER * pair.driving().data().rack.module;
     let touch = |n: i64, lag: f64| {
         let facing = Facing::real(pair, deviations, eta, n, lag)?;
-        Some(FirstTouch::of(n, &facing))
+        Some(FirstTouch::of(n, &facing, facing.touch()))
     };
     let apart = 2.0 * deviations.nearest() + rounding;
     let near = touching_near(on_path(pair, eta, 0.0), apart, |n| touch(n, 0.0));

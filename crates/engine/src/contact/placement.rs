@@ -28,6 +28,31 @@ pub struct Placement<'a> {
     made: Option<(&'a PairDeviations, [usize; 2])>,
 }
 
+/// A transverse section of the teeth of one pair.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Section {
+    /// The pair n.
+    pub pair: i64,
+    /// Mesh periods since it passed the pitch point in this section.
+    pub phase: f64,
+    /// What is removed from each flank alike at every roll length, along the base tangent.
+    pub removed: [f64; 2],
+    /// The angle by which each gear is turned here from the middle of its face.
+    pub twists: [f64; 2],
+}
+
+impl Section {
+    /// That of straight teeth as drawn, of `pair` at the mesh position `eta`.
+    pub fn straight(eta: f64, pair: i64) -> Self {
+        Self {
+            pair,
+            phase: eta - pair as f64,
+            removed: [0.0; 2],
+            twists: [0.0; 2],
+        }
+    }
+}
+
 /// A place on the boundary of a gear.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FlankPlace {
@@ -155,23 +180,26 @@ impl<'a> Placement<'a> {
         }
     }
 
-    /// The teeth of pair `n` of `pair`, with these `deviations`, at the mesh position `eta`, the driven gear lagging by `lag` on its base
-    /// circle.
+    /// The teeth of `pair` with these `deviations` in a `section`, the driven gear lagging by `lag` on its base circle.
     pub fn real(
         pair: &'a GearPair,
         deviations: &'a PairDeviations,
-        eta: f64,
-        n: i64,
+        section: Section,
         lag: f64,
     ) -> Self {
-        let mut angles = angles(pair, eta - n as f64);
+        let mut angles = angles(pair, section.phase);
         angles[1] += lag / pair.driven().base_radius();
+        let in_middle = [0, 1].map(|g| angles[g] - section.twists[g]);
+        let turned = Member::BOTH.map(|member| {
+            let g = member.index();
+            angles[g] - section.removed[g] / pair.gear(member).base_radius()
+        });
         Self {
             pair,
-            centers: centers(pair, deviations, n, angles),
-            angles,
-            weights: weights(pair, eta - n as f64),
-            made: Some((deviations, pair.teeth(n))),
+            centers: centers(pair, deviations, section.pair, in_middle),
+            angles: turned,
+            weights: weights(pair, section.phase),
+            made: Some((deviations, pair.teeth(section.pair))),
         }
     }
 

@@ -205,12 +205,12 @@ impl SolidPair {
                 .map(|lead| lead.turned_over(width))
                 .collect::<Vec<_>>()
         });
-        // The axes open from −z on; seen from the other side they have opened there already.
+        // The axes open from −z on; seen from the other side they have opened there already. So far the driven gear lags.
         let alpha = self.section.working_pressure_angle();
         let opened = in_plane * alpha.sin() - out_of_plane * alpha.cos();
         if opened != 0.0 {
-            let half = 0.5 * self.gears[0].face_width();
-            leads[0].push(LeadModification::Table {
+            let half = 0.5 * self.gears[1].face_width();
+            leads[1].push(LeadModification::Table {
                 places: vec![-half, half],
                 removed: vec![opened; 2],
             });
@@ -335,6 +335,12 @@ impl SolidPair {
     /// How far the loaded flanks of `teeth` are apart at `z` beyond what their sections say, along the base tangent: by their leads and by
     /// how the axes stand. `deviations` are those of the teeth.
     pub fn lead_gap(&self, deviations: &PairDeviations, teeth: [usize; 2], z: f64) -> f64 {
+        let removed = self.removed_by_leads(deviations, teeth, z);
+        self.askew(z) + removed[0] + removed[1]
+    }
+
+    /// How far the flanks are apart at `z` by how the axes stand, along the base tangent.
+    pub(crate) fn askew(&self, z: f64) -> f64 {
         let along = z / self.common_face_width() + 0.5;
         let alpha = self.section.working_pressure_angle();
         let Alignment {
@@ -342,16 +348,24 @@ impl SolidPair {
             out_of_plane,
             ..
         } = self.alignment;
-        let opening = (in_plane * alpha.sin() + out_of_plane * alpha.cos()) * along;
-        let removed = Member::BOTH.map(|member| {
+        (in_plane * alpha.sin() + out_of_plane * alpha.cos()) * along
+    }
+
+    /// What the leads of both gears, and those of `teeth` with these `deviations`, remove at `z` along the base tangent.
+    pub(crate) fn removed_by_leads(
+        &self,
+        deviations: &PairDeviations,
+        teeth: [usize; 2],
+        z: f64,
+    ) -> [f64; 2] {
+        Member::BOTH.map(|member| {
             let (width, own) = (self.gear(member).face_width(), self.own_height(member, z));
             let leads = self.leads(member).iter();
             let slope = LeadModification::Slope {
                 amount: deviations.of_gear(member).lead_slope(teeth[member.index()]),
             };
             leads.map(|lead| lead.removed(own, width)).sum::<f64>() + slope.removed(own, width)
-        });
-        opening + removed[0] + removed[1]
+        })
     }
 }
 

@@ -422,23 +422,22 @@ fn a_misalignment_is_a_lead_slope_of_the_same_gap() {
         ..ToothDeviations::default()
     };
     let slope = || vec![LeadModification::Slope { amount }];
-    for sloped in [
-        Drawing {
-            leads: [slope(), Vec::new()],
-            ..Drawing::default()
-        },
-        Drawing {
-            leads: [Vec::new(), slope()],
-            ..Drawing::default()
-        },
-        Drawing {
-            deviations: [of_teeth(25), ToothDeviations::default()],
-            ..Drawing::default()
-        },
+    let drawn = |leads, of_driving| Drawing {
+        leads,
+        deviations: [of_driving, ToothDeviations::default()],
+        ..Drawing::default()
+    };
+    let none = ToothDeviations::default;
+    // A lead of the driving gear turns its flanks besides: they pass a place on the line of action by up to the amount earlier or later, a thousandth of a
+    // mesh period.
+    for (allowed, sloped) in [
+        (1e-6, drawn([Vec::new(), slope()], none())),
+        (2e-3, drawn([slope(), Vec::new()], none())),
+        (2e-3, drawn([Vec::new(), Vec::new()], of_teeth(25))),
     ] {
         let found = deltas(&contacts(&sloped.model(), 3000.0, &positions));
         for ((a, b), straight) in found.iter().zip(&expected).zip(&straight) {
-            assert!((a / b - 1.0).abs() < 1e-9, "{a} {b}");
+            assert!((a / b - 1.0).abs() < allowed, "{a} {b}");
             assert!(b - straight > 1e-6);
         }
     }

@@ -1,8 +1,10 @@
 //! The flanks of a pair along their faces before they yield: where they touch first, and how far they stand apart.
 
-use crate::contact::facing::{Facing, View};
+use std::cell::Cell;
+
+use crate::contact::facing::{Touching, View, nearer_tip};
 use crate::contact::light::{FirstTouch, TOGETHER, first, on_path, touching_near};
-use crate::contact::placement::Placement;
+use crate::contact::placement::{Placement, Section};
 use crate::contact::{MeshContact, PositionError};
 use crate::gear::{GearPair, Member, PairDeviations, SolidPair};
 use crate::root_finding::{bisect, least_places};
@@ -59,16 +61,22 @@ impl FaceFlanks {
     /// Where pair `n` touches first at the position `eta`: in that of its sections which does.
     fn touch_of(&self, eta: f64, n: i64) -> Option<FirstTouch> {
         let half = 0.5 * self.pair.common_face_width();
-        let faced = |z: f64| self.facing(self.pair.phase(eta, n, z));
-        // Straight teeth face each other alike in all sections.
-        let straight = (self.pair.advance() == 0.0).then(|| faced(0.0));
+        let last = Cell::new(None);
         let touch = |z: f64| {
-            let facing = straight.clone().unwrap_or_else(|| faced(z))?;
-            let opening = self.opening(n, z, facing.minima[0].roll_lengths);
-            let section = FirstTouch::of(n, &facing);
+            let section = self.section(eta, n, z);
+            // Straight teeth without leads face each other alike in all sections.
+            let known = last.get().filter(|(of, _)| *of == section);
+            let touch = match known {
+                Some((_, touch)) => touch,
+                None => self
+                    .touching(section)
+                    .map(|touching| FirstTouch::of(n, &touching.facing, touching.delta())),
+            };
+            last.set(Some((section, touch)));
+            let touch = touch?;
             Some(FirstTouch {
-                delta: section.delta + opening,
-                ..section
+                delta: touch.delta + self.pair.askew(z),
+                ..touch
             })
         };
         let delta = |z: f64| touch(z).map_or(f64::INFINITY, |touch| touch.delta);
@@ -77,14 +85,56 @@ impl FaceFlanks {
         touches.min_by(|a, b| a.delta.total_cmp(&b.delta))
     }
 
+    /// The teeth of pair `n` in the section at `z` at the position `eta`.
+    pub(super) fn section(&self, eta: f64, n: i64, z: f64) -> Section {
+        let (pair, deviations) = (&self.pair, &self.deviations);
+        let twist = |member: Member| pair.gear(member).twist() * pair.own_height(member, z);
+        Section {
+            pair: n,
+            phase: pair.phase(eta, n, z),
+            removed: pair.removed_by_leads(deviations, pair.section().teeth(n), z),
+            twists: Member::BOTH.map(twist),
+        }
+    }
+
+    /// The flanks in a `section` where they just touch, and a force between them drives the driven gear on. Far off the path of contact it may turn that
+    /// back; flanks touch elsewhere long before they do there.
+    pub(super) fn touching(&self, section: Section) -> Option<Touching<'_>> {
+        // In modules: 20 nm at 2 mm. So short a way is straight to 0.1 nm.
+        const NEAR: f64 = 1e-5;
+        let (gears, deviations) = (&self.plane_strain, &self.deviations);
+        let [tooth_1, tooth_2] = gears.teeth(section.pair);
+        let s_1 = gears.roll_length_of(section.phase);
+        let nominal = [(tooth_1, s_1), (tooth_2, gears.line_of_action() - s_1)];
+        // On the path of contact they nearly touch so.
+        let missing = Member::BOTH.map(|member| {
+            let (g, gear) = (member.index(), gears.gear(member));
+            let (tooth, s) = nominal[g];
+            let of = deviations.of_gear(member);
+            let s = s.clamp(gear.form_roll_length(), gear.tip_roll_length());
+            let displaced = of.at(tooth, s) + of.runout(gear, tooth, s, section.twists[g]);
+            gear.removed(s) + section.removed[g] - displaced
+        });
+        let seat = nearer_tip(gears, section.phase);
+        let nearest = NEAR * gears.driving().data().rack.module;
+        let near = |touching: &Touching<'_>| touching.facing.touch().abs() < nearest;
+        let from = missing[0] + missing[1];
+        let touching = Touching::of((gears, deviations), section, seat, from, near);
+        touching.filter(|touching| touching.arms()[1] > 0.0)
+    }
+
+    /// How far the driving tooth of a `section` stands ahead of the drawing, in mesh periods.
+    pub(super) fn ahead(&self, section: Section) -> f64 {
+        let driving = self.deviations.of_gear(Member::Driving);
+        let [tooth, _] = self.pair.section().teeth(section.pair);
+        (driving.turn(tooth) - section.removed[0]) / self.pair.section().base_pitch()
+    }
+
     /// The phases between `from` and `to` at which sections as drawn are nearer to each other than those beside them, rising; looked for from `step`
     /// to `step`.
     fn nearest_phases(&self, [from, to]: [f64; 2], step: f64) -> Vec<f64> {
-        let touch = |phase: f64| {
-            let facing = self.facing(phase);
-            facing.map_or(f64::INFINITY, |facing| facing.touch())
-        };
         let count = ((to - from) / step).ceil() as usize;
+        let touch = |phase: f64| self.drawn_touch(phase);
         let found = least_places([from, to], count, self.rounding(), touch);
         found.into_iter().map(|(phase, _)| phase).collect()
     }
@@ -112,10 +162,7 @@ impl FaceFlanks {
     pub(super) fn phases_within(&self, reach: f64) -> [f64; 2] {
         const STEP: f64 = 1.0 / 32.0;
         let limit = reach + self.nearer();
-        let touches = |phase: f64| {
-            let facing = self.facing(phase);
-            facing.is_some_and(|facing| facing.touch() <= limit)
-        };
+        let touches = |phase: f64| self.drawn_touch(phase) <= limit;
         let (s_a, s_e) = self.pair.section().path_of_contact();
         let ends = [s_a, s_e].map(|s| self.pair.phase_at(s));
         let nearest = self.nearest_phases(ends, STEP);
@@ -143,43 +190,20 @@ impl FaceFlanks {
         ]
     }
 
-    /// How sections at `phase` as drawn face each other, where a force between them drives the driven gear on. Far off the path of contact it may turn it
-    /// back; flanks touch elsewhere long before they do there.
-    fn facing(&self, phase: f64) -> Option<Facing> {
-        let drives =
-            |facing: &Facing| arms(&view_of(&self.plane_strain, phase, facing), facing)[1] > 0.0;
-        Facing::drawn(&self.plane_strain, phase).filter(drives)
-    }
-
-    /// By how much leads, axes and deviations open pair `n` at `z`, along the base tangent.
-    pub(super) fn opening(&self, n: i64, z: f64, roll_lengths: [f64; 2]) -> f64 {
-        let (pair, deviations) = (&self.pair, &self.deviations);
-        let teeth = pair.section().teeth(n);
-        let out = Member::BOTH.map(|member| {
-            let (g, teeth_of) = (member.index(), deviations.of_gear(member));
-            let (tooth, s) = (teeth[g], roll_lengths[g]);
-            let turn = pair.gear(member).twist() * pair.own_height(member, z);
-            teeth_of.at(tooth, s) + teeth_of.runout(pair.section().gear(member), tooth, s, turn)
-        });
-        pair.lead_gap(deviations, teeth, z) - out[0] - out[1]
+    /// The δ at which sections at `phase` as drawn touch, seen from where they are drawn; without end where a force between them does not drive on.
+    fn drawn_touch(&self, phase: f64) -> f64 {
+        let gears = &self.plane_strain;
+        let placement = Placement::drawn(gears, phase);
+        let view = View {
+            placement,
+            seat: nearer_tip(gears, phase),
+        };
+        let facing = view.facing(phase);
+        let facing = facing.filter(|facing| view.arms(facing)[1] > 0.0);
+        facing.map_or(f64::INFINITY, |facing| facing.touch())
     }
 
     fn rounding(&self) -> f64 {
         TOGETHER * self.pair.section().driving().data().rack.module
     }
-}
-
-/// The view of the flanks of `facing` at `phase`.
-pub(super) fn view_of<'a>(gears: &'a GearPair, phase: f64, facing: &Facing) -> View<'a> {
-    View {
-        placement: Placement::drawn(gears, phase),
-        seat: facing.seat,
-    }
-}
-
-/// The arms about both axes of a force where the gap of `facing` is least.
-pub(super) fn arms(view: &View<'_>, facing: &Facing) -> [f64; 2] {
-    // The place is found wherever flanks face each other.
-    let point = view.point(facing.minima[0].arc);
-    point.map_or([1.0, 1.0], |point| view.meeting(&point).arms)
 }

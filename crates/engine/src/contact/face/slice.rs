@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use super::FaceModel;
-use super::flanks::{arms, view_of};
 use super::spring::{Line, Spring};
 use crate::contact::facing::Facing;
 use crate::contact::half_plane::{hertz, logarithm_factor};
+use crate::contact::placement::Section;
 use crate::gear::ContactLine;
 
 /// No slice is shorter than so many half-widths of its contact: a line that short is none.
@@ -206,17 +206,15 @@ impl<'a> Slicer<'a> {
         let count = longest.min(shortest).max(1.0);
         let length = (to - from) / count;
         let along = length / self.cosine;
-        let straight = pair.advance() == 0.0;
-        let mut known: Option<Place> = None;
+        let mut known: Option<(Section, Place)> = None;
         let mut place = |z: f64| {
-            let drawn = match known.take().filter(|_| straight) {
-                Some(known) => known,
-                None => self.drawn(line.pair, z, along)?,
-            };
-            if straight {
-                known = Some(drawn.clone());
+            let section = self.section(line.pair, z);
+            // Straight teeth without leads face each other alike in all sections.
+            if known.as_ref().is_none_or(|(of, _)| *of != section) {
+                known = self.place(section, along).map(|place| (section, place));
             }
-            self.standing(drawn, line.pair, z)
+            let (_, place) = known.as_ref()?;
+            Some(self.standing(place.clone(), z))
         };
         let mut begin = place(from);
         (0..count as usize)
@@ -240,17 +238,14 @@ impl<'a> Slicer<'a> {
             .collect()
     }
 
-    /// The place of pair `n` at `z` as drawn, on a slice so long `along` the line; `None` where flanks do not face each other.
-    fn drawn(&self, n: i64, z: f64, along: f64) -> Option<Place> {
-        let phase = self.model.pair().phase(self.eta, n, z);
-        let facing = Facing::drawn(&self.model.flanks.plane_strain, phase)?;
-        Some(self.place(phase, &facing, along))
+    fn section(&self, pair: i64, z: f64) -> Section {
+        self.model.flanks.section(self.eta, pair, z)
     }
 
-    /// `place`, of pair `n` at `z`, with what leads, axes and deviations open it; `None` where a force would not drive on.
-    fn standing(&self, mut place: Place, n: i64, z: f64) -> Option<Place> {
-        place.gap += place.weights[1] * self.model.flanks.opening(n, z, place.roll_lengths);
-        (place.weights[1] > 0.0).then_some(place)
+    /// `place`, at `z`, with what the axes open it.
+    fn standing(&self, mut place: Place, z: f64) -> Place {
+        place.gap += place.weights[1] * self.model.pair().askew(z);
+        place
     }
 
     /// The places in the loaded part, from one place to another, of `slice` that are nearest to those at which a kink stands in the middle of the contact, if that
@@ -262,7 +257,8 @@ impl<'a> Slicer<'a> {
         half_width: f64,
     ) -> Vec<Within> {
         let (pair, half) = (self.model.pair(), 0.5 * slice.length);
-        let phase = pair.phase(self.eta, slice.pair, slice.z);
+        let section = self.section(slice.pair, slice.z);
+        let phase = section.phase + self.model.flanks.ahead(section);
         let across = pair.advance() * half;
         let places = self.model.kinks.iter().filter_map(|kink| {
             let at = (kink.phase - phase) / across;
@@ -273,18 +269,19 @@ impl<'a> Slicer<'a> {
             }
             let at = at.clamp(from, to);
             let z = slice.z + at * half;
-            let place = self.drawn(slice.pair, z, slice.along)?;
-            let place = self.standing(place, slice.pair, z)?;
+            let place = self.place(self.section(slice.pair, z), slice.along)?;
+            let place = self.standing(place, z);
             Some(Within { at, z, place })
         });
         places.collect()
     }
 
-    /// The place of a line where its section faces the other so, as drawn, on a slice so long `along` the line.
-    fn place(&self, phase: f64, facing: &Facing, along: f64) -> Place {
-        let view = view_of(&self.model.flanks.plane_strain, phase, facing);
+    /// The place of a line in a `section`, on a slice so long `along` the line; `None` where flanks do not face each other.
+    fn place(&self, section: Section, along: f64) -> Option<Place> {
+        let touching = self.model.flanks.touching(section)?;
+        let (view, facing) = (&touching.view, &touching.facing);
         let minimum = &facing.minima[0];
-        let weights = arms(&view, facing).map(|arm| arm * self.cosine);
+        let weights = touching.arms().map(|arm| arm * self.cosine);
         let radius = {
             let [one, other] = minimum.roll_lengths.map(|s| s / self.cosine);
             one * other / (one + other)
@@ -295,17 +292,17 @@ impl<'a> Slicer<'a> {
             factor: self.factor,
         };
         let (spring, gap) = if self.is_crowded(facing, self.densities[1], radius) {
-            Spring::patch(&view, facing, self.cosine, of, self.densities)
+            Spring::patch(view, facing, self.cosine, of, self.densities)
         } else {
             let spring = Spring::hertz(of, self.densities);
             (spring, minimum.touch * weights[1])
         };
-        Place {
+        Some(Place {
             roll_lengths: minimum.roll_lengths,
+            gap: gap + weights[1] * touching.lag,
             weights,
-            gap,
             spring: Arc::new(spring),
-        }
+        })
     }
 
     /// Whether a contact under `density` may reach an end of the flanks or a kink, or is not that of two parabolas.
