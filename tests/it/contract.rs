@@ -287,7 +287,7 @@ fn each_part_knows_only_the_parts_below_it() {
     }
 }
 
-/// Inside the engine: analysis -> assembly -> load_distribution, contact -> ring -> fem -> grid -> gear.
+/// Inside the engine: analysis -> assembly -> contact, load_distribution -> touch, flank -> ring -> fem -> grid -> gear.
 #[test]
 fn the_mechanics_build_on_each_other_in_one_direction() {
     let layers = [
@@ -295,8 +295,10 @@ fn the_mechanics_build_on_each_other_in_one_direction() {
         "grid",
         "fem",
         "ring",
-        "contact",
+        "flank",
+        "touch",
         "load_distribution",
+        "contact",
         "assembly",
         "analysis",
     ];

@@ -12,9 +12,8 @@ use meshwright_engine::assembly::interface::{
     default_interface_radius, harmonics, orders_of_blank,
 };
 use meshwright_engine::contact::WarmStart;
-use meshwright_engine::contact::facing::Facing;
-use meshwright_engine::contact::flank_table::FlankTable;
 use meshwright_engine::contact::{PairModel, Stage, solve_active_set};
+use meshwright_engine::flank::table::FlankTable;
 use meshwright_engine::gear::{BlankRegion, Core, Hole, HoleShape, SpurGear};
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
 use meshwright_engine::library::Library;
@@ -24,6 +23,7 @@ use meshwright_engine::ring::harmonics::Harmonics;
 use meshwright_engine::ring::teeth::TeethRing;
 use meshwright_engine::ring::tooth::ToothSubstructure;
 use meshwright_engine::run::Run;
+use meshwright_engine::touch::facing::Facing;
 
 #[path = "../tests/cases/mod.rs"]
 mod cases;

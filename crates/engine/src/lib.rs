@@ -13,7 +13,7 @@
 //!
 //! 1. **Geometry** ([`gear`]). An involute point at roll length s stands at r_b e_r(t) + s e_t(t), t = ψ_b − s/r_b. Gaps
 //!    between flanks follow in closed form: the normal of an involute through any point is a tangent of its base circle
-//!    ([`contact::facing`], [`contact::patch`]).
+//!    ([`touch::facing`], [`contact::patch`]).
 //! 2. **Substructures** ([`grid`], [`fem`]). One tooth sector is condensed exactly to its loaded flank and its interface:
 //!    H_0 is the flank's compliance with the interface held, Ψ its answer to the interface ([`ring::tooth`]). The blank
 //!    between bore and R_w is any plane region with a thickness by region ([`gear::BlankRegion`]), condensed as a whole or, where
@@ -24,7 +24,7 @@
 //!    ([`fem::recovery`]).
 //! 4. **Contact** ([`contact`]). At each position: minimize ½ pᵀHp + g_0ᵀp subject to wᵀp = F, p ≥ 0 (eqs. 4 to 6); δ is
 //!    the multiplier of the load. H on the contact cells is the smooth part of the finite-element compliance, interpolated,
-//!    plus the half plane's logarithm in closed form ([`contact::flank_table`], [`contact::half_plane`]), so that cells of a few
+//!    plus the half plane's logarithm in closed form ([`flank::table`], [`flank::half_plane`]), so that cells of a few
 //!    micrometers move with the contact over elements of a tenth of a millimeter. Two solvers share nothing but H, g_0
 //!    and w: an exact active set and the augmented Lagrangian of eq. 7.
 //! 5. **Methods** ([`analysis`]). Flexible (section 2 of the paper), decomposition (section 3, eqs. 9 to 15), projected
@@ -68,15 +68,16 @@
 //!
 //! *Mesh* always means gear teeth in engagement; finite elements live on a [`grid::Grid`].
 //!
-//! The arrow: analysis → assembly → contact → fem → grid → gear; the load distribution stands beside, on the drawings and on Hertz. [`assembly`] makes a pair that is ready for contact of two drawings,
-//! part by part: teeth, blank, gear, pair. It asks [`assembly::Parts`] for each part; [`library`] is a layer around all of this that
-//! keeps parts for other cases, and no file of the mechanics knows it.
+//! The arrow: analysis → assembly → contact → touch, flank → ring → fem → grid → gear. The load distribution stands beside, on the drawings and on Hertz.
+//! [`assembly`] makes a pair that is ready for contact of two drawings, part by part: teeth, blank, gear, pair. It asks [`assembly::Parts`] for each part;
+//! [`library`] is a layer around all of this that keeps parts for other cases, and no file of the mechanics knows it.
 
 pub mod analysis;
 pub mod assembly;
 pub mod contact;
 pub mod dynamics;
 pub mod fem;
+pub mod flank;
 pub mod gear;
 pub mod grid;
 pub mod library;
@@ -85,3 +86,5 @@ pub mod quadrature;
 pub mod ring;
 pub mod root_finding;
 pub mod run;
+pub mod touch;
+mod wide;

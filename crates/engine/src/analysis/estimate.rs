@@ -9,11 +9,11 @@ use crate::assembly::FaceYieldSpec;
 use crate::assembly::blank::blank_grid;
 use crate::assembly::interface::{harmonics, interface_radius, orders_of_blank};
 use crate::assembly::pair_spec::cells_per_patch;
-use crate::contact::facing::Facing;
 use crate::contact::{ContactSolver, default_penalty};
 use crate::gear::{Member, gcd};
 use crate::grid::{GridLevel, ToothGrid};
 use crate::ring::shaft::orders_of_edge;
+use crate::touch::facing::Facing;
 
 /// Seconds of one core for the first contact solution at a fraction of the mesh period, for each further one there, and for a linear
 /// system of the augmented Lagrangian, all with the cells of [`CELLS`]; for a node of a factorized grid; and for a multiplication and

@@ -9,10 +9,10 @@ use super::{AnalysisError, Case};
 use crate::assembly::face_inside::MovedParts;
 use crate::assembly::{FaceInside, FaceYield, FaceYieldSpec, Parts};
 use crate::contact::face::FaceContact;
-use crate::contact::placement::{Placement, Section};
 use crate::fem::volume::{Place, Volume, von_mises};
 use crate::gear::{Member, Vector};
 use crate::run::Run;
+use crate::touch::placement::{Placement, Section};
 
 /// Both gears of `case` under `output_torque`, positive, at the mesh position `eta`, by the method that sees the whole gears; `None` for a plane
 /// case.

@@ -7,7 +7,6 @@ use super::setup::Setup;
 use super::{AnalysisError, Case};
 use crate::assembly::inside::Answer;
 use crate::assembly::{Blanks, Inside, PartError, Parts, Probes};
-use crate::contact::placement::{Placement, Section};
 use crate::contact::{FlankLoad, Stage, WarmStart};
 use crate::fem::FemError;
 use crate::fem::prescribed::{Load, displacements};
@@ -16,6 +15,7 @@ use crate::gear::{Member, SpurGear, Vector, radial, tangential};
 use crate::grid::{BlankGrid, Element, Grid, ToothGrid};
 use crate::ring::teeth::FARTHEST_COUPLED;
 use crate::run::Run;
+use crate::touch::placement::{Placement, Section};
 
 /// What goes on in one gear, node by node, where it stands at a mesh position: the driving axis is the origin, the driven one lies on
 /// the x axis.

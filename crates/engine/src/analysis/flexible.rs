@@ -41,10 +41,10 @@ pub(super) fn solve(setup: Setup<'_>, pass: &Pass) -> Result<Analysis, AnalysisE
 mod tests {
     use crate::analysis::case::tests::plain;
     use crate::analysis::{Model, SectionHoles, analyze};
-    use crate::contact::facing::tests::undercut_pair;
     use crate::grid::GridLevel;
     use crate::library::Library;
     use crate::run::Run;
+    use crate::touch::facing::tests::undercut_pair;
 
     #[test]
     fn the_corner_of_an_undercut_flank_takes_up_load_before_its_path_of_contact_begins() {

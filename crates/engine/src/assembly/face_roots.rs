@@ -7,13 +7,13 @@ use faer::Mat;
 
 use super::flank_fit::{FlankFit, smoothed_rows};
 use super::flank_forces::{FlankForces, PressedFlank};
-use super::flank_polynomials::OTHER_DEGREE;
 use super::stack::Stack;
 use super::{FaceResolution, FaceYield, PartError, PlainFace};
 use crate::fem::axial::AxialBasis;
 use crate::fem::dense::entries;
 use crate::fem::prism::{COMPONENTS, Prism};
 use crate::fem::surface::{Surface, SurfaceStress};
+use crate::flank::polynomials::OTHER_DEGREE;
 use crate::gear::{SolidGear, Vector};
 use crate::grid::{GridLevel, ToothGrid};
 use crate::ring::solid::gear::{interfaces, motions};

@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 use faer::{Mat, c64};
 
-use super::flank_ends::FlankEnds;
 use super::flank_fit::{FlankFit, smoothed, smoothed_rows};
-use super::flank_polynomials::{OWN_DEGREE, up_the_flank};
 use super::holed::{HoledChange, SeenWeb, condensed_unknowns};
 use super::stack::{Stack, StackStiffness};
 use super::{FaceResolution, PartError};
 use crate::fem::axial::AxialBasis;
 use crate::fem::dense::{entries, symmetrize};
+use crate::flank::ends::FlankEnds;
+use crate::flank::polynomials::{OWN_DEGREE, up_the_flank};
 use crate::gear::SolidGear;
 use crate::grid::ToothGrid;
 use crate::ring::solid::gear::{ClassAnswers, answers, between_teeth};

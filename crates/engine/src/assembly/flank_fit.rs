@@ -3,10 +3,10 @@
 use faer::Mat;
 use faer::traits::ComplexField;
 
-use super::flank_polynomials::{OTHER_DEGREE, OWN_DEGREE, projecting};
-use super::half_space::HalfSpace;
 use crate::fem::axial::AxialBasis;
 use crate::fem::dense::symmetrize;
+use crate::flank::half_space::HalfSpace;
+use crate::flank::polynomials::{OTHER_DEGREE, OWN_DEGREE, projecting};
 use crate::gear::SolidGear;
 use crate::quadrature::{gauss_legendre, parabola};
 

@@ -1,8 +1,8 @@
 //! Forces that press flanks, on the nodes of a grid and on the functions over a flank.
 
 use super::flank_fit::squares;
-use super::flank_polynomials::{OWN_DEGREE, up_the_flank};
 use crate::fem::axial::AxialBasis;
+use crate::flank::polynomials::{OWN_DEGREE, up_the_flank};
 use crate::gear::{Involute, Vector};
 use crate::quadrature::parabola;
 

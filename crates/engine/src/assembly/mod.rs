@@ -2,7 +2,7 @@
 //!
 //! In reading order: [`interface`] (the circle on which teeth and blank meet), [`teeth`] (all teeth of a gear down to it),
 //! [`blank`] (what they stand on), [`gear`] (both joined), [`pair_spec`] and `pair` (two gears and the rules of their contact);
-//! along faces [`face_yield`] (the parts under the teeth, and what holes change: `stack`, `holed`; how it becomes polynomials: `flank_fit`, `half_space`, `flank_ends`), [`face_roots`] and [`face_holes`] (how it is stressed at its roots and at its holes), [`face_inside`] (how all of it moves);
+//! along faces [`face_yield`] (the parts under the teeth, and what holes change: `stack`, `holed`; how it becomes polynomials: `flank_fit`), [`face_roots`] and [`face_holes`] (how it is stressed at its roots and at its holes), [`face_inside`] (how all of it moves);
 //! beside them [`cut`] (a gear parted at that circle again) and [`inside`] (what goes on in a gear whose flanks are loaded).
 //!
 //! Each part is a pure function of its *spec*, a value that says all that the part depends on. Equal specs are equal parts;
@@ -16,12 +16,9 @@ pub mod face_inside;
 mod face_resolution;
 pub mod face_roots;
 pub mod face_yield;
-mod flank_ends;
 mod flank_fit;
 mod flank_forces;
-mod flank_polynomials;
 pub mod gear;
-mod half_space;
 mod holed;
 pub mod inside;
 pub mod interface;

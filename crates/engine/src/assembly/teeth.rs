@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::PartError;
 use super::interface::harmonics;
-use crate::contact::flank_table::FlankTable;
+use crate::flank::table::FlankTable;
 use crate::gear::{SpurGear, TipEdge};
 use crate::grid::{GridError, GridLevel, ToothGrid};
 use crate::ring::body::Coupling;

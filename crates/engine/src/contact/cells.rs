@@ -11,7 +11,6 @@ use super::coupled::{Touching, add_coupled, mirror};
 use super::drawn::DrawnPair;
 use super::facings::Near;
 use super::factor::{add, dot};
-use super::meeting::Standing;
 use super::mesh_contact::{
     FlankLoad, MeshCells, MeshContact, PairContact, PairInfluence, PairLoads, Spot,
 };
@@ -22,12 +21,13 @@ use super::pair_cells::PairCells;
 use super::patch::Extent;
 use super::peak::Peak;
 use super::problem::first_of;
-use super::wide::{Loops, wide};
 use super::{
     AugmentedLagrangian, ContactProblem, ContactSolution, PeakPlace, default_penalty,
     solve_active_set, solve_augmented_lagrangian,
 };
 use crate::gear::{Member, teeth_on};
+use crate::touch::meeting::Standing;
+use crate::wide::{Loops, wide};
 
 /// The least part of its way that a pair yields by itself, and not together with the others.
 const OWN: f64 = 0.1;

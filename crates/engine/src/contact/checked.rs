@@ -5,12 +5,12 @@
 
 use std::collections::BTreeMap;
 
-use super::facing::{Facing, FlankRange, RangeEnd, View};
-use super::half_plane::Entries;
-use super::meeting::Probes;
 use super::pair_cells::{PairCells, PairFlanks, compliance};
 use super::patch::{Cell, Patch, Stretch};
+use crate::flank::half_plane::Entries;
 use crate::gear::Member;
+use crate::touch::facing::{Facing, FlankRange, RangeEnd, View};
+use crate::touch::meeting::Probes;
 
 /// Stretches spread over the flanks beside the cells.
 const BESIDE: usize = 48;

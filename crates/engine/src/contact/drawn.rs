@@ -6,12 +6,12 @@
 use std::sync::Arc;
 
 use super::checked::{Carrying, CheckedStretches};
-use super::facing::{Facing, View, nearer_tip};
 use super::memo::Memo;
 use super::pair_cells::{CellsSpec, PairCells, PairFlanks};
 use super::patch::Extent;
-use super::placement::Placement;
 use crate::gear::Member;
+use crate::touch::facing::{Facing, View, nearer_tip};
+use crate::touch::placement::Placement;
 
 /// What cells, and the stretches that are checked beside them, may take, in bytes each: two loads at forty positions a mesh period.
 const MOST_BYTES: usize = 12 << 20;

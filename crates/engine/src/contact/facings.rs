@@ -1,12 +1,14 @@
 //! All pairs whose flanks face each other at one mesh position, and which of them come near.
 
 use super::drawn::DrawnPair;
-use super::facing::{Facing, GapMinimum, MOST_TURNS, ROUNDING, RangeEnd, Touching, nearer_tip};
-use super::meeting::Standing;
 use super::model::{DeviatingPair, MeshPosition};
 use super::patch::Extent;
-use super::placement::{self, Section};
 use crate::gear::Member;
+use crate::touch::facing::{
+    Facing, GapMinimum, MOST_TURNS, ROUNDING, RangeEnd, Touching, nearer_tip,
+};
+use crate::touch::meeting::Standing;
+use crate::touch::placement::{self, Section};
 
 /// Pairs whose teeth deviate are placed as drawn at the nearest of so many phases a mesh period.
 const PHASES: f64 = 64.0;

@@ -9,7 +9,7 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt;
 use faer::{Mat, Par};
 
-use super::wide::{Loops, wide};
+use crate::wide::{Loops, wide};
 
 /// Points that enter and leave a core together.
 const BLOCK: usize = 4;
@@ -411,5 +411,16 @@ mod tests {
         assert!(factor(&compliance, &[0, 1]).is_none());
         assert!(factor(&compliance, &[0, 1, 2, 3]).is_none());
         assert!(factor(&compliance, &[1]).is_some());
+    }
+
+    #[test]
+    fn wide_vectors_change_no_digit() {
+        for count in [1, 7, 8, 40, 111] {
+            let [one, other] = [0.3, 1.7].map(|k: f64| -> Vec<f64> {
+                (0..count).map(|i| (k * f64::from(i)).cos()).collect()
+            });
+            let wide = wide(|| dot(&one, &other));
+            assert_eq!(wide.to_bits(), dot(&one, &other).to_bits(), "{count}");
+        }
     }
 }

@@ -2,10 +2,10 @@
 
 use std::ops::RangeInclusive;
 
-use super::facing::Facing;
 use super::mesh_contact::{MeshContact, PairContact};
 use super::model::PositionError;
 use crate::gear::{GearPair, Member, PairDeviations};
+use crate::touch::facing::Facing;
 
 /// Gaps that differ by less than this part of the module are taken as equal, which is the rounding of coordinates. It decides which pairs count as
 /// touching; δ moves by less.

@@ -1,10 +1,8 @@
 //! Frictionless contact between the flanks of two gears.
 //!
 //! In reading order:
-//! - [`placement`], [`facing`] and `meeting`: where flanks stand, how two of them face each other, and how they push where they meet,
-//! - [`patch`]: cells about the places where they are nearest,
-//! - [`flank_table`], [`half_plane`] and `corner`: the compliance of the cells, smooth part, logarithm, and near a sharp tip,
-//! - [`pair_cells`]: the cells of one pair, as drawn,
+//! - [`patch`]: cells about the places where flanks are nearest ([`crate::touch`] says where),
+//! - [`pair_cells`]: the cells of one pair, as drawn, and their compliance ([`crate::flank`]),
 //! - [`drawn`] and `memo`: what flanks as drawn have alike whatever carries their teeth, kept,
 //! - `coupled`: what teeth yield together, on cells and on slices,
 //! - [`compliances`] and `factor`: what pairs made to one drawing have alike however their teeth deviate, kept,
@@ -39,17 +37,12 @@ mod augmented_lagrangian;
 pub mod cells;
 mod checked;
 pub mod compliances;
-mod corner;
 mod coupled;
 pub mod drawn;
 pub mod face;
-pub mod facing;
 mod facings;
 mod factor;
-pub mod flank_table;
-pub mod half_plane;
 mod light;
-mod meeting;
 mod memo;
 pub mod mesh_contact;
 pub mod model;
@@ -57,16 +50,13 @@ pub mod pair_cells;
 pub mod patch;
 mod peak;
 mod penetration;
-pub mod placement;
 pub mod positions;
 mod problem;
 pub mod stage;
-mod wide;
 
 pub use active_set::solve_active_set;
 pub use augmented_lagrangian::{AugmentedLagrangian, default_penalty, solve_augmented_lagrangian};
 pub use cells::ContactCells;
-pub(crate) use corner::tip_softness;
 pub(crate) use coupled::add_yielded;
 pub use light::light_contact;
 pub use mesh_contact::{FlankLoad, MeshCells, MeshContact, PairContact, PairInfluence, PairLoads};

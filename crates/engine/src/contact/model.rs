@@ -6,13 +6,13 @@ use faer::MatRef;
 
 use super::compliances::Compliances;
 use super::drawn::{DrawnFlanks, DrawnPair};
-use super::flank_table::FlankTable;
-use super::meeting::Standing;
 use super::pair_cells::PairFlanks;
 use super::problem::ContactError;
+use crate::flank::table::FlankTable;
 use crate::gear::{GearPair, Member, PairDeviations, teeth_on};
 use crate::ring::body::Coupling;
 use crate::run::Run;
+use crate::touch::meeting::Standing;
 
 /// The solver of the contact conditions.
 #[derive(Debug, Clone, Copy, PartialEq)]

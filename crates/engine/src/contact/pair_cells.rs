@@ -2,13 +2,13 @@
 
 use faer::Mat;
 
-use super::facing::{Facing, View};
 use super::factor::dot;
-use super::flank_table::{FlankPoint, FlankTable};
-use super::half_plane::{Entries, near_compliance};
 use super::patch::{Cell, Extent, Patch};
 use crate::fem::dense;
+use crate::flank::half_plane::{Entries, near_compliance};
+use crate::flank::table::{FlankPoint, FlankTable};
 use crate::gear::{GearPair, Member};
+use crate::touch::facing::{Facing, View};
 
 /// The flanks of a pair as drawn, on which cells are placed.
 #[derive(Clone, Copy)]

@@ -4,11 +4,11 @@
 //! theoretical normal; elsewhere, where a relief inclines a flank or a tip corner digs into the other one, the normal is tilted and its
 //! arms about the centers are not the base radii.
 
-use super::facing::{Facing, GapMinimum, RangeEnd, View};
-use super::half_plane::{NearField, logarithm_factor};
-use super::meeting::{Probe, Probes};
+use crate::flank::half_plane::{NearField, logarithm_factor};
 use crate::gear::{GearPair, Member, Vector};
 use crate::root_finding::bisect;
+use crate::touch::facing::{Facing, GapMinimum, RangeEnd, View};
+use crate::touch::meeting::{Probe, Probes};
 
 /// The cells on either side of a minimum, in half-widths of the contact under the whole load: the contact and a quarter more, so that a contact
 /// that a relief shifts still fits.
@@ -723,9 +723,9 @@ fn contact_width(indentation: f64, radius: f64, angle: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::placement::Placement;
     use crate::gear::spur::tests::paper_gear;
     use crate::gear::{ModificationData, ReliefData, ReliefShape, ReliefStart, SpurGear};
+    use crate::touch::placement::Placement;
 
     fn pair() -> GearPair {
         let gear = SpurGear::new(paper_gear(50)).expect("the standard gear");

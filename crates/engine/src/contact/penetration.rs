@@ -9,9 +9,9 @@ use super::ContactSolution;
 use super::cells::{ContactCells, PlacedCells};
 use super::checked::{CheckedStretch, CheckedStretches, Penetration, Place};
 use super::factor::dot;
-use super::meeting::Meeting;
 use super::model::{DeviatingPair, MeshPosition};
-use super::wide::wide;
+use crate::touch::meeting::Meeting;
+use crate::wide::wide;
 
 /// The checked stretches of one pair as it stands.
 pub(super) struct PlacedStretches {

@@ -7,8 +7,8 @@ use faer::{Mat, MatRef};
 
 use super::compliances::Known;
 use super::factor::{Core, Factor, core_of};
-use super::wide::{Loops, wide};
 use crate::run::Stopped;
+use crate::wide::{Loops, wide};
 
 /// Entries of the compliance that mirror each other may differ by this much, relative to the diagonal.
 ///

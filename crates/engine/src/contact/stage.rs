@@ -10,12 +10,12 @@ use super::cells::{ContactCells, Lack, PlacedCells};
 use super::checked::Penetration;
 use super::compliances::StatedCells;
 use super::facings::{Facings, Near};
-use super::meeting::Standing;
 use super::mesh_contact::{MeshCells, MeshContact};
 use super::model::{DeviatingPair, PositionError, WarmStart};
 use super::patch::Extent;
 use super::penetration::{PlacedStretches, penetration};
 use super::{ContactProblem, ContactSolution};
+use crate::touch::meeting::Standing;
 
 /// Pairs are solved together whose gap is within this much of what load brings together: a little more than touch.
 const REACH: f64 = 1.1;

@@ -1,6 +1,6 @@
 //! The approach of two flanks pressed together along a line: Hertz's pressure, Weber's depths.
 //!
-//! Under the semi-elliptic pressure of a line load F/b, of half-width a ([`crate::contact::half_plane::hertz`]), the strain
+//! Under the semi-elliptic pressure of a line load F/b, of half-width a ([`crate::flank::half_plane::hertz`]), the strain
 //! on the axis of a half plane, summed from its surface down to the depth t, is
 //!
 //! h = (2 F/(π b E')) (arsinh S − ν' S/(S + sqrt(1 + S²))), S = t/a,
@@ -10,7 +10,7 @@
 //! For t ≫ a the bracket is Weber's ln(2 t/a) − ν'/2, and the sum over two bodies of one material his form with
 //! ln(4 t_1 t_2/a²). Since a grows with the root of F, the approach grows a little slower than F, and never falls.
 
-use crate::contact::half_plane::{hertz, logarithm_factor};
+use crate::flank::half_plane::{hertz, logarithm_factor};
 use crate::gear::{Material, PlaneState};
 
 /// One of two bodies in contact.

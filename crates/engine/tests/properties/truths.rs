@@ -7,7 +7,7 @@ use meshwright_engine::analysis::{
     Analysis, Case, ContactSolver, Curve, Warning, analyze, pair_model,
 };
 use meshwright_engine::contact::MeshContact;
-use meshwright_engine::contact::half_plane::{hertz, logarithm_factor};
+use meshwright_engine::flank::half_plane::{hertz, logarithm_factor};
 use meshwright_engine::gear::{
     GearData, GearPair, HoleShape, Member, ModificationData, ReliefStart, SpurGear, TablePlaces,
     TipEdge, ToothDeviations, Vector,

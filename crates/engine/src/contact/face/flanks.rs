@@ -2,12 +2,12 @@
 
 use std::cell::Cell;
 
-use crate::contact::facing::{Touching, View, nearer_tip};
 use crate::contact::light::{FirstTouch, TOGETHER, first, on_path, touching_near};
-use crate::contact::placement::{Placement, Section};
 use crate::contact::{MeshContact, PositionError};
 use crate::gear::{GearPair, Member, PairDeviations, SolidPair};
 use crate::root_finding::{bisect, least_places};
+use crate::touch::facing::{Touching, View, nearer_tip};
+use crate::touch::placement::{Placement, Section};
 
 /// The flanks of a pair along their faces.
 pub struct FaceFlanks {

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use super::FaceModel;
 use super::spring::{Line, Spring};
-use crate::contact::facing::Facing;
-use crate::contact::half_plane::{hertz, logarithm_factor};
-use crate::contact::placement::Section;
+use crate::flank::half_plane::{hertz, logarithm_factor};
 use crate::gear::ContactLine;
+use crate::touch::facing::Facing;
+use crate::touch::placement::Section;
 
 /// No slice is shorter than so many half-widths of its contact: a line that short is none.
 const SHORTEST: f64 = 2.0;

@@ -7,12 +7,12 @@
 use std::f64::consts::LN_2;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
-use crate::contact::facing::{Facing, View};
-use crate::contact::half_plane::{Entries, hertz, near_compliance};
 use crate::contact::patch::{Extent, Patch};
 use crate::contact::{ContactProblem, ContactSolution, solve_active_set};
 use crate::fem::dense::mirror_lower;
+use crate::flank::half_plane::{Entries, hertz, near_compliance};
 use crate::gear::{Member, TipEdge};
+use crate::touch::facing::{Facing, View};
 
 /// Cells on the core of a patch.
 const CELLS: usize = 24;
@@ -329,10 +329,10 @@ impl Cells {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::half_plane::logarithm_factor;
-    use crate::contact::placement::Placement;
+    use crate::flank::half_plane::logarithm_factor;
     use crate::gear::spur::tests::paper_gear;
     use crate::gear::{GearPair, PlaneState, SpurGear};
+    use crate::touch::placement::Placement;
 
     const COSINE: f64 = 0.95;
     const DENSITY: f64 = 1e5;

@@ -84,7 +84,7 @@ pub enum Entries {
 
 impl Entries {
     /// The first row asked for of column `j`.
-    pub(super) fn first(self, j: usize) -> usize {
+    pub(crate) fn first(self, j: usize) -> usize {
         if self == Self::Lower { j } else { 0 }
     }
 }

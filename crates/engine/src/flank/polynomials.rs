@@ -3,12 +3,12 @@
 use crate::quadrature::legendre;
 
 /// The degree up the flank of what a tooth yields under its own load, less the half space.
-pub(super) const OWN_DEGREE: usize = 6;
+pub(crate) const OWN_DEGREE: usize = 6;
 /// The degree up the flank of what it yields under the loads of others.
-pub(super) const OTHER_DEGREE: usize = 5;
+pub(crate) const OTHER_DEGREE: usize = 5;
 
 /// The Legendre polynomials in the square of the roll length, over the flank, and their derivatives by the roll length.
-pub(super) fn up_the_flank(
+pub(crate) fn up_the_flank(
     [from, to]: [f64; 2],
     roll_length: f64,
     degree: usize,
@@ -22,7 +22,7 @@ pub(super) fn up_the_flank(
 }
 
 /// The same values, each over its square's mean along the flank: what the nearest polynomials are found by.
-pub(super) fn projecting(squares: [f64; 2], roll_length: f64, degree: usize) -> Vec<f64> {
+pub(crate) fn projecting(squares: [f64; 2], roll_length: f64, degree: usize) -> Vec<f64> {
     let (values, _) = up_the_flank(squares, roll_length, degree);
     let each = values.into_iter().enumerate();
     each.map(|(a, value)| (2 * a + 1) as f64 * value).collect()

@@ -7,23 +7,23 @@ use std::f64::consts::PI;
 
 use nalgebra::{SimdBool, Vector2};
 
-use super::wide::Numbers;
 use crate::gear::{
     GearPair, Member, PairDeviations, SpurGear, Vector, radial, tangential, teeth_on,
 };
+use crate::wide::Numbers;
 
 /// Both gears at one mesh position, as one tooth pair sees them.
 ///
 /// The driving center is the origin, the driven one lies on the x axis; the driving gear turns counter-clockwise.
 #[derive(Debug, Clone, Copy)]
 pub struct Placement<'a> {
-    pub(super) pair: &'a GearPair,
+    pub(crate) pair: &'a GearPair,
     /// Where the gears' own axes stand: beside the axes of rotation where they are eccentric.
-    pub(super) centers: [Vector; 2],
+    pub(crate) centers: [Vector; 2],
     /// The angle of each tooth's centerline.
     angles: [f64; 2],
     /// How much the normal of either flank counts ([`weights`]).
-    pub(super) weights: [f64; 2],
+    pub(crate) weights: [f64; 2],
     /// What deviates, and the teeth that stand there; nothing of a pair as drawn.
     made: Option<(&'a PairDeviations, [usize; 2])>,
 }
@@ -55,27 +55,27 @@ impl Section {
 
 /// A place on the boundary of a gear.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct FlankPlace {
-    pub(super) point: Vector,
+pub(crate) struct FlankPlace {
+    pub(crate) point: Vector,
     /// The outward unit normal.
-    pub(super) normal: Vector,
+    pub(crate) normal: Vector,
     /// How the point moves for each unit of arc of the involute.
-    pub(super) way: Vector,
+    pub(crate) way: Vector,
     /// The radial direction e_r of the tangent point on the base circle; the involute's normal is at right angles to it.
-    pub(super) radial: Vector,
+    pub(crate) radial: Vector,
 }
 
 /// What a point sees of a flank: how far the flank is to be turned to pass through it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Sight {
+pub(crate) struct Sight {
     /// The roll length of the flank at the radius of the point: the length of the tangent from the point to the base circle.
-    pub(super) roll_length: f64,
+    pub(crate) roll_length: f64,
     /// The angle by which the flank is to be turned, as a length on its base circle; positive where the point is outside.
-    pub(super) gap: f64,
+    pub(crate) gap: f64,
     /// The outward unit normal of the flank where it passes through the point.
-    pub(super) normal: Vector,
+    pub(crate) normal: Vector,
     /// The radial direction of the tangent point on the base circle.
-    pub(super) radial: Vector,
+    pub(crate) radial: Vector,
     /// The slope of what is missing from the involute there.
     slope: f64,
 }
@@ -83,7 +83,7 @@ pub(super) struct Sight {
 /// The outward unit normal of a flank from which e is missing with the slope e' by the roll length `s`; `radial` and `across` are those
 /// of its tangent point on the base circle of radius `r_b`.
 #[inline(always)]
-pub(super) fn inclined<T: Numbers>(
+pub(crate) fn inclined<T: Numbers>(
     radial: Vector2<T>,
     across: Vector2<T>,
     s: T,
@@ -104,18 +104,18 @@ pub(super) fn inclined<T: Numbers>(
 
 /// `v` over its length.
 #[inline(always)]
-pub(super) fn unit<T: Numbers>(v: Vector2<T>) -> Vector2<T> {
+pub(crate) fn unit<T: Numbers>(v: Vector2<T>) -> Vector2<T> {
     v * (T::splat(1.0) / v.norm())
 }
 
 /// `v`, turned by a quarter counter-clockwise.
 #[inline(always)]
-pub(super) fn quarter_turned<T: Numbers>(v: Vector2<T>) -> Vector2<T> {
+pub(crate) fn quarter_turned<T: Numbers>(v: Vector2<T>) -> Vector2<T> {
     Vector2::new(-v.y, v.x)
 }
 
 /// The angle of the centerline of each tooth of a pair at `phase`.
-pub(super) fn angles(pair: &GearPair, phase: f64) -> [f64; 2] {
+pub(crate) fn angles(pair: &GearPair, phase: f64) -> [f64; 2] {
     let alpha_w = pair.working_pressure_angle();
     let s_1 = pair.roll_length_of(phase);
     let angle = |gear: &SpurGear, tangent: f64, s: f64| {
@@ -129,7 +129,7 @@ pub(super) fn angles(pair: &GearPair, phase: f64) -> [f64; 2] {
 
 /// The weights of the normals of the driving and of the driven flank of a pair at `phase` in the direction in which they push. They are equal, but for the
 /// corner of an undercut flank, which pushes along the normal of the smooth flank that it touches.
-pub(super) fn weights(pair: &GearPair, phase: f64) -> [f64; 2] {
+pub(crate) fn weights(pair: &GearPair, phase: f64) -> [f64; 2] {
     /// The part of the roll length of the corner over which the weights change as the nominal contact passes it.
     const CHANGES_OVER: f64 = 0.1;
     let s_1 = pair.roll_length_of(phase);
@@ -148,12 +148,12 @@ pub(super) fn weights(pair: &GearPair, phase: f64) -> [f64; 2] {
 }
 
 /// The axes of rotation.
-pub(super) fn axes(pair: &GearPair) -> [Vector; 2] {
+pub(crate) fn axes(pair: &GearPair) -> [Vector; 2] {
     [Vector::zeros(), Vector::new(pair.center_distance(), 0.0)]
 }
 
 /// Where the own axes of gears with these `deviations` stand while the centerlines of the teeth of pair `n` point along `angles`.
-pub(super) fn centers(
+pub(crate) fn centers(
     pair: &GearPair,
     deviations: &PairDeviations,
     n: i64,
@@ -209,7 +209,7 @@ impl<'a> Placement<'a> {
     }
 
     /// The gears.
-    pub(super) fn gears(&self) -> &'a GearPair {
+    pub(crate) fn gears(&self) -> &'a GearPair {
         self.pair
     }
 
@@ -233,7 +233,7 @@ impl<'a> Placement<'a> {
     }
 
     /// The place on the flank of `member` at roll length `s`.
-    pub(super) fn place(&self, member: Member, s: f64) -> FlankPlace {
+    pub(crate) fn place(&self, member: Member, s: f64) -> FlankPlace {
         let gear = self.pair.gear(member);
         let r_b = gear.base_radius();
         let (depth, slope) = self.missing(member, s);
@@ -250,7 +250,7 @@ impl<'a> Placement<'a> {
     }
 
     /// What `point` sees of the flank of `member`; `None` from inside its base circle.
-    pub(super) fn sight(&self, member: Member, point: Vector) -> Option<Sight> {
+    pub(crate) fn sight(&self, member: Member, point: Vector) -> Option<Sight> {
         let d = point - self.centers[member.index()];
         let flank = self.pair.gear(member).flank();
         let r_b = flank.base_radius();
@@ -276,7 +276,7 @@ impl<'a> Placement<'a> {
     }
 
     /// The distance of `point` from the fillet on the loaded side of the tooth of `member`, positive outside.
-    pub(super) fn fillet_distance(&self, member: Member, point: Vector) -> f64 {
+    pub(crate) fn fillet_distance(&self, member: Member, point: Vector) -> f64 {
         const POINTS: u32 = 64;
         let d = point - self.centers[member.index()];
         let (e_x, e_y) = (
@@ -306,7 +306,7 @@ impl<'a> Placement<'a> {
 
 impl Sight {
     /// How gap and roll length change as the point moves along `way`, on a gear of `base_radius`.
-    pub(super) fn change(&self, base_radius: f64, way: Vector) -> (f64, f64) {
+    pub(crate) fn change(&self, base_radius: f64, way: Vector) -> (f64, f64) {
         let across = quarter_turned(self.radial);
         // The point stands at r_b e_r(t) + s e_t(t) of the center: dt = −way·e_r/s, and s less the foot changes as way·e_t.
         let out = way.dot(&across);

@@ -6,39 +6,39 @@ use nalgebra::{SimdBool, SimdValue, Vector2};
 use simba::simd::WideF64x4;
 
 use super::placement::{self, FlankPlace, Placement, Sight, inclined, quarter_turned, unit};
-use super::wide::{Loops, Numbers, wide};
 use crate::gear::{GearPair, Member, PairDeviations, SpurGear, Vector};
+use crate::wide::{Loops, Numbers, wide};
 
 /// The square of an angle below which a few terms give its sine and cosine to the last bit.
 const SMALL_TURN: f64 = 1e-4;
 
 /// What contact needs of a point at which two flanks face each other, or of several.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Meeting<T = f64> {
+pub(crate) struct Meeting<T = f64> {
     /// The gap along the common normal, positive when open.
-    pub(super) gap: T,
+    pub(crate) gap: T,
     /// The arms of the force about the axes of rotation, over the base radii: 1 on the line of action.
-    pub(super) arms: [T; 2],
+    pub(crate) arms: [T; 2],
 }
 
 /// The direction in which two flanks push.
 ///
 /// Pressed together both turn to a common normal between their own, but for a corner ([`placement::weights`]).
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Push<T = f64> {
+pub(crate) struct Push<T = f64> {
     seat: Member,
     /// Outward from the flank of the other gear.
-    pub(super) normal: Vector2<T>,
+    pub(crate) normal: Vector2<T>,
 }
 
 impl Placement<'_> {
     /// How the flanks push at `place` on the flank of `seat`, which sees `sight`.
-    pub(super) fn push(&self, seat: Member, place: &FlankPlace, sight: &Sight) -> Push {
+    pub(crate) fn push(&self, seat: Member, place: &FlankPlace, sight: &Sight) -> Push {
         Push::new(seat, place.normal, sight.normal, self.weights)
     }
 
     /// How the flanks meet at `place` on the flank of `seat`, which sees `sight`.
-    pub(super) fn meeting(&self, seat: Member, place: &FlankPlace, sight: &Sight) -> Meeting {
+    pub(crate) fn meeting(&self, seat: Member, place: &FlankPlace, sight: &Sight) -> Meeting {
         let push = self.push(seat, place, sight);
         push.meeting(self.pair, place.point, sight.gap, self.centers)
     }
@@ -47,7 +47,7 @@ impl Placement<'_> {
 impl<T: Numbers> Push<T> {
     /// Between flanks with the outward normals `on_seat` and `on_mate`, which count as the `weights` of the driving and the driven flank say.
     #[inline(always)]
-    pub(super) fn new(
+    pub(crate) fn new(
         seat: Member,
         on_seat: Vector2<T>,
         on_mate: Vector2<T>,
@@ -81,7 +81,7 @@ impl<T: Numbers> Push<T> {
     /// The meeting at `point` of flanks of which that of the other gear passes through it once turned by the length `turn` on its base
     /// circle about its own center.
     #[inline(always)]
-    pub(super) fn meeting(
+    pub(crate) fn meeting(
         &self,
         pair: &GearPair,
         point: Vector2<T>,
@@ -105,7 +105,7 @@ impl<T: Numbers> Push<T> {
 /// A point of the seat's flank as drawn and as placed, with all that is needed to say how it meets the other flank. Both gears may have turned on a
 /// little since, and their teeth may deviate. It says the same as [`placement::Placement`], without an angle to be taken.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Probe<T = f64> {
+pub(crate) struct Probe<T = f64> {
     /// The roll length on the seat, as placed.
     roll_length: T,
     /// From the center of the seat.
@@ -120,14 +120,14 @@ pub(super) struct Probe<T = f64> {
 
 /// The probes of a row of points, four of them in one.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Probes {
+pub(crate) struct Probes {
     count: usize,
     fours: Vec<Probe<WideF64x4>>,
 }
 
 /// How the flanks of one pair stand, from how they were placed.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Standing<'a> {
+pub(crate) struct Standing<'a> {
     pair: &'a GearPair,
     seat: Member,
     /// Cosine and sine of the turn of each gear since.
@@ -141,7 +141,7 @@ pub(super) struct Standing<'a> {
 
 impl Probe {
     /// The point at `place` on the flank of `seat` that sees `sight`, its center at `center`.
-    pub(super) fn new(
+    pub(crate) fn new(
         roll_length: f64,
         place: &FlankPlace,
         sight: &Sight,
@@ -161,7 +161,7 @@ impl Probe {
 
 impl Probes {
     /// Adds `probe` behind the others.
-    pub(super) fn push(&mut self, probe: &Probe) {
+    pub(crate) fn push(&mut self, probe: &Probe) {
         let place = self.count % WideF64x4::LANES;
         if place == 0 {
             self.fours.push(probe.map(WideF64x4::splat));
@@ -171,12 +171,12 @@ impl Probes {
         self.count += 1;
     }
 
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.count == 0
     }
 
     /// About how much memory they take beside themselves, in bytes.
-    pub(super) fn bytes(&self) -> usize {
+    pub(crate) fn bytes(&self) -> usize {
         size_of_val(self.fours.as_slice())
     }
 }
@@ -241,7 +241,7 @@ fn turned<T: Numbers>([cosine, sine]: [T; 2], v: Vector2<T>) -> Vector2<T> {
 impl<'a> Standing<'a> {
     /// Pair `n` with these `deviations` at the mesh position `eta`, the driven gear lagging by `lag`, from where a pair of `phase` was placed on
     /// `seat`.
-    pub(super) fn new(
+    pub(crate) fn new(
         (pair, deviations): (&'a GearPair, &PairDeviations),
         eta: f64,
         n: i64,
@@ -271,7 +271,7 @@ impl<'a> Standing<'a> {
     }
 
     /// The same with the tooth of `member` standing out more: turned by the length `arc` on its base circle, and inclined by `slope`.
-    pub(super) fn deviating(&self, member: Member, arc: f64, slope: f64) -> Self {
+    pub(crate) fn deviating(&self, member: Member, arc: f64, slope: f64) -> Self {
         let mut other = *self;
         let g = member.index();
         let so_far = Vector::new(self.turns[g][0], self.turns[g][1]);
@@ -282,7 +282,7 @@ impl<'a> Standing<'a> {
     }
 
     /// How each of `probes` meets the other flank.
-    pub(super) fn meetings(&self, probes: &Probes) -> Vec<Meeting> {
+    pub(crate) fn meetings(&self, probes: &Probes) -> Vec<Meeting> {
         let mut meetings = Vec::with_capacity(probes.fours.len() * WideF64x4::LANES);
         wide(Meet {
             standing: self,
@@ -295,7 +295,7 @@ impl<'a> Standing<'a> {
 
     /// How `probe` meets the other flank.
     #[inline(always)]
-    pub(super) fn meeting<T: Numbers>(&self, probe: &Probe<T>) -> Meeting<T> {
+    pub(crate) fn meeting<T: Numbers>(&self, probe: &Probe<T>) -> Meeting<T> {
         let number = T::splat;
         let (seat, mate) = (self.seat.index(), self.seat.other().index());
         let (gear, other) = (self.pair.gear(self.seat), self.pair.gear(self.seat.other()));
@@ -383,12 +383,12 @@ fn removed_and_inclination<T: Numbers>(gear: &SpurGear, s: T) -> (T, T) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::facing::{Facing, View};
-    use crate::contact::placement::Placement;
     use crate::gear::spur::tests::paper_gear;
     use crate::gear::{
         Eccentricity, ModificationData, ReliefData, ReliefShape, ReliefStart, ToothDeviations,
     };
+    use crate::touch::facing::{Facing, View};
+    use crate::touch::placement::Placement;
 
     #[test]
     fn probes_side_by_side_meet_to_the_bit_as_each_alone() {

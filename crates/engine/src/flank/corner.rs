@@ -21,7 +21,7 @@ const RATIOS: usize = 49;
 
 /// R near a sharp tip corner.
 #[derive(Debug, Clone)]
-pub(super) struct Corner {
+pub(crate) struct Corner {
     /// The arc length of the tip, from the base circle.
     tip: f64,
     /// The distance d.
@@ -34,7 +34,7 @@ pub(super) struct Corner {
 
 impl Corner {
     /// Reads what the table `smooth` on the nodes at `arcs` says of the tip corner of `gear`; `factor` is c.
-    pub(super) fn new(
+    pub(crate) fn new(
         gear: &SpurGear,
         arcs: &[f64],
         factor: f64,
@@ -63,12 +63,12 @@ impl Corner {
     }
 
     /// Whether [`Corner::compliance`] knows of the point at an arc length, with any other one.
-    pub(super) fn may_know(&self, arc: f64) -> bool {
+    pub(crate) fn may_know(&self, arc: f64) -> bool {
         self.tip - arc < 2.0 * self.trusted
     }
 
     /// R between the points at two arc lengths, if they are nearer to the corner than the table knows.
-    pub(super) fn compliance(&self, one: f64, other: f64) -> Option<[[f64; 2]; 2]> {
+    pub(crate) fn compliance(&self, one: f64, other: f64) -> Option<[[f64; 2]; 2]> {
         let (x, y) = (self.tip - one, self.tip - other);
         let mean = f64::midpoint(x, y);
         // At the very corner the logarithm has no value; no cell has its middle there.
@@ -137,7 +137,7 @@ fn apex_compliance(gear: &SpurGear) -> [[f64; 2]; 2] {
 }
 
 /// R on the nodes of the table as blocks, for the entries between them.
-pub(super) fn block(smooth: &Mat<f64>, row: usize, column: usize) -> [[f64; 2]; 2] {
+pub(crate) fn block(smooth: &Mat<f64>, row: usize, column: usize) -> [[f64; 2]; 2] {
     std::array::from_fn(|a| std::array::from_fn(|b| smooth[(2 * row + a, 2 * column + b)]))
 }
 
@@ -149,7 +149,7 @@ mod tests {
     #[test]
     fn a_table_that_follows_the_wedges_law_is_continued_by_it() {
         let gear = SpurGear::new(paper_gear(50)).expect("the standard gear");
-        let c = crate::contact::half_plane::logarithm_factor(210e9, 20e-3);
+        let c = crate::flank::half_plane::logarithm_factor(210e9, 20e-3);
         let tip = gear.flank_arcs().1;
         let arcs: Vec<f64> = (0..60).rev().map(|i| tip - 8e-6 * f64::from(i)).collect();
         let apex = apex_compliance(&gear);
@@ -180,7 +180,7 @@ mod tests {
     #[test]
     fn a_wedge_of_a_straight_angle_is_the_half_plane() {
         // φ = π: 2/(π E b) along its middle. Here the middle leans; across, the force pulls the half plane sideways.
-        let c = crate::contact::half_plane::logarithm_factor(210e9, 20e-3);
+        let c = crate::flank::half_plane::logarithm_factor(210e9, 20e-3);
         let gear = SpurGear::new(paper_gear(50)).expect("the standard gear");
         let apex = apex_compliance(&gear);
         // The corner of a tooth is blunter than a right angle and sharper than a straight one.

@@ -9,10 +9,10 @@ use crate::root_finding::bisect;
 const PLACES: u32 = 64;
 
 /// What coordinates may be rounded by, in meters.
-pub(super) const ROUNDING: f64 = 1e-12;
+pub(crate) const ROUNDING: f64 = 1e-12;
 
 /// Turns to the flanks that touch; each squares what is left.
-pub(super) const MOST_TURNS: u32 = 4;
+pub(crate) const MOST_TURNS: u32 = 4;
 
 /// What ends the part of a flank from which the other flank is seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,7 +50,7 @@ pub struct GapMinimum {
     /// How fast the gap opens towards the root and towards the tip: nothing where flanks touch with a common tangent, the angle between
     /// them where a corner is nearest.
     pub openings: [f64; 2],
-    pub(super) probe: Probe,
+    pub(crate) probe: Probe,
 }
 
 /// Two flanks that face each other.
@@ -75,16 +75,16 @@ pub struct Facing {
 
 /// Two flanks as they are placed, seen from the seat's.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct View<'a> {
-    pub(super) placement: Placement<'a>,
-    pub(super) seat: Member,
+pub(crate) struct View<'a> {
+    pub(crate) placement: Placement<'a>,
+    pub(crate) seat: Member,
 }
 
 /// A point of the seat's flank and what it sees.
-pub(super) struct FacingPoint {
-    pub(super) roll_length: f64,
-    pub(super) place: FlankPlace,
-    pub(super) sight: Sight,
+pub(crate) struct FacingPoint {
+    pub(crate) roll_length: f64,
+    pub(crate) place: FlankPlace,
+    pub(crate) sight: Sight,
 }
 
 impl Facing {
@@ -116,7 +116,7 @@ impl Facing {
     }
 
     /// About how much memory it takes beside itself, in bytes.
-    pub(super) fn bytes(&self) -> usize {
+    pub(crate) fn bytes(&self) -> usize {
         size_of_val(self.minima.as_slice())
             + size_of_val(self.kinks.as_slice())
             + size_of_val(self.corners.as_slice())
@@ -128,7 +128,7 @@ impl Facing {
     }
 
     /// Whether it is the tip corner of the other gear that touches first.
-    pub(super) fn is_at_mate_tip(&self) -> bool {
+    pub(crate) fn is_at_mate_tip(&self) -> bool {
         let arc = self.minima[0].arc;
         let FlankRange { from, to, ends } = self.range;
         [from, to]
@@ -139,7 +139,7 @@ impl Facing {
 }
 
 /// The gear whose tip is nearer to the contact.
-pub(super) fn nearer_tip(gears: &GearPair, phase: f64) -> Member {
+pub(crate) fn nearer_tip(gears: &GearPair, phase: f64) -> Member {
     let (s_a, s_e) = gears.path_of_contact();
     // Past the middle of the path of contact the contact is nearer to the driving tip, which leaves it at E. A pair that stands
     // just there is found alike however its numbers are rounded.
@@ -153,16 +153,16 @@ pub(super) fn nearer_tip(gears: &GearPair, phase: f64) -> Member {
 
 /// Two flanks as they face each other where they just touch.
 #[derive(Debug, Clone)]
-pub(super) struct Touching<'a> {
-    pub(super) view: View<'a>,
-    pub(super) facing: Facing,
+pub(crate) struct Touching<'a> {
+    pub(crate) view: View<'a>,
+    pub(crate) facing: Facing,
     /// How far the driven gear lags there. The rest of the way, [`Facing::touch`], is so short that it is straight.
-    pub(super) lag: f64,
+    pub(crate) lag: f64,
 }
 
 impl<'a> Touching<'a> {
     /// The flanks of `pair` with these `deviations` in a `section`, seen from that of `seat`: turned on from the lag `from` until they are `near`.
-    pub(super) fn of(
+    pub(crate) fn of(
         (pair, deviations): (&'a GearPair, &'a PairDeviations),
         section: Section,
         seat: Member,
@@ -191,19 +191,19 @@ impl<'a> Touching<'a> {
     }
 
     /// The δ at which they touch.
-    pub(super) fn delta(&self) -> f64 {
+    pub(crate) fn delta(&self) -> f64 {
         self.lag + self.facing.touch()
     }
 
     /// The arms about both axes of a force where they touch.
-    pub(super) fn arms(&self) -> [f64; 2] {
+    pub(crate) fn arms(&self) -> [f64; 2] {
         self.view.arms(&self.facing)
     }
 }
 
 impl<'a> View<'a> {
     /// The same flanks, seen from the other gear.
-    pub(super) fn seen_from_mate(&self) -> Self {
+    pub(crate) fn seen_from_mate(&self) -> Self {
         Self {
             seat: self.seat.other(),
             ..*self
@@ -211,12 +211,12 @@ impl<'a> View<'a> {
     }
 
     /// The gears.
-    pub(super) fn gears(&self) -> &'a GearPair {
+    pub(crate) fn gears(&self) -> &'a GearPair {
         self.placement.gears()
     }
 
     /// What belongs to the seat and to the other gear, as driving and driven.
-    pub(super) fn on_both<T: Copy>(&self, seat: T, other: T) -> [T; 2] {
+    pub(crate) fn on_both<T: Copy>(&self, seat: T, other: T) -> [T; 2] {
         match self.seat {
             Member::Driving => [seat, other],
             Member::Driven => [other, seat],
@@ -224,7 +224,7 @@ impl<'a> View<'a> {
     }
 
     /// How they face each other, `phase` mesh periods after they passed the pitch point.
-    pub(super) fn facing(&self, phase: f64) -> Option<Facing> {
+    pub(crate) fn facing(&self, phase: f64) -> Option<Facing> {
         let gears = self.gears();
         let s_1 = gears.roll_length_of(phase);
         let [nominal, _] = self.on_both(s_1, gears.line_of_action() - s_1);
@@ -247,7 +247,7 @@ impl<'a> View<'a> {
     }
 
     /// The point at `arc` of the seat's flank; `None` inside the other base circle.
-    pub(super) fn point(&self, arc: f64) -> Option<FacingPoint> {
+    pub(crate) fn point(&self, arc: f64) -> Option<FacingPoint> {
         let flank = self.gears().gear(self.seat).flank();
         let roll_length = flank.roll_length_at_arc(arc);
         let place = self.placement.place(self.seat, roll_length);
@@ -259,20 +259,20 @@ impl<'a> View<'a> {
     }
 
     /// The arms about both axes of a force where the gap of `facing` is least.
-    pub(super) fn arms(&self, facing: &Facing) -> [f64; 2] {
+    pub(crate) fn arms(&self, facing: &Facing) -> [f64; 2] {
         // The place is found wherever flanks face each other.
         let point = self.point(facing.minima[0].arc);
         point.map_or([1.0, 1.0], |point| self.meeting(&point).arms)
     }
 
     /// How the flanks meet at `point`.
-    pub(super) fn meeting(&self, point: &FacingPoint) -> Meeting {
+    pub(crate) fn meeting(&self, point: &FacingPoint) -> Meeting {
         self.placement
             .meeting(self.seat, &point.place, &point.sight)
     }
 
     /// `point`, to be followed as the gears turn on.
-    pub(super) fn probe(&self, point: &FacingPoint) -> Probe {
+    pub(crate) fn probe(&self, point: &FacingPoint) -> Probe {
         let removed = self.gears().gear(self.seat.other());
         let (center, _) = self.placement.frame(self.seat);
         Probe::new(
@@ -291,7 +291,7 @@ impl<'a> View<'a> {
     }
 
     /// The part of the seat's flank that sees the other flank between its form circle, or somewhat below the corner of its undercut, and its tip.
-    pub(super) fn range(&self) -> Option<FlankRange> {
+    pub(crate) fn range(&self) -> Option<FlankRange> {
         let (gear, mate) = (
             self.gears().gear(self.seat),
             self.gears().gear(self.seat.other()),
@@ -447,7 +447,7 @@ impl<'a> View<'a> {
 
     /// The least distance between the tip of the seat, as far as it stands below the flank of the other gear within `range`, and the
     /// fillet there; `None` where the tip does not reach below that flank.
-    pub(super) fn tip_to_fillet(&self, range: &FlankRange) -> Option<f64> {
+    pub(crate) fn tip_to_fillet(&self, range: &FlankRange) -> Option<f64> {
         const TIP_POINTS: u32 = 8;
         if range.ends[1] != RangeEnd::MateFillet {
             return None;

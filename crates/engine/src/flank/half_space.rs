@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 
 use faer::Mat;
 
-use super::flank_ends::{FlankEnds, Lines};
-use super::flank_polynomials::projecting;
+use super::ends::{FlankEnds, Lines};
+use super::polynomials::projecting;
 use crate::fem::axial::AxialBasis;
 use crate::gear::{Material, SolidGear};
 use crate::quadrature::{gauss_legendre, legendre};
@@ -16,7 +16,7 @@ const POINTS: usize = 16;
 const STRETCH: f64 = 3.0;
 
 /// The half space's compliance between lines along the flank, (1 − ν²)/(π E) ∫∫ f_p f_q / distance.
-pub(super) struct HalfSpace {
+pub(crate) struct HalfSpace {
     /// ∫ f_p(z) f_q(z − Δ) dz over Δ.
     products: Vec<Products>,
     /// Places and weights between two distances, of −1 … 1.
@@ -35,7 +35,7 @@ struct Products {
 }
 
 impl HalfSpace {
-    pub(super) fn new(gear: &SolidGear, axial: &AxialBasis) -> Self {
+    pub(crate) fn new(gear: &SolidGear, axial: &AxialBasis) -> Self {
         let section = gear.section();
         let Material {
             youngs_modulus: e,
@@ -102,7 +102,7 @@ impl HalfSpace {
 
     /// Its nearest of products of the polynomials [`up_the_flank`] and functions along the axis, over the flank between the squares of two roll
     /// lengths.
-    pub(super) fn over_flank(&self, squares: [f64; 2], degree: usize) -> Mat<f64> {
+    pub(crate) fn over_flank(&self, squares: [f64; 2], degree: usize) -> Mat<f64> {
         self.nearest(squares, degree, |s, loaded| self.between(s, loaded))
     }
 
@@ -218,7 +218,7 @@ fn product(axial: &AxialBasis, apart: f64) -> Mat<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::tip_softness;
+    use crate::flank::corner::tip_softness;
     use crate::gear::Helix;
     use crate::gear::spur::tests::paper_gear;
 

@@ -1,7 +1,7 @@
 //! Where a flank is no half space: it ends at the tip of its tooth and at both ends of its face.
 //!
 //! A tooth is a wedge at its tip, which yields more than a half space there: in the plane by the logarithm of the distance from the corner,
-//! (C − c) ln (x + y), with Michell's compliance C of the wedge and c of the half plane ([`crate::contact`] has it so). A load that stands as far beyond
+//! (C − c) ln (x + y), with Michell's compliance C of the wedge and c of the half plane ([`super::corner`] has it so). A load that stands as far beyond
 //! the tip, (C − c)/c as large, makes that logarithm of a long line, and of a short one what becomes of it in space.
 //!
 //! A face that is narrow against its teeth is a plate, which yields by the logarithm of plane stress as far as it is high, where a half space
@@ -17,7 +17,7 @@
 
 use std::f64::consts::PI;
 
-use crate::contact::tip_softness;
+use super::corner::tip_softness;
 use crate::gear::{Material, SolidGear};
 
 /// The distance, in modules, within which a load beyond the tip is blurred: contacts are wider.
@@ -25,7 +25,7 @@ const BLUR: f64 = 0.02;
 
 /// What a flank yields beside a half space.
 #[derive(Debug, Clone)]
-pub(super) struct FlankEnds {
+pub(crate) struct FlankEnds {
     base_radius: f64,
     twist: f64,
     /// 1/cos β_b.
@@ -43,17 +43,17 @@ pub(super) struct FlankEnds {
 
 /// Distances between two lines of equal roll lengths: √((κ (Δ − Δ_0))² + (κ ε)²) at heights Δ apart.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Lines {
+pub(crate) struct Lines {
     /// κ.
-    pub(super) stretch: f64,
+    pub(crate) stretch: f64,
     /// Δ_0.
-    pub(super) nearest: f64,
+    pub(crate) nearest: f64,
     /// ε.
-    pub(super) reach: f64,
+    pub(crate) reach: f64,
 }
 
 impl FlankEnds {
-    pub(super) fn new(gear: &SolidGear) -> Self {
+    pub(crate) fn new(gear: &SolidGear) -> Self {
         let section = gear.section();
         let Material {
             youngs_modulus: e,
@@ -75,7 +75,7 @@ impl FlankEnds {
     }
 
     /// The distances between a point at the roll length `s` and a load at `loaded`, and what the half space makes of their inverse.
-    pub(super) fn direct(&self, s: f64, loaded: f64) -> Lines {
+    pub(crate) fn direct(&self, s: f64, loaded: f64) -> Lines {
         let level = (s * s - loaded * loaded) / (2.0 * self.base_radius);
         let slope = self.twist * f64::midpoint(s, loaded);
         let stretch = slope.hypot(self.along);
@@ -87,7 +87,7 @@ impl FlankEnds {
     }
 
     /// The same if the load stands as far beyond the tip, and what is made of the inverse of the distances.
-    pub(super) fn beyond_tip(&self, s: f64, loaded: f64) -> (Lines, f64) {
+    pub(crate) fn beyond_tip(&self, s: f64, loaded: f64) -> (Lines, f64) {
         let level = (s * s - loaded * loaded) / (2.0 * self.base_radius);
         let below = self.below_tip(s) + self.below_tip(loaded);
         let slope = self.twist * self.tip;
@@ -106,7 +106,7 @@ impl FlankEnds {
     }
 
     /// What a unit force at the roll length `loaded`, even across the face, does at `s` as on a plate, less what a half space knows.
-    pub(super) fn of_plate(&self, s: f64, loaded: f64) -> f64 {
+    pub(crate) fn of_plate(&self, s: f64, loaded: f64) -> f64 {
         let Lines { stretch, reach, .. } = self.direct(s, loaded);
         let b = self.face_width;
         let far = b.hypot(reach);
@@ -115,7 +115,7 @@ impl FlankEnds {
 
     /// What a unit force does at the roll length `s` and the height `z` beside that of a half space, spread over a piece of the contact line of the
     /// length `along` about the roll length and the height `loaded`.
-    pub(super) fn of_piece(&self, (s, z): (f64, f64), loaded: (f64, f64), along: f64) -> f64 {
+    pub(crate) fn of_piece(&self, (s, z): (f64, f64), loaded: (f64, f64), along: f64) -> f64 {
         let (lines, factor) = self.beyond_tip(s, loaded.0);
         let slope = self.twist * self.tip;
         // The line leans against the tip, and beyond it the other way.

@@ -1,0 +1,15 @@
+//! How the loaded flank of one tooth gives way: a smooth part from the finite elements, and in closed form what no grid resolves.
+//!
+//! - [`table`]: the smooth part of a transverse section, interpolated between the nodes of the flank,
+//! - [`half_plane`]: the logarithm under cells, and Hertz's contact,
+//! - `corner`: the wedge at a sharp tip,
+//! - `polynomials`: the smooth part along a face, as polynomials of roll length,
+//! - `half_space`: what lines along a face yield to each other,
+//! - `ends`: what a flank lacks of a half space at its tip and at both ends of its face.
+
+pub(crate) mod corner;
+pub(crate) mod ends;
+pub mod half_plane;
+pub(crate) mod half_space;
+pub(crate) mod polynomials;
+pub mod table;

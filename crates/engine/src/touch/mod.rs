@@ -1,0 +1,9 @@
+//! Where flanks stand, and how two of them meet.
+//!
+//! - [`placement`]: both gears turned to a mesh position, and what one flank sees of the other,
+//! - [`facing`]: two flanks that face each other: where they are nearest, and the lag at which they touch,
+//! - `meeting`: how they push where they meet.
+
+pub mod facing;
+pub(crate) mod meeting;
+pub mod placement;
