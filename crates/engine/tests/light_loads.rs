@@ -14,15 +14,22 @@ use meshwright_engine::run::Run;
 /// F = c δ²/(2 σ).
 const DEFLECTED: f64 = 0.55e-6;
 
+/// An output torque in N m under which flanks yield by picometers: δ is rounded by a part of that. Cells and slices no longer resolve it.
+const LIGHTEST: f64 = 1e-6;
+
 /// Looks at the curves of `case`, and says where δ does not rise with the load, from no load on.
-fn rises_from_its_limit(case: &Case, what: &str, wrong: &mut Vec<String>) {
-    let analysis = match analyze(case, &Library::default(), &Run::unattended()) {
+fn rises_from_its_limit(mut case: Case, what: &str, wrong: &mut Vec<String>) {
+    case.output_torques.insert(1, LIGHTEST);
+    let analysis = match analyze(&case, &Library::default(), &Run::unattended()) {
         Ok(analysis) => analysis,
         Err(error) => return wrong.push(format!("{what}: {error}")),
     };
     for (i, eta) in analysis.curves[0].mesh_position.iter().enumerate() {
         let curves = analysis.curves.iter();
-        let deltas: Vec<f64> = curves.map(|curve| curve.transmission_error[i]).collect();
+        let mut deltas: Vec<f64> = curves.map(|curve| curve.transmission_error[i]).collect();
+        if (deltas.remove(1) - deltas[0]).abs() > DEFLECTED {
+            wrong.push(format!("{what} at {eta}, under the lightest load"));
+        }
         let rises: Vec<f64> = deltas.windows(2).map(|two| two[1] - two[0]).collect();
         if rises.iter().any(|rise| *rise <= 0.0) || rises[0] > DEFLECTED {
             wrong.push(format!("{what} at {eta}: {deltas:?}"));
@@ -35,7 +42,7 @@ fn in_the_plane_delta_rises_with_the_load_from_where_rigid_flanks_touch() {
     let mut wrong = Vec::new();
     for departure in of_profiles() {
         let case = in_the_plane(gears(departure), 50.2e-3);
-        rises_from_its_limit(&case, departure.name, &mut wrong);
+        rises_from_its_limit(case, departure.name, &mut wrong);
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
@@ -48,7 +55,7 @@ fn along_faces_delta_rises_with_the_load_from_where_rigid_flanks_touch() {
             let what = format!("{}, {beta}", departure.name);
             let distance = 50e-3 / f64::cos(beta) + 0.2e-3;
             let case = of_gears(gears(departure), departure, beta, distance);
-            rises_from_its_limit(&case, &what, &mut wrong);
+            rises_from_its_limit(case, &what, &mut wrong);
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));

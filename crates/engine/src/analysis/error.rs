@@ -13,7 +13,7 @@ use crate::run::Stopped;
 pub enum AnalysisError {
     /// The contact solver gave up at a position.
     #[error(
-        "the contact did not converge at mesh position {mesh_position}: residual gap {residual} m after {iterations} iterations"
+        "the contact did not converge at mesh position {mesh_position}: residual gap {residual:.1e} m after {iterations} iterations"
     )]
     NotConverged {
         /// The mesh position η.

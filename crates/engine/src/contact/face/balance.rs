@@ -30,7 +30,7 @@ const MOST_EVALUATIONS: u32 = 40;
 /// the half space of a line without width yields too much: equal and opposite forces would gain energy from it.
 const SOFTER: [f64; 5] = [0.0, 0.1, 0.2, 0.4, 0.8];
 
-/// A step that moves flanks by less than this part of the δ that the load causes ends the iteration.
+/// A step that moves flanks by less than this part of the δ that the load causes ends the iteration, and so does one within the rounding of δ.
 const NO_WAY: f64 = 1e-11;
 
 /// The points and weights of Gauss's rules over a loaded half of a slice, and over the loaded part of one, where the load is more curved.
@@ -201,7 +201,8 @@ impl Problem<'_> {
             let longest = way_opens
                 .iter()
                 .fold(delta.abs(), |most, way| most.max(way.abs()));
-            let is_short = longest <= NO_WAY * (state.delta - touch).abs();
+            let rounding = 4.0 * f64::EPSILON * state.delta.abs();
+            let is_short = longest <= rounding.max(NO_WAY * (state.delta - touch).abs());
             let (mut part, mut end) = (1.0, at(1.0));
             let (mut low, mut high) = ([0.0, fall], [1.0, end.2]);
             let mut evaluations = 0;
