@@ -10,6 +10,7 @@ use faer::sparse::{SparseColMat, Triplet};
 use faer::{Mat, Side};
 use meshwright_engine::analysis::stress::GearStresses;
 use meshwright_engine::assembly::{FaceResolution, FaceRoots};
+use meshwright_engine::contact::face::NormalForce;
 use meshwright_engine::fem::surface::SurfaceStress;
 use meshwright_engine::gear::{FaceEnds, SolidGear};
 use meshwright_engine::grid::{GridLevel, ToothGrid};
@@ -158,7 +159,7 @@ impl WholeTooth {
     }
 
     /// What presses its flank along `lines`: roll lengths, heights and forces normal to it.
-    fn forces(&self, lines: &[(f64, f64, f64)]) -> HashMap<usize, Vector3<f64>> {
+    fn forces(&self, lines: &[NormalForce]) -> HashMap<usize, Vector3<f64>> {
         let mut forces: HashMap<usize, Vector3<f64>> = HashMap::new();
         let (rolls, heights) = (&self.grid.flank_roll_lengths, &self.heights);
         let flank = self.gear.section().flank();
@@ -167,7 +168,12 @@ impl WholeTooth {
             let after = places.partition_point(|place| *place <= at);
             2 * ((after - 1) / 2).min(places.len() / 2 - 1)
         };
-        for &(s, z, force) in lines {
+        for &NormalForce {
+            roll_length: s,
+            z,
+            force,
+        } in lines
+        {
             let (first, from) = (element(rolls, s), element(heights, z));
             let normal = flank.normal(s);
             let push = -force * Vector3::new(normal.x, normal.y, -tilt).normalize();
@@ -225,7 +231,7 @@ impl WholeTooth {
 }
 
 /// Forces of 1 N at roll lengths that rise with z, all along the face: what presses a flank along a line across it.
-fn oblique(gear: &SolidGear) -> Vec<(f64, f64, f64)> {
+fn oblique(gear: &SolidGear) -> Vec<NormalForce> {
     let section = gear.section();
     let middle = f64::midpoint(section.form_roll_length(), section.tip_roll_length());
     let count = 200;
@@ -233,13 +239,15 @@ fn oblique(gear: &SolidGear) -> Vec<(f64, f64, f64)> {
         .map(|i| {
             let z = gear.face_width() * ((f64::from(i) + 0.5) / f64::from(count) - 0.5);
             // The part of the face on which the line is on the flank.
-            (
-                middle + gear.twist() * section.flank().base_radius() * z,
+            NormalForce {
+                roll_length: middle + gear.twist() * section.flank().base_radius() * z,
                 z,
-                1.0,
-            )
+                force: 1.0,
+            }
         })
-        .filter(|(s, ..)| (section.form_roll_length()..section.tip_roll_length()).contains(s))
+        .filter(|of| {
+            (section.form_roll_length()..section.tip_roll_length()).contains(&of.roll_length)
+        })
         .collect()
 }
 

@@ -105,7 +105,7 @@ impl HoleAnswer<'_> {
             });
             for (j, by) in columns.enumerate() {
                 for (moved, row) in moved.iter_mut().zip(of.rows.col_as_slice(j)) {
-                    // Forces press into the teeth, and the circle is told of forces outward.
+                    // Forces press into the teeth; those on the circle point outward.
                     *moved -= (row * by).re;
                 }
             }
@@ -131,6 +131,7 @@ impl HoleAnswer<'_> {
 pub(super) mod tests {
     use super::*;
     use crate::assembly::{FaceResolution, MakeAll, Parts as _};
+    use crate::contact::face::NormalForce;
     use crate::fem::axial::AxialBasis;
     use crate::fem::prism::Prism;
     use crate::gear::spur::tests::paper_gear;
@@ -260,8 +261,17 @@ pub(super) mod tests {
         let roots = MakeAll.face_roots(&spec.stack(), &run).expect("sound");
         let yields = MakeAll.face_yield(&spec, &run).expect("sound");
         let holes = MakeAll.face_holes(&spec, &run).expect("sound");
-        let loads = [(7, 3e-3), (8, -6e-3)]
-            .map(|(tooth, z)| roots.forces(tooth, [(9e-3, sign * z, 100.0)].into_iter()));
+        let loads = [(7, 3e-3), (8, -6e-3)].map(|(tooth, z)| {
+            roots.forces(
+                tooth,
+                [NormalForce {
+                    roll_length: 9e-3,
+                    z: sign * z,
+                    force: 100.0,
+                }]
+                .into_iter(),
+            )
+        });
         holes
             .expect("it has holes")
             .under(&yields, &loads)

@@ -14,6 +14,7 @@ use super::flank_forces::{FlankForces, PressedFlank};
 use super::holed::{HoledSection, block};
 use super::stack::Stack;
 use super::{FaceYield, FaceYieldSpec, PartError, Parts, PlainFace};
+use crate::contact::face::NormalForce;
 use crate::fem::FemError;
 use crate::fem::axial::AxialBasis;
 use crate::fem::prescribed::Load;
@@ -29,9 +30,9 @@ use crate::ring::solid::tooth::{SolidTooth, flank_normals};
 use crate::ring::solid::web::conjugate_below_zero;
 use crate::run::Run;
 
-/// The orders for which the radii are chosen at which the rim and the parts below it are told, as parts of the number of teeth: elements of the rim
+/// The orders for which the radii are chosen at which displacements in the rim and in the parts below it are recovered, as parts of the number of teeth: elements of the rim
 /// follow the fields of single teeth, which do not reach farther.
-const TOLD_ORDERS: [f64; 2] = [0.75, 0.25];
+const RECOVERED_ORDERS: [f64; 2] = [0.75, 0.25];
 
 /// A solid gear that can be asked how all of it moves.
 pub struct FaceInside {
@@ -93,12 +94,8 @@ impl FaceInside {
         })
     }
 
-    /// What presses the flank of `tooth` where forces normal to it act: roll lengths, heights from the middle of the gear's own face, and forces.
-    pub fn forces(
-        &self,
-        tooth: usize,
-        pressing: impl Iterator<Item = (f64, f64, f64)>,
-    ) -> FlankForces {
+    /// What presses the flank of `tooth` where these forces act.
+    pub fn forces(&self, tooth: usize, pressing: impl Iterator<Item = NormalForce>) -> FlankForces {
         self.pressed.forces(tooth, pressing)
     }
 
@@ -145,7 +142,7 @@ impl FaceInside {
         let size = forces.len() / (2 * web.largest() + 1);
         let of = |order: usize| {
             Mat::from_fn(size, 1, |i, _| match order {
-                // Forces press into the teeth, and what is told of is told of forces outward.
+                // Forces press into the teeth; those on the circle point outward.
                 0 => c64::new(-forces[i], 0.0),
                 _ => {
                     let at = block(order) * size + i;
@@ -272,7 +269,7 @@ impl FaceInside {
             body.inside(order as i64, (carried.as_ref(), force), &outer[order])
         })?;
         let z = self.stack.gear.section().tooth_count();
-        let told = body.circles((TOLD_ORDERS[index.min(1)] * f64::from(z)) as i64);
+        let radii = body.circles((RECOVERED_ORDERS[index.min(1)] * f64::from(z)) as i64);
         let arc = &self.grid.arc_angles[..self.grid.arc_angles.len() - 1];
         let turns = (0..z).map(|tooth| TAU * f64::from(tooth) / f64::from(z));
         let mut angles: Vec<f64> = turns
@@ -282,7 +279,7 @@ impl FaceInside {
         if index > 0 && angles.len().is_multiple_of(4) {
             angles = angles.into_iter().step_by(2).collect();
         }
-        let grid = Grid::polar(&told, &angles);
+        let grid = Grid::polar(&radii, &angles);
         let (nodes, around_circle) = (grid.nodes.len() as u32, angles.len() as u32);
         let outermost = nodes - around_circle..nodes;
         // The last part ends at the bore.
@@ -291,7 +288,7 @@ impl FaceInside {
             false => 0..around_circle,
         };
         parts.push(MovedParts {
-            parts: vec![(0.0, around(&circles, &told, &angles))],
+            parts: vec![(0.0, around(&circles, &radii, &angles))],
             joints: outermost.chain(innermost).collect(),
             grid,
             material: *body.material,
@@ -430,8 +427,8 @@ fn around(circles: &[Circles], radii: &[f64], angles: &[f64]) -> Vec<f64> {
         }
         unknowns
     };
-    let told: Vec<Vec<f64>> = radii.par_iter().enumerate().map(of_radius).collect();
-    told.concat()
+    let unknowns: Vec<Vec<f64>> = radii.par_iter().enumerate().map(of_radius).collect();
+    unknowns.concat()
 }
 
 #[cfg(test)]
@@ -497,7 +494,17 @@ mod tests {
 
     fn loads(inside: &FaceInside) -> Vec<FlankForces> {
         let s = inside.pressed.roll_lengths[9];
-        let load = |(tooth, z, force)| inside.forces(tooth, [(s, z, force)].into_iter());
+        let load = |(tooth, z, force)| {
+            inside.forces(
+                tooth,
+                [NormalForce {
+                    roll_length: s,
+                    z,
+                    force,
+                }]
+                .into_iter(),
+            )
+        };
         FORCES.into_iter().map(load).collect()
     }
 
@@ -748,8 +755,8 @@ mod tests {
                 let [low, high] = shaft.heights;
                 0.5 * TAU * shaft.outer_radius.powi(2) * (high - low)
             });
-            let told = gear.mass() / gear.section().material().density - shaft;
-            assert!((filled / told - 1.0).abs() < 0.01, "{filled} {told}");
+            let drawn = gear.mass() / gear.section().material().density - shaft;
+            assert!((filled / drawn - 1.0).abs() < 0.01, "{filled} {drawn}");
         }
     }
 }

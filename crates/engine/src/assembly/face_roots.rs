@@ -9,6 +9,7 @@ use super::flank_fit::{FlankFit, smoothed_rows};
 use super::flank_forces::{FlankForces, PressedFlank};
 use super::stack::Stack;
 use super::{FaceResolution, FaceYield, PartError, PlainFace};
+use crate::contact::face::NormalForce;
 use crate::fem::axial::AxialBasis;
 use crate::fem::dense::entries;
 use crate::fem::prism::{COMPONENTS, Prism};
@@ -167,12 +168,8 @@ impl FaceRoots {
         })
     }
 
-    /// What presses the flank of `tooth` where forces normal to it act: roll lengths, heights from the middle of the gear's own face, and forces.
-    pub fn forces(
-        &self,
-        tooth: usize,
-        pressing: impl Iterator<Item = (f64, f64, f64)>,
-    ) -> FlankForces {
+    /// What presses the flank of `tooth` where these forces act.
+    pub fn forces(&self, tooth: usize, pressing: impl Iterator<Item = NormalForce>) -> FlankForces {
         self.pressed.forces(tooth, pressing)
     }
 
@@ -340,7 +337,14 @@ mod tests {
     /// An even load of 1 N per meter on a line along the flank of tooth 0.
     fn even(roots: &FaceRoots, s: f64) -> [FlankForces; 1] {
         let rule = roots.pressed.axial.rule(16).into_iter();
-        [roots.forces(0, rule.map(|(z, w)| (s, z, w)))]
+        [roots.forces(
+            0,
+            rule.map(|(z, w)| NormalForce {
+                roll_length: s,
+                z,
+                force: w,
+            }),
+        )]
     }
 
     /// The principal stresses of a straight tooth at the nodes of its fillets, nearest to the middle of its face.
@@ -488,7 +492,15 @@ mod tests {
         let stack = FaceYieldSpec::new(&gear, of_order(4)).stack();
         let roots = MakeAll.face_roots(&stack, &run).expect("sound");
         let foot = roots.pressed.roll_lengths[0];
-        let loads = [roots.forces(0, [(foot, 4e-3, 10.0)].into_iter())];
+        let loads = [roots.forces(
+            0,
+            [NormalForce {
+                roll_length: foot,
+                z: 4e-3,
+                force: 10.0,
+            }]
+            .into_iter(),
+        )];
         let answer = roots.under(None, &loads);
         let (own, neighbor) = (answer.stresses(0), answer.stresses(1));
         assert_eq!(
@@ -501,10 +513,10 @@ mod tests {
         let at_foot = |of: &&SurfaceStress| {
             (of.edge == 0) && (of.angle - twist * of.z - foot.y.atan2(foot.x)).abs() < 1e-9
         };
-        let told: Vec<f64> = own.iter().filter(at_foot).map(|of| of.z).collect();
+        let heights: Vec<f64> = own.iter().filter(at_foot).map(|of| of.z).collect();
         assert!(
-            told.iter().all(|z| *z < 1.6e-3) && !told.is_empty(),
-            "{told:?}"
+            heights.iter().all(|z| *z < 1.6e-3) && !heights.is_empty(),
+            "{heights:?}"
         );
         assert!(neighbor.iter().filter(at_foot).any(|of| of.z > 4e-3));
     }
@@ -518,8 +530,17 @@ mod tests {
             let roots = MakeAll.face_roots(&spec.stack(), &run).expect("sound");
             let yields = MakeAll.face_yield(&spec, &run).expect("sound");
             let s = roots.pressed.roll_lengths[9];
-            let loads = [(7, 3e-3), (8, -6e-3)]
-                .map(|(tooth, z)| roots.forces(tooth, [(s, sign * z, 100.0)].into_iter()));
+            let loads = [(7, 3e-3), (8, -6e-3)].map(|(tooth, z)| {
+                roots.forces(
+                    tooth,
+                    [NormalForce {
+                        roll_length: s,
+                        z: sign * z,
+                        force: 100.0,
+                    }]
+                    .into_iter(),
+                )
+            });
             let answer = roots.under(Some(&yields), &loads);
             [6, 7, 8, 12].map(|tooth| answer.stresses(tooth))
         };

@@ -1,6 +1,7 @@
 //! Forces that press flanks, on the nodes of a grid and on the functions over a flank.
 
 use super::flank_fit::squares;
+use crate::contact::face::NormalForce;
 use crate::fem::axial::AxialBasis;
 use crate::flank::polynomials::{OWN_DEGREE, up_the_flank};
 use crate::gear::{Involute, Vector};
@@ -33,11 +34,11 @@ impl FlankForces {
 }
 
 impl PressedFlank {
-    /// What presses the flank of `tooth` where forces normal to it act: roll lengths, heights from the middle of the gear's own face, and forces.
+    /// What presses the flank of `tooth` where these forces act.
     pub(super) fn forces(
         &self,
         tooth: usize,
-        pressing: impl Iterator<Item = (f64, f64, f64)>,
+        pressing: impl Iterator<Item = NormalForce>,
     ) -> FlankForces {
         let (m, last) = (self.axial.len(), self.roll_lengths.len() - 1);
         let mut forces = FlankForces {
@@ -47,7 +48,12 @@ impl PressedFlank {
             places: Vec::new(),
         };
         let squares = squares(&self.roll_lengths);
-        for (roll_length, z, force) in pressing {
+        for NormalForce {
+            roll_length,
+            z,
+            force,
+        } in pressing
+        {
             let s = roll_length.clamp(self.roll_lengths[0], self.roll_lengths[last]);
             forces.places.push((self.flank.point(s), z));
             let across = self.axial.values(z);

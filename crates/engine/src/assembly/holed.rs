@@ -330,10 +330,10 @@ impl HoledSection {
         }
     }
 
-    /// The ring of it, which can be asked for the nodes `told`.
-    pub(super) fn ring(&self, told: &[u32]) -> Result<HoledRing<'_>, FemError> {
-        let told = (self.largest, told);
-        HoledRing::new(&self.grid, &self.prism(), self.hub.as_deref(), told)
+    /// The ring of it, which can be asked how the nodes `recovered` move.
+    pub(super) fn ring(&self, recovered: &[u32]) -> Result<HoledRing<'_>, FemError> {
+        let asked = (self.largest, recovered);
+        HoledRing::new(&self.grid, &self.prism(), self.hub.as_deref(), asked)
     }
 }
 

@@ -11,7 +11,7 @@
 //! - [`law`]: piecewise linear laws of force, and the motion under one of their pieces in closed form,
 //! - [`oscillator`]: motion over a period as a chain of such pieces, with its derivative to the state at the beginning,
 //! - [`orbit`]: periodic motions by Newton's method on that derivative, their multipliers, and where a motion settles,
-//! - [`run_up`]: both branches over speed, and what is told of them,
+//! - [`run_up`]: both branches over speed, and their amplitudes,
 //! - [`torsion`]: bodies that turn in themselves, and their lowest natural frequency on the mesh.
 //!
 //! Time is divided into steps. In each the shape of F is that of the middle of the step, and the static deflection δ_s(θ) under F_0, about

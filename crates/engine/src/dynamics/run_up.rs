@@ -47,7 +47,7 @@ pub struct RunUpData {
     pub sweeps: [bool; 2],
 }
 
-/// What is told of one branch, speed by speed.
+/// One branch of the motion, speed by speed.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Branch {
     /// Root mean square of x, its mean removed, in m.
@@ -64,7 +64,7 @@ pub struct Branch {
     pub repeats: Vec<Option<u32>>,
     /// The amplitude of x at each order asked for, in m, order by order.
     pub orders: Vec<Vec<f64>>,
-    /// Whether the motion grows without bound; it is told until it has run away.
+    /// Whether the motion grows without bound; it is followed until it has run away.
     pub runs_away: Vec<bool>,
 }
 
@@ -444,7 +444,7 @@ impl<'a> Mesh<'a> {
     }
 }
 
-/// What is told of the motion at one speed.
+/// The motion at one speed.
 #[derive(Debug, Clone)]
 struct Motion {
     rms: f64,

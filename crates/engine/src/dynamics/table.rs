@@ -685,9 +685,9 @@ pub(super) mod tests {
             ForceTable::new(2, ladder.loads(), flanks)
         };
         for sign in [1.0, -1.0] {
-            let told = table(0.3e-6, sign).expect_err("it falls");
-            assert_eq!((told.mesh_position, told.load), (1.0, 4.0 * sign));
-            assert!((told.falls / 0.3e-6 - 1.0).abs() < 1e-6, "{told}");
+            let fall = table(0.3e-6, sign).expect_err("it falls");
+            assert_eq!((fall.mesh_position, fall.load), (1.0, 4.0 * sign));
+            assert!((fall.falls / 0.3e-6 - 1.0).abs() < 1e-6, "{fall}");
             let apart = table(1e-15, sign).expect("rounding");
             let flank = if sign > 0.0 {
                 apart.loaded()

@@ -118,7 +118,7 @@ impl Prism<'_> {
         Ok(condensed)
     }
 
-    /// The same, and all unknowns of the nodes `told`.
+    /// The same, and how all unknowns of the nodes `recovered` follow from those that are kept.
     ///
     /// # Errors
     ///
@@ -128,7 +128,7 @@ impl Prism<'_> {
         part: &'static str,
         interface: &Interface<'_>,
         points: &[(u32, [f64; COMPONENTS])],
-        told: &[u32],
+        recovered: &[u32],
     ) -> Result<(CondensedPrism, NodeRows), FemError> {
         let Interface {
             kept,
@@ -139,7 +139,7 @@ impl Prism<'_> {
         let kept = self.unknowns_of_node() * (numbering.count - numbering.interior);
         let (asked, told_rows) = (
             points.len() * self.axial.len(),
-            told.len() * self.unknowns_of_node(),
+            recovered.len() * self.unknowns_of_node(),
         );
         let mut condensed = CondensedPrism {
             stiffness: Mat::zeros(kept, kept),
@@ -156,7 +156,7 @@ impl Prism<'_> {
                 unknowns,
                 numbering: &numbering,
             };
-            alone.condense(part, points, told, (&mut condensed, &mut rows))?;
+            alone.condense(part, points, recovered, (&mut condensed, &mut rows))?;
         }
         Ok((condensed, rows))
     }
@@ -231,7 +231,7 @@ impl Independent<'_> {
         &self,
         part: &'static str,
         points: &[(u32, [f64; COMPONENTS])],
-        told: &[u32],
+        recovered: &[u32],
         (condensed, rows): (&mut CondensedPrism, &mut NodeRows),
     ) -> Result<(), FemError> {
         let Self {
@@ -309,7 +309,7 @@ impl Independent<'_> {
         }
 
         let at_once = (ROWS_AT_ONCE / size).max(1);
-        for (chunk, nodes) in told.chunks(at_once).enumerate() {
+        for (chunk, nodes) in recovered.chunks(at_once).enumerate() {
             let mut units = self.forces(&factor, nodes.len() * size, |add| {
                 for (i, node) in nodes.iter().enumerate() {
                     for (c, unknown) in unknowns.iter().enumerate() {

@@ -9,7 +9,7 @@ use super::axial::AxialBasis;
 use super::prism::{COMPONENTS, Prism};
 use crate::gear::{Vector, radial, tangential};
 
-/// Heights across the body at which stresses are told, for each degree of its functions.
+/// Heights across the body at which stresses are computed, for each degree of its functions.
 const HEIGHTS_PER_DEGREE: usize = 4;
 
 /// The free surface over some edges of the section of a prism.
@@ -21,8 +21,7 @@ pub struct Surface {
     axial: AxialBasis,
     /// The nodes of the edges, edge after edge.
     nodes: Vec<Node>,
-    /// Heights, with the values of the functions along the axis and their slopes.
-    heights: Vec<(f64, Vec<f64>, Vec<f64>)>,
+    heights: Vec<Height>,
 }
 
 /// A node of the section.
@@ -111,7 +110,7 @@ impl Surface {
             })
             .collect();
         let mut stresses = Vec::with_capacity(self.nodes.len() * self.heights.len());
-        for (z, values, slopes) in &self.heights {
+        for Height { z, values, slopes } in &self.heights {
             // In the axes of the section, at this height.
             let of = |node: usize, functions: &[f64]| {
                 let [r, t, w] = std::array::from_fn(|c| {
@@ -199,8 +198,16 @@ fn sides(count: usize, first: usize, closed: bool) -> Vec<Vec<Side>> {
     sides
 }
 
-/// Heights across the body, both ends among them and where its pieces join not, with the functions and their slopes.
-fn heights(axial: &AxialBasis) -> Vec<(f64, Vec<f64>, Vec<f64>)> {
+/// A height across the body, and the functions and their slopes there.
+#[derive(Debug)]
+struct Height {
+    z: f64,
+    values: Vec<f64>,
+    slopes: Vec<f64>,
+}
+
+/// Heights across the body, both ends among them and where its pieces join not.
+fn heights(axial: &AxialBasis) -> Vec<Height> {
     let pieces = axial.breaks().windows(2);
     let per_piece = HEIGHTS_PER_DEGREE * (axial.len() - 1) / pieces.len();
     let inner = pieces.flat_map(|ends| {
@@ -212,7 +219,11 @@ fn heights(axial: &AxialBasis) -> Vec<(f64, Vec<f64>, Vec<f64>)> {
         .into_iter()
         .chain(inner)
         .chain([high])
-        .map(|z| (z, axial.values(z), axial.slopes(z)))
+        .map(|z| Height {
+            z,
+            values: axial.values(z),
+            slopes: axial.slopes(z),
+        })
         .collect()
 }
 

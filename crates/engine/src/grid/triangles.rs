@@ -76,6 +76,16 @@ impl Chain {
 
 type Delaunay = ConstrainedDelaunayTriangulation<Point2<f64>>;
 
+/// A triangle whose circle is too large for its place.
+struct TooLarge {
+    triangle: [u32; 3],
+    /// The radius of its circle, in sizes.
+    radius: f64,
+    center: Vector,
+    /// The size at the center.
+    size: f64,
+}
+
 impl TriangleNet {
     /// Fills the material between `chains`, which stand on `points`. The first chain is the outermost. `None` where chains
     /// cross.
@@ -186,7 +196,7 @@ impl TriangleNet {
         // Triangles that are found small enough stay so until a new point replaces them.
         let (mut last, mut waiting) = (0, HashSet::new());
         for _ in 0..MOST_PASSES {
-            let mut wanted: Vec<([u32; 3], f64, Vector, f64)> = self
+            let mut wanted: Vec<TooLarge> = self
                 .material(&delaunay)
                 .into_iter()
                 .filter(|triangle| {
@@ -198,10 +208,16 @@ impl TriangleNet {
             if wanted.is_empty() {
                 break;
             }
-            wanted.sort_by(|a, b| b.1.total_cmp(&a.1));
+            wanted.sort_by(|a, b| b.radius.total_cmp(&a.radius));
             waiting.clear();
             last = self.points.len();
-            for (triangle, _, point, size) in wanted {
+            for TooLarge {
+                triangle,
+                center: point,
+                size,
+                ..
+            } in wanted
+            {
                 let apart = |p: &Vector| (p - point).norm() > LARGEST_CIRCLE * size;
                 if self.points[last..].iter().all(apart) {
                     self.points.push(point);
@@ -216,18 +232,17 @@ impl TriangleNet {
         Some(())
     }
 
-    /// A triangle whose circle is too large for its place and has its center in the material, with the circle's radius in
-    /// sizes, its center and the size there.
-    fn too_large(&self, triangle: [u32; 3], sizes: &Sizes) -> Option<([u32; 3], f64, Vector, f64)> {
+    /// `triangle`, if its circle is too large for its place and has its center in the material.
+    fn too_large(&self, triangle: [u32; 3], sizes: &Sizes) -> Option<TooLarge> {
         let (center, radius) = self.circle(triangle)?;
         let size = sizes.at(center);
         let inside = sizes.is_inside(center, NEAREST_TO_BOUNDARY * size);
-        (inside && radius > LARGEST_CIRCLE * size).then_some((
+        (inside && radius > LARGEST_CIRCLE * size).then_some(TooLarge {
             triangle,
-            radius / size,
+            radius: radius / size,
             center,
             size,
-        ))
+        })
     }
 
     /// Center and radius of the circle through the corners of a triangle.

@@ -219,6 +219,7 @@ fn bytes_of_contacts(spec: &ContactsSpec, contacts: &[MeshContact]) -> usize {
 mod tests {
     use super::*;
     use crate::assembly::{FaceResolution, MakeAll};
+    use crate::contact::face::NormalForce;
     use crate::gear::spur::tests::paper_gear;
     use crate::gear::{Helix, HolePattern, SolidGear, Web};
 
@@ -255,7 +256,15 @@ mod tests {
             let roots = parts.face_roots(&spec.stack(), &run).expect("definite");
             let holes = parts.face_holes(&spec, &run).expect("definite");
             let holes = holes.expect("it has holes");
-            let loads = [roots.forces(3, [(9e-3, 2e-3, 100.0)].into_iter())];
+            let loads = [roots.forces(
+                3,
+                [NormalForce {
+                    roll_length: 9e-3,
+                    z: 2e-3,
+                    force: 100.0,
+                }]
+                .into_iter(),
+            )];
             let of_roots = roots.under(Some(&yields), &loads).stresses(4);
             let of_holes = holes.under(&yields, &loads).stresses();
             (yields.smooth(&[0, 1, 23]), of_roots, of_holes)

@@ -68,7 +68,7 @@ impl Sector {
         self.condense_class_on(class, &e, orders, run)
     }
 
-    /// As [`Sector::condense_class`], with the unknowns behind both sides moved by the columns of `e`; `orders` are those that the way back is told of.
+    /// As [`Sector::condense_class`], with the unknowns behind both sides moved by the columns of `e`; `orders` are those of the displacements that are recovered.
     pub(super) fn condense_class_on(
         &self,
         class: usize,

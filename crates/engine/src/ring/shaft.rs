@@ -90,12 +90,12 @@ impl OnShaft {
                 weight,
             );
             if rows.nrows() > 0 {
-                let told = sector.class_rows_on(rows, class, &e, &solution);
+                let moved = sector.class_rows_on(rows, class, &e, &solution);
                 for (j, &n) in a.iter().enumerate() {
-                    outer.set_rows(&mut outer_rows, n, told.subcols(2 * j, 2));
+                    outer.set_rows(&mut outer_rows, n, moved.subcols(2 * j, 2));
                 }
                 for (j, &n) in b.iter().enumerate() {
-                    edge.set_rows(&mut edge_rows, n, told.subcols(first + 2 * j, 2));
+                    edge.set_rows(&mut edge_rows, n, moved.subcols(first + 2 * j, 2));
                 }
             }
         }
@@ -282,15 +282,15 @@ mod tests {
         let shear_modulus = Material::STEEL.youngs_modulus / 2.6;
         // Turned by φ the edge takes T = 12 π G b R² φ: at r = R that is φ = T/(4 π G b) (4/3 − 1)/R².
         let [_, [_, turned]] = section().stiffness(0);
-        let told = 12.0 * std::f64::consts::PI * shear_modulus * 20e-3;
-        assert!((turned / told - 1.0).abs() < 1e-12);
+        let expected = 12.0 * std::f64::consts::PI * shear_modulus * 20e-3;
+        assert!((turned / expected - 1.0).abs() < 1e-12);
         // Held at a rigid edge the even force p on it makes u = p (R² − r²)/(6 G + 2 λ) along it and so a mean of half that at the axis: moved by d
         // the edge takes F = π R² b p = 4 π b (3 G + λ) d, with λ of plane stress.
         let [[a, b], [c, d]] = section().stiffness(1);
         let lame = 2.0 * shear_modulus * 0.3 / 0.7;
         let force = (a - b) - (c - d);
-        let told = 4.0 * std::f64::consts::PI * 20e-3 * (3.0 * shear_modulus + lame);
-        assert!((force / told - 1.0).abs() < 1e-12, "{force} {told}");
+        let expected = 4.0 * std::f64::consts::PI * 20e-3 * (3.0 * shear_modulus + lame);
+        assert!((force / expected - 1.0).abs() < 1e-12, "{force} {expected}");
     }
 
     #[test]

@@ -24,8 +24,8 @@ pub struct Placement<'a> {
     angles: [f64; 2],
     /// How much the normal of either flank counts ([`weights`]).
     pub(crate) weights: [f64; 2],
-    /// What deviates, and the teeth that stand there; nothing of a pair as drawn.
-    made: Option<(&'a PairDeviations, [usize; 2])>,
+    /// What deviates, and the teeth that are in mesh; nothing of a pair as drawn.
+    deviating: Option<(&'a PairDeviations, [usize; 2])>,
 }
 
 /// A transverse section of the teeth of one pair.
@@ -176,7 +176,7 @@ impl<'a> Placement<'a> {
             centers: axes(pair),
             angles: angles(pair, phase),
             weights: weights(pair, phase),
-            made: None,
+            deviating: None,
         }
     }
 
@@ -199,7 +199,7 @@ impl<'a> Placement<'a> {
             centers: centers(pair, deviations, section.pair, in_middle),
             angles: turned,
             weights: weights(pair, section.phase),
-            made: Some((deviations, pair.teeth(section.pair))),
+            deviating: Some((deviations, pair.teeth(section.pair))),
         }
     }
 
@@ -217,16 +217,17 @@ impl<'a> Placement<'a> {
     fn missing(&self, member: Member, s: f64) -> (f64, f64) {
         let gear = self.pair.gear(member);
         let (depth, slope) = (gear.removed(s), gear.removed_slope(s));
-        self.made.map_or((depth, slope), |(deviations, teeth)| {
-            let (gear, tooth) = (deviations.of_gear(member), teeth[member.index()]);
-            (depth - gear.at(tooth, s), slope - gear.slope(tooth))
-        })
+        self.deviating
+            .map_or((depth, slope), |(deviations, teeth)| {
+                let (gear, tooth) = (deviations.of_gear(member), teeth[member.index()]);
+                (depth - gear.at(tooth, s), slope - gear.slope(tooth))
+            })
     }
 
     /// By how much the normal of `member` is inclined at the roll length `s`.
     fn inclination(&self, member: Member, s: f64) -> f64 {
         let drawn = self.pair.gear(member).inclination(s);
-        self.made.map_or(drawn, |(deviations, teeth)| {
+        self.deviating.map_or(drawn, |(deviations, teeth)| {
             let gear = deviations.of_gear(member);
             drawn - gear.slope(teeth[member.index()])
         })

@@ -122,6 +122,17 @@ pub struct SliceLoad {
     pub normal: [f64; 2],
 }
 
+/// A force normal to a flank.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NormalForce {
+    /// The roll length at which it acts, in meters.
+    pub roll_length: f64,
+    /// The height at which it acts, from the middle of the gear's own face, in meters.
+    pub z: f64,
+    /// In N, pressing into the flank.
+    pub force: f64,
+}
+
 /// A force in the middle of a slice.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct MiddleLoad {
@@ -155,18 +166,18 @@ impl FaceContact {
         moment / force
     }
 
-    /// What presses the flanks of `member` of `pair`, line by line: the tooth, and roll lengths, heights from the middle of its own face, and normal
-    /// forces.
+    /// What presses the flanks of `member` of `pair`, line by line: the tooth, and the forces on it.
     pub fn pressing<'a>(
         &'a self,
         pair: &'a SolidPair,
         member: Member,
-    ) -> impl Iterator<Item = (usize, impl Iterator<Item = (f64, f64, f64)> + 'a)> + 'a {
+    ) -> impl Iterator<Item = (usize, impl Iterator<Item = NormalForce> + 'a)> + 'a {
         let lines = self.slices.chunk_by(|one, next| one.pair == next.pair);
         lines.map(move |line| {
-            let of_slice = move |slice: &SliceLoad| {
-                let z = pair.own_height(member, slice.z);
-                (slice.roll_lengths[member.index()], z, slice.normal[0])
+            let of_slice = move |slice: &SliceLoad| NormalForce {
+                roll_length: slice.roll_lengths[member.index()],
+                z: pair.own_height(member, slice.z),
+                force: slice.normal[0],
             };
             let tooth = pair.section().tooth(member, line[0].pair);
             (tooth, line.iter().map(of_slice))

@@ -20,9 +20,9 @@ const SIZE_BY_FADING: f64 = 0.5;
 /// The size of the elements at both circles by the width of the narrowest piece of the layer: where it is held, or meets one of another
 /// width, fields about the corners fade within a part of that width, whatever their order.
 const SIZE_BY_WIDTH: f64 = 0.5;
-/// The largest size of elements that tell stresses, by their radius: at the corners of quadratic elements the shear of a torque, which falls
+/// The largest size of elements in which stresses are recovered, by their radius: at the corners of quadratic elements the shear of a torque, which falls
 /// with the square of the radius, errs by the square of half of that. Stiffnesses, which err by its fourth power, need none so small.
-const TOLD_BY_RADIUS: f64 = 0.12;
+const RECOVERED_BY_RADIUS: f64 = 0.12;
 /// The growth of elements away from both circles.
 const GROWTH: f64 = 0.4;
 /// The least number of elements in the depth of a layer.
@@ -158,7 +158,7 @@ impl Revolution<'_> {
         outer: &Mat<c64>,
     ) -> Result<Circles, FemError> {
         let (size, matrices) = (self.size(), self.axial.matrices());
-        let division = self.division(order, self.at_corners(), TOLD_BY_RADIUS);
+        let division = self.division(order, self.at_corners(), RECOVERED_BY_RADIUS);
         let none = || Mat::<c64>::zeros(size, 1);
         let mut force = forces.unwrap_or_else(none);
         let mut carried = below.cloned();
@@ -208,7 +208,7 @@ impl Revolution<'_> {
     /// The radii of circles, corners and middles of elements in turn, that tell the field of `order`, and its stresses, but for that about its
     /// corners.
     pub fn circles(&self, order: i64) -> Vec<f64> {
-        with_middles(&self.division(order, f64::INFINITY, TOLD_BY_RADIUS))
+        with_middles(&self.division(order, f64::INFINITY, RECOVERED_BY_RADIUS))
     }
 
     /// The radii of its elements for `order`.

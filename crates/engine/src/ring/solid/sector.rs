@@ -68,7 +68,7 @@ impl Arc {
 }
 
 impl SolidSector {
-    /// The interface alone, its arcs told node by node at these angles.
+    /// The interface alone, its arcs given node by node at these angles.
     pub fn with_nodes(&self, angles: &[Vec<f64>]) -> Self {
         Self {
             stiffness: Mat::zeros(0, 0),
@@ -89,7 +89,7 @@ impl SolidSector {
         c64::new(cos, sin)
     }
 
-    /// By what a class adds to the sector `ahead` places counter-clockwise of `count`, if it is told together with the opposite one, its conjugate:
+    /// By what a class adds to the sector `ahead` places counter-clockwise of `count`, if it stands for the opposite one too, its conjugate:
     /// the real part is to be taken.
     pub fn part(class: usize, ahead: usize, count: usize) -> c64 {
         // The class may be its own opposite.

@@ -37,7 +37,7 @@ impl SolidTooth {
         Ok(tooth)
     }
 
-    /// The same, and how the nodes `told` move, by the interface and by the flank.
+    /// The same, and how the nodes `recovered` move, by the interface and by the flank.
     ///
     /// # Errors
     ///
@@ -46,7 +46,7 @@ impl SolidTooth {
         gear: &SolidGear,
         grid: &ToothGrid,
         axial: &AxialBasis,
-        told: &[u32],
+        recovered: &[u32],
     ) -> Result<(Self, NodeRows), FemError> {
         let section = gear.section();
         let (right, left) = &grid.side_nodes;
@@ -66,7 +66,7 @@ impl SolidTooth {
             kept: &kept,
             ..Default::default()
         };
-        let (condensed, rows) = prism.condense_with("the tooth", &interface, &points, told)?;
+        let (condensed, rows) = prism.condense_with("the tooth", &interface, &points, recovered)?;
         let tooth = Self {
             sector: SolidSector {
                 count: section.tooth_count() as usize,
@@ -84,7 +84,7 @@ impl SolidTooth {
     }
 }
 
-/// The compliance of the loaded flank of `grid` with the sides of the sector free and its arc held, and how the nodes `told` move.
+/// The compliance of the loaded flank of `grid` with the sides of the sector free and its arc held, and how the nodes `recovered` move.
 ///
 /// # Errors
 ///
@@ -93,7 +93,7 @@ pub fn flank_compliance_alone(
     gear: &SolidGear,
     grid: &ToothGrid,
     axial: &AxialBasis,
-    told: &[u32],
+    recovered: &[u32],
 ) -> Result<(Mat<f64>, NodeRows), FemError> {
     let prism = Prism {
         grid: &grid.grid,
@@ -106,7 +106,7 @@ pub fn flank_compliance_alone(
         fixed: &grid.arc_nodes,
         ..Default::default()
     };
-    let (condensed, rows) = prism.condense_with("the tooth", &interface, &points, told)?;
+    let (condensed, rows) = prism.condense_with("the tooth", &interface, &points, recovered)?;
     Ok((condensed.held, rows))
 }
 

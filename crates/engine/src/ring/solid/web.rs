@@ -14,14 +14,14 @@ use crate::run::Run;
 
 /// A ring of sectors with holes, each condensed to its interface.
 ///
-/// On its circles it is told the orders up to the largest that is asked for. Where one sector is all of the ring, which has many nodes
+/// Its circles move by the orders up to the largest that is asked for. Where one sector is all of the ring, which has many nodes
 /// around it, these take the place of the nodes before it is condensed.
 #[derive(Debug)]
 pub struct HoledRing<'a> {
     sector: SolidSector,
     /// The angles of the nodes of each of its arcs.
     angles: Vec<Vec<f64>>,
-    /// How the nodes that are told move, by the interface of their sector.
+    /// How the recovered nodes move, by the interface of their sector.
     rows: Mat<f64>,
     /// The largest order that is asked for.
     largest: usize,
@@ -50,7 +50,7 @@ pub struct MovedRing {
 }
 
 impl<'a> HoledRing<'a> {
-    /// The ring of sectors `grid`; `prism` is its section with the functions across it, and the nodes `told` can be asked for. It is asked
+    /// The ring of sectors `grid`; `prism` is its section with the functions across it, and the displacements of the nodes `recovered` can be asked for. It is asked
     /// for the orders up to `largest`.
     ///
     /// `hub` is what carries the inner circle, one of each of these orders; without it that circle is held.
@@ -62,7 +62,7 @@ impl<'a> HoledRing<'a> {
         grid: &BlankGrid,
         prism: &Prism<'_>,
         hub: Option<&'a [Mat<c64>]>,
-        (largest, told): (usize, &[u32]),
+        (largest, recovered): (usize, &[u32]),
     ) -> Result<Self, FemError> {
         let (right, left) = &grid.side_nodes;
         let angle = |node: &u32| {
@@ -91,7 +91,7 @@ impl<'a> HoledRing<'a> {
             followers: &followers,
             fixed: held,
         };
-        let (condensed, rows) = prism.condense_with("the web", &interface, &[], told)?;
+        let (condensed, rows) = prism.condense_with("the web", &interface, &[], recovered)?;
         let angles: Vec<_> = circles.into_iter().map(|(_, angles)| angles).collect();
         let arcs = angles.iter().map(|angles| match is_whole {
             true => Arc::Harmonics(largest),
@@ -144,7 +144,7 @@ impl<'a> HoledRing<'a> {
         Ok(ring)
     }
 
-    /// How the nodes that are told move by the orders of the outer circle, class by class.
+    /// How the recovered nodes move by the orders of the outer circle, class by class.
     ///
     /// # Errors
     ///
