@@ -40,8 +40,8 @@
 //! none of this. z runs along the axis from the middle of the face, and each step above has its counterpart:
 //!
 //! 1. **Geometry** ([`gear::SolidGear`], [`gear::SolidPair`]). The transverse section at z is the plane pair at the phase
-//!    η + z/p_x, p_x the axial pitch ([`gear::SolidPair::phase`]), so that lines of contact cross the flanks. Leads, deviations and axes that are out of line are
-//!    gaps over z ([`gear::SolidPair::lead_gap`]).
+//!    η + z/p_x, p_x the axial pitch ([`gear::SolidPair::phase`]), so that lines of contact cross the flanks. Leads and deviations turn the flanks of each
+//!    section ([`touch::placement::Section`]); axes that are out of line are a gap over z.
 //! 2. **Substructures** ([`fem::prism`], [`fem::axial`], [`ring::solid`]). A gear is its section times polynomials across the face, in a
 //!    frame that turns with the helix. Teeth, rim, web and hub are condensed part by part, order by order around the circle; where parts of unlike
 //!    width meet, the displacements of the narrower one are those of the wider ([`ring::solid::joint`]). A web with holes takes its sector or its whole grid,
