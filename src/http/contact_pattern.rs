@@ -28,8 +28,9 @@ pub(super) struct PatternParameters {
 /// Get the contact pattern
 ///
 /// The largest pressure over the period on both flanks of a pair that was computed along its faces, and the lines of contact at each position with
-/// the load and the pressure along them. It is computed anew from the submission, while the request waits, and bounded as previews are, but for four
-/// times their time, or that of the job, as estimated or as it was.
+/// the load and the pressure along them. It is
+/// computed anew from the submission while the request waits. It is bounded as previews are, but may take four times as long as they, or as the job:
+/// by its estimate, or as it was.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/results/contact-pattern.json", tag = "Results", operation_id = "get_contact_pattern",
     params(PatternParameters, IfNoneMatch),

@@ -64,7 +64,8 @@ pub(super) struct FieldParameters {
 /// A VTK unstructured grid that ParaView, PyVista and meshio read: at points `displacement_um` of each gear against its hub, `stress_mpa`
 /// and `von_mises_mpa`, in cells `gear` (0 driving, 1 driven); points in mm, the driving axis at the origin, the driven one on the x axis. Of a plane
 /// method plates with `thickness_mm`, by the flexible method; of `three_dimensional` and its projection volumes, by `three_dimensional`, with z from
-/// the middle of the common face. It is computed while the request waits, and bounded as previews are, but for four times their time, or that of the job, as estimated or as it was.
+/// the middle of the common face. It is computed while the request waits. It is bounded as previews
+/// are, but may take four times as long as they, or as the job: by its estimate, or as it was.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/results/fields.vtu", tag = "Results", operation_id = "get_fields",
     params(FieldParameters, IfNoneMatch),
@@ -97,7 +98,8 @@ pub(super) async fn vtu(
 /// What a drawing of the deformed pair needs of `fields.vtu`: where the gears end, how far each node there moves against the hub of its
 /// gear, and its von Mises stress; and the transmission error, by which the driven gear is to be turned back for the flanks to touch. Of
 /// gears that are seen along their faces it is a section through the middle of the common face, and of a part that ends before it, its end. It is
-/// computed by the method that `fields.vtu` has, while the request waits, and bounded as previews are, but for four times their time, or that of the job, as estimated or as it was.
+/// computed by the method that `fields.vtu` has while the request waits. It is bounded as previews
+/// are, but may take four times as long as they, or as the job: by its estimate, or as it was.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/results/edges.json", tag = "Results", operation_id = "get_edges",
     params(FieldParameters, IfNoneMatch),

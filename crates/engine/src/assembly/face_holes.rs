@@ -268,8 +268,7 @@ pub(super) mod tests {
                     roll_length: 9e-3,
                     z: sign * z,
                     force: 100.0,
-                }]
-                .into_iter(),
+                }],
             )
         });
         holes

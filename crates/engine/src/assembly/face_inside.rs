@@ -30,8 +30,8 @@ use crate::ring::solid::tooth::{SolidTooth, flank_normals};
 use crate::ring::solid::web::conjugate_below_zero;
 use crate::run::Run;
 
-/// The orders for which the radii are chosen at which displacements in the rim and in the parts below it are recovered, as parts of the number of teeth: elements of the rim
-/// follow the fields of single teeth, which do not reach farther.
+/// Displacements in the rim and in the parts below it are recovered at radii that resolve fields of these orders, as parts of the number of teeth.
+/// Elements of the rim follow the fields of single teeth, which do not reach farther.
 const RECOVERED_ORDERS: [f64; 2] = [0.75, 0.25];
 
 /// A solid gear that can be asked how all of it moves.
@@ -95,7 +95,11 @@ impl FaceInside {
     }
 
     /// What presses the flank of `tooth` where these forces act.
-    pub fn forces(&self, tooth: usize, pressing: impl Iterator<Item = NormalForce>) -> FlankForces {
+    pub fn forces(
+        &self,
+        tooth: usize,
+        pressing: impl IntoIterator<Item = NormalForce>,
+    ) -> FlankForces {
         self.pressed.forces(tooth, pressing)
     }
 
@@ -501,8 +505,7 @@ mod tests {
                     roll_length: s,
                     z,
                     force,
-                }]
-                .into_iter(),
+                }],
             )
         };
         FORCES.into_iter().map(load).collect()

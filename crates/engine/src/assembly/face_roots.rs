@@ -169,7 +169,11 @@ impl FaceRoots {
     }
 
     /// What presses the flank of `tooth` where these forces act.
-    pub fn forces(&self, tooth: usize, pressing: impl Iterator<Item = NormalForce>) -> FlankForces {
+    pub fn forces(
+        &self,
+        tooth: usize,
+        pressing: impl IntoIterator<Item = NormalForce>,
+    ) -> FlankForces {
         self.pressed.forces(tooth, pressing)
     }
 
@@ -498,8 +502,7 @@ mod tests {
                 roll_length: foot,
                 z: 4e-3,
                 force: 10.0,
-            }]
-            .into_iter(),
+            }],
         )];
         let answer = roots.under(None, &loads);
         let (own, neighbor) = (answer.stresses(0), answer.stresses(1));
@@ -537,8 +540,7 @@ mod tests {
                         roll_length: s,
                         z: sign * z,
                         force: 100.0,
-                    }]
-                    .into_iter(),
+                    }],
                 )
             });
             let answer = roots.under(Some(&yields), &loads);

@@ -38,7 +38,7 @@ impl PressedFlank {
     pub(super) fn forces(
         &self,
         tooth: usize,
-        pressing: impl Iterator<Item = NormalForce>,
+        pressing: impl IntoIterator<Item = NormalForce>,
     ) -> FlankForces {
         let (m, last) = (self.axial.len(), self.roll_lengths.len() - 1);
         let mut forces = FlankForces {

@@ -344,8 +344,7 @@ impl<'a> Facings<'a> {
     fn real(&self, near: &Near, period: i64) -> Option<Touching<'a>> {
         let pair = (&self.deviating.model.pair, self.deviating.deviations);
         let section = Section::straight(self.at(period).eta(), period + near.pair);
-        let there = |touching: &Touching<'_>| touching.facing.touch().abs() < ROUNDING;
-        Touching::of(pair, section, near.drawn.seat, 0.0, there)
+        Touching::of(pair, section, near.drawn.seat, 0.0, ROUNDING)
     }
 
     /// Finds the pairs that touch as drawn before δ is `reach`.

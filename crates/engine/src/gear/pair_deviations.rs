@@ -108,6 +108,12 @@ impl GearDeviations {
         moved.x * normal.cos() + moved.y * normal.sin()
     }
 
+    /// What is missing from the flank of `tooth` of `gear` where involutes would touch at the roll length `s`, along the normal and to the first order: what
+    /// modifications remove, less what deviates towards the mate, in the section that is turned by `turn`.
+    pub fn missing(&self, gear: &SpurGear, tooth: usize, s: f64, turn: f64) -> f64 {
+        gear.removed(s) - self.at(tooth, s) - self.runout(gear, tooth, s, turn)
+    }
+
     /// Where the gear's own axis stands from the axis of rotation while the centerline of tooth 0 points along `angle`.
     pub fn displacement(&self, angle: f64) -> Vector {
         self.eccentricity

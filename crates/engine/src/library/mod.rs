@@ -262,8 +262,7 @@ mod tests {
                     roll_length: 9e-3,
                     z: 2e-3,
                     force: 100.0,
-                }]
-                .into_iter(),
+                }],
             )];
             let of_roots = roots.under(Some(&yields), &loads).stresses(4);
             let of_holes = holes.under(&yields, &loads).stresses();

@@ -86,7 +86,7 @@ impl<'a> PairFormulas<'a> {
 
     /// The mesh positions, in the mesh period after `first`, just before and just behind which a pair comes to the line of contact or leaves it.
     pub fn ends_of_contact(&self, first: f64) -> Vec<f64> {
-        /// Mesh periods to either side: far above rounding, and nothing moves by a digit that is told.
+        /// Mesh periods to either side: far above rounding, and nothing moves by a digit that is shown.
         const BESIDE: f64 = 1e-7;
         let (s_a, s_e) = self.pair.path_of_contact();
         let (s_c, p_b) = (self.pair.pitch_roll_length(), self.pair.base_pitch());
@@ -109,7 +109,7 @@ impl<'a> PairFormulas<'a> {
             let s = rolls[member.index()];
             let tooth = self.pair.tooth(member, n);
             let deviations = self.deviations.of_gear(member);
-            gear.removed(s) - deviations.at(tooth, s) - deviations.runout(gear, tooth, s, 0.0)
+            deviations.missing(gear, tooth, s, 0.0)
         });
         let bodies = Member::BOTH.map(|member| ContactBody {
             material: *self.pair.gear(member).material(),

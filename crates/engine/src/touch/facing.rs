@@ -47,6 +47,8 @@ pub struct GapMinimum {
     pub touch: f64,
     /// Roll length on the driving and on the driven gear.
     pub roll_lengths: [f64; 2],
+    /// The arms about the driving and the driven axis of a force there.
+    pub arms: [f64; 2],
     /// How fast the gap opens towards the root and towards the tip: nothing where flanks touch with a common tangent, the angle between
     /// them where a corner is nearest.
     pub openings: [f64; 2],
@@ -127,6 +129,12 @@ impl Facing {
         self.minima[0].touch
     }
 
+    /// Whether a force where the flanks touch first drives the driven gear on. Far off the path of contact it may turn that back; flanks touch elsewhere
+    /// long before they do there.
+    pub(crate) fn drives(&self) -> bool {
+        self.minima[0].arms[1] > 0.0
+    }
+
     /// Whether it is the tip corner of the other gear that touches first.
     pub(crate) fn is_at_mate_tip(&self) -> bool {
         let arc = self.minima[0].arc;
@@ -161,13 +169,14 @@ pub(crate) struct Touching<'a> {
 }
 
 impl<'a> Touching<'a> {
-    /// The flanks of `pair` with these `deviations` in a `section`, seen from that of `seat`: turned on from the lag `from` until they are `near`.
+    /// The flanks of `pair` with these `deviations` in a `section`, seen from that of `seat`: turned on from the lag `from` until they touch `within`
+    /// so long a way.
     pub(crate) fn of(
         (pair, deviations): (&'a GearPair, &'a PairDeviations),
         section: Section,
         seat: Member,
         from: f64,
-        near: impl Fn(&Self) -> bool,
+        within: f64,
     ) -> Option<Self> {
         let at = |lag: f64| {
             let placement = Placement::real(pair, deviations, section, lag);
@@ -178,7 +187,7 @@ impl<'a> Touching<'a> {
         // Seen from afar a corner touches elsewhere than it does: by the square of the way.
         let mut touching = at(from)?;
         for _ in 0..MOST_TURNS {
-            if near(&touching) {
+            if touching.facing.touch().abs() < within {
                 break;
             }
             // Where flanks cease to face each other on the way they touch about where it was straight.
@@ -193,11 +202,6 @@ impl<'a> Touching<'a> {
     /// The δ at which they touch.
     pub(crate) fn delta(&self) -> f64 {
         self.lag + self.facing.touch()
-    }
-
-    /// The arms about both axes of a force where they touch.
-    pub(crate) fn arms(&self) -> [f64; 2] {
-        self.view.arms(&self.facing)
     }
 }
 
@@ -256,13 +260,6 @@ impl<'a> View<'a> {
             sight: self.placement.sight(self.seat.other(), place.point)?,
             place,
         })
-    }
-
-    /// The arms about both axes of a force where the gap of `facing` is least.
-    pub(crate) fn arms(&self, facing: &Facing) -> [f64; 2] {
-        // The place is found wherever flanks face each other.
-        let point = self.point(facing.minima[0].arc);
-        point.map_or([1.0, 1.0], |point| self.meeting(&point).arms)
     }
 
     /// How the flanks meet at `point`.
@@ -437,6 +434,7 @@ impl<'a> View<'a> {
             arc,
             touch: meeting.gap / meeting.arms[1],
             roll_lengths: self.on_both(point.roll_length, point.sight.roll_length),
+            arms: meeting.arms,
             openings: [
                 opening(arc - beside, -1.0).unwrap_or_default(),
                 opening(arc + beside, 1.0).unwrap_or_default(),

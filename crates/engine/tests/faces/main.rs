@@ -428,8 +428,7 @@ fn a_misalignment_is_a_lead_slope_of_the_same_gap() {
         ..Drawing::default()
     };
     let none = ToothDeviations::default;
-    // A lead of the driving gear turns its flanks besides: they pass a place on the line of action by up to the amount earlier or later, a thousandth of a
-    // mesh period.
+    // A lead of the driving gear also turns its flanks: they pass a place on the line of action up to a thousandth of a mesh period earlier or later.
     for (allowed, sloped) in [
         (1e-6, drawn([Vec::new(), slope()], none())),
         (2e-3, drawn([slope(), Vec::new()], none())),

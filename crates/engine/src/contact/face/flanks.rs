@@ -6,8 +6,8 @@ use crate::contact::light::{FirstTouch, TOGETHER, first, on_path, touching_near}
 use crate::contact::{MeshContact, PositionError};
 use crate::gear::{GearPair, Member, PairDeviations, SolidPair};
 use crate::root_finding::{bisect, least_places};
-use crate::touch::facing::{Touching, View, nearer_tip};
-use crate::touch::placement::{Placement, Section};
+use crate::touch::facing::{Facing, Touching, nearer_tip};
+use crate::touch::placement::Section;
 
 /// The flanks of a pair along their faces.
 pub struct FaceFlanks {
@@ -97,30 +97,25 @@ impl FaceFlanks {
         }
     }
 
-    /// The flanks in a `section` where they just touch, and a force between them drives the driven gear on. Far off the path of contact it may turn that
-    /// back; flanks touch elsewhere long before they do there.
+    /// The flanks in a `section` where they just touch; `None` where a force there would not drive the driven gear on.
     pub(super) fn touching(&self, section: Section) -> Option<Touching<'_>> {
         // In modules: 20 nm at 2 mm. So short a way is straight to 0.1 nm.
         const NEAR: f64 = 1e-5;
         let (gears, deviations) = (&self.plane_strain, &self.deviations);
-        let [tooth_1, tooth_2] = gears.teeth(section.pair);
         let s_1 = gears.roll_length_of(section.phase);
-        let nominal = [(tooth_1, s_1), (tooth_2, gears.line_of_action() - s_1)];
+        let nominal = [s_1, gears.line_of_action() - s_1];
         // On the path of contact they nearly touch so.
         let missing = Member::BOTH.map(|member| {
             let (g, gear) = (member.index(), gears.gear(member));
-            let (tooth, s) = nominal[g];
-            let of = deviations.of_gear(member);
-            let s = s.clamp(gear.form_roll_length(), gear.tip_roll_length());
-            let displaced = of.at(tooth, s) + of.runout(gear, tooth, s, section.twists[g]);
-            gear.removed(s) + section.removed[g] - displaced
+            let s = nominal[g].clamp(gear.form_roll_length(), gear.tip_roll_length());
+            let (tooth, twist) = (gears.tooth(member, section.pair), section.twists[g]);
+            section.removed[g] + deviations.of_gear(member).missing(gear, tooth, s, twist)
         });
         let seat = nearer_tip(gears, section.phase);
-        let nearest = NEAR * gears.driving().data().rack.module;
-        let near = |touching: &Touching<'_>| touching.facing.touch().abs() < nearest;
+        let within = NEAR * gears.driving().data().rack.module;
         let from = missing[0] + missing[1];
-        let touching = Touching::of((gears, deviations), section, seat, from, near);
-        touching.filter(|touching| touching.arms()[1] > 0.0)
+        let touching = Touching::of((gears, deviations), section, seat, from, within);
+        touching.filter(|touching| touching.facing.drives())
     }
 
     /// How far the driving tooth of a `section` stands ahead of the drawing, in mesh periods.
@@ -190,16 +185,9 @@ impl FaceFlanks {
         ]
     }
 
-    /// The δ at which sections at `phase` as drawn touch, seen from where they are drawn; without end where a force between them does not drive on.
+    /// The δ at which sections at `phase` as drawn touch, seen from where they are drawn; infinite where a force there would not drive on.
     fn drawn_touch(&self, phase: f64) -> f64 {
-        let gears = &self.plane_strain;
-        let placement = Placement::drawn(gears, phase);
-        let view = View {
-            placement,
-            seat: nearer_tip(gears, phase),
-        };
-        let facing = view.facing(phase);
-        let facing = facing.filter(|facing| view.arms(facing)[1] > 0.0);
+        let facing = Facing::drawn(&self.plane_strain, phase).filter(Facing::drives);
         facing.map_or(f64::INFINITY, |facing| facing.touch())
     }
 

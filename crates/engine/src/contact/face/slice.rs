@@ -281,7 +281,7 @@ impl<'a> Slicer<'a> {
         let touching = self.model.flanks.touching(section)?;
         let (view, facing) = (&touching.view, &touching.facing);
         let minimum = &facing.minima[0];
-        let weights = touching.arms().map(|arm| arm * self.cosine);
+        let weights = minimum.arms.map(|arm| arm * self.cosine);
         let radius = {
             let [one, other] = minimum.roll_lengths.map(|s| s / self.cosine);
             one * other / (one + other)
