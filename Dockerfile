@@ -23,10 +23,10 @@ RUN mkdir -p build src benches/load && touch src/lib.rs crates/engine/benches/li
     && for name in connections engine exchange fuzz-check paper plot store studies wire; do mkdir -p crates/$name/src && touch crates/$name/src/lib.rs; done \
     && for file in build/main src/main benches/load/main crates/engine/benches/jobs crates/engine/benches/parts crates/paper/src/main; do \
          echo 'fn main() {}' > "$file.rs"; done \
-    && cargo build --release --locked --bin meshwright
+    && cargo build --release --locked --features otlp --bin meshwright
 COPY . .
 # The empty sources were newer than these.
-RUN touch build/main.rs src/lib.rs src/main.rs crates/*/src/lib.rs && cargo build --release --locked --bin meshwright
+RUN touch build/main.rs src/lib.rs src/main.rs crates/*/src/lib.rs && cargo build --release --locked --features otlp --bin meshwright
 
 FROM ${RUN_IMAGE}
 # The certificates are for webhooks and for a PostgreSQL elsewhere.

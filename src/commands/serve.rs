@@ -6,12 +6,15 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use anyhow::Context;
-use tracing_subscriber::EnvFilter;
+use tracing_subscriber::filter::Targets;
+use tracing_subscriber::layer::SubscriberExt;
+use tracing_subscriber::util::SubscriberInitExt;
 
 use super::demo;
 use crate::config::{Config, with_variable};
 use crate::jobs::Clock;
 use crate::serve::{END, World, serve};
+#[cfg(feature = "otlp")]
 use crate::spans::Spans;
 use crate::webhooks::HookRules;
 
@@ -25,7 +28,7 @@ pub(crate) struct Serve {
     #[arg(long)]
     demo: bool,
     /// Collector of OpenTelemetry that takes a span of each request and each job, by OTLP over HTTP: http://localhost:4318 [default:
-    /// none].
+    /// none]. Needs a program that is built with the feature `otlp`, as the container image is.
     #[arg(long, value_parser = endpoint, value_name = "URL")]
     otlp_endpoint: Option<String>,
     /// Write the log as JSON, one object to a line.
@@ -47,28 +50,38 @@ impl Serve {
         ended.map(|()| ExitCode::SUCCESS)
     }
 
-    async fn until_signal(&self) -> anyhow::Result<()> {
-        // The demo speaks for itself; the log would interrupt it.
+    /// Starts the log on standard error: levels by target from `MESHWRIGHT_LOG` (`info,meshwright::http=debug`), else `info`.
+    fn log(&self) -> anyhow::Result<()> {
+        // The demo prints by itself; the log would interrupt it.
         let quiet = if self.demo { "warn" } else { "info" };
-        let filter =
-            EnvFilter::try_from_env("MESHWRIGHT_LOG").unwrap_or_else(|_| EnvFilter::new(quiet));
-        let log = tracing_subscriber::fmt()
-            .with_env_filter(filter)
+        let levels = std::env::var("MESHWRIGHT_LOG").unwrap_or_else(|_| quiet.to_owned());
+        let levels: Targets = levels
+            .parse()
+            .with_context(|| format!("MESHWRIGHT_LOG is no list of levels: {levels:?}"))?;
+        let lines = tracing_subscriber::fmt::layer()
             .with_writer(std::io::stderr)
             .with_ansi(std::io::stderr().is_terminal());
+        let registry = tracing_subscriber::registry().with(levels);
         if self.log_json {
-            log.json().init();
+            registry.with(lines.json()).init();
         } else {
-            log.init();
+            registry.with(lines).init();
         }
+        Ok(())
+    }
 
+    async fn until_signal(&self) -> anyhow::Result<()> {
+        self.log()?;
         let world = World {
             compute: Arc::new(meshwright_wire::solve),
             clock: Clock::system(),
             hooks: HookRules::to_named(self.config.admission.webhook_hosts.clone()),
         };
-        let spans = self.otlp_endpoint.as_deref().map(Spans::start);
-        let spans = spans.transpose().context("spans cannot be exported")?;
+        #[cfg(feature = "otlp")]
+        let spans = {
+            let spans = self.otlp_endpoint.as_deref().map(Spans::start);
+            spans.transpose().context("spans cannot be exported")?
+        };
         let service = serve(&self.config, world).await?;
         match service.address() {
             Some(address) => {
@@ -84,6 +97,7 @@ impl Serve {
         // A second signal does not wait for the end of the first.
         let end = async {
             service.shut_down().await;
+            #[cfg(feature = "otlp")]
             if let Some(spans) = spans {
                 spans.end().await;
             }
@@ -97,6 +111,12 @@ impl Serve {
 
 /// Checks the address of a collector, below which /v1/traces is.
 fn endpoint(text: &str) -> Result<String, String> {
+    if cfg!(not(feature = "otlp")) {
+        return Err(
+            "this program is built without the export of spans; build it with --features otlp"
+                .to_owned(),
+        );
+    }
     let uri: axum::http::Uri = text.parse().map_err(|error| format!("{error}"))?;
     let known_scheme = matches!(uri.scheme_str(), Some("http" | "https"));
     if !known_scheme || uri.host().is_none() || uri.query().is_some() {

@@ -9,12 +9,10 @@ use axum::http::header::{
 };
 use axum::middleware::Next;
 use axum::response::Response;
-use opentelemetry::KeyValue;
-use opentelemetry::trace::SpanId;
 use uuid::Uuid;
 
 use crate::jobs::Clock;
-use crate::spans::{self, Span};
+use crate::spans::{self, Place, Span, Value};
 
 /// What is no page runs nothing. The page runs its own files and talks to its own service; the documentation brings scripts of its own.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
@@ -138,27 +136,30 @@ pub(super) async fn tell(request: Request, next: Next) -> Response {
     let id = request.headers().get(REQUEST_ID);
     let id = id.and_then(|id| id.to_str().ok()).unwrap_or_default();
     let path: String = request.uri().path().chars().take(LONGEST_PATH).collect();
-    let mut attributes = vec![
-        KeyValue::new("http.request.method", method),
-        KeyValue::new("http.route", route.clone()),
-        KeyValue::new("url.path", path),
-        KeyValue::new("meshwright.request.id", id.to_owned()),
+    let mut attributes: Vec<(_, Value)> = vec![
+        ("http.request.method", method.into()),
+        ("http.route", route.clone().into()),
+        ("url.path", path.into()),
+        ("meshwright.request.id", id.to_owned().into()),
     ];
     let mut response = next.run(request).await;
     let status = response.status();
     let status_code = i64::from(status.as_u16());
-    attributes.push(KeyValue::new("http.response.status_code", status_code));
+    attributes.push(("http.response.status_code", status_code.into()));
     let made = response.extensions_mut().remove::<Made>();
     let made = made.into_iter().flat_map(|Made(jobs)| jobs);
     spans::export(|| Span {
-        place: spans::place(bytes(&trace.id), bytes(&trace.span)),
-        parent: SpanId::from_bytes(bytes(&trace.parent)),
+        place: Place {
+            trace: bytes(&trace.id),
+            span: bytes(&trace.span),
+        },
+        parent: (!trace.parent.is_empty()).then(|| bytes(&trace.parent)),
         is_entry: true,
         name: format!("{method} {route}").into(),
         begin,
         end: SystemTime::now(),
         attributes,
-        causes: made.map(|job| spans::place_of_job(job, None)).collect(),
+        causes: made.map(|job| Place::of_job(job, None)).collect(),
         failed: status.is_server_error(),
     });
     response

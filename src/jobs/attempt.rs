@@ -15,8 +15,6 @@ use meshwright_store::{
 };
 use meshwright_studies::Summary;
 use meshwright_wire::{Code, Problem, SOLVER_VERSION, Submission, memory_of};
-use opentelemetry::KeyValue;
-use opentelemetry::trace::SpanId;
 use tokio::sync::mpsc;
 use tokio::time::{Instant, MissedTickBehavior, interval_at, sleep};
 use tracing::{error, info, warn};
@@ -26,7 +24,7 @@ use super::error::damage_problem;
 use super::live::Entered;
 use super::worker_context::{Threads, WorkerContext};
 use crate::compute::{Solve, message_of};
-use crate::spans::{self, Span};
+use crate::spans::{self, Place, Span};
 
 /// What a computation leaves: the results document or its name, and what the tables of studies show of it.
 struct Solved {
@@ -464,21 +462,19 @@ fn tell_end(job: &Job, end: End, outcome: &Outcome) {
 /// The job from its submission to its end, and within it the attempt that brought it there.
 fn export_spans(job: &Job, end: End, status: &'static str, code: &str) {
     let span = |attempt: Option<i64>, name: &'static str, begin: Timestamp| Span {
-        place: spans::place_of_job(job.id, attempt),
-        parent: attempt.map_or(SpanId::INVALID, |_| {
-            spans::place_of_job(job.id, None).span_id()
-        }),
+        place: Place::of_job(job.id, attempt),
+        parent: attempt.map(|_| Place::of_job(job.id, None).span),
         is_entry: false,
         name: name.into(),
         begin: begin.into(),
         end: end.at.into(),
         attributes: vec![
-            KeyValue::new("meshwright.job.id", job.id.to_string()),
-            KeyValue::new("meshwright.job.client", job.client.clone()),
-            KeyValue::new("meshwright.job.method", job.method.clone()),
-            KeyValue::new("meshwright.job.attempt", job.attempt),
-            KeyValue::new("meshwright.job.status", status),
-            KeyValue::new("meshwright.job.code", code.to_owned()),
+            ("meshwright.job.id", job.id.to_string().into()),
+            ("meshwright.job.client", job.client.clone().into()),
+            ("meshwright.job.method", job.method.clone().into()),
+            ("meshwright.job.attempt", job.attempt.into()),
+            ("meshwright.job.status", status.into()),
+            ("meshwright.job.code", code.to_owned().into()),
         ],
         causes: Vec::new(),
         failed: status != "successful",

@@ -55,6 +55,7 @@ mod memory;
 mod one_process;
 mod operators;
 mod readers;
+#[cfg(feature = "otlp")]
 mod spans;
 mod tokens;
 mod upgrade;

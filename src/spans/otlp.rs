@@ -1,11 +1,10 @@
-//! Spans for a collector of OpenTelemetry (OTLP): each request, and each job from its submission to its end.
+//! Export of spans to a collector of OpenTelemetry (OTLP over HTTP).
 //!
-//! A span is exported when it has ended and dropped when the collector does not take it: it waits in a bounded queue, and nobody waits for that.
-//! The trace of a job has the job's id, so that a request that submits one can point to it, whichever process computes it and when.
+//! A span is exported when it has ended, from a bounded queue: no request and no job waits for the collector. Spans that the collector does not take are
+//! dropped.
 
-use std::borrow::Cow;
 use std::sync::OnceLock;
-use std::time::{Duration, SystemTime};
+use std::time::Duration;
 
 use opentelemetry::trace::{
     Link, SpanContext, SpanId, SpanKind, Status, TraceFlags, TraceId, TraceState,
@@ -19,8 +18,8 @@ use tokio::task::JoinHandle;
 use tokio::time::{sleep, timeout};
 use tokio_util::sync::CancellationToken;
 use tracing::{info, warn};
-use uuid::Uuid;
 
+use super::{Place, Span, Value};
 use crate::client::bounded;
 
 /// So many spans wait to be taken; further ones are dropped.
@@ -117,28 +116,13 @@ async fn export_all(
     }
 }
 
-/// Whether there is a collector.
-pub(crate) fn are_exported() -> bool {
+/// Whether the export has begun.
+pub(super) fn is_started() -> bool {
     QUEUE.get().is_some()
 }
 
-/// Something that took some time.
-pub(crate) struct Span {
-    pub(crate) place: SpanContext,
-    pub(crate) parent: SpanId,
-    /// Whether its parent is another program's.
-    pub(crate) is_entry: bool,
-    pub(crate) name: Cow<'static, str>,
-    pub(crate) begin: SystemTime,
-    pub(crate) end: SystemTime,
-    pub(crate) attributes: Vec<KeyValue>,
-    /// What it has caused and does not wait for.
-    pub(crate) causes: Vec<SpanContext>,
-    pub(crate) failed: bool,
-}
-
-/// Exports a span, if there is a collector. One that finds no place is dropped.
-pub(crate) fn export(span: impl FnOnce() -> Span) {
+/// Puts a span into the queue, if the export has begun. A span that finds no place is dropped and counted.
+pub(super) fn enqueue(span: impl FnOnce() -> Span) {
     let Some(queue) = QUEUE.get() else {
         return;
     };
@@ -146,70 +130,50 @@ pub(crate) fn export(span: impl FnOnce() -> Span) {
         metrics::counter!("meshwright_spans_forgotten_total").increment(1);
         return;
     };
-    place.send(span().into_data());
+    place.send(data(span()));
 }
 
-impl Span {
-    fn into_data(self) -> SpanData {
-        let mut links = SpanLinks::default();
-        let link = |place: SpanContext| Link::new(place, Vec::new(), 0);
-        links.links = self.causes.into_iter().map(link).collect();
-        SpanData {
-            span_context: self.place,
-            parent_span_id: self.parent,
-            parent_span_is_remote: self.is_entry && self.parent != SpanId::INVALID,
-            span_kind: if self.is_entry {
-                SpanKind::Server
-            } else {
-                SpanKind::Internal
-            },
-            name: self.name,
-            start_time: self.begin,
-            end_time: self.end.max(self.begin),
-            attributes: self.attributes,
-            dropped_attributes_count: 0,
-            events: Default::default(),
-            links,
-            status: if self.failed {
-                Status::error("")
-            } else {
-                Status::Unset
-            },
-            instrumentation_scope: InstrumentationScope::builder("meshwright").build(),
-        }
+fn data(span: Span) -> SpanData {
+    let mut links = SpanLinks::default();
+    let link = |place: Place| Link::new(context(place), Vec::new(), 0);
+    links.links = span.causes.into_iter().map(link).collect();
+    let parent = span.parent.map_or(SpanId::INVALID, SpanId::from_bytes);
+    let attribute = |(key, value)| match value {
+        Value::Text(text) => KeyValue::new(key, text),
+        Value::Number(number) => KeyValue::new(key, number),
+    };
+    SpanData {
+        span_context: context(span.place),
+        parent_span_id: parent,
+        parent_span_is_remote: span.is_entry && parent != SpanId::INVALID,
+        span_kind: if span.is_entry {
+            SpanKind::Server
+        } else {
+            SpanKind::Internal
+        },
+        name: span.name,
+        start_time: span.begin,
+        end_time: span.end.max(span.begin),
+        attributes: span.attributes.into_iter().map(attribute).collect(),
+        dropped_attributes_count: 0,
+        events: Default::default(),
+        links,
+        status: if span.failed {
+            Status::error("")
+        } else {
+            Status::Unset
+        },
+        instrumentation_scope: InstrumentationScope::builder("meshwright").build(),
     }
 }
 
 /// The place of a span that is exported.
-pub(crate) fn place(trace: [u8; 16], span: [u8; 8]) -> SpanContext {
+fn context(place: Place) -> SpanContext {
     SpanContext::new(
-        TraceId::from_bytes(trace),
-        SpanId::from_bytes(span),
+        TraceId::from_bytes(place.trace),
+        SpanId::from_bytes(place.span),
         TraceFlags::SAMPLED,
         false,
         TraceState::NONE,
     )
-}
-
-/// The place of a job, from its submission to its end, or of one attempt at it (from 1 on), which is a part of it.
-pub(crate) fn place_of_job(id: Uuid, attempt: Option<i64>) -> SpanContext {
-    let (_, low) = id.as_u64_pair();
-    let span = low.wrapping_add_signed(attempt.unwrap_or(0));
-    place(id.into_bytes(), span.to_be_bytes())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_trace_of_a_job_has_its_id_and_its_attempts_are_other_spans() {
-        let id = Uuid::from_u128(0x0123_4567_89ab_7def_8123_4567_89ab_cdef);
-        let job = place_of_job(id, None);
-        assert_eq!(job.trace_id().to_string(), id.simple().to_string());
-        assert_eq!(job.span_id().to_string(), "8123456789abcdef");
-        let attempt = place_of_job(id, Some(1));
-        assert_eq!(attempt.trace_id(), job.trace_id());
-        assert_eq!(attempt.span_id().to_string(), "8123456789abcdf0");
-    }
 }
