@@ -1,4 +1,4 @@
-//! One contact of two gears, from their drawings to the transmission error: `cargo run --release -p meshwright-engine --example contact`.
+//! One contact of two gears, from their drawings to the transmission error: `cargo run -p meshwright-engine --example contact`.
 //!
 //! Two gears with 50 teeth each, eight holes in the second, under 115 N m. Everything is in SI units.
 

@@ -1,4 +1,4 @@
-//! Draws a grid: `cargo run --release -p meshwright-engine --example grid_svg -- tooth 50 45.5 > tooth.svg`, or
+//! Draws a grid: `cargo run -p meshwright-engine --example grid_svg -- tooth 50 45.5 > tooth.svg`, or
 //! `-- blank BORE INTERFACE TEETH [COUNT CIRCLE RADIUS]`, with lengths in millimeters.
 
 use meshwright_engine::gear::{

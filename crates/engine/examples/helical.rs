@@ -1,4 +1,4 @@
-//! A helical pair along its faces, from its drawings to the load on its lines of contact: `cargo run --release -p meshwright-engine --example helical`.
+//! A helical pair along its faces, from its drawings to the load on its lines of contact: `cargo run -p meshwright-engine --example helical`.
 //!
 //! The plane is in `contact.rs`. Here the gears have a helix of 20°, the driving one is crowned, and the driven one is a rim on a thin web that
 //! stands 3 mm beside its middle. Everything is in SI units.

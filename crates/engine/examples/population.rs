@@ -1,5 +1,5 @@
 //! A population: pairs made to one drawing, each tooth with its own errors.
-//! `cargo run --release -p meshwright-engine --example population -- 1000 10 6`: so many pairs, positions a mesh period, and the accuracy class
+//! `cargo run -p meshwright-engine --example population -- 1000 10 6`: so many pairs, positions a mesh period, and the accuracy class
 //! (ISO 1328-1:2013) of both gears.
 //!
 //! Gears with 50 teeth, ten holes in the driven one, under 115 N m over a revolution of 50 mesh periods.
