@@ -6,6 +6,7 @@ mod client;
 mod machine;
 #[cfg(test)]
 mod testing;
+pub mod times;
 
 pub mod spans;
 

@@ -20,14 +20,15 @@ use crate::http::{
     Access, App, BodyMemory, Edge, KeysRule, Outlines, Readings, router, router_of_metrics,
 };
 use crate::jobs::{Clock, DatabaseAddress, Jobs, Keeper, Migrate, OpenError, Store, Workers};
+use crate::times::Times;
 use crate::tokens::Tokens;
 use crate::webhooks::{Deliveries, HookRules, Webhooks};
 
-/// At a shutdown, running work and open answers get so long to end.
-const GRACE: Duration = Duration::from_secs(8);
-
-/// A shutdown takes no longer than this. A container gives ten seconds for all of it.
+/// Longest time of a shutdown with [`Times::USUAL`]. A container gives ten seconds for all of it.
 pub const END: Duration = Duration::from_secs(9);
+
+/// Time that the database has to close at the end.
+const CLOSING: Duration = Duration::from_secs(1);
 
 /// How a submission is computed with the substructures that all computations share, as by
 /// [`wire::solve`](fn@meshwright_wire::solve).
@@ -42,6 +43,8 @@ pub struct World {
     pub clock: Clock,
     /// Where messages may be sent.
     pub hooks: HookRules,
+    /// Its timeouts.
+    pub times: Times,
 }
 
 /// A service that runs.
@@ -56,6 +59,7 @@ pub struct Service {
     deliveries: Option<Deliveries>,
     store: Store,
     lock: Option<DatabaseLock>,
+    times: Times,
 }
 
 /// The database cannot be used.
@@ -140,7 +144,7 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
     let (mut keeper, mut deliveries) = (None, None);
     if config.role.answers() {
         keeper = Some(Keeper::start(jobs.clone(), config.keep()));
-        let started = Deliveries::start(webhooks.clone());
+        let started = Deliveries::start(webhooks.clone(), world.times.webhook);
         deliveries = Some(started.context("webhooks cannot be sent")?);
     }
 
@@ -152,7 +156,7 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
     let keys_are_off = config.admission.keys == Some(KeysRule::None);
     let tokens = match config.oidc.rules().filter(|_| config.role.answers()) {
         Some(rules) => {
-            let tokens = Tokens::start(rules, jobs.clock().clone());
+            let tokens = Tokens::start(rules, jobs.clock().clone(), world.times.provider);
             Some(tokens.context("the identity provider cannot be asked")?)
         }
         None => None,
@@ -187,6 +191,7 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
         access: Arc::new(access),
         edge: Arc::new(edge),
         readings: Arc::new(Readings::default()),
+        times: world.times,
         outlines: Outlines::default(),
         bodies: BodyMemory::of(config.memory().reading << 20, config.memory().answers << 20),
     };
@@ -213,6 +218,7 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
         deliveries,
         store,
         lock,
+        times: world.times,
     })
 }
 
@@ -275,11 +281,11 @@ impl Service {
             }
         };
         let ended = async |server: Option<Server>| match server {
-            Some(server) => server.ended(GRACE).await,
+            Some(server) => server.ended(self.times.shutdown).await,
             None => true,
         };
         let (workers, answers, numbers) = tokio::join!(
-            tokio::time::timeout(GRACE, work),
+            tokio::time::timeout(self.times.shutdown, work),
             ended(self.server),
             ended(self.metrics_server)
         );
@@ -294,7 +300,7 @@ impl Service {
         if let Some(lock) = &self.lock {
             lock.end_in_order();
         }
-        if tokio::time::timeout(END - GRACE, self.store.close())
+        if tokio::time::timeout(CLOSING, self.store.close())
             .await
             .is_err()
         {

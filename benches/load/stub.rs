@@ -9,6 +9,7 @@ use clap::Parser;
 use meshwright::config::Config;
 use meshwright::jobs::Clock;
 use meshwright::serve::{Compute, World, serve};
+use meshwright::times::Times;
 use meshwright::webhooks::HookRules;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
@@ -35,7 +36,7 @@ pub(crate) fn run(arguments: Stub) -> anyhow::Result<()> {
         }),
     };
     tracing_subscriber::fmt()
-        .with_env_filter("info")
+        .with_max_level(tracing::Level::INFO)
         .with_writer(std::io::stderr)
         .with_ansi(false)
         .init();
@@ -44,6 +45,7 @@ pub(crate) fn run(arguments: Stub) -> anyhow::Result<()> {
             compute,
             clock: Clock::system(),
             hooks: HookRules::to_named(Vec::new()),
+            times: Times::USUAL,
         };
         let service = serve(&arguments.config, world).await?;
         println!(

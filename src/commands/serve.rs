@@ -16,6 +16,7 @@ use crate::jobs::Clock;
 use crate::serve::{END, World, serve};
 #[cfg(feature = "otlp")]
 use crate::spans::Spans;
+use crate::times::Times;
 use crate::webhooks::HookRules;
 
 /// Serve jobs over HTTP.
@@ -76,6 +77,7 @@ impl Serve {
             compute: Arc::new(meshwright_wire::solve),
             clock: Clock::system(),
             hooks: HookRules::to_named(self.config.admission.webhook_hosts.clone()),
+            times: Times::USUAL,
         };
         #[cfg(feature = "otlp")]
         let spans = {

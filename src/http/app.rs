@@ -12,6 +12,7 @@ use super::readings::Readings;
 use super::studies::Outlines;
 use crate::compute::Previews;
 use crate::jobs::Jobs;
+use crate::times::Times;
 use crate::tokens::Tokens;
 use crate::webhooks::Webhooks;
 
@@ -42,4 +43,6 @@ pub struct App {
     pub outlines: Outlines,
     /// What the last look at the database said.
     pub readings: Arc<Readings>,
+    /// Timeouts of requests.
+    pub times: Times,
 }

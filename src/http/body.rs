@@ -28,9 +28,6 @@ use super::problem::Refusal;
 /// So many times the limit is read and thrown away, because a client that is still sending does not see the answer.
 const DRAINED: usize = 64;
 
-/// The body is here within this time, from when there is memory for it.
-const PATIENCE: Duration = Duration::from_secs(30);
-
 /// The bytes of a request's JSON document, so many MiB at most. The largest submission, with every table full, has a few hundred thousand bytes.
 /// And the memory that it and what is made of it take: a document does not come in, and is not read, before there is some, and who
 /// has many read shares it with the others.
@@ -100,8 +97,8 @@ async fn taken(
     let length = length.map_or(limit, |length| length.min(limit as u64) as usize);
     let client = client_of(&request);
     let bytes = app.bodies.for_bytes(&client, length).await?;
-    let body = timeout(PATIENCE, read(request.into_body(), limit, length)).await;
-    let body = body.map_err(|_| late())??;
+    let body = timeout(app.times.body, read(request.into_body(), limit, length)).await;
+    let body = body.map_err(|_| late(app.times.body))??;
     media_type?;
     let made = app.bodies.to_read(&client, &body).await?;
     Ok((body, [bytes, made]))
@@ -227,10 +224,10 @@ fn too_long(limit: usize) -> Problem {
     )
 }
 
-fn late() -> Problem {
+fn late(limit: Duration) -> Problem {
     Problem::new(
         Code::RequestTimeout,
-        format!("The body was not here within {} s.", PATIENCE.as_secs()),
+        format!("The body was not here within {} s.", limit.as_secs_f64()),
     )
 }
 

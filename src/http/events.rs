@@ -21,9 +21,6 @@ use super::resource;
 use super::view::JobView;
 use crate::jobs::{Job, News, Progress, Resource as _, Status};
 
-/// While nothing happens, it is looked so often whether who watches may still do so.
-const LOOK_AT_KEYS: Duration = Duration::from_secs(1);
-
 /// Progress is told so often at most.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
 
@@ -146,7 +143,7 @@ async fn next(app: &App, watch: &mut impl Watching, pass: &Pass) -> Option<Named
                 let event = event?;
                 return pass.holds(app).await.then_some(event);
             }
-            () = tokio::time::sleep(LOOK_AT_KEYS) => {
+            () = tokio::time::sleep(app.times.look_at_keys) => {
                 if !pass.holds(app).await {
                     return None;
                 }

@@ -33,9 +33,6 @@ use super::{
     studies, submit, tables, web, webhooks,
 };
 
-/// A request has its answer's head within this time. Longer than the longest wait that a client may ask for.
-const REQUEST_TIMEOUT: Duration = Duration::from_secs(90);
-
 /// The service.
 pub fn router(app: App) -> Router {
     let edge = Arc::clone(&app.edge);
@@ -71,7 +68,7 @@ pub fn router(app: App) -> Router {
         .layer(from_fn_with_state(access, access::check_host))
         .layer(TimeoutLayer::with_status_code(
             StatusCode::SERVICE_UNAVAILABLE,
-            REQUEST_TIMEOUT,
+            app.times.request,
         ))
         .layer(CatchPanicLayer::custom(problem::of_panic));
     router
@@ -97,7 +94,7 @@ pub fn router_of_metrics(app: App) -> Router {
         ))
         .layer(TimeoutLayer::with_status_code(
             StatusCode::SERVICE_UNAVAILABLE,
-            REQUEST_TIMEOUT,
+            app.times.request,
         ))
         .layer(CatchPanicLayer::custom(problem::of_panic));
     Router::new()

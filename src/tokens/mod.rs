@@ -9,6 +9,7 @@ mod ring;
 mod rules;
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use jiff::{SignedDuration, Timestamp};
 use jsonwebtoken::errors::ErrorKind;
@@ -79,14 +80,22 @@ pub fn has_form(text: &str) -> bool {
 
 impl Tokens {
     /// Tokens by these rules. The provider is asked for its keys meanwhile; a service without them still serves who has a key of its
-    /// own.
+    /// own. Each document of the provider has `provider_time` to come.
     ///
     /// # Errors
     ///
     /// When there is no encryption to be had.
-    pub fn start(rules: TokenRules, clock: Clock) -> Result<Self, reqwest::Error> {
+    pub fn start(
+        rules: TokenRules,
+        clock: Clock,
+        provider_time: Duration,
+    ) -> Result<Self, reqwest::Error> {
         ring::install();
-        let provider = Arc::new(Provider::new(rules.issuer.clone(), clock.clone())?);
+        let provider = Arc::new(Provider::new(
+            rules.issuer.clone(),
+            clock.clone(),
+            provider_time,
+        )?);
         provider.fetch_first();
         Ok(Self {
             rules: Arc::new(rules),

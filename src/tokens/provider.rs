@@ -19,8 +19,7 @@ use super::rules::IssuerUrl;
 use crate::client::{bounded, unreachable};
 use crate::jobs::Clock;
 
-/// Each of the provider's two documents comes in so much time, and has so many bytes at most.
-const TIME_OUT: Duration = Duration::from_secs(5);
+/// Bytes of each of the provider's two documents, at most.
 const MOST_BYTES: usize = 256 << 10;
 
 /// Between two fetches lies at least so much time, whatever keys tokens name.
@@ -38,6 +37,8 @@ const KEPT: SignedDuration = SignedDuration::from_hours(24);
 /// The keys of a provider.
 pub(super) struct Provider {
     issuer: IssuerUrl,
+    /// Time for one of its two documents.
+    time: Duration,
     client: Client,
     clock: Clock,
     state: Mutex<State>,
@@ -83,10 +84,15 @@ pub(super) enum Found {
 }
 
 impl Provider {
-    pub(super) fn new(issuer: IssuerUrl, clock: Clock) -> Result<Self, reqwest::Error> {
+    pub(super) fn new(
+        issuer: IssuerUrl,
+        clock: Clock,
+        time: Duration,
+    ) -> Result<Self, reqwest::Error> {
         Ok(Self {
             issuer,
-            client: bounded(TIME_OUT).build()?,
+            time,
+            client: bounded(time).build()?,
             clock,
             state: Mutex::default(),
         })
@@ -217,7 +223,7 @@ impl Provider {
 
     async fn document<T: DeserializeOwned>(&self, url: &str) -> Result<T, String> {
         let failed = |error: reqwest::Error| match error.is_timeout() {
-            true => format!("no answer within {} s", TIME_OUT.as_secs()),
+            true => format!("no answer within {} s", self.time.as_secs_f64()),
             false => unreachable(&error.without_url()),
         };
         let request = self.client.get(url).header(ACCEPT, "application/json");

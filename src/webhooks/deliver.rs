@@ -46,17 +46,17 @@ const QUIET: Duration = Duration::from_secs(30);
 pub struct Deliveries(JoinHandle<()>);
 
 impl Deliveries {
-    /// Starts to deliver, until the jobs' stop comes. Without hosts to send to, nothing is done.
+    /// Starts to deliver, until the jobs' stop comes. Without hosts to send to, nothing is done. One attempt has `time`.
     ///
     /// # Errors
     ///
     /// When there is no encryption to be had.
-    pub fn start(webhooks: Webhooks) -> Result<Self, rustls::Error> {
+    pub fn start(webhooks: Webhooks, time: Duration) -> Result<Self, rustls::Error> {
         if webhooks.rules.allowed.is_empty() {
             return Ok(Self(tokio::spawn(async {})));
         }
         let courier = Courier {
-            sender: Sender::to(&webhooks.rules.reachable)?,
+            sender: Sender::to(&webhooks.rules.reachable, time)?,
             webhooks,
         };
         Ok(Self(tokio::spawn(Arc::new(courier).work())))

@@ -25,22 +25,23 @@ use tower::Service;
 use super::addresses::Reachable;
 use crate::client::{AGENT, install_encryption, unreachable};
 
-/// One attempt takes so long at most.
-const TIME_OUT: Duration = Duration::from_secs(10);
-
 /// A receiver may send so many informational answers (1xx) before its answer.
 const MOST_INFORMATIONAL: usize = 8;
 
 /// The client that sends messages. It follows no redirect and uses no proxy.
-pub(super) struct Sender(Client<HttpsConnector<HttpConnector<ReachableOnly>>, Body>);
+pub(super) struct Sender {
+    client: Client<HttpsConnector<HttpConnector<ReachableOnly>>, Body>,
+    /// Time for one attempt.
+    time: Duration,
+}
 
 impl Sender {
-    /// A client that connects to these hosts at these addresses.
+    /// A client that connects to these hosts at these addresses, and gives each attempt `time`.
     ///
     /// # Errors
     ///
     /// When there is no encryption to be had.
-    pub(super) fn to(reachable: &Reachable) -> Result<Self, rustls::Error> {
+    pub(super) fn to(reachable: &Reachable, time: Duration) -> Result<Self, rustls::Error> {
         install_encryption();
         let mut tcp = HttpConnector::new_with_resolver(ReachableOnly(Arc::clone(reachable)));
         tcp.enforce_http(false);
@@ -49,7 +50,10 @@ impl Sender {
             .https_or_http()
             .enable_http1()
             .wrap_connector(tcp);
-        Ok(Self(Client::builder(TokioExecutor::new()).build(connector)))
+        Ok(Self {
+            client: Client::builder(TokioExecutor::new()).build(connector),
+            time,
+        })
     }
 
     /// Sends a request.
@@ -70,14 +74,14 @@ impl Sender {
         let answer = async {
             tokio::select! {
                 () = enough.cancelled() => Err(format!("it sent more than {MOST_INFORMATIONAL} informational answers")),
-                answer = self.0.request(request) => match answer {
+                answer = self.client.request(request) => match answer {
                     Ok(answer) => Ok(answer.status()),
                     Err(error) => Err(unreachable(&error)),
                 },
             }
         };
-        let answer = timeout(TIME_OUT, answer).await;
-        answer.unwrap_or_else(|_| Err(format!("no answer within {} s", TIME_OUT.as_secs())))
+        let answer = timeout(self.time, answer).await;
+        answer.unwrap_or_else(|_| Err(format!("no answer within {} s", self.time.as_secs_f64())))
     }
 }
 
@@ -114,7 +118,6 @@ impl Service<Name> for ReachableOnly {
 mod tests {
     use tokio::io::{AsyncReadExt, AsyncWriteExt};
     use tokio::net::TcpListener;
-    use tokio::time::Instant;
 
     use super::*;
 
@@ -131,7 +134,7 @@ mod tests {
             }
         });
         let reachable: Reachable = Arc::new(|_, _| true);
-        let sender = Sender::to(&reachable).unwrap();
+        let sender = Sender::to(&reachable, Duration::from_secs(600)).unwrap();
         let request = Request::post(format!("http://{address}/hook"));
         sender.send(request.body(Body::from("{}")).unwrap()).await
     }
@@ -139,10 +142,9 @@ mod tests {
     #[tokio::test]
     async fn a_receiver_that_sends_informational_answers_for_ever_is_given_up_at_once() {
         const EARLY: &str = "HTTP/1.1 103 Early Hints\r\nLink: </a>\r\n\r\n";
-        let start = Instant::now();
+        // The attempt itself may take ten minutes.
         let error = outcome_of("", EARLY).await.unwrap_err();
         assert!(error.contains("informational"), "{error}");
-        assert!(start.elapsed() < TIME_OUT / 2);
         let answer = "HTTP/1.1 103 Early Hints\r\n\r\nHTTP/1.1 204 No Content\r\n\r\n";
         assert_eq!(outcome_of(answer, "").await, Ok(StatusCode::NO_CONTENT));
     }

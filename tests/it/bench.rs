@@ -7,6 +7,7 @@ use meshwright::compute::Solve;
 use meshwright::config::Config;
 use meshwright::jobs::{Clock, DatabaseAddress};
 use meshwright::serve::{Compute, Service, World, serve};
+use meshwright::times::Times;
 use meshwright::webhooks::HookRules;
 use meshwright_engine::run::Run;
 use meshwright_wire::{Code, Problem, Results, Submission};
@@ -17,8 +18,22 @@ use tokio::sync::mpsc;
 
 use crate::stores;
 
-/// Nothing here takes long; what does not come in this time does not come.
-pub(crate) const PATIENCE: Duration = Duration::from_secs(20);
+/// Time after which an answer is missing. No verdict depends on how fast an answer comes before that.
+pub(crate) const PATIENCE: Duration = Duration::from_secs(60);
+
+/// Looks until `look` finds something, and panics after [`PATIENCE`] with what it saw last.
+pub(crate) async fn eventually<Found, Seen: std::fmt::Debug>(
+    mut look: impl AsyncFnMut() -> Result<Found, Seen>,
+) -> Found {
+    let start = std::time::Instant::now();
+    loop {
+        match look().await {
+            Ok(found) => return found,
+            Err(seen) => assert!(start.elapsed() < PATIENCE, "still {seen:?}"),
+        }
+        tokio::time::sleep(Duration::from_millis(20)).await;
+    }
+}
 
 /// Results as an engine might give them, as they are written.
 pub(crate) const RESULTS: &str = include_str!("results.json").trim_ascii_end();
@@ -49,9 +64,8 @@ pub(crate) fn config(database: &DatabaseAddress) -> Config {
         "--previews",
         "4",
         "--preview-time-limit-seconds",
-        "20",
+        "600",
     ];
-    let arguments = arguments.iter().chain(stores::arguments());
     <Arguments as clap::Parser>::parse_from(arguments).config
 }
 
@@ -61,6 +75,7 @@ pub(crate) struct Bench {
     compute: Compute,
     pub(crate) clock: Clock,
     pub(crate) hooks: HookRules,
+    pub(crate) times: Times,
     service: Option<Service>,
     pub(crate) base: String,
     pub(crate) client: Client,
@@ -125,6 +140,7 @@ impl Bench {
             compute,
             clock: Clock::system(),
             hooks,
+            times: Times::USUAL,
             service: None,
             base: String::new(),
             client,
@@ -156,6 +172,7 @@ impl Bench {
             compute: Arc::clone(&self.compute),
             clock: self.clock.clone(),
             hooks: self.hooks.clone(),
+            times: self.times,
         };
         serve(&config, world).await
     }

@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use meshwright::jobs::DatabaseAddress;
 use reqwest::Client;
@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{ConnectOptions, Connection};
 
-use crate::bench::{Asked, Bench, problem, submission};
+use crate::bench::{Asked, Bench, eventually, problem, submission};
 use crate::process::Process;
 
 /// A small file system, gone when it is dropped.
@@ -126,15 +126,13 @@ async fn a_full_disk_stops_nothing_for_longer_than_it_is_full() {
     );
 
     fs::remove_file(filler.unwrap()).unwrap();
-    let start = Instant::now();
-    while status(&client, format!("{}/health/ready", process.base)).await != 200 {
-        assert!(
-            start.elapsed() < Duration::from_secs(10),
-            "it stays unready"
-        );
-        tokio::time::sleep(Duration::from_millis(20)).await;
-    }
-    println!("ready {:?} after there is room again", start.elapsed());
+    eventually(
+        async || match status(&client, format!("{}/health/ready", process.base)).await {
+            200 => Ok(()),
+            other => Err(other),
+        },
+    )
+    .await;
     for id in &taken {
         let url = format!("{}/v1/jobs/{id}", process.base);
         let ended = client.get(url).header("prefer", "wait=20").answer().await;

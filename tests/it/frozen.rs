@@ -13,7 +13,7 @@ use crate::process::Process;
 use crate::server;
 
 /// Every request has an answer in this time, whatever the server does: one under way when it freezes takes 12 s.
-const ANSWERED: Duration = Duration::from_secs(20);
+const ANSWERED: Duration = Duration::from_secs(60);
 
 /// So soon it is refused what waits for the database, and so soon what may wait for a statement that is under way.
 const SOON: Duration = Duration::from_millis(5600);

@@ -61,7 +61,6 @@ impl Process {
         let mut child = program
             .args(["serve", "--listen", "127.0.0.1:0", "--database"])
             .arg(stores::address(database))
-            .args(stores::arguments())
             .args(arguments)
             .env("MESHWRIGHT_LOG", "warn")
             .stdout(Stdio::piped())

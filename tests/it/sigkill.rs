@@ -99,6 +99,7 @@ async fn a_study_killed_half_way_is_finished_by_the_next_process_with_every_desi
     let path = first.submit(&client, &study).await;
     let before = first.done(&client, &path, 20).await;
     first.kill();
+    stores::pass_a_lease(&database).await;
 
     let second = Process::start(&database);
     let after = second.get(&client, &path).await;
@@ -132,6 +133,7 @@ async fn a_thousand_decomposition_designs_straight_through_and_killed_half_way()
         if kill {
             process.done(&client, &path, 500).await;
             process.kill();
+            stores::pass_a_lease(&database).await;
             println!("killed after {:.2} s", start.elapsed().as_secs_f64());
             process = Process::start(&database);
             let study = process.get(&client, &path).await;

@@ -32,15 +32,6 @@ pub(crate) fn address(place: &DatabaseAddress) -> String {
     }
 }
 
-/// What a service is told beside its database, so that tests need not wait long for the leases of processes that died.
-pub(crate) fn arguments() -> &'static [&'static str] {
-    if on_postgres() {
-        &["--lease", "1s"]
-    } else {
-        &[]
-    }
-}
-
 /// The number that a query gives.
 pub(crate) async fn number(place: &DatabaseAddress, query: &'static str) -> i64 {
     match place {

@@ -170,11 +170,12 @@ async fn who_sends_slowly_keeps_no_other_client_waiting() {
             let request = client.post(format!("{}/v1/validate", process.base));
             let request = request.header("content-type", "application/json");
             let request = request.bearer_auth(&other).body(body.clone());
-            let start = Instant::now();
             assert_eq!(upload(request).await, 200);
-            let took = start.elapsed();
-            assert!(took < Duration::from_secs(1), "{took:?}");
         }
     }
-    drop(slow);
+    // The slow bodies are still awaited: nobody was answered because they were given up.
+    for stream in &slow {
+        let unread = stream.try_read(&mut [0]).unwrap_err();
+        assert_eq!(unread.kind(), std::io::ErrorKind::WouldBlock);
+    }
 }

@@ -2,7 +2,7 @@
 
 use std::net::IpAddr;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use jiff::{SignedDuration, Timestamp};
 use meshwright::jobs::Clock;
@@ -151,7 +151,10 @@ async fn what_is_answered_from_earlier_results_has_an_end_that_is_told_at_once()
 async fn however_many_clients_have_receivers_that_hang_another_one_is_told_at_once() {
     let hangs = silent_receiver().await;
     let (port, mut received) = receiver(&["200 OK"]).await;
-    let bench = bench_of(&[hangs, port], Clock::system()).await;
+    let mut bench = bench_of(&[hangs, port], Clock::system()).await;
+    bench.times.webhook = Duration::from_secs(3600);
+    bench.shut_down().await;
+    bench.start_again().await;
     let good = key_of(&bench, "good").await;
     let send = async |path: &str, document: Value, key: &str| {
         let request = bench.post(path, &document).bearer_auth(key);
@@ -171,15 +174,11 @@ async fn however_many_clients_have_receivers_that_hang_another_one_is_told_at_on
     let url = format!("http://localhost:{port}/");
     send("/v1/webhooks", json!({ "url": url }), &good).await;
     send("/v1/jobs", submission(99.0), &good).await;
-    let start = Instant::now();
-    let message = tokio::time::timeout(Duration::from_secs(8), received.recv());
+    // The other messages have an hour, so that this one comes beside them and not after them.
+    let message = tokio::time::timeout(PATIENCE, received.recv());
     assert!(
         message.await.is_ok(),
         "before any of the others is given up"
-    );
-    println!(
-        "beside 16 webhooks of each of five other clients that hang, and ten jobs of each: told after {:?}",
-        start.elapsed()
     );
 }
 

@@ -435,10 +435,8 @@ fn a_bomb_is_refused_before_it_is_expanded() {
     let mut document =
         axes(json!([{ "path": "/pair/driven/blank/bore_radius_mm", "values": values }]));
     document["base"]["output_torques_n_m"] = json!(torques);
-    let start = std::time::Instant::now();
+    // Expanded it would take minutes, and more memory than there is.
     refuses(&document, Code::TooLarge, &["/base"]);
-    // It takes a few milliseconds; expanded it would take minutes.
-    assert!(start.elapsed().as_secs() < 2);
 
     // As many torques as one submission may have values, changed away in each of ten thousand designs.
     document["base"]["output_torques_n_m"] = json!(vec![1.0; 19_900]);

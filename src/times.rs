@@ -1,0 +1,34 @@
+//! Timeouts of the service, in one place.
+
+use std::time::Duration;
+
+/// Timeouts of the service.
+///
+/// `meshwright serve` has [`Times::USUAL`]. A test that would wait for one of them shortens it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Times {
+    /// Time for one document of the identity provider.
+    pub provider: Duration,
+    /// Time for one attempt to send a message to a webhook.
+    pub webhook: Duration,
+    /// Time for the body of a request to arrive, from when there is memory for it.
+    pub body: Duration,
+    /// Time for a request until the head of its answer. Longer than the longest wait that a client may ask for.
+    pub request: Duration,
+    /// Time between two looks at the key of an open stream of events, which ends with its key.
+    pub look_at_keys: Duration,
+    /// Time that running work and open answers have to end at a shutdown. The database has one second more, see [`END`](crate::serve::END).
+    pub shutdown: Duration,
+}
+
+impl Times {
+    /// The timeouts of `meshwright serve`; docs/operations.md lists them.
+    pub const USUAL: Self = Self {
+        provider: Duration::from_secs(5),
+        webhook: Duration::from_secs(10),
+        body: Duration::from_secs(30),
+        request: Duration::from_secs(90),
+        look_at_keys: Duration::from_secs(1),
+        shutdown: Duration::from_secs(8),
+    };
+}
