@@ -64,7 +64,7 @@ pub(crate) fn config(database: &DatabaseAddress) -> Config {
         "--previews",
         "4",
         "--preview-time-limit-seconds",
-        "600",
+        "60",
     ];
     <Arguments as clap::Parser>::parse_from(arguments).config
 }

@@ -209,7 +209,7 @@ fn compute(document: &Value, library: &Library) -> Result<Option<Code>, String> 
 
 #[test]
 fn whatever_validates_has_results_or_a_problem_that_names_a_field() {
-    let count = std::env::var(COUNT).map_or(150, |count| count.parse().unwrap());
+    let count = std::env::var(COUNT).map_or(40, |count| count.parse().unwrap());
     let examples: Vec<Value> = meshwright_wire::examples()
         .iter()
         .filter(|example| example.valid)

@@ -155,6 +155,7 @@ async fn refusal(bench: &Bench, way: usize, submission: &Value) -> Option<String
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+#[ignore = "./test all"]
 async fn nothing_is_accepted_whose_estimate_is_above_the_limit_of_a_job() {
     try_at_the_limit(150).await;
 }

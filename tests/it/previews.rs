@@ -212,7 +212,7 @@ async fn a_preview_that_is_too_large_is_sent_to_the_jobs() {
     let limits: Value = bench.document("/v1/limits").await;
     assert_eq!(
         limits["previews"],
-        json!({ "positions": 199, "at_once": 4, "time_limit_seconds": 20 })
+        json!({ "positions": 199, "at_once": 4, "time_limit_seconds": 60 })
     );
     assert_eq!(limits["positions"], 20_000);
 }

@@ -134,6 +134,7 @@ fn numbers(list: &Value) -> Vec<f64> {
 }
 
 #[tokio::test]
+#[ignore = "./test all"]
 async fn a_run_up_comes_back_with_its_table_and_in_the_forms_of_other_programs() {
     let bench = Bench::real().await;
     let mut submission = example(&bench, "run-up").await;

@@ -95,6 +95,7 @@ fn raise_descriptors() {
 }
 
 #[tokio::test]
+#[ignore = "./test all"]
 async fn two_thousand_silent_and_two_hundred_slow_sockets_do_not_stop_a_service_of_256_descriptors()
 {
     raise_descriptors();

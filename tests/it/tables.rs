@@ -68,6 +68,7 @@ async fn a_table_of_a_job_that_has_not_ended_is_not_ready() {
 }
 
 #[tokio::test]
+#[ignore = "./test all"]
 async fn fields_come_as_a_grid_at_any_position_and_torque_of_the_job() {
     let bench = Bench::quick().await;
     let path = bench.submit(&submission(115.0)).await;
@@ -150,6 +151,7 @@ fn helical() -> Value {
 }
 
 #[tokio::test]
+#[ignore = "./test all"]
 async fn fields_of_a_pair_along_its_faces_are_volumes_and_its_edges_those_of_a_section() {
     let bench = Bench::real().await;
     let submission = helical();
@@ -182,6 +184,7 @@ async fn fields_of_a_pair_along_its_faces_are_volumes_and_its_edges_those_of_a_s
 }
 
 #[tokio::test]
+#[ignore = "./test all"]
 async fn the_load_along_a_face_adds_up_to_the_whole_in_the_mean_and_at_every_position() {
     let bench = Bench::real().await;
     for (each, rows) in [(false, 1), (true, 8)] {
@@ -227,6 +230,7 @@ async fn the_load_along_a_face_adds_up_to_the_whole_in_the_mean_and_at_every_pos
 }
 
 #[tokio::test]
+#[ignore = "./test all"]
 async fn the_contact_pattern_of_a_pair_along_its_faces_comes_as_numbers_and_as_a_picture() {
     let bench = Bench::quick().await;
     let path = bench.submit(&helical()).await;
@@ -299,6 +303,7 @@ async fn the_contact_pattern_of_a_pair_along_its_faces_comes_as_numbers_and_as_a
 }
 
 #[tokio::test]
+#[ignore = "./test all"]
 async fn a_contact_pattern_takes_as_long_as_its_job_however_short_previews_are() {
     let bench = Bench::start(
         |config| config.preview_time_limit_seconds = 0,

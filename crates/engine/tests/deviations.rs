@@ -110,6 +110,7 @@ fn an_eccentric_gear_pushes_its_mate_ahead_while_it_stands_out_along_the_line_of
 }
 
 #[test]
+#[ignore = "./test all"]
 fn a_lone_pitch_error_moves_nearly_rigid_gears_by_f_cos_alpha_over_its_engagement_and_nowhere_else()
 {
     let f = 8e-6;

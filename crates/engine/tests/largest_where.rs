@@ -133,6 +133,7 @@ fn the_largest_root_stress_stands_in_the_fillet_of_a_tooth_in_mesh() {
 }
 
 #[test]
+#[ignore = "./test all"]
 fn along_a_misaligned_face_the_largest_pressure_stands_where_the_axes_close() {
     // Rounded tips have a pressure, which sharp ones have not.
     let gear = || {

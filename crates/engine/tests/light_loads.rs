@@ -48,6 +48,7 @@ fn in_the_plane_delta_rises_with_the_load_from_where_rigid_flanks_touch() {
 }
 
 #[test]
+#[ignore = "./test all"]
 fn along_faces_delta_rises_with_the_load_from_where_rigid_flanks_touch() {
     let mut wrong = Vec::new();
     for departure in of_profiles().into_iter().chain(of_leads()) {

@@ -8,6 +8,7 @@ use meshwright_engine::contact::face::SLICES;
 use meshwright_engine::contact::positions::contacts;
 use meshwright_engine::gear::{GearData, GearPair, Member, SpurGear};
 use meshwright_engine::grid::GridLevel;
+use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 
 use super::cases;
@@ -146,7 +147,10 @@ fn compared(drawn: &Case, counts: [u32; 2], count: usize) -> [Apart; 2] {
     };
     let exact = dense(&at(counts[0]), count);
     counts.map(|positions| {
-        let curve = solve(&at(positions)).expect("a curve").curves.remove(0);
+        let curve = solve(&at(positions), &Library::default())
+            .expect("a curve")
+            .curves
+            .remove(0);
         apart(&curve, &exact)
     })
 }
@@ -259,7 +263,10 @@ fn the_peak_of_the_standard_pair_is_found_between_ten_and_between_forty_position
         let mut case = case(&cases::standard_pair(true), &[115.0]);
         case.resolution.positions_per_mesh_period = positions;
         case.resolution.grid = GridLevel::Standard;
-        let curve = solve(&case).expect("a curve").curves.remove(0);
+        let curve = solve(&case, &Library::default())
+            .expect("a curve")
+            .curves
+            .remove(0);
         let told = curve.transmission_error_statistics;
         let spectrum = curve.spectrum.expect("a whole period");
         for (found, right) in [

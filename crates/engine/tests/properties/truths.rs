@@ -25,8 +25,8 @@ pub(crate) struct Truth {
     pub(crate) name: &'static str,
     /// What its figure may be at most.
     pub(crate) bound: f64,
-    /// By how much the pair departs from it; `None` where it says nothing of this pair.
-    pub(crate) figure: fn(&DrawnPair) -> Result<Option<f64>, String>,
+    /// By how much the pair departs from it; `None` where it says nothing of this pair. Parts of gears come from the library.
+    pub(crate) figure: fn(&DrawnPair, &Library) -> Result<Option<f64>, String>,
 }
 
 pub(crate) const TRUTHS: &[Truth] = &[
@@ -109,19 +109,19 @@ pub(crate) fn case(pair: &GearPair, output_torques: &[f64]) -> Case {
     case
 }
 
-pub(crate) fn solve(case: &Case) -> Result<Analysis, String> {
-    analyze(case, &Library::default(), &Run::unattended()).map_err(|error| {
+pub(crate) fn solve(case: &Case, library: &Library) -> Result<Analysis, String> {
+    analyze(case, library, &Run::unattended()).map_err(|error| {
         let cause = std::error::Error::source(&error).map(ToString::to_string);
         format!("{error} {}", cause.unwrap_or_default())
     })
 }
 
-fn curve(pair: &GearPair, torque: f64) -> Result<Curve, String> {
-    Ok(solve(&case(pair, &[torque]))?.curves.remove(0))
+fn curve(pair: &GearPair, torque: f64, library: &Library) -> Result<Curve, String> {
+    Ok(solve(&case(pair, &[torque]), library)?.curves.remove(0))
 }
 
-fn model(pair: &GearPair) -> Result<Made, String> {
-    pair_model(&case(pair, &[1.0]), &Library::default(), &Run::unattended())
+fn model(pair: &GearPair, library: &Library) -> Result<Made, String> {
+    pair_model(&case(pair, &[1.0]), library, &Run::unattended())
         .map(|model| Made::new(pair.clone(), model))
         .map_err(|error| error.to_string())
 }
@@ -175,8 +175,8 @@ fn apart(one: &[f64], other: &[f64], deflection: f64) -> f64 {
     pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / deflection
 }
 
-fn penetration(drawn: &DrawnPair) -> Result<Option<f64>, String> {
-    let analysis = solve(&case(&drawn.pair, &[drawn.output_torque]))?;
+fn penetration(drawn: &DrawnPair, library: &Library) -> Result<Option<f64>, String> {
+    let analysis = solve(&case(&drawn.pair, &[drawn.output_torque]), library)?;
     let deflection = deflection(&analysis.curves[0]);
     let figure = analysis.evidence.largest_penetration / deflection;
     let is_undercut = |member: Member| drawn.pair.gear(member).is_undercut();
@@ -266,9 +266,9 @@ fn polygon_gap(pair: &GearPair, eta: f64, n: i64) -> Option<f64> {
 }
 
 /// The number of positions at which the pair of least rigid gap carries nothing.
-fn first_touch_unloaded(drawn: &DrawnPair) -> Result<Option<f64>, String> {
+fn first_touch_unloaded(drawn: &DrawnPair, library: &Library) -> Result<Option<f64>, String> {
     let pair = &drawn.pair;
-    let curve = curve(pair, drawn.output_torque)?;
+    let curve = curve(pair, drawn.output_torque, library)?;
     let mut unloaded = 0;
     for (i, &eta) in curve.mesh_position.iter().enumerate() {
         let mut gaps: Vec<(i64, f64)> = (-4..=5)
@@ -355,7 +355,7 @@ fn scale(data: &mut GearData, s: f64) {
     }
 }
 
-fn similarity(drawn: &DrawnPair) -> Result<Option<f64>, String> {
+fn similarity(drawn: &DrawnPair, library: &Library) -> Result<Option<f64>, String> {
     // No power of two, so that every rounding differs.
     let s = 1.7;
     let Ok(larger) = changed(&drawn.pair, drawn.pair.center_distance() * s, |data, _| {
@@ -363,8 +363,8 @@ fn similarity(drawn: &DrawnPair) -> Result<Option<f64>, String> {
     }) else {
         return Ok(None);
     };
-    let one = curve(&drawn.pair, drawn.output_torque)?;
-    let other = curve(&larger, drawn.output_torque * s.powi(3))?;
+    let one = curve(&drawn.pair, drawn.output_torque, library)?;
+    let other = curve(&larger, drawn.output_torque * s.powi(3), library)?;
     let scaled: Vec<f64> = other
         .transmission_error
         .iter()
@@ -380,13 +380,13 @@ fn similarity(drawn: &DrawnPair) -> Result<Option<f64>, String> {
     ))
 }
 
-fn scaled_moduli(drawn: &DrawnPair) -> Result<Option<f64>, String> {
+fn scaled_moduli(drawn: &DrawnPair, library: &Library) -> Result<Option<f64>, String> {
     let c = 0.37;
     let softer = changed(&drawn.pair, drawn.pair.center_distance(), |data, _| {
         data.material.youngs_modulus *= c;
     })?;
-    let one = curve(&drawn.pair, drawn.output_torque)?;
-    let other = curve(&softer, drawn.output_torque * c)?;
+    let one = curve(&drawn.pair, drawn.output_torque, library)?;
+    let other = curve(&softer, drawn.output_torque * c, library)?;
     let stiffness: Vec<f64> = other.mesh_stiffness_tangent.iter().map(|k| k / c).collect();
     Ok(Some(
         apart(
@@ -437,7 +437,7 @@ fn on_path(pair: &GearPair, contact: &MeshContact, eta: f64, torque: f64) -> boo
         })
 }
 
-fn swapped(drawn: &DrawnPair) -> Result<Option<f64>, String> {
+fn swapped(drawn: &DrawnPair, library: &Library) -> Result<Option<f64>, String> {
     // A tooth that deviates would have another number on the other gear.
     let distance = drawn.pair.center_distance();
     let pair = &changed(&drawn.pair, distance, |data, _| {
@@ -447,7 +447,7 @@ fn swapped(drawn: &DrawnPair) -> Result<Option<f64>, String> {
     let other = GearPair::new(pair.driven().clone(), pair.driving().clone(), distance)
         .map_err(|error| error.to_string())?;
     let load = pair.load(drawn.output_torque);
-    let (here, there) = (model(pair)?, model(&other)?);
+    let (here, there) = (model(pair, library)?, model(&other, library)?);
     let mut worst = None;
     for i in 0..POSITIONS {
         let eta = f64::from(i) / f64::from(POSITIONS);
@@ -464,7 +464,7 @@ fn swapped(drawn: &DrawnPair) -> Result<Option<f64>, String> {
     Ok(worst)
 }
 
-fn turned_by_hole_pitch(drawn: &DrawnPair) -> Result<Option<f64>, String> {
+fn turned_by_hole_pitch(drawn: &DrawnPair, library: &Library) -> Result<Option<f64>, String> {
     let pair = &drawn.pair;
     if Member::BOTH
         .iter()
@@ -482,8 +482,8 @@ fn turned_by_hole_pitch(drawn: &DrawnPair) -> Result<Option<f64>, String> {
         };
         data.blank = data.blank.turned(2.0 * PI / f64::from(repeats));
     })?;
-    let one = curve(pair, drawn.output_torque)?;
-    let other = curve(&turned, drawn.output_torque)?;
+    let one = curve(pair, drawn.output_torque, library)?;
+    let other = curve(&turned, drawn.output_torque, library)?;
     Ok(Some(apart(
         &one.transmission_error,
         &other.transmission_error,
@@ -491,7 +491,7 @@ fn turned_by_hole_pitch(drawn: &DrawnPair) -> Result<Option<f64>, String> {
     )))
 }
 
-fn turned_by_tooth(drawn: &DrawnPair) -> Result<Option<f64>, String> {
+fn turned_by_tooth(drawn: &DrawnPair, library: &Library) -> Result<Option<f64>, String> {
     let pair = &drawn.pair;
     if pair.is_as_drawn()
         && Member::BOTH
@@ -524,7 +524,7 @@ fn turned_by_tooth(drawn: &DrawnPair) -> Result<Option<f64>, String> {
         }
     })?;
     let load = pair.load(drawn.output_torque);
-    let (here, there) = (model(pair)?, model(&turned)?);
+    let (here, there) = (model(pair, library)?, model(&turned, library)?);
     let mut worst = 0.0_f64;
     for i in 0..POSITIONS {
         let eta = f64::from(i) / f64::from(POSITIONS);
@@ -537,9 +537,9 @@ fn turned_by_tooth(drawn: &DrawnPair) -> Result<Option<f64>, String> {
     Ok(Some(worst))
 }
 
-fn not_monotone(drawn: &DrawnPair) -> Result<Option<f64>, String> {
+fn not_monotone(drawn: &DrawnPair, library: &Library) -> Result<Option<f64>, String> {
     let torques = [0.1, 0.3, 1.0, 1.5].map(|factor| factor * drawn.output_torque);
-    let curves = solve(&case(&drawn.pair, &torques))?.curves;
+    let curves = solve(&case(&drawn.pair, &torques), library)?.curves;
     let mut falls = 0;
     for curves in curves.windows(2) {
         let pairs = curves[0]
@@ -553,13 +553,13 @@ fn not_monotone(drawn: &DrawnPair) -> Result<Option<f64>, String> {
 
 /// How much of the largest step of the curve is left where positions stand sixteen times as near; nothing where that is next to nothing
 /// of δ.
-fn jump(drawn: &DrawnPair) -> Result<Option<f64>, String> {
+fn jump(drawn: &DrawnPair, library: &Library) -> Result<Option<f64>, String> {
     const COARSE: u32 = 24;
     const HALVINGS: u32 = 14;
     let mut case = case(&drawn.pair, &[drawn.output_torque]);
     case.resolution.positions_per_mesh_period = COARSE;
-    let curve = solve(&case)?.curves.remove(0);
-    let model = model(&drawn.pair)?;
+    let curve = solve(&case, library)?.curves.remove(0);
+    let model = model(&drawn.pair, library)?;
     let load = drawn.pair.load(drawn.output_torque);
     let delta = |eta| Ok::<_, String>(contact(&model, eta, load)?.transmission_error);
     let deltas = &curve.transmission_error;
@@ -588,11 +588,11 @@ fn jump(drawn: &DrawnPair) -> Result<Option<f64>, String> {
 }
 
 /// How far the peak pressure is from Hertz's where one pair carries all the load away from corners and reliefs.
-fn beside_hertz(drawn: &DrawnPair) -> Result<Option<f64>, String> {
+fn beside_hertz(drawn: &DrawnPair, library: &Library) -> Result<Option<f64>, String> {
     let plain = plain(&drawn.pair)?;
     let pair = &plain;
     let load = pair.load(drawn.output_torque);
-    let model = model(pair)?;
+    let model = model(pair, library)?;
     let factors: f64 = Member::BOTH
         .map(|member| {
             let e = pair.gear(member).material().youngs_modulus;
@@ -625,12 +625,12 @@ fn beside_hertz(drawn: &DrawnPair) -> Result<Option<f64>, String> {
     Ok(worst)
 }
 
-fn between_solvers(drawn: &DrawnPair) -> Result<Option<f64>, String> {
+fn between_solvers(drawn: &DrawnPair, library: &Library) -> Result<Option<f64>, String> {
     let exact = case(&drawn.pair, &[drawn.output_torque]);
     let delta = |case: &Case| -> Result<Vec<f64>, String> {
-        Ok(solve(case)?.curves.remove(0).transmission_error)
+        Ok(solve(case, library)?.curves.remove(0).transmission_error)
     };
-    let one = solve(&exact)?.curves.remove(0);
+    let one = solve(&exact, library)?.curves.remove(0);
     let deflection = deflection(&one);
     let mut other = exact.clone();
     other.resolution.contact_solver = ContactSolver::AugmentedLagrangian {
@@ -644,12 +644,12 @@ fn between_solvers(drawn: &DrawnPair) -> Result<Option<f64>, String> {
     )))
 }
 
-fn standard_beside_fine(drawn: &DrawnPair) -> Result<Option<f64>, String> {
+fn standard_beside_fine(drawn: &DrawnPair, library: &Library) -> Result<Option<f64>, String> {
     let at = |level| -> Result<Curve, String> {
         let mut case = case(&drawn.pair, &[drawn.output_torque]);
         case.resolution.grid = level;
         case.resolution.positions_per_mesh_period = 16;
-        Ok(solve(&case)?.curves.remove(0))
+        Ok(solve(&case, library)?.curves.remove(0))
     };
     let (standard, fine) = (at(GridLevel::Standard)?, at(GridLevel::Fine)?);
     let (a, b) = (

@@ -514,6 +514,7 @@ fn a_ring_under_pressure_is_stressed_as_lame_says() {
 }
 
 #[test]
+#[ignore = "./test all"]
 fn a_hole_in_a_plate_in_tension_triples_the_stress_as_kirsch_says() {
     let (a, sigma) = (8e-3, 100e6);
     // Kirsch's stresses about a hole of radius a, tension along x: exact tractions on a circle around it.
@@ -553,6 +554,7 @@ fn a_hole_in_a_plate_in_tension_triples_the_stress_as_kirsch_says() {
 }
 
 #[test]
+#[ignore = "./test all"]
 fn stresses_at_hole_edges_settle_and_symmetry_recovers_what_the_whole_does() {
     let holes = pattern(5, 30e-3, 8e-3);
     let harmonics = Harmonics { largest: 40 };
@@ -616,6 +618,7 @@ fn stresses_at_hole_edges_settle_and_symmetry_recovers_what_the_whole_does() {
 }
 
 #[test]
+#[ignore = "./test all"]
 fn four_unequal_holes_settle_and_are_the_same_at_every_run() {
     let holes = vec![
         round(30e-3, 0.0, 10e-3),
@@ -693,6 +696,7 @@ fn slender_spokes_turn_as_beams_that_are_clamped_at_both_ends() {
 }
 
 #[test]
+#[ignore = "./test all"]
 fn blanks_on_spokes_settle() {
     let region = region(
         spokes(4e-3, 2e-3, [20e-3, 39e-3])

@@ -102,24 +102,28 @@ fn check(name: &str, pair: GearPair, torques: &[f64]) {
 }
 
 #[test]
+#[ignore = "./test all"]
 fn halving_every_element_moves_the_curves_of_case_1_by_less_than_promised() {
     let (pair, torque) = paper_case(1);
     check("case 1", pair, &[torque]);
 }
 
 #[test]
+#[ignore = "./test all"]
 fn halving_every_element_moves_the_curves_of_case_2_by_less_than_promised() {
     let (pair, torque) = paper_case(2);
     check("case 2", pair, &[torque]);
 }
 
 #[test]
+#[ignore = "./test all"]
 fn halving_every_element_moves_the_curves_of_case_3_by_less_than_promised() {
     let (pair, torque) = paper_case(3);
     check("case 3", pair, &[torque]);
 }
 
 #[test]
+#[ignore = "./test all"]
 fn halving_every_element_moves_the_curves_of_large_gears_by_less_than_promised() {
     // Blanks of more than a hundred teeth are divided by their holes, here once near the rim and once far from it.
     for (circle_radius, radius) in [(165e-3, 26e-3), (105e-3, 24e-3)] {
@@ -149,6 +153,7 @@ fn ripple(values: &[f64]) -> f64 {
 }
 
 #[test]
+#[ignore = "./test all"]
 fn plateaus_of_the_curves_have_no_ripple() {
     // Where the number of pairs does not change, away from tip corners, the curves are smooth; 400 positions a period
     // see what moves with the cells and the elements.

@@ -297,6 +297,7 @@ fn forces_of_a_small_pair_balance_on_whole_gears_and_close_their_gaps() {
 }
 
 #[test]
+#[ignore = "./test all"]
 fn forces_of_the_papers_cases_balance_on_whole_gears_and_close_their_gaps() {
     for number in 1..=3 {
         let (pair, torque) = paper_case(number);
@@ -543,6 +544,7 @@ fn the_tangent_is_the_limit_of_a_torque_step() {
 }
 
 #[test]
+#[ignore = "./test all"]
 fn both_contact_solvers_give_the_same_curves() {
     // A penalty of 1e17 N/m and a gap tolerance of 1e-6 µm: to 1e-6. With the paper's tolerance of 1e-2 µm its stiff penalty
     // leaves nothing for the tolerance to do; a soft one ends nanometers off.
@@ -576,6 +578,7 @@ fn both_contact_solvers_give_the_same_curves() {
 }
 
 #[test]
+#[ignore = "./test all"]
 fn a_fresh_library_and_a_full_one_give_the_same_bits() {
     let case = case(paper_case(2).0, &[115.0]);
     let fresh = analyze(&case, &Library::default(), &Run::unattended()).expect("an answer");

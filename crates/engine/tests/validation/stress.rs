@@ -10,6 +10,7 @@ fn largest(peaks: &[PeakStress]) -> f64 {
 }
 
 #[test]
+#[ignore = "./test all"]
 fn peaks_at_roots_and_holes_settle_from_the_standard_to_the_fine_level() {
     for number in [1, 2, 3] {
         let [standard, fine] = [GridLevel::Standard, GridLevel::Fine].map(|level| {
