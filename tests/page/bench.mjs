@@ -48,7 +48,7 @@ const LONG = {
 
 /** @param service the service whose page is used */
 export async function benchSteps(service) {
-  const { opened, step } = stepsOn(service);
+  const { opened, step, daily, engine } = stepsOn(service);
   await opened("another module takes the lengths of the rack with it, says so, and can be undone", async (page) => {
     // Case 2 gives its rack: it shows it, marked.
     const addendum = page.locator(`[id="field-${DRIVEN}/addendum_mm"]`);
@@ -116,40 +116,43 @@ export async function benchSteps(service) {
     assert.equal(await typed(), fresh);
   });
 
-  await opened("a hole that is let go where it cannot be goes back, and everything shows one design", async (page) => {
-    const before = await answer(page, "p-p");
-    const [middle, center] = await holeAt(page, 5);
-    const place = () => page.locator("#drawing svg").boundingBox();
-    const still = await place();
-    // Outward, through the rim. What is said of it moves nothing under the hand.
-    await page.mouse.move(...middle);
-    await page.mouse.down();
-    await page.mouse.move(...middle.map((value, i) => value - (center[i] - value) * 0.3), { steps: 25 });
-    await page.locator("#problem").waitFor();
-    assert.deepEqual(await place(), still);
-    await page.mouse.up();
-    await page.locator("#notice", { hasText: "Back to what can be made" }).waitFor();
-    await computed(page);
-    const circle = (await designOf(page)).pair.driven.blank.holes.circle_radius_mm;
-    assert.ok(circle > 34 && circle < 40, `the circle is ${circle} mm`);
-    assert.equal(await page.locator(".holes.wrong").count(), 0);
-    assert.match(await page.locator(".rotor.driven .hole title").first().textContent(), new RegExp(`R ${circle} mm`));
-    await tab(page, "export");
-    const { bytes } = await downloaded(page, () => page.locator("[data-download=json]").click());
-    const { submission, results } = JSON.parse(bytes.toString());
-    assert.equal(submission.pair.driven.blank.holes.circle_radius_mm, circle);
-    assert.equal(results.curves[0].mesh_position.length, 200, "no draft");
-    assert.equal(
-      results.curves[0].statistics.transmission_error_um.peak_to_peak.toFixed(3),
-      (await answer(page, "p-p")).toFixed(3),
-    );
-    assert.notEqual(await answer(page, "p-p"), before);
-    // The drag is one change: undone, everything is as it was.
-    await page.locator("#undo").click();
-    await changed(page, "p-p", results.curves[0].statistics.transmission_error_um.peak_to_peak);
-    assert.equal(await answer(page, "p-p"), before);
-    assert.equal((await designOf(page)).pair.driven.blank.holes.circle_radius_mm, 34);
-  });
+  await engine.opened(
+    "a hole that is let go where it cannot be goes back, and everything shows one design",
+    async (page) => {
+      const before = await answer(page, "p-p");
+      const [middle, center] = await holeAt(page, 5);
+      const place = () => page.locator("#drawing svg").boundingBox();
+      const still = await place();
+      // Outward, through the rim. What is said of it moves nothing under the hand.
+      await page.mouse.move(...middle);
+      await page.mouse.down();
+      await page.mouse.move(...middle.map((value, i) => value - (center[i] - value) * 0.3), { steps: 25 });
+      await page.locator("#problem").waitFor();
+      assert.deepEqual(await place(), still);
+      await page.mouse.up();
+      await page.locator("#notice", { hasText: "Back to what can be made" }).waitFor();
+      await computed(page);
+      const circle = (await designOf(page)).pair.driven.blank.holes.circle_radius_mm;
+      assert.ok(circle > 34 && circle < 40, `the circle is ${circle} mm`);
+      assert.equal(await page.locator(".holes.wrong").count(), 0);
+      assert.match(await page.locator(".rotor.driven .hole title").first().textContent(), new RegExp(`R ${circle} mm`));
+      await tab(page, "export");
+      const { bytes } = await downloaded(page, () => page.locator("[data-download=json]").click());
+      const { submission, results } = JSON.parse(bytes.toString());
+      assert.equal(submission.pair.driven.blank.holes.circle_radius_mm, circle);
+      assert.equal(results.curves[0].mesh_position.length, 200, "no draft");
+      assert.equal(
+        results.curves[0].statistics.transmission_error_um.peak_to_peak.toFixed(3),
+        (await answer(page, "p-p")).toFixed(3),
+      );
+      assert.notEqual(await answer(page, "p-p"), before);
+      // The drag is one change: undone, everything is as it was.
+      await page.locator("#undo").click();
+      await changed(page, "p-p", results.curves[0].statistics.transmission_error_um.peak_to_peak);
+      assert.equal(await answer(page, "p-p"), before);
+      assert.equal((await designOf(page)).pair.driven.blank.holes.circle_radius_mm, 34);
+    },
+  );
 
   await opened("what cannot be computed is not exported and not kept", async (page) => {
     await (await field(page, `${HOLES}/radius_mm`)).fill("12");
@@ -181,44 +184,47 @@ export async function benchSteps(service) {
     assert.equal(second.count, 4);
   });
 
-  await step("a design too long for a preview is computed by a job, and opened with its results", async (page) => {
-    const previews = [];
-    page.on("request", (request) => {
-      if (/v1\/preview$/.test(request.url())) previews.push(request.postData());
-    });
-    await openDesign(page, service, LONG);
-    await page.locator("#progress").waitFor();
-    await page.waitForFunction(
-      () =>
-        !document.body.classList.contains("busy") && document.querySelector("#answer-p-p .value").textContent !== "–",
-    );
-    const long = await answer(page, "p-p");
-    assert.ok(long > 0);
-    assert.ok(await page.locator("#problem").isHidden());
-    // 61 periods are shown as an envelope under a strip of the whole period; zoomed in as curves.
-    assert.ok(await page.locator("#brush").isVisible());
-    assert.match(await page.locator("#chart-ste .legend").innerText(), /zoom in/);
-    await page.locator("#brush button", { hasText: "+" }).click();
-    await page.locator("#brush button", { hasText: "+" }).click();
-    await page.locator("#brush button", { hasText: "+" }).click();
-    assert.doesNotMatch(await page.locator("#chart-ste .legend").innerText(), /zoom in/);
-    assert.match(await page.locator("#brush output").innerText(), /of 61/);
-    // Another design, and back by the list of jobs: its results are shown, and not computed again.
-    await page.locator("#start").selectOption("standard-pair");
-    await changed(page, "p-p", long);
-    await tab(page, "jobs");
-    const row = page.locator("#jobs-list tbody tr", { hasText: "successful" }).first();
-    await row.waitFor();
-    previews.length = 0;
-    await row.locator("button", { hasText: "Open" }).click();
-    await page.waitForFunction(
-      (value) => Number(document.querySelector("#answer-p-p .value").textContent) === value,
-      long,
-    );
-    assert.deepEqual(previews, []);
-  });
+  await engine.step(
+    "a design too long for a preview is computed by a job, and opened with its results",
+    async (page) => {
+      const previews = [];
+      page.on("request", (request) => {
+        if (/v1\/preview$/.test(request.url())) previews.push(request.postData());
+      });
+      await openDesign(page, service, LONG);
+      await page.locator("#progress").waitFor();
+      await page.waitForFunction(
+        () =>
+          !document.body.classList.contains("busy") && document.querySelector("#answer-p-p .value").textContent !== "–",
+      );
+      const long = await answer(page, "p-p");
+      assert.ok(long > 0);
+      assert.ok(await page.locator("#problem").isHidden());
+      // 61 periods are shown as an envelope under a strip of the whole period; zoomed in as curves.
+      assert.ok(await page.locator("#brush").isVisible());
+      assert.match(await page.locator("#chart-ste .legend").innerText(), /zoom in/);
+      await page.locator("#brush button", { hasText: "+" }).click();
+      await page.locator("#brush button", { hasText: "+" }).click();
+      await page.locator("#brush button", { hasText: "+" }).click();
+      assert.doesNotMatch(await page.locator("#chart-ste .legend").innerText(), /zoom in/);
+      assert.match(await page.locator("#brush output").innerText(), /of 61/);
+      // Another design, and back by the list of jobs: its results are shown, and not computed again.
+      await page.locator("#start").selectOption("standard-pair");
+      await changed(page, "p-p", long);
+      await tab(page, "jobs");
+      const row = page.locator("#jobs-list tbody tr", { hasText: "successful" }).first();
+      await row.waitFor();
+      previews.length = 0;
+      await row.locator("button", { hasText: "Open" }).click();
+      await page.waitForFunction(
+        (value) => Number(document.querySelector("#answer-p-p .value").textContent) === value,
+        long,
+      );
+      assert.deepEqual(previews, []);
+    },
+  );
 
-  await opened("a job that waits for others says so", async (page) => {
+  await engine.opened("a job that waits for others says so", async (page) => {
     // What is asked is made to wait: its first event comes, and no further one until then.
     const [event, answer] = await page.evaluate(async (submission) => {
       const job = await (
@@ -279,7 +285,7 @@ export async function benchSteps(service) {
     await axe(page);
   });
 
-  await step("every part of the form begins with what fits the gear", async (page) => {
+  await engine.step("every part of the form begins with what fits the gear", async (page) => {
     await openDesign(page, service, {
       ...LONG,
       pair: {
@@ -409,7 +415,7 @@ export async function benchSteps(service) {
     }
   });
 
-  await step("a force table and a run-up begin with what a long period leaves room for", async (page) => {
+  await engine.step("a force table and a run-up begin with what a long period leaves room for", async (page) => {
     // The driven gear's teeth differ: 48 mesh periods, of which 12 loads would be too many positions.
     const uneven = { pitch_single_um: Array.from({ length: 48 }, (_, i) => (i % 2 ? 1 : -1) * (i % 5)) };
     const sum = uneven.pitch_single_um.reduce((all, value) => all + value, 0);
@@ -447,7 +453,7 @@ export async function benchSteps(service) {
     assert.deepEqual([from, to, count], [0, 7000, 100]);
   });
 
-  await opened("a run-up is asked for, shown with both branches, and its resonances are named", async (page) => {
+  await daily.opened("a run-up is asked for, shown with both branches, and its resonances are named", async (page) => {
     await tab(page, "run-up");
     await page.evaluate(() => {
       window.said = [];
@@ -673,7 +679,7 @@ export async function benchSteps(service) {
     assert.equal(await page.evaluate(() => window.audio.closed), 1, "silent when nobody looks");
   });
 
-  await opened("undo and redo take back everything, by keys too", async (page) => {
+  await engine.opened("undo and redo take back everything, by keys too", async (page) => {
     const first = await answer(page, "p-p");
     await page.locator("#pin").click();
     await page.locator("#against-label").waitFor();
@@ -701,7 +707,7 @@ export async function benchSteps(service) {
     assert.ok(await page.locator("#redo").isDisabled());
   });
 
-  await opened("designs are compared under names, field by field, and in the headline", async (page) => {
+  await daily.opened("designs are compared under names, field by field, and in the headline", async (page) => {
     await page.locator("#pin").click();
     await tab(page, "compare");
     const name = page.locator("#name-1");
@@ -828,7 +834,7 @@ export async function benchSteps(service) {
     { viewport: { width: 390, height: 844 } },
   );
 
-  await opened("the geometry report has what is checked first, on one page", async (page) => {
+  await daily.opened("the geometry report has what is checked first, on one page", async (page) => {
     await tab(page, "geometry");
     const rows = await page.locator("#geometry").innerText();
     // By hand for z 50/50, m 2, a 100.5: ε 1.5116, j 0.3484, d_b 93.969; at A the driving root slides by 1 -
@@ -933,7 +939,7 @@ export async function benchSteps(service) {
     assert.match(await page.locator("#chart-spectrum .note").innerText(), /periods that were computed/);
   });
 
-  await opened("what is shown is exported, with titles, and as a program", async (page) => {
+  await engine.opened("what is shown is exported, with titles, and as a program", async (page) => {
     await tab(page, "export");
     const get = async (kind) => (await downloaded(page, () => page.locator(`[data-download="${kind}"]`).click())).bytes;
     for (const [kind, least] of [
@@ -1171,7 +1177,7 @@ export async function benchSteps(service) {
     assert.equal((await designOf(page)).stress, undefined, "the design itself stays");
   });
 
-  await opened(
+  await engine.opened(
     "a service that was away is asked again, a job goes on, and a reload keeps the kept designs",
     async (page, context) => {
       const before = await answer(page, "p-p");
@@ -1411,7 +1417,7 @@ export async function benchSteps(service) {
     },
   );
 
-  await step(
+  await engine.step(
     "a long sweep is seen as it comes, without what goes on from its curves, and can be cancelled",
     async (page) => {
       const asked = [];

@@ -1,40 +1,113 @@
 // A browser, and steps in pages of their own; what every step needs to look at the page.
 
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
+import { appendFileSync, readFileSync } from "node:fs";
 import { AxeBuilder } from "@axe-core/playwright";
 import { chromium } from "playwright-core";
+import { recorded, tidy } from "./recording.mjs";
+import { start } from "./service.mjs";
 
-/** In milliseconds, for a machine that has much else to do. */
-const PATIENCE = 300_000;
+/**
+ * What is run, the first argument: `daily`, the steps that are marked so; `recorded`, all that need no engine; `record`,
+ * which records these anew; `all`, every step with the real service.
+ */
+export const mode = process.argv.slice(2).find((each) => !each.startsWith("--")) ?? "daily";
+assert.ok(["daily", "recorded", "record", "all"].includes(mode), `there is no way to run that is called ${mode}`);
+
+/** In milliseconds, for a machine that has much else to do. What is recorded comes at once. */
+const PATIENCE = mode === "daily" || mode === "recorded" ? 60_000 : 300_000;
 /** What is computed says something new at least once in so many milliseconds. */
 const STANDSTILL = 180_000;
+/** So many steps may hold at the second try alone. */
+const MOST_FLAKY = 1;
 const only = process.env.ONLY ? new RegExp(process.env.ONLY) : null;
 
 const browser = await chromium.launch({ executablePath: process.env.BROWSER, args: ["--no-sandbox"] });
 let passed = 0;
 const failed = [];
+const flaky = [];
+const recordings = new Set();
+
+/** The service that most steps use: before it stand recordings, unless every step is run with the real one. */
+export const service = mode === "all" ? await start() : await recorded(start, process.env.RECORDED);
 
 /**
- * What runs a step on a service, in a page of its own, which must neither log an error nor ask another host; and what does
- * once the page has been opened and shows its first design.
+ * What runs steps on a service, each in a page of its own, which must neither log an error nor ask another host.
+ * `opened` opens the page first, and waits until it shows its first design. The steps of `daily` are run daily, and those
+ * of `engine` with what the service computes instead of with recorded answers.
  */
-export function stepsOn(service) {
-  const step = (name, work, options = {}, others = []) => run(name, service, work, options, others);
-  const opened = (name, work, options = {}) =>
-    step(
-      name,
-      async (page, context) => {
-        await open(page, service);
-        await work(page, context);
-      },
-      options,
-    );
-  return { opened, step };
+export function stepsOn(on) {
+  /** @param {...("daily" | "engine")} marks */
+  const marked = (...marks) => {
+    const step = (name, work, options = {}, others = []) => run({ name, on, work, options, others, marks });
+    const opened = (name, work, options = {}) =>
+      step(
+        name,
+        async (page, context) => {
+          await open(page, on);
+          await work(page, context);
+        },
+        options,
+      );
+    return { opened, step };
+  };
+  return { ...marked(), daily: marked("daily"), engine: marked("engine"), dailyEngine: marked("daily", "engine") };
 }
 
-async function run(name, service, work, options, others) {
-  if (only && !only.test(name)) return;
+/** Does `work` with a service of its own, before which no recordings stand, where every step is run. */
+export async function withOwnService(env, work) {
+  if (mode !== "all") return;
+  const own = await start(env);
+  await work(own, stepsOn(own).engine);
+  await own.stop();
+}
+
+/** Whether steps with these marks are run. */
+const isWanted = (marks) => mode === "all" || (mode === "daily" ? marks.includes("daily") : !marks.includes("engine"));
+
+async function run({ name, on, work, options, others, marks }) {
+  if ((only && !only.test(name)) || !isWanted(marks)) return;
+  const begun = Date.now();
+  const attempt = (beside) => inPage({ on, work, options, others, beside });
+  let fault = null;
+  if (mode === "record")
+    fault = await faultOf(on.record(name, () => thrown(attempt(null))).then((file) => recordings.add(file)));
+  else {
+    const isRecorded = mode !== "all" && !marks.includes("engine");
+    const once = () => {
+      if (isRecorded) return attempt(on.replay(name));
+      on.pass?.();
+      return attempt(null);
+    };
+    fault = await once();
+    if (fault) {
+      console.log(`page: once more alone: ${name}\n${fault}`);
+      const again = await once();
+      if (!again) flaky.push(`${name}: ${fault.split("\n")[0]}`);
+      fault = again;
+    }
+  }
+  if (fault) failed.push(`${name}: ${fault.split("\n")[0]}`);
+  else passed += 1;
+  console.log(
+    `page: ${fault ? "FAILED" : "ok"}: ${name} (${((Date.now() - begun) / 1000).toFixed(1)} s)${fault ? `\n${fault}` : ""}`,
+  );
+}
+
+/** What is wrong with work that gives what is wrong, or throws it. */
+const faultOf = (work) =>
+  work.then(
+    () => null,
+    (error) => error.stack,
+  );
+
+const thrown = async (work) => {
+  const fault = await work;
+  if (fault) throw new Error(fault);
+};
+
+/** Does `work` in a new page, and gives what is wrong with it, or null. `beside` fails when something is missing. */
+async function inPage({ on, work, options, others, beside }) {
   const context = await browser.newContext({
     viewport: { width: 1280, height: 1000 },
     acceptDownloads: true,
@@ -42,7 +115,7 @@ async function run(name, service, work, options, others) {
   });
   context.setDefaultTimeout(PATIENCE);
   const page = await context.newPage();
-  if (process.env.WEB) await fromDisk(page, service);
+  if (process.env.WEB) await fromDisk(page, on);
   const faults = [];
   page.on("console", (message) => {
     // The browser itself logs a refusal, a service that is away, and one that is too busy for a preview; the page shows each.
@@ -55,28 +128,25 @@ async function run(name, service, work, options, others) {
   });
   page.on("pageerror", (error) => faults.push(error.stack));
   page.on("request", (request) => {
-    if (
-      ![service.url, ...others].some((known) => request.url().startsWith(known)) &&
-      !/^(blob|data):/.test(request.url())
-    )
+    if (![on.url, ...others].some((known) => request.url().startsWith(known)) && !/^(blob|data):/.test(request.url()))
       faults.push(`asks ${request.url()}`);
   });
+  let fault = null;
   try {
-    await work(page, context);
+    const done = work(page, context);
+    // Once something is missing, nobody waits for the step any more.
+    done.catch(() => {});
+    await (beside ? Promise.race([done, beside]) : done);
     assert.deepEqual(faults, []);
-    passed += 1;
-    console.log(`page: ok: ${name}`);
   } catch (error) {
     const said = await page
       .locator("[role=status]:visible, [role=alert]:visible")
       .allInnerTexts()
       .catch(() => []);
-    failed.push(`${name}: ${error.message.split("\n")[0]}`);
-    console.log(
-      `page: FAILED: ${name}\n${error.stack}\n${faults.join("\n")}\nThe page says: ${said.filter(Boolean).join(" | ")}`,
-    );
+    fault = [error.stack, ...faults, `The page says: ${said.filter(Boolean).join(" | ")}`].join("\n");
   }
   await context.close();
+  return fault;
 }
 
 /** The page as it lies in the folder WEB, not as it is in the program: what is being changed needs no build. */
@@ -94,11 +164,25 @@ async function fromDisk(page, { url }) {
   );
 }
 
-/** Ends the browser and tells how it went. */
+/**
+ * Ends the browser and tells how it went. A step that held at the second try is named in the file of FLAKY; one of them
+ * fails nothing.
+ */
 export async function end() {
   await browser.close();
-  console.log([`${passed} passed, ${failed.length} failed`, ...failed].join("\n"));
-  process.exitCode = failed.length ? 1 : 0;
+  await service.stop();
+  if (mode === "record") tidy(process.env.RECORDED, only || failed.length ? null : recordings);
+  if (process.env.FLAKY && flaky.length)
+    appendFileSync(process.env.FLAKY, flaky.map((each) => `page: ${each}\n`).join(""));
+  const told = flaky.length ? `, ${flaky.length} of them at the second try` : "";
+  console.log(
+    [
+      `page: ${passed} passed${told}, ${failed.length} failed`,
+      ...flaky.map((each) => `page: flaky: ${each}`),
+      ...failed,
+    ].join("\n"),
+  );
+  process.exitCode = failed.length || flaky.length > MOST_FLAKY ? 1 : 0;
 }
 
 /** An answer of the headline, as a number. */

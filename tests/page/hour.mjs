@@ -52,8 +52,8 @@ function assertAlike(found, said) {
 
 /** @param service the service whose page is used */
 export async function hourSteps(service) {
-  const { step } = stepsOn(service);
-  await step("an hour at the bench goes as its guide says, click by click", async (page) => {
+  const { engine } = stepsOn(service);
+  await engine.step("an hour at the bench goes as its guide says, click by click", async (page) => {
     page.setDefaultTimeout(MINUTES);
     const { answers, names } = guide();
     let seen = "";

@@ -22,11 +22,12 @@ import {
   linkOf,
   named,
   open,
+  service,
   stepsOn,
   tab,
+  withOwnService,
 } from "./harness.mjs";
 import { hourSteps } from "./hour.mjs";
-import { start } from "./service.mjs";
 import { shownSteps } from "./shown.mjs";
 import { solidSteps } from "./solid.mjs";
 
@@ -39,12 +40,13 @@ const WIDTHS = [
 ];
 /** The pictures that guides show; those of other widths and themes lie beside this program, to be looked at. */
 const SHOWN = ["390-light", "390-dark", "1280-light", "1280-dark", "3840-light"];
+/** These are looked at daily. */
+const DAILY_LOOKS = ["390-light", "1280-dark"];
 const HOLES = "/pair/driven/blank/holes";
 
-const service = await start();
-const { opened, step } = stepsOn(service);
+const { opened, step, daily, engine, dailyEngine } = stepsOn(service);
 
-await step("case 2 is there at once, with the mean of the reference", async (page) => {
+await dailyEngine.step("case 2 is there at once, with the mean of the reference", async (page) => {
   const begun = Date.now();
   await page.goto(service.url);
   await answered(page);
@@ -57,21 +59,24 @@ await step("case 2 is there at once, with the mean of the reference", async (pag
   await axe(page);
 });
 
-await opened("a dragged hole changes the curve, and the hole stays where the hand left it", async (page) => {
-  const before = await answer(page, "p-p");
-  const [middle, center] = await holeAt(page, 5);
-  await drag(
-    page,
-    middle,
-    middle.map((value, i) => value + (center[i] - value) * 0.1),
-  );
-  await changed(page, "p-p", before);
-  const circle = (await designOf(page)).pair.driven.blank.holes.circle_radius_mm;
-  assert.ok(circle > 29 && circle < 33, `the circle is ${circle} mm`);
-  assert.equal(await page.locator("#start").inputValue(), "");
-});
+await dailyEngine.opened(
+  "a dragged hole changes the curve, and the hole stays where the hand left it",
+  async (page) => {
+    const before = await answer(page, "p-p");
+    const [middle, center] = await holeAt(page, 5);
+    await drag(
+      page,
+      middle,
+      middle.map((value, i) => value + (center[i] - value) * 0.1),
+    );
+    await changed(page, "p-p", before);
+    const circle = (await designOf(page)).pair.driven.blank.holes.circle_radius_mm;
+    assert.ok(circle > 29 && circle < 33, `the circle is ${circle} mm`);
+    assert.equal(await page.locator("#start").inputValue(), "");
+  },
+);
 
-await opened("a field that is wrong says so, keeps the curve, and is mended by its button", async (page) => {
+await daily.opened("a field that is wrong says so, keeps the curve, and is mended by its button", async (page) => {
   const mean = await answer(page, "mean");
   const radius = await field(page, `${HOLES}/radius_mm`);
   await radius.fill("12");
@@ -94,7 +99,7 @@ await opened("a field that is wrong says so, keeps the curve, and is mended by i
   assert.ok(mended > 9 && mended < 12, `mended to ${mended}`);
 });
 
-await opened("a link opened again gives the same design", async (page, context) => {
+await daily.opened("a link opened again gives the same design", async (page, context) => {
   await (await field(page, `${HOLES}/count`)).fill("8");
   await named(page, "8×");
   const again = await context.newPage();
@@ -103,7 +108,7 @@ await opened("a link opened again gives the same design", async (page, context) 
   assert.equal(await again.locator("#headline").innerText(), await page.locator("#headline").innerText());
 });
 
-await opened("curves and gears stand at the same position, whichever is moved", async (page) => {
+await daily.opened("curves and gears stand at the same position, whichever is moved", async (page) => {
   const angle = () => page.locator(".rotor.driving").getAttribute("transform");
   const before = await angle();
   await page.locator("#chart-ste .u-over").hover({ position: { x: 120, y: 60 } });
@@ -183,7 +188,7 @@ await opened("a sweep marks the torque of the least peak-to-peak", async (page) 
   assert.match(await page.locator("#sweep .out").innerText(), /Least peak-to-peak of these torques: \d/);
 });
 
-await opened("a study runs and shows its table and its front", async (page) => {
+await daily.opened("a study runs and shows its table and its front", async (page) => {
   await tab(page, "study");
   await page.locator("#axis-0-values").fill("6, 10, 40");
   await page.locator("#study-run").click();
@@ -295,7 +300,7 @@ await opened("a population shows how good the pairs will be that are made, and o
   assert.equal(opened.output_torques_n_m.length, 2);
 });
 
-await opened("a job is submitted, followed and opened", async (page) => {
+await dailyEngine.opened("a job is submitted, followed and opened", async (page) => {
   await tab(page, "jobs");
   // The jobs of studies stand in the list too, of which only statistics may be left.
   const submitted = page.waitForResponse(
@@ -311,7 +316,7 @@ await opened("a job is submitted, followed and opened", async (page) => {
   assert.match((await file("VTU")).name, /fields\.vtu$/);
 });
 
-await opened("the pair is seen deformed at the position shown, by keys too", async (page) => {
+await engine.opened("the pair is seen deformed at the position shown, by keys too", async (page) => {
   await page.locator("#position").fill("0.3");
   await page.locator("#deformed").focus();
   await page.keyboard.press("Enter");
@@ -375,7 +380,7 @@ await opened("keys alone do: a hole moves by arrows", async (page) => {
   assert.equal((await designOf(page)).pair.driven.blank.holes[0].slot.width_mm, Number((width - 0.1).toFixed(6)));
 });
 
-await opened("200 drags are followed in order", async (page) => {
+await engine.opened("200 drags are followed in order", async (page) => {
   await page.evaluate(() => {
     window.drawn = [];
     document.addEventListener("drawn", (/** @type {CustomEvent} */ { detail }) =>
@@ -420,46 +425,46 @@ await solidSteps(service);
 await shownSteps(service);
 await hourSteps(service);
 
-const locked = await start();
-const key = locked.key("visitor");
-await stepsOn(locked).step("a key is asked for, and used", async (page) => {
-  await page.goto(locked.url);
-  await page.locator("#key-dialog[open]").waitFor();
-  await axe(page);
-  await page.locator("#key").fill(key);
-  await page.locator("#key-form button.primary").click();
-  await answered(page);
-  assert.ok(Math.abs((await answer(page, "mean")) - 13.8) < 0.1);
-  // Streams of events carry the key too.
-  await tab(page, "jobs");
-  await page.locator("#jobs button.primary").click();
-  await page.locator("#jobs-list tbody tr", { hasText: "successful" }).first().waitFor();
+await withOwnService({}, (locked, { step: onLocked }) => {
+  const key = locked.key("visitor");
+  return onLocked("a key is asked for, and used", async (page) => {
+    await page.goto(locked.url);
+    await page.locator("#key-dialog[open]").waitFor();
+    await axe(page);
+    await page.locator("#key").fill(key);
+    await page.locator("#key-form button.primary").click();
+    await answered(page);
+    assert.ok(Math.abs((await answer(page, "mean")) - 13.8) < 0.1);
+    // Streams of events carry the key too.
+    await tab(page, "jobs");
+    await page.locator("#jobs button.primary").click();
+    await page.locator("#jobs-list tbody tr", { hasText: "successful" }).first().waitFor();
+  });
 });
-await locked.stop();
 
 const portal = createServer((_, answered) =>
   answered.setHeader("content-type", "text/html").end(readFileSync(process.env.PORTAL)),
 );
 await once(portal.listen(0, "127.0.0.1"), "listening");
 const origin = `http://127.0.0.1:${/** @type {import("node:net").AddressInfo} */ (portal.address()).port}`;
-const shared = await start({ MESHWRIGHT_CORS_ORIGIN: origin });
-await stepsOn(shared).step(
-  "a portal on another origin submits, follows and draws",
-  async (page) => {
-    await page.goto(`${origin}/?service=${shared.url.replace(/\/$/, "")}`);
-    await page.locator("button").click();
-    await page.locator("#curve polyline").waitFor();
-    assert.match(await page.locator("#state").innerText(), /^Mean 11\.56 µm, peak-to-peak 3\.85 µm/);
-  },
-  {},
-  [origin],
+await withOwnService({ MESHWRIGHT_CORS_ORIGIN: origin }, (shared, { step: onShared }) =>
+  onShared(
+    "a portal on another origin submits, follows and draws",
+    async (page) => {
+      await page.goto(`${origin}/?service=${shared.url.replace(/\/$/, "")}`);
+      await page.locator("button").click();
+      await page.locator("#curve polyline").waitFor();
+      assert.match(await page.locator("#state").innerText(), /^Mean 11\.56 µm, peak-to-peak 3\.85 µm/);
+    },
+    {},
+    [origin],
+  ),
 );
-await shared.stop();
 portal.close();
 
 for (const [width, height] of WIDTHS) {
   for (const colorScheme of ["light", "dark"]) {
-    await opened(
+    await (DAILY_LOOKS.includes(`${width}-${colorScheme}`) ? daily : { opened }).opened(
       `nothing serious at ${width} px, ${colorScheme}`,
       async (page) => {
         await axe(page);
@@ -501,5 +506,4 @@ for (const [width, height] of WIDTHS) {
   }
 }
 
-await service.stop();
 await end();

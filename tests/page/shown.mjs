@@ -18,8 +18,8 @@ import {
   stepsOn,
   tab,
   unfold,
+  withOwnService,
 } from "./harness.mjs";
-import { start } from "./service.mjs";
 import { HELICAL } from "./solid.mjs";
 
 const HOLES = "/pair/driven/blank/holes";
@@ -93,7 +93,7 @@ const watch = (page) =>
 
 /** @param service the service whose page is used */
 export async function shownSteps(service) {
-  const { opened, step } = stepsOn(service);
+  const { opened, step, daily, engine } = stepsOn(service);
   await opened(
     "a decimal comma is a decimal point, in a field, in a list and in a panel, and what can be read in two ways says so",
     async (page) => {
@@ -306,7 +306,7 @@ export async function shownSteps(service) {
     )();
   });
 
-  await step(
+  await engine.step(
     "what takes over a second is computed at rest or at Enter, says how long it will take, and is stopped when it is overtaken",
     async (page) => {
       await openDesign(page, service, HELICAL);
@@ -342,7 +342,7 @@ export async function shownSteps(service) {
     },
   );
 
-  await step("a mistake that is mended is red no more, however long the design takes", async (page) => {
+  await engine.step("a mistake that is mended is red no more, however long the design takes", async (page) => {
     await openDesign(page, service, HELICAL);
     await settled(page);
     const width = await field(page, "/pair/driven/face_width_mm");
@@ -458,7 +458,7 @@ export async function shownSteps(service) {
     { viewport: { width: 1280, height: 800 } },
   );
 
-  await opened(
+  await engine.opened(
     "what was computed is found again after a reload: a sweep, a study, a population, a search that runs, kept designs and the way back",
     async (page) => {
       const from = await answer(page, "p-p");
@@ -775,7 +775,7 @@ export async function shownSteps(service) {
     },
   );
 
-  await step(
+  await engine.step(
     "a stage of an electric drive is typed from a report, and what stands on the page is its own from the first number to the last",
     async (page) => {
       page.setDefaultTimeout(900_000);
@@ -890,32 +890,32 @@ export async function shownSteps(service) {
   );
 
   // Previews of a second: the flanks of a job may take four of these, or as long as the job.
-  const short = await start({ MESHWRIGHT_PREVIEW_TIME_LIMIT_SECONDS: "1" });
-  await stepsOn(short).step(
-    "the contact pattern of a job comes however long it takes, with a clock, can be stopped, and is asked for again after a reload",
-    async (page) => {
-      await openDesign(page, short, {
-        ...HELICAL,
-        resolution: { ...HELICAL.resolution, positions_per_mesh_period: 40 },
-      });
-      await answered(page);
-      await settled(page);
-      const button = page.locator("#chart-pattern button");
-      const clock = page.locator("#chart-pattern [role=status]", { hasText: /at every position, about \d+ s more/ });
-      await button.click();
-      await clock.waitFor();
-      assert.equal(await button.innerText(), "Stop");
-      await button.click();
-      await page.locator("#chart-pattern [role=status]", { hasText: "Stopped." }).waitFor();
-      assert.equal(await button.innerText(), "Show the flanks");
-      await button.click();
-      await clock.waitFor();
-      await page.reload();
-      await page.locator("#chart-pattern svg").nth(1).waitFor();
-      assert.ok(await button.isHidden());
-      // What has come is not computed again at every reload.
-      assert.equal(await page.evaluate(() => sessionStorage.getItem("meshwright-flanks")), null);
-    },
+  await withOwnService({ MESHWRIGHT_PREVIEW_TIME_LIMIT_SECONDS: "1" }, (short, { step: onShort }) =>
+    onShort(
+      "the contact pattern of a job comes however long it takes, with a clock, can be stopped, and is asked for again after a reload",
+      async (page) => {
+        await openDesign(page, short, {
+          ...HELICAL,
+          resolution: { ...HELICAL.resolution, positions_per_mesh_period: 40 },
+        });
+        await answered(page);
+        await settled(page);
+        const button = page.locator("#chart-pattern button");
+        const clock = page.locator("#chart-pattern [role=status]", { hasText: /at every position, about \d+ s more/ });
+        await button.click();
+        await clock.waitFor();
+        assert.equal(await button.innerText(), "Stop");
+        await button.click();
+        await page.locator("#chart-pattern [role=status]", { hasText: "Stopped." }).waitFor();
+        assert.equal(await button.innerText(), "Show the flanks");
+        await button.click();
+        await clock.waitFor();
+        await page.reload();
+        await page.locator("#chart-pattern svg").nth(1).waitFor();
+        assert.ok(await button.isHidden());
+        // What has come is not computed again at every reload.
+        assert.equal(await page.evaluate(() => sessionStorage.getItem("meshwright-flanks")), null);
+      },
+    ),
   );
-  await short.stop();
 }

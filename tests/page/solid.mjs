@@ -58,8 +58,8 @@ const STRAIGHT = {
 
 /** @param service the service whose page is used */
 export async function solidSteps(service) {
-  const { step } = stepsOn(service);
-  await step("a pair becomes helical in one step, with its method, and straight again", async (page) => {
+  const { step, daily, engine } = stepsOn(service);
+  await daily.step("a pair becomes helical in one step, with its method, and straight again", async (page) => {
     await openDesign(page, service, STRAIGHT);
     await settled(page);
     assert.ok(await page.locator("#answer-face").isHidden(), "the plane has no load along the face");
@@ -503,7 +503,7 @@ export async function solidSteps(service) {
     { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true },
   );
 
-  await step(
+  await engine.step(
     "a pair along its face follows the hand by projection, and is computed by a job when it rests",
     async (page) => {
       const asked = [];
