@@ -98,7 +98,7 @@ fn render(problem: &Problem, mut headers: HeaderMap) -> Response {
 }
 
 /// After so many seconds it is worth asking again.
-fn retry_after(code: Code) -> Option<&'static str> {
+pub(super) fn retry_after(code: Code) -> Option<&'static str> {
     match code {
         Code::ResultNotReady => Some("1"),
         // Previews take a fraction of a second each.
