@@ -14,7 +14,7 @@ use super::blocking::blocking;
 use super::body::JsonBody;
 use super::client::Client;
 use super::headers::Made;
-use super::parameters::IdempotencyKey;
+use super::parameters::{IdempotencyKey, User};
 use super::problem::{Refusal, retry_after};
 use super::view::{JobView, with_public_type};
 use crate::jobs::{Job, Submitted};
@@ -68,7 +68,7 @@ pub(super) struct BatchItem<'a> {
 #[utoipa::path(
     post, path = "/v1/jobs/batch", tag = "Jobs", operation_id = "submit_batch",
     request_body(content = Batch, content_type = "application/json", description = "The submissions."),
-    params(IdempotencyKey),
+    params(IdempotencyKey, User),
     responses(
         (status = 202, description = "At least one submission is taken.", body = BatchAnswer, headers(
             ("Retry-After" = u32, description = "Seconds after which it is worth looking at the jobs, or sending again those submissions that found no room."),

@@ -11,6 +11,7 @@ use meshwright_wire::{Code, Problem};
 
 use super::app::App;
 use super::credential::{Credential, bearer, no_credential, unauthorized};
+use super::parameters::User;
 use super::problem::{Refusal, overloaded};
 use crate::jobs::{JobError, KeyRecord, Member, Role};
 use crate::keys::Key;
@@ -140,8 +141,8 @@ impl Caller {
         let credential = bearer(&parts.headers)?;
         let fingerprint = credential.as_ref().map(Credential::fingerprint);
         let caller = match credential {
-            Some(Credential::Key(key)) => Self::with_key(app, key).await?,
-            Some(Credential::Token(token)) => Self::with_token(app, &token).await?,
+            Some(Credential::Key(key)) => Self::with_key(app, key, &parts.headers).await?,
+            Some(Credential::Token(token)) => Self::with_token(app, &token, &parts.headers).await?,
             None if asks_for_keys(app, &parts.headers).await? => {
                 return Err(unauthorized("Send a key: Authorization: Bearer KEY.").into());
             }
@@ -167,6 +168,8 @@ impl Caller {
     fn anonymous(app: &App) -> Self {
         let member = Member {
             client: ANONYMOUS.to_owned(),
+            // Where everybody may say anything a name means nothing.
+            user: None,
             queue_limit: Some(app.jobs.rules().queue_limit),
         };
         Self {
@@ -177,7 +180,7 @@ impl Caller {
         }
     }
 
-    async fn with_key(app: &App, key: Key) -> Result<Self, Problem> {
+    async fn with_key(app: &App, key: Key, headers: &HeaderMap) -> Result<Self, Problem> {
         let record = recognize(app, &key).await?;
         app.access.found_keys();
         // What the log says of the request, it says of its key: who did what, and with what answer.
@@ -185,6 +188,7 @@ impl Caller {
         Ok(Self {
             member: Member {
                 client: record.client,
+                user: User::of(headers)?.0,
                 queue_limit: record.queue_limit,
             },
             role: record.role,
@@ -193,7 +197,7 @@ impl Caller {
         })
     }
 
-    async fn with_token(app: &App, token: &str) -> Result<Self, Problem> {
+    async fn with_token(app: &App, token: &str, headers: &HeaderMap) -> Result<Self, Problem> {
         let tokens = app.tokens.as_ref().ok_or_else(no_credential)?;
         let bearer: Bearer = tokens
             .recognize(token)
@@ -207,9 +211,11 @@ impl Caller {
         let span = tracing::Span::current();
         span.record("subject", bearer.subject);
         span.record("token", bearer.id);
+        User::refuse_beside_token(headers)?;
         Ok(Self {
             member: Member {
                 client: bearer.client,
+                user: bearer.user,
                 queue_limit: None,
             },
             role: bearer.role,

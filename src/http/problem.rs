@@ -120,7 +120,7 @@ impl From<JobError> for Problem {
                 Code::QueueFull,
                 format!("{}. Try again later.", sentence(&error)),
             ),
-            JobError::ClientQueueFull { .. } => Problem::new(
+            JobError::ClientQueueFull { .. } | JobError::UserQueueFull { .. } => Problem::new(
                 Code::ClientQueueFull,
                 format!("{}. Try again when some have ended.", sentence(&error)),
             ),

@@ -134,6 +134,8 @@ document! {
     pub(super) struct ClientLimits as ClientLimits, "ClientLimits" view of (rules: &Rules) {
         /// The most jobs that may wait, those of studies aside.
         jobs_waiting: u32 = rules.client_queue_limit,
+        /// The most of them that one user of it may have.
+        jobs_waiting_of_user: u32 = rules.user_limit(rules.client_queue_limit),
         /// The most designs of studies that may wait.
         designs_waiting: i64 = rules.client_design_limit,
         /// The most memory that one job may take, in MB.

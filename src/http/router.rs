@@ -198,6 +198,7 @@ fn cors(origins: &[HeaderValue]) -> CorsLayer {
             IF_NONE_MATCH,
             name("idempotency-key"),
             name("last-event-id"),
+            name("meshwright-user"),
             name("prefer"),
             name("traceparent"),
             name("x-request-id"),

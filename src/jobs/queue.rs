@@ -34,6 +34,8 @@ pub struct Rules {
     pub queue_limit: u32,
     /// So many of them may be of one client.
     pub client_queue_limit: u32,
+    /// So many of them may be of one user of a client; half of what the client may have, if it is not given.
+    pub user_queue_limit: Option<u32>,
     /// So many designs of studies of one client may wait.
     pub client_design_limit: i64,
     /// A job whose computation is estimated to take more memory is refused, in MB.
@@ -49,10 +51,17 @@ impl Rules {
         Self {
             queue_limit: u32::MAX,
             client_queue_limit: u32::MAX,
+            user_queue_limit: None,
             client_design_limit: i64::MAX,
             job_memory_mb: memory_mb,
             memory_mb,
         }
+    }
+
+    /// So many jobs of one user of a client may wait, of which `client_limit` may.
+    pub fn user_limit(&self, client_limit: u32) -> u32 {
+        let usual = client_limit.div_ceil(2);
+        self.user_queue_limit.unwrap_or(usual).min(client_limit)
     }
 }
 
@@ -61,6 +70,8 @@ impl Rules {
 pub struct Member {
     /// The name that its jobs bear.
     pub client: String,
+    /// The user of the client, if it says. Of what it submits, all of the client see everything.
+    pub user: Option<String>,
     /// So many jobs of it may wait, where that is not the usual number.
     pub queue_limit: Option<u32>,
 }
@@ -70,6 +81,7 @@ impl Member {
     pub fn usual(client: &str) -> Self {
         Self {
             client: client.to_owned(),
+            user: None,
             queue_limit: None,
         }
     }
@@ -135,8 +147,8 @@ impl Jobs {
     ///
     /// # Errors
     ///
-    /// [`JobError::QueueFull`], [`JobError::ClientQueueFull`], [`JobError::TooMuchMemory`], [`JobError::KeyConflict`],
-    /// [`JobError::ShuttingDown`], [`JobError::Unavailable`], [`JobError::Database`].
+    /// [`JobError::QueueFull`], [`JobError::ClientQueueFull`], [`JobError::UserQueueFull`], [`JobError::TooMuchMemory`],
+    /// [`JobError::KeyConflict`], [`JobError::ShuttingDown`], [`JobError::Unavailable`], [`JobError::Database`].
     pub async fn submit(
         &self,
         member: &Member,
@@ -146,9 +158,12 @@ impl Jobs {
         self.refuse_if_failing()?;
         self.check_memory(submission)?;
         let client_limit = member.queue_limit.unwrap_or(self.rules.client_queue_limit);
+        let user_limit = self.rules.user_limit(client_limit);
         let job = NewJob {
             idempotency_key,
             client_limit,
+            submitted_by: member.user.clone(),
+            user_limit,
             ..new_job(submission, &member.client, self.clock.now())
         };
         let (answer, outcome) = oneshot::channel();
@@ -170,6 +185,10 @@ impl Jobs {
             Outcome::ClientQueueFull { waiting } => Err(JobError::ClientQueueFull {
                 waiting,
                 limit: client_limit.into(),
+            }),
+            Outcome::UserQueueFull { waiting } => Err(JobError::UserQueueFull {
+                waiting,
+                limit: user_limit.into(),
             }),
         }
     }
@@ -474,6 +493,8 @@ pub(super) fn new_job(submission: &Submission, client: &str, now: Timestamp) -> 
         study: None,
         keep: Kept::Results,
         client_limit: u32::MAX,
+        submitted_by: None,
+        user_limit: u32::MAX,
     }
 }
 

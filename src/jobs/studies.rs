@@ -34,7 +34,8 @@ impl Jobs {
     ) -> Result<Submitted<StudyRecord>, JobError> {
         self.refuse_if_failing()?;
         let now = self.clock.now();
-        let owner = self.owner(&study, Uuid::now_v7(), member.client.clone(), now);
+        let whose = (member.client.clone(), member.user.clone());
+        let owner = self.owner(&study, Uuid::now_v7(), whose, now);
         let Expanded {
             study,
             rows,
@@ -55,6 +56,7 @@ impl Jobs {
             submitted_at: now,
             idempotency_key,
             client_limit: self.rules.client_design_limit,
+            submitted_by: member.user.clone(),
         };
         let outcome = self.store.begin_study(&new, &rows, self.bounds()).await?;
         let (id, repeated) = match outcome {
@@ -104,7 +106,8 @@ impl Jobs {
             match Study::parse(document.as_bytes(), &Run::unattended()) {
                 Ok(study) => {
                     info!(study = %id, expanded = record.expanded, designs = record.total, "study resumed");
-                    let owner = self.owner(&study, id, client, record.submitted_at);
+                    let whose = (client, record.submitted_by);
+                    let owner = self.owner(&study, id, whose, record.submitted_at);
                     let expanded = usize::try_from(record.expanded).unwrap_or(usize::MAX);
                     self.continue_in_background(study, expanded, owner);
                 }

@@ -295,6 +295,7 @@ mod tests {
     const RULES: Rules = Rules {
         queue_limit: 100,
         client_queue_limit: 100,
+        user_queue_limit: None,
         client_design_limit: 100,
         job_memory_mb: 1000,
         memory_mb: 1000,

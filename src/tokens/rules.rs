@@ -23,6 +23,8 @@ pub struct TokenRules {
     pub algorithms: Vec<Algorithm>,
     /// The claim that names the client.
     pub client: Claim,
+    /// The claim that names the user of the client; a token without it names none.
+    pub user: Option<Claim>,
     /// What makes an operator; without it no token does.
     pub operator: Option<ClaimValue>,
 }

@@ -22,7 +22,10 @@ async fn each_submission_of_a_batch_is_taken_or_refused_by_itself() {
     let answer = send().await;
     assert_eq!(answer.status(), StatusCode::ACCEPTED);
     let answer = answer.document().await;
-    assert_eq!((&answer["taken"], &answer["refused"]), (&json!(2), &json!(1)));
+    assert_eq!(
+        (&answer["taken"], &answer["refused"]),
+        (&json!(2), &json!(1))
+    );
     assert_eq!(answer["items"][1]["problem"]["code"], "teeth_do_not_reach");
     assert_eq!(
         answer["items"][1]["problem"]["errors"][0]["pointer"],
@@ -58,7 +61,10 @@ async fn a_submission_with_a_wrong_field_refuses_itself_alone() {
     assert_eq!(answer.status(), StatusCode::ACCEPTED);
     assert_eq!(answer.headers()["retry-after"], "1");
     let answer = answer.document().await;
-    assert_eq!((&answer["taken"], &answer["refused"]), (&json!(1), &json!(2)));
+    assert_eq!(
+        (&answer["taken"], &answer["refused"]),
+        (&json!(1), &json!(2))
+    );
     let problem = |place: usize| &answer["items"][place]["problem"];
     assert_eq!(problem(0), &Value::Null);
     assert_eq!(problem(1)["code"], "torque_not_positive");

@@ -8,8 +8,9 @@ use uuid::Uuid;
 use super::documents::forget_document;
 use super::endings::{note_study, tell_end};
 use super::rows::job_columns;
+use super::shares::{self, LaneOf};
 use super::statement::query_as;
-use super::{Job, Store, StoreError, dialect, micros, shares};
+use super::{Job, Store, StoreError, dialect, micros};
 
 /// Which running jobs have lost their worker.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,7 +73,7 @@ impl Store {
             .fetch_one(&mut *write)
             .await?;
             if job.attempts_counted < i64::from(attempts_limit) {
-                to_activate.insert((job.client, job.study));
+                to_activate.insert(LaneOf::of(&job));
                 continue;
             }
             let job: Job = query_as(concat!(

@@ -44,6 +44,8 @@ pub struct StudyRecord {
     pub last_end: Option<Timestamp>,
     /// How far a search has come, JSON; none for other studies.
     pub search: Option<String>,
+    /// The user of the client who submitted it, if the client says.
+    pub submitted_by: Option<String>,
 }
 
 impl StudyRecord {
@@ -110,6 +112,7 @@ mod tests {
             cancelled_at: None,
             last_end: None,
             search: None,
+            submitted_by: None,
         };
         let status = |accepted, running, successful, failed, dismissed| {
             StudyRecord {

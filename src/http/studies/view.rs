@@ -35,6 +35,8 @@ document! {
         name: Option<String> = study.name.clone(),
         /// The tags of the study.
         tags: Vec<String> = study.tags.clone(),
+        /// The user of the client who submitted it (`Meshwright-User`, or the claim of a token); null where the client names none.
+        submitted_by: Option<String> = study.submitted_by.clone(),
         /// When the study was submitted (UTC).
         submitted_at: Timestamp = study.submitted_at,
         /// When its last design ended, or it was cancelled (UTC); null until then.

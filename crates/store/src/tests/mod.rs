@@ -154,6 +154,8 @@ fn new(second: i64, input: &str) -> NewJob {
         study: None,
         keep: Kept::Results,
         client_limit: u32::MAX,
+        submitted_by: None,
+        user_limit: u32::MAX,
     }
 }
 

@@ -248,6 +248,7 @@ fn study(total: u64) -> NewStudy {
         submitted_at: at(1),
         idempotency_key: Some("k".to_owned()),
         client_limit: 100,
+        submitted_by: None,
     }
 }
 
