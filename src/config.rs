@@ -230,6 +230,10 @@ pub struct OidcOptions {
     #[arg(long, value_name = "CLAIM=VALUE")]
     pub oidc_operator_claim: Option<ClaimValue>,
 
+    /// Claim that makes an administrator, in the same way [default: no token does].
+    #[arg(long, value_name = "CLAIM=VALUE")]
+    pub oidc_administrator_claim: Option<ClaimValue>,
+
     /// Algorithms that its tokens may be signed with, separated by commas.
     #[arg(long, value_delimiter = ',', default_value = "RS256", value_parser = tokens::algorithm, value_name = "NAME")]
     pub oidc_algorithm: Vec<Algorithm>,
@@ -245,6 +249,7 @@ impl OidcOptions {
             client: self.oidc_client_claim.clone(),
             user: self.oidc_user_claim.clone(),
             operator: self.oidc_operator_claim.clone(),
+            administrator: self.oidc_administrator_claim.clone(),
         })
     }
 }

@@ -25,6 +25,7 @@ const ANONYMOUS: &str = "anonymous";
 pub(super) struct Client {
     pub(super) app: App,
     pub(super) member: Member,
+    pub(super) role: Role,
     pub(super) pass: Pass,
 }
 
@@ -88,6 +89,13 @@ impl Onlooker {
 /// The same for the numbers of the whole service.
 pub(super) struct Operator;
 
+/// The same for who uses the service.
+pub(super) struct Administrator {
+    pub(super) app: App,
+    /// The name of the client that it is.
+    pub(super) name: String,
+}
+
 impl FromRequestParts<App> for Client {
     type Rejection = Refusal;
 
@@ -100,6 +108,7 @@ impl FromRequestParts<App> for Client {
         Ok(Self {
             app: app.clone(),
             member: caller.member,
+            role: caller.role,
             pass: caller.pass,
         })
     }
@@ -120,8 +129,25 @@ impl FromRequestParts<App> for Operator {
     async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Refusal> {
         match Caller::of(parts, app).await?.role {
             Role::Operator => Ok(Self),
-            Role::Client | Role::Reader => {
+            Role::Client | Role::Reader | Role::Administrator => {
                 Err(forbidden("The numbers of the service are for keys of its operator.").into())
+            }
+        }
+    }
+}
+
+impl FromRequestParts<App> for Administrator {
+    type Rejection = Refusal;
+
+    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Refusal> {
+        let caller = Caller::of(parts, app).await?;
+        match caller.role {
+            Role::Administrator => Ok(Self {
+                app: app.clone(),
+                name: caller.member.client,
+            }),
+            Role::Client | Role::Reader | Role::Operator => {
+                Err(forbidden("Who uses the service is for keys of its administrator.").into())
             }
         }
     }

@@ -42,6 +42,7 @@ mod static_files;
 mod studies;
 mod submit;
 mod tables;
+mod usage;
 mod view;
 mod web;
 mod webhooks;

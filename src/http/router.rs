@@ -30,7 +30,7 @@ use super::problem::Refusal;
 use super::{
     access, batch, contact_pattern, docs, draw, events, fields, guides, headers, health, jobs,
     memory, metrics, outline, packing, previews, problem, problem_pages, reference, results, rexs,
-    studies, submit, tables, web, webhooks,
+    studies, submit, tables, usage, web, webhooks,
 };
 
 /// A request has its answer's head within this time. Longer than the longest wait that a client may ask for.
@@ -146,6 +146,7 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(health::live))
         .routes(routes!(health::ready))
         .routes(routes!(metrics::metrics))
+        .routes(routes!(usage::usage))
         .routes(routes!(reference::validate))
         .routes(routes!(outline::outline))
         .routes(routes!(draw::draw))

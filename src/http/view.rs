@@ -46,6 +46,9 @@ document! {
         /// had by submitting the design alone.
         #[schema(example = "statistics")]
         keep?: Kept = Some(shown_kept(job.keep)).filter(|keep| *keep != Kept::Results),
+        /// `administrator` where an administrator of the service dismissed the job; absent elsewhere.
+        #[schema(example = "administrator")]
+        dismissed_by?: &'a str = job.dismissed_by.as_deref(),
         /// Of a failed job: why.
         #[schema(value_type = Option<meshwright_wire::Problem>)]
         problem?: Value = job

@@ -21,9 +21,9 @@ mod worker;
 mod worker_context;
 
 pub use meshwright_store::{
-    BackupError, Cursor, Damaged, DatabaseAddress, Depth, Document, DocumentLine, EventKind,
-    Filter, Job, Kept, KeyRecord, Membership, Migrate, NoCursor, OpenError, Progress, Removed,
-    Role, Space, Span, Status, Store, StoreError, StudyFilter, StudyRecord,
+    BackupError, By, ClientUsage, Cursor, Damaged, DatabaseAddress, Depth, Document, DocumentLine,
+    EventKind, Filter, Job, Kept, KeyRecord, Membership, Migrate, NoCursor, OpenError, Progress,
+    Removed, Role, Space, Span, Status, Store, StoreError, StudyFilter, StudyRecord, UserUsage,
 };
 
 pub use clock::Clock;

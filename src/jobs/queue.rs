@@ -7,7 +7,8 @@ use jiff::Timestamp;
 use meshwright_connections::Budget;
 use meshwright_engine::analysis::Method;
 use meshwright_store::{
-    Depth, Document, Filter, Job, Kept, NewJob, Outcome, QueueBounds, Status, Store, StoreError,
+    By, ClientUsage, Depth, Document, Filter, Job, Kept, NewJob, Outcome, QueueBounds, Status,
+    Store, StoreError,
 };
 use meshwright_wire::{DOCUMENT_VERSION, SOLVER_VERSION, Submission};
 use tokio::sync::{Notify, mpsc, oneshot};
@@ -346,6 +347,15 @@ impl Jobs {
         Ok(self.store.depth().await?)
     }
 
+    /// Who uses the service: at most `limit` clients behind the one named `after`.
+    ///
+    /// # Errors
+    ///
+    /// [`JobError::Unavailable`], [`JobError::Database`].
+    pub async fn usage(&self, after: &str, limit: u32) -> Result<Vec<ClientUsage>, JobError> {
+        Ok(self.store.usage(after, limit, self.clock.now()).await?)
+    }
+
     /// Whether the database takes writes: what it said last, or what it says now.
     ///
     /// # Errors
@@ -444,9 +454,14 @@ impl Resource for Job {
         Ok(Listed::first(found.collect(), limit, |job| job.sequence))
     }
 
-    async fn cancel(jobs: &Jobs, client: &str, id: Uuid) -> Result<Self, JobError> {
+    async fn owner(jobs: &Jobs, id: Uuid) -> Result<Option<String>, JobError> {
+        Ok(jobs.store.owner_of_job(id).await?)
+    }
+
+    async fn cancel(jobs: &Jobs, client: &str, id: Uuid, by: By) -> Result<Self, JobError> {
         let running = jobs.live.running(id);
-        if let Some(job) = jobs.store.cancel(client, id, jobs.clock.now()).await? {
+        let cancelled = jobs.store.cancel(client, id, by, jobs.clock.now());
+        if let Some(job) = cancelled.await? {
             // If this future is dropped before the stop, the worker's next report finds out.
             if let Some(running) = running.or_else(|| jobs.live.running(id)) {
                 running.stop();
@@ -462,8 +477,10 @@ impl Resource for Job {
         }
     }
 
-    async fn delete(jobs: &Jobs, client: &str, id: Uuid) -> Result<(), JobError> {
-        if jobs.store.delete(client, id).await? {
+    async fn delete(jobs: &Jobs, client: &str, id: Uuid, by: By) -> Result<(), JobError> {
+        let now = jobs.clock.now();
+        if jobs.store.delete(client, id, by, now).await? {
+            jobs.live.mail.notify_one();
             jobs.live.changed(id);
             return Ok(());
         }

@@ -221,7 +221,14 @@ impl TokenRules {
                 "The claim {name:?} of the token has to name the user in 1 to 128 visible ASCII characters."
             )));
         }
-        let is_operator = |operator: &ClaimValue| operator.is_in(&claims);
+        let is_in = |role: &Option<ClaimValue>| role.as_ref().is_some_and(|it| it.is_in(&claims));
+        let role = if is_in(&self.administrator) {
+            Role::Administrator
+        } else if is_in(&self.operator) {
+            Role::Operator
+        } else {
+            Role::Client
+        };
         let logged = |name: &str| {
             let text = claims.get(name)?.as_str()?;
             Some(text.chars().take(LONGEST_LOGGED).collect())
@@ -229,10 +236,7 @@ impl TokenRules {
         Ok(Bearer {
             client: client.to_owned(),
             user: user.map(|(_, user)| user.to_owned()),
-            role: match self.operator.as_ref().is_some_and(is_operator) {
-                true => Role::Operator,
-                false => Role::Client,
-            },
+            role,
             until,
             subject: logged("sub"),
             id: logged("jti"),
@@ -271,6 +275,7 @@ mod tests {
             client: "sub".parse().unwrap(),
             user: None,
             operator: None,
+            administrator: None,
         }
     }
 

@@ -27,6 +27,8 @@ pub struct TokenRules {
     pub user: Option<Claim>,
     /// What makes an operator; without it no token does.
     pub operator: Option<ClaimValue>,
+    /// What makes an administrator; without it no token does. Of a token that makes both it is this.
+    pub administrator: Option<ClaimValue>,
 }
 
 /// The address of an identity provider, as its tokens have it.

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use crate::bench::{Asked, Bench, problem, submission};
 
 /// Makes a key in the database of a service that runs, as `meshwright keys create` does.
-async fn make_key(
+pub(crate) async fn make_key(
     bench: &Bench,
     client: &str,
     role: Role,

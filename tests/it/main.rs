@@ -40,6 +40,7 @@ mod either_store {
     mod studies;
     mod tables;
     mod time;
+    mod usage;
     mod users;
     pub(crate) mod webhooks;
 }

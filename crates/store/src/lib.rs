@@ -9,7 +9,7 @@
 //! - the transitions of a job: `submit`, `claim` in its turn (`shares`), `attempt`, and other ends (`end`); those of a study (`studies`);
 //! - what is read: lists, documents, tables; what other processes report (`news`);
 //! - keys, [`webhooks`], and the messages to them, which are written with what they report (`outbox`);
-//! - for operators: retention and backup.
+//! - for operators: who uses the service (`usage`), retention and backup.
 //!
 //! Each transition is one transaction that names the state it leaves; when the job is not in that state the transition does
 //! not happen, and says so. Time comes in as an argument.
@@ -53,6 +53,7 @@ mod study_tables;
 mod submit;
 #[cfg(test)]
 mod tests;
+mod usage;
 pub mod webhooks;
 mod write;
 
@@ -79,11 +80,12 @@ pub use news::{Listener, Notice};
 pub use open::{Migrate, OpenError};
 pub use outbox::EventKind;
 pub use retention::{Removed, Space};
-pub use state::{Kept, Status};
+pub use state::{By, Kept, Status};
 pub use studies::{NewRow, NewStudy, SearchStep, StudyOutcome};
 pub use study::StudyRecord;
 pub use study_tables::{DocumentLine, StoredRow};
 pub use submit::{NewJob, Outcome, QueueBounds};
+pub use usage::{ClientUsage, UserUsage};
 
 /// The database.
 ///

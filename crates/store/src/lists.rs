@@ -79,6 +79,18 @@ impl Store {
         Ok(job)
     }
 
+    /// The client that submitted a job.
+    pub async fn owner_of_job(&self, id: Uuid) -> Result<Option<String>, StoreError> {
+        let owner = query_scalar("select client from jobs where id = $1").bind(id.to_string());
+        Ok(owner.fetch_optional(&self.readers).await?)
+    }
+
+    /// The client that submitted a study.
+    pub async fn owner_of_study(&self, id: Uuid) -> Result<Option<String>, StoreError> {
+        let owner = query_scalar("select client from studies where id = $1").bind(id.to_string());
+        Ok(owner.fetch_optional(&self.readers).await?)
+    }
+
     /// The submission of a job, JSON.
     pub async fn submission(
         &self,

@@ -57,6 +57,7 @@ tuple!(A 0_usize);
 tuple!(A 0_usize, B 1_usize);
 tuple!(A 0_usize, B 1_usize, C 2_usize);
 tuple!(A 0_usize, B 1_usize, C 2_usize, D 3_usize);
+tuple!(A 0_usize, B 1_usize, C 2_usize, D 3_usize, E 4_usize);
 tuple!(A 0_usize, B 1_usize, C 2_usize, D 3_usize, E 4_usize, F 5_usize);
 tuple!(A 0_usize, B 1_usize, C 2_usize, D 3_usize, E 4_usize, F 5_usize, G 6_usize);
 
@@ -65,7 +66,7 @@ tuple!(A 0_usize, B 1_usize, C 2_usize, D 3_usize, E 4_usize, F 5_usize, G 6_usi
 macro_rules! job_columns {
     () => {
         "id, sequence, client, method, tags, status, attempt, returned, positions_done, positions_total, submitted_at, started_at, \
-         finished_at, elapsed, problem, keep, document, solver_version, same_as, study, submitted_by"
+         finished_at, elapsed, problem, keep, document, solver_version, same_as, study, submitted_by, dismissed_by"
     };
 }
 
@@ -73,7 +74,7 @@ macro_rules! job_columns {
 macro_rules! study_columns {
     () => {
         "id, sequence, name, tags, gear, total, expanded, unbuildable, accepted, running, successful, failed, dismissed, version, \
-         submitted_at, last_end, cancelled_at, search, submitted_by"
+         submitted_at, last_end, cancelled_at, search, submitted_by, dismissed_by"
     };
 }
 
@@ -127,6 +128,7 @@ impl Record for Job {
             same_as: optional_uuid(row, "same_as")?,
             study: optional_uuid(row, "study")?,
             submitted_by: row.get("submitted_by")?,
+            dismissed_by: row.get("dismissed_by")?,
         })
     }
 }
@@ -153,6 +155,7 @@ impl Record for StudyRecord {
             cancelled_at: optional_instant(row, "cancelled_at")?,
             search: row.get("search")?,
             submitted_by: row.get("submitted_by")?,
+            dismissed_by: row.get("dismissed_by")?,
         })
     }
 }

@@ -9,10 +9,11 @@ use uuid::Uuid;
 
 use super::documents::{checksum, forget_document};
 use super::endings::note_study;
+use super::outbox::{Event, EventKind, tell};
 use super::shares::{self, LaneOf};
 use super::statement::{Connection, list, query, query_as, query_scalar};
 use super::submit::{QueueBounds, find_known, insert_jobs, insert_submissions, words};
-use super::{NewJob, Status, Store, StoreError, column, dialect, micros};
+use super::{By, NewJob, Status, Store, StoreError, column, dialect, micros};
 
 /// So many jobs of studies may wait; further studies are refused.
 const MOST_WAITING_DESIGNS: i64 = 250_000;
@@ -216,16 +217,18 @@ impl Store {
         &self,
         client: &str,
         id: Uuid,
+        by: By,
         now: Timestamp,
     ) -> Result<bool, StoreError> {
         let mut write = self.begin().await?;
         let cancelled = query(
-            "update studies set cancelled_at = max($3, submitted_at), version = version + 1
+            "update studies set cancelled_at = max($3, submitted_at), version = version + 1, dismissed_by = $4
              where id = $1 and client = $2 and cancelled_at is null and (expanded < total or accepted + running > 0)",
         )
         .bind(id.to_string())
         .bind(client)
         .bind(now.as_microsecond())
+        .bind(by.word())
         .execute(&mut *write)
         .await?;
         if cancelled > 0 {
@@ -275,15 +278,34 @@ impl Store {
 
     /// Ended -> nothing, for a study, its jobs, and their results unless another job has the same. False if the client
     /// has no such study, or it has not ended.
-    pub async fn delete_study(&self, client: &str, id: Uuid) -> Result<bool, StoreError> {
+    pub async fn delete_study(
+        &self,
+        client: &str,
+        id: Uuid,
+        by: By,
+        now: Timestamp,
+    ) -> Result<bool, StoreError> {
         match self.find_study(client, id).await? {
-            Some(_) => self.delete_ended_study(id).await,
+            Some(study) => {
+                let event = Event::of_study(EventKind::StudyDeleted, &study);
+                let event = (by == By::Administrator).then_some((client, event, now));
+                self.delete_and_tell(id, event).await
+            }
             None => Ok(false),
         }
     }
 
     /// The same, whoever the client is. Commits some jobs at a time, so that others may write meanwhile.
     pub async fn delete_ended_study(&self, id: Uuid) -> Result<bool, StoreError> {
+        self.delete_and_tell(id, None).await
+    }
+
+    /// The same. What happened is told to its client with the last commit.
+    async fn delete_and_tell(
+        &self,
+        id: Uuid,
+        mut event: Option<(&str, Event<'_>, Timestamp)>,
+    ) -> Result<bool, StoreError> {
         loop {
             let mut write = self.begin().await?;
             let ended = query(
@@ -318,6 +340,9 @@ impl Store {
                     .bind(id.to_string())
                     .execute(&mut *write)
                     .await?;
+                if let Some((client, event, now)) = event.take() {
+                    tell(&mut write, client, event, now).await?;
+                }
             }
             write.commit().await?;
             if last {

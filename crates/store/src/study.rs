@@ -46,6 +46,8 @@ pub struct StudyRecord {
     pub search: Option<String>,
     /// The user of the client who submitted it, if the client says.
     pub submitted_by: Option<String>,
+    /// Who dismissed it, in a word, if that was not its client.
+    pub dismissed_by: Option<String>,
 }
 
 impl StudyRecord {
@@ -113,6 +115,7 @@ mod tests {
             last_end: None,
             search: None,
             submitted_by: None,
+            dismissed_by: None,
         };
         let status = |accepted, running, successful, failed, dismissed| {
             StudyRecord {

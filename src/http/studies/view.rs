@@ -41,6 +41,9 @@ document! {
         submitted_at: Timestamp = study.submitted_at,
         /// When its last design ended, or it was cancelled (UTC); null until then.
         finished_at: Option<Timestamp> = study.finished_at(),
+        /// `administrator` where an administrator of the service dismissed the study; absent elsewhere.
+        #[schema(example = "administrator")]
+        dismissed_by?: String = study.dismissed_by.clone(),
         /// Of a failed study: why.
         #[schema(value_type = Option<Problem>)]
         problem?: Value = why_failed(study, edge),

@@ -15,7 +15,7 @@ use uuid::Uuid;
 
 use super::statement::{Pool, query, query_as, query_scalar};
 use super::{
-    Came, Claim, DatabaseAddress, End, Ended, Job, Kept, Lease, Lost, NewJob, Outcome, Packed,
+    By, Came, Claim, DatabaseAddress, End, Ended, Job, Kept, Lease, Lost, NewJob, Outcome, Packed,
     Progress, QueueBounds, Reader, Status, Store, StoreError,
 };
 

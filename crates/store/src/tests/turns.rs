@@ -416,7 +416,10 @@ async fn what_is_written_together_stands_or_falls_each_by_its_own_claim() {
     let mut claims: Vec<Claim> = claimed.started.iter().map(|it| of(&it.job)).collect();
     assert_eq!(claims.len(), 5);
     // One is cancelled; one has lost its lease and is run again; one could not be computed.
-    let cancelled = store.cancel(CLIENT, claims[1].id, at(3)).await.unwrap();
+    let cancelled = store
+        .cancel(CLIENT, claims[1].id, By::Owner, at(3))
+        .await
+        .unwrap();
     assert!(cancelled.is_some());
     assert!(store.release(claims[2]).await.unwrap());
     let again = claim(&store, 3).await;
@@ -659,7 +662,12 @@ async fn a_study_that_is_cancelled_ends_with_the_last_of_its_jobs() {
     let (store, _folder) = store().await;
     let id = study(&store, CLIENT, 1200).await;
     let running = claim(&store, 2).await;
-    assert!(store.cancel_study(CLIENT, id, at(3)).await.unwrap());
+    assert!(
+        store
+            .cancel_study(CLIENT, id, By::Owner, at(3))
+            .await
+            .unwrap()
+    );
     assert_eq!(next(&store, 3).await, None, "no further one is begun");
     // What ends meanwhile keeps its results, and does not end the study; another process finds it.
     assert!(store.ends(running, 4).await);
@@ -682,5 +690,10 @@ async fn a_study_that_is_cancelled_ends_with_the_last_of_its_jobs() {
         (1, 1199, 0)
     );
     assert_eq!(study.finished_at(), Some(at(3)));
-    assert!(!store.cancel_study(CLIENT, id, at(6)).await.unwrap());
+    assert!(
+        !store
+            .cancel_study(CLIENT, id, By::Owner, at(6))
+            .await
+            .unwrap()
+    );
 }
