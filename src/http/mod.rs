@@ -38,6 +38,7 @@ mod resource;
 mod results;
 mod rexs;
 mod router;
+mod shares;
 mod static_files;
 mod studies;
 mod submit;

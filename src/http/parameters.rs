@@ -156,6 +156,7 @@ ids! {
     JobId, JobNotFound: "There is no job of this id.";
     StudyId, StudyNotFound: "There is no study of this id.";
     WebhookId, WebhookNotFound: "There is no webhook of this id.";
+    ShareId, NotFound: "There is no link of this id.";
 }
 
 /// A parameter or header that is not understood.

@@ -22,7 +22,7 @@ use super::client::Onlooker;
 use super::problem::Refusal;
 use super::static_files::StaticFile;
 use crate::compute::PreviewRules;
-use crate::jobs::Rules;
+use crate::jobs::{LONGEST_LINK_DAYS, MOST_LINKS, Rules};
 use crate::webhooks::most_webhooks;
 
 /// Check a submission
@@ -144,6 +144,10 @@ document! {
         batch: usize = MOST_IN_BATCH,
         /// The most webhooks.
         webhooks: i64 = most_webhooks(),
+        /// The most links to the results of one job.
+        shares_of_job: i64 = MOST_LINKS,
+        /// The longest time that a link to results is open, in days.
+        share_days: i64 = LONGEST_LINK_DAYS,
     }
 }
 

@@ -30,8 +30,9 @@ use super::problem::Refusal;
 use super::{
     access, batch, contact_pattern, docs, draw, events, fields, guides, headers, health, jobs,
     memory, metrics, outline, packing, previews, problem, problem_pages, reference, results, rexs,
-    studies, submit, tables, usage, web, webhooks,
+    shares, studies, submit, tables, usage, web, webhooks,
 };
+use crate::jobs::without_secrets;
 
 /// A request has its answer's head within this time. Longer than the longest wait that a client may ask for.
 const REQUEST_TIMEOUT: Duration = Duration::from_secs(90);
@@ -79,6 +80,7 @@ pub fn router(app: App) -> Router {
         .merge(web::routes_of_page())
         .merge(guides::routes_of_guides())
         .route("/v1/studies/{id}/results.csv", get(studies::old_csv))
+        .route("/shared/{secret}", get(shares::page))
         .fallback(nothing_here)
         .method_not_allowed_fallback(not_that_method)
         .layer(layers)
@@ -125,6 +127,10 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(jobs::show, jobs::delete))
         .routes(routes!(jobs::cancel))
         .routes(routes!(results::results))
+        .routes(routes!(shares::make, shares::list))
+        .routes(routes!(shares::end))
+        .routes(routes!(shares::results))
+        .routes(routes!(shares::table))
         .routes(routes!(events::events))
         .routes(routes!(previews::preview))
         .routes(routes!(studies::list))
@@ -221,7 +227,7 @@ fn cors(origins: &[HeaderValue]) -> CorsLayer {
         .max_age(Duration::from_secs(3600))
 }
 
-/// What stands in the log beside a request: never its query or headers, which may hold secrets; of a key its
+/// What stands in the log beside a request: never its query or headers, which may hold secrets, nor the secret of a link; of a key its
 /// public part, of a token what its issuer calls it and its bearer.
 fn span(request: &Request) -> tracing::Span {
     let id = request
@@ -234,7 +240,7 @@ fn span(request: &Request) -> tracing::Span {
     tracing::info_span!(
         "request",
         method = metrics::known(request.method()),
-        path = request.uri().path(),
+        path = without_secrets(request.uri().path()),
         request_id = id,
         trace_id = trace,
         key = Empty,

@@ -22,6 +22,7 @@ mod either_store {
     mod events;
     mod growth;
     mod life;
+    mod links;
     mod lists;
     mod members;
     mod page;

@@ -124,6 +124,8 @@ pairs! {
     lock_studies = LOCK_STUDIES;
     /// The same of webhooks.
     lock_webhooks = LOCK_WEBHOOKS;
+    /// The same of links.
+    lock_links = LOCK_LINKS;
     /// From here to its end, no other transaction decides whose turn it is.
     lock_turn = LOCK_TURN;
     /// From here to its end, no other transaction changes the shares of the client $1.

@@ -44,6 +44,9 @@ pub(crate) const LOCK_STUDIES: Words =
 pub(crate) const LOCK_WEBHOOKS: Words =
     Some("select 1 from pg_advisory_xact_lock(hashtext('meshwright'), 3)");
 
+pub(crate) const LOCK_LINKS: Words =
+    Some("select 1 from pg_advisory_xact_lock(hashtext('meshwright'), 6)");
+
 // Whose turn it is follows from who was served before. What is claimed is skipped by those who would wait for it.
 pub(crate) const LOCK_TURN: Words =
     Some("select 1 from pg_advisory_xact_lock(hashtext('meshwright'), 4)");
