@@ -178,6 +178,10 @@ pub struct AdmissionOptions {
     #[arg(long, value_name = "NUMBER")]
     pub client_queue_limit: Option<u32>,
 
+    /// Jobs of one user of a client (Meshwright-User) that may wait, of those that the client may have [default: half of them].
+    #[arg(long, value_name = "NUMBER")]
+    pub user_queue_limit: Option<u32>,
+
     /// Designs of studies of one client that may wait.
     #[arg(long, default_value_t = 100_000, value_name = "NUMBER",
           value_parser = value_parser!(i64).range(1..))]
@@ -218,9 +222,17 @@ pub struct OidcOptions {
     #[arg(long, default_value = "sub", value_name = "CLAIM")]
     pub oidc_client_claim: Claim,
 
+    /// Claim that names the user of the client, as the header Meshwright-User does beside a key [default: none].
+    #[arg(long, value_name = "CLAIM")]
+    pub oidc_user_claim: Option<Claim>,
+
     /// Claim that makes an operator, as the word or in a list: roles=admin, /realm_access/roles=admin [default: no token does].
     #[arg(long, value_name = "CLAIM=VALUE")]
     pub oidc_operator_claim: Option<ClaimValue>,
+
+    /// Claim that makes an administrator, in the same way [default: no token does].
+    #[arg(long, value_name = "CLAIM=VALUE")]
+    pub oidc_administrator_claim: Option<ClaimValue>,
 
     /// Algorithms that its tokens may be signed with, separated by commas.
     #[arg(long, value_delimiter = ',', default_value = "RS256", value_parser = tokens::algorithm, value_name = "NAME")]
@@ -235,7 +247,9 @@ impl OidcOptions {
             audience: self.oidc_audience.clone()?,
             algorithms: self.oidc_algorithm.clone(),
             client: self.oidc_client_claim.clone(),
+            user: self.oidc_user_claim.clone(),
             operator: self.oidc_operator_claim.clone(),
+            administrator: self.oidc_administrator_claim.clone(),
         })
     }
 }
@@ -297,6 +311,7 @@ impl Config {
                 .admission
                 .client_queue_limit
                 .unwrap_or(self.queue_limit.div_ceil(2)),
+            user_queue_limit: self.admission.user_queue_limit,
             client_design_limit: self.admission.client_design_limit,
             // What is larger than all that there is could only be computed by taking more.
             job_memory_mb: self.job_memory_mb.min(self.memory().computing),

@@ -110,6 +110,11 @@ pub fn is_client_name(text: &str) -> bool {
     (1..=100).contains(&text.chars().count()) && !text.chars().any(char::is_control)
 }
 
+/// Whether a user of a client may be called so: 1 to 128 visible ASCII characters.
+pub fn is_user_name(text: &str) -> bool {
+    (1..=128).contains(&text.len()) && text.bytes().all(|byte| byte.is_ascii_graphic())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -76,6 +76,10 @@ fn role() -> impl TypedValueParser<Value = Role> {
             Role::Operator,
             "As client, and read the numbers of the whole service",
         ),
+        (
+            Role::Administrator,
+            "As client, see who uses the service, and cancel and delete any job or study",
+        ),
     ];
     let words = roles.map(|(role, help)| PossibleValue::new(role.word()).help(help));
     PossibleValuesParser::new(words).map(|word| Role::of_word(&word))

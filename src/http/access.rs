@@ -18,12 +18,19 @@ use meshwright_connections::{
 };
 use meshwright_wire::{Code, Problem};
 use tokio::time::Instant;
+use uuid::Uuid;
 
 use super::credential::{Credential, bearer};
 use super::problem::{Refusal, overloaded};
 
 /// A client may send so many times its requests of a second at once.
 const BURST_SECONDS: NonZeroU32 = NonZeroU32::new(2).unwrap();
+
+/// Requests a second for what one link opens. A page takes five.
+const REQUESTS_OF_SHARE: NonZeroU32 = NonZeroU32::new(20).unwrap();
+
+/// Requests a second for what links open, of one address.
+const LOOKS_AT_SHARES: NonZeroU32 = NonZeroU32::new(100).unwrap();
 
 /// Whether requests need keys.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
@@ -69,6 +76,9 @@ pub struct Access {
     rates: Rates<(String, NonZeroU32)>,
     /// Requests that wait for something to happen.
     waiting: Budget,
+    /// Requests for what links open, by link, and by the address that they come from.
+    shares: Rates<Uuid>,
+    looks_at_shares: Rates<Address>,
     /// Whether a key was seen to be there: one that was ever made never vanishes.
     has_keys: AtomicBool,
     unauthenticated: Option<Unauthenticated>,
@@ -86,6 +96,8 @@ impl Access {
             waiting: Budget::limited(rules.waiting, rules.waiting_per_client),
             rules,
             rates: Rates::default(),
+            shares: Rates::default(),
+            looks_at_shares: Rates::default(),
             has_keys: AtomicBool::new(false),
         }
     }
@@ -189,6 +201,28 @@ impl Access {
         let burst = quota.saturating_mul(BURST_SECONDS).get();
         let key = (client.to_owned(), quota);
         self.rates.count(key, quota, burst, Instant::now())
+    }
+
+    /// Counts a request for what a link opens, whether there is such a link or not.
+    ///
+    /// # Errors
+    ///
+    /// The time after which the address may send the next.
+    pub(super) fn count_looks_at_shares(&self, address: Address) -> Result<(), Duration> {
+        let burst = LOOKS_AT_SHARES.get() * BURST_SECONDS.get();
+        self.looks_at_shares
+            .count(address, LOOKS_AT_SHARES, burst, Instant::now())
+    }
+
+    /// Counts a request for what this link opens.
+    ///
+    /// # Errors
+    ///
+    /// The time after which the next is answered.
+    pub(super) fn count_share(&self, link: Uuid) -> Result<(), Duration> {
+        let burst = REQUESTS_OF_SHARE.get() * BURST_SECONDS.get();
+        self.shares
+            .count(link, REQUESTS_OF_SHARE, burst, Instant::now())
     }
 
     /// A place among the requests that wait, kept until it is dropped; `None` if there is none.

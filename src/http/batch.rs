@@ -2,6 +2,7 @@
 
 use axum::Json;
 use axum::http::StatusCode;
+use axum::http::header::{HeaderValue, RETRY_AFTER};
 use axum::response::{IntoResponse, Response};
 use futures_util::future::join_all;
 use meshwright_wire::{Code, FieldError, Problem, Submission};
@@ -13,8 +14,8 @@ use super::blocking::blocking;
 use super::body::JsonBody;
 use super::client::Client;
 use super::headers::Made;
-use super::parameters::IdempotencyKey;
-use super::problem::Refusal;
+use super::parameters::{IdempotencyKey, User};
+use super::problem::{Refusal, retry_after};
 use super::view::{JobView, with_public_type};
 use crate::jobs::{Job, Submitted};
 
@@ -41,6 +42,8 @@ pub(super) struct Batch<'a> {
 pub(super) struct BatchAnswer<'a> {
     /// Jobs that were taken, those of an earlier batch with the same key among them.
     taken: usize,
+    /// Submissions that were refused.
+    refused: usize,
     /// One item for each submission.
     items: Vec<BatchItem<'a>>,
 }
@@ -58,18 +61,22 @@ pub(super) struct BatchItem<'a> {
 
 /// Submit a batch of jobs
 ///
-/// Up to 100 submissions at once. A batch with a field that no submission may have is refused as a whole, with its place.
-/// Otherwise each submission is taken or refused by itself, as if it had been sent alone: teeth that do not reach each other,
-/// a queue that is full. The answer says what came of each, in their order. With an `Idempotency-Key` the batch may be repeated: what was taken is not taken twice.
+/// Up to 100 submissions at once. Each is taken or refused by itself, as if it had been sent alone. The answer has an item for each, in their
+/// order. A batch of which nothing is taken is refused as a whole: as a single job where the queue has no room or nothing can be stored, with
+/// `Retry-After`, and else with the errors of its submissions. With an `Idempotency-Key` the batch may be repeated: what was taken is not
+/// taken twice.
 #[utoipa::path(
     post, path = "/v1/jobs/batch", tag = "Jobs", operation_id = "submit_batch",
     request_body(content = Batch, content_type = "application/json", description = "The submissions."),
-    params(IdempotencyKey),
+    params(IdempotencyKey, User),
     responses(
-        (status = 202, description = "What came of each submission. None may have been taken.", body = BatchAnswer),
+        (status = 202, description = "At least one submission is taken.", body = BatchAnswer, headers(
+            ("Retry-After" = u32, description = "Seconds after which it is worth looking at the jobs, or sending again those submissions that found no room."),
+        )),
         JsonBody<4>,
-        (status = 422, description = "The body is no batch, has more than 100 submissions, or fields that no submission may have; `errors` says which."),
-        (status = 503, description = "Too many batches come at once. Try again after `Retry-After` seconds."),
+        (status = 422, description = "The body is no batch, has more than 100 submissions, or none that can be computed; `errors` says which field is why."),
+        (status = 429, description = "Nothing was taken: more jobs of this client wait than may. Try again after `Retry-After` seconds."),
+        (status = 503, description = "Nothing was taken: the queue is full, nothing can be stored, or too many batches come at once. Try again after `Retry-After` seconds."),
     ),
 )]
 pub(super) async fn submit(
@@ -93,29 +100,67 @@ pub(super) async fn submit(
     });
     // Submissions that arrive together share a commit.
     let outcomes: Vec<Result<Submitted<Job>, Problem>> = join_all(jobs).await;
+    if outcomes.iter().all(Result::is_err) {
+        let problems: Vec<Problem> = outcomes.into_iter().filter_map(Result::err).collect();
+        return Err(nothing_taken(&problems).into());
+    }
 
-    let item = |outcome: &'_ Result<Submitted<Job>, Problem>| match outcome {
-        Ok(submitted) => (Some(submitted.record.clone()), None),
-        Err(problem) => (None, Some(problem.clone())),
-    };
-    let outcomes: Vec<_> = outcomes.iter().map(item).collect();
+    let edge = &client.app.edge;
     let items: Vec<BatchItem<'_>> = outcomes
         .iter()
-        .map(|(job, problem)| BatchItem {
-            job: job.as_ref().map(|job| JobView::of(job, &client.app.edge)),
-            problem: problem.as_ref().map(|problem| {
+        .map(|outcome| BatchItem {
+            job: outcome
+                .as_ref()
+                .ok()
+                .map(|submitted| JobView::of(&submitted.record, edge)),
+            problem: outcome.as_ref().err().map(|problem| {
                 let problem = serde_json::to_value(problem).expect("a problem is plain data");
-                with_public_type(problem, &client.app.edge.public_url)
+                with_public_type(problem, &edge.public_url)
             }),
         })
         .collect();
     let taken = items.iter().filter(|item| item.job.is_some()).count();
-    let made = outcomes.iter().filter_map(|(job, _)| job.as_ref());
-    let made = made.filter(|job| !job.status.has_ended()).map(|job| job.id);
-    let made = Made(made.collect());
-    let mut response = (StatusCode::ACCEPTED, Json(BatchAnswer { taken, items })).into_response();
+    let refused = items.len() - taken;
+    let jobs = outcomes.iter().flatten().map(|taken| &taken.record);
+    let waiting = jobs.filter(|job| !job.status.has_ended());
+    let made = Made(waiting.map(|job| job.id).collect());
+    let mut problems = outcomes.iter().filter_map(|outcome| outcome.as_ref().err());
+    let wait = problems.find_map(|problem| retry_after(problem.code));
+    let wait = HeaderValue::from_static(wait.unwrap_or("1"));
+    let answer = BatchAnswer {
+        taken,
+        refused,
+        items,
+    };
+    let mut response = (StatusCode::ACCEPTED, [(RETRY_AFTER, wait)], Json(answer)).into_response();
     response.extensions_mut().insert(made);
     Ok(response)
+}
+
+/// The refusal of a batch of which nothing was taken, whose submissions have these problems: the first of them that may be over by itself, or
+/// all fields that are wrong.
+fn nothing_taken(problems: &[Problem]) -> Problem {
+    let errors = problems.iter().enumerate().flat_map(|(i, problem)| {
+        let place = format!("/submissions/{i}");
+        let whole = FieldError::new("", problem.code, &*problem.detail);
+        let errors = match problem.errors.as_slice() {
+            [] => vec![whole],
+            errors => errors.to_vec(),
+        };
+        errors.into_iter().map(move |error| FieldError {
+            pointer: format!("{place}{}", error.pointer),
+            ..error
+        })
+    });
+    let errors = errors.take(MOST_ERRORS).collect();
+    let is_ours = |problem: &&Problem| problem.status == 429 || problem.status >= 500;
+    match problems.iter().find(is_ours) {
+        Some(problem) => Problem {
+            errors,
+            ..problem.clone()
+        },
+        None => Problem::of_fields(errors),
+    }
 }
 
 /// The key of a submission of a batch: none that a single submission can have, because no header has a line's end in it.
@@ -140,22 +185,6 @@ fn read<const MIB: usize>(
         };
         let error = FieldError::new("/submissions", code, detail).nearest(nearest);
         return Err(Problem::of_fields(vec![error]));
-    }
-    let wrong: Vec<FieldError> = batch
-        .submissions
-        .iter()
-        .enumerate()
-        .flat_map(|(i, submission)| {
-            let errors = Submission::field_errors(submission.get().as_bytes());
-            errors.into_iter().map(move |error| FieldError {
-                pointer: format!("/submissions/{i}{}", error.pointer),
-                ..error
-            })
-        })
-        .take(MOST_ERRORS)
-        .collect();
-    if !wrong.is_empty() {
-        return Err(Problem::of_fields(wrong));
     }
     let submissions = batch.submissions.iter();
     Ok(submissions

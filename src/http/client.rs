@@ -11,6 +11,7 @@ use meshwright_wire::{Code, Problem};
 
 use super::app::App;
 use super::credential::{Credential, bearer, no_credential, unauthorized};
+use super::parameters::User;
 use super::problem::{Refusal, overloaded};
 use crate::jobs::{JobError, KeyRecord, Member, Role};
 use crate::keys::Key;
@@ -24,6 +25,7 @@ const ANONYMOUS: &str = "anonymous";
 pub(super) struct Client {
     pub(super) app: App,
     pub(super) member: Member,
+    pub(super) role: Role,
     pub(super) pass: Pass,
 }
 
@@ -87,6 +89,13 @@ impl Onlooker {
 /// The same for the numbers of the whole service.
 pub(super) struct Operator;
 
+/// The same for who uses the service.
+pub(super) struct Administrator {
+    pub(super) app: App,
+    /// The name of the client that it is.
+    pub(super) name: String,
+}
+
 impl FromRequestParts<App> for Client {
     type Rejection = Refusal;
 
@@ -99,6 +108,7 @@ impl FromRequestParts<App> for Client {
         Ok(Self {
             app: app.clone(),
             member: caller.member,
+            role: caller.role,
             pass: caller.pass,
         })
     }
@@ -119,8 +129,25 @@ impl FromRequestParts<App> for Operator {
     async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Refusal> {
         match Caller::of(parts, app).await?.role {
             Role::Operator => Ok(Self),
-            Role::Client | Role::Reader => {
+            Role::Client | Role::Reader | Role::Administrator => {
                 Err(forbidden("The numbers of the service are for keys of its operator.").into())
+            }
+        }
+    }
+}
+
+impl FromRequestParts<App> for Administrator {
+    type Rejection = Refusal;
+
+    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Refusal> {
+        let caller = Caller::of(parts, app).await?;
+        match caller.role {
+            Role::Administrator => Ok(Self {
+                app: app.clone(),
+                name: caller.member.client,
+            }),
+            Role::Client | Role::Reader | Role::Operator => {
+                Err(forbidden("Who uses the service is for keys of its administrator.").into())
             }
         }
     }
@@ -140,8 +167,8 @@ impl Caller {
         let credential = bearer(&parts.headers)?;
         let fingerprint = credential.as_ref().map(Credential::fingerprint);
         let caller = match credential {
-            Some(Credential::Key(key)) => Self::with_key(app, key).await?,
-            Some(Credential::Token(token)) => Self::with_token(app, &token).await?,
+            Some(Credential::Key(key)) => Self::with_key(app, key, &parts.headers).await?,
+            Some(Credential::Token(token)) => Self::with_token(app, &token, &parts.headers).await?,
             None if asks_for_keys(app, &parts.headers).await? => {
                 return Err(unauthorized("Send a key: Authorization: Bearer KEY.").into());
             }
@@ -167,6 +194,8 @@ impl Caller {
     fn anonymous(app: &App) -> Self {
         let member = Member {
             client: ANONYMOUS.to_owned(),
+            // Where everybody may say anything a name means nothing.
+            user: None,
             queue_limit: Some(app.jobs.rules().queue_limit),
         };
         Self {
@@ -177,7 +206,7 @@ impl Caller {
         }
     }
 
-    async fn with_key(app: &App, key: Key) -> Result<Self, Problem> {
+    async fn with_key(app: &App, key: Key, headers: &HeaderMap) -> Result<Self, Problem> {
         let record = recognize(app, &key).await?;
         app.access.found_keys();
         // What the log says of the request, it says of its key: who did what, and with what answer.
@@ -185,6 +214,7 @@ impl Caller {
         Ok(Self {
             member: Member {
                 client: record.client,
+                user: User::of(headers)?.0,
                 queue_limit: record.queue_limit,
             },
             role: record.role,
@@ -193,7 +223,7 @@ impl Caller {
         })
     }
 
-    async fn with_token(app: &App, token: &str) -> Result<Self, Problem> {
+    async fn with_token(app: &App, token: &str, headers: &HeaderMap) -> Result<Self, Problem> {
         let tokens = app.tokens.as_ref().ok_or_else(no_credential)?;
         let bearer: Bearer = tokens
             .recognize(token)
@@ -207,9 +237,11 @@ impl Caller {
         let span = tracing::Span::current();
         span.record("subject", bearer.subject);
         span.record("token", bearer.id);
+        User::refuse_beside_token(headers)?;
         Ok(Self {
             member: Member {
                 client: bearer.client,
+                user: bearer.user,
                 queue_limit: None,
             },
             role: bearer.role,

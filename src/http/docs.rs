@@ -80,6 +80,7 @@ fn example_of(path: &str) -> Option<Value> {
             json!({ "gear": read(SUBMISSION)?.pointer("/pair/driven")?, "iso_1328_class": 6, "seed": 1 })
         }
         "/v1/rexs" => MODEL.into(),
+        "/v1/jobs/{id}/shares" => json!({ "ends_at": "2100-01-01T00:00:00Z" }),
         "/v1/webhooks" => json!({ "url": "https://hooks.example.com/meshwright" }),
         _ => return None,
     })
@@ -172,6 +173,7 @@ fn describe_ids(path: &str, operation: &mut Operation) {
         ("/v1/jobs/", "job"),
         ("/v1/studies/", "study"),
         ("/v1/webhooks/", "webhook"),
+        ("/v1/shares/", "link"),
     ];
     let whose = whose.iter().find(|(root, _)| path.starts_with(root));
     let Some((_, whose)) = whose.filter(|_| path.contains("{id}")) else {

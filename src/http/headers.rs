@@ -11,13 +11,15 @@ use axum::middleware::Next;
 use axum::response::Response;
 use uuid::Uuid;
 
-use crate::jobs::Clock;
+use crate::jobs::{Clock, without_secrets};
 use crate::spans::{self, Place, Span, Value};
 
 /// What is no page runs nothing. The page runs its own files and talks to its own service; the documentation brings scripts of its own.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 const POLICY_OF_PAGE: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 const POLICY_OF_DOCS: &str = "default-src 'self'; script-src 'self' 'unsafe-inline'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+/// The page of a link shows pictures of the same link, and runs nothing.
+const POLICY_OF_SHARED: &str = "default-src 'none'; img-src 'self'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
 const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
 const TRACE_PARENT: HeaderName = HeaderName::from_static("traceparent");
@@ -73,6 +75,7 @@ fn policy_of(path: &str) -> &'static str {
         "/" => POLICY_OF_PAGE,
         _ if path.starts_with("/guides") => POLICY_OF_PAGE,
         _ if path.starts_with("/docs") => POLICY_OF_DOCS,
+        _ if path.starts_with("/shared/") => POLICY_OF_SHARED,
         _ => POLICY,
     }
 }
@@ -135,7 +138,8 @@ pub(super) async fn tell(request: Request, next: Next) -> Response {
     let route = route.map_or("none", MatchedPath::as_str).to_owned();
     let id = request.headers().get(REQUEST_ID);
     let id = id.and_then(|id| id.to_str().ok()).unwrap_or_default();
-    let path: String = request.uri().path().chars().take(LONGEST_PATH).collect();
+    let path = without_secrets(request.uri().path());
+    let path: String = path.chars().take(LONGEST_PATH).collect();
     let mut attributes: Vec<(_, Value)> = vec![
         ("http.request.method", method.into()),
         ("http.route", route.clone().into()),

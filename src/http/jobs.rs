@@ -37,6 +37,9 @@ pub(super) struct ListParameters {
     /// Jobs with this tag.
     #[param(pattern = "^[^\\x00]*$")]
     tag: Option<String>,
+    /// Jobs that this user of the client submitted (`Meshwright-User`).
+    #[param(pattern = "^[^\\x00]*$")]
+    submitted_by: Option<String>,
     /// Jobs of these ids, separated by commas; those that do not exist are left out. 200 at most.
     #[param(
         pattern = "^([0-9a-fA-F]{8}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{12}(,[0-9a-fA-F]{8}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{12}){0,199})?$"
@@ -105,6 +108,7 @@ impl ListParameters {
                 .map(|list| words(list).map(status).collect())
                 .transpose()?,
             tag: self.tag.clone(),
+            submitted_by: self.submitted_by.clone(),
             ids,
             study: self.study.as_deref().map(membership).transpose()?,
             span: page::span(
@@ -116,10 +120,11 @@ impl ListParameters {
     }
 
     /// What the address of the next page has in common with this one's.
-    fn pairs(&self) -> [(&'static str, Option<&str>); 6] {
+    fn pairs(&self) -> [(&'static str, Option<&str>); 7] {
         [
             ("status", self.status.as_deref()),
             ("tag", self.tag.as_deref()),
+            ("submitted_by", self.submitted_by.as_deref()),
             ("ids", self.ids.as_deref()),
             ("study", self.study.as_deref()),
             ("submitted_since", self.submitted_since.as_deref()),

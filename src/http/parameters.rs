@@ -1,6 +1,7 @@
 //! What a request says beside its body: path, query and headers.
 
 use axum::extract::{FromRequestParts, Path, Query};
+use axum::http::HeaderMap;
 use axum::http::request::Parts;
 use meshwright_wire::{Code, Problem};
 use serde::Deserialize;
@@ -9,6 +10,7 @@ use utoipa::IntoParams;
 use uuid::Uuid;
 
 use super::problem::Refusal;
+use crate::keys::is_user_name;
 
 /// The query of a request. An unknown parameter is refused, as an unknown field is.
 pub(super) struct Parameters<T>(pub(super) T);
@@ -61,6 +63,53 @@ impl<S: Sync> FromRequestParts<S> for IdempotencyKey {
     }
 }
 
+/// The user of a client on whose behalf a request comes.
+#[derive(IntoParams)]
+#[into_params(names("Meshwright-User"), parameter_in = Header)]
+pub(super) struct User(
+    /// The user of the client who submits, by an opaque name of the client's choice: users take turns, and each has its part of the queue. It is
+    /// no border of access. Taken beside a key; a token names its user itself, and where no key is needed there are no users.
+    #[param(min_length = 1, max_length = 128, pattern = "^[!-~]+$")]
+    pub(super) Option<String>,
+);
+
+impl User {
+    const HEADER: &'static str = "meshwright-user";
+
+    /// That of a request with a key.
+    ///
+    /// # Errors
+    ///
+    /// `out_of_range`, if it is no name or there are two.
+    pub(super) fn of(headers: &HeaderMap) -> Result<Self, Problem> {
+        let mut given = headers.get_all(Self::HEADER).iter();
+        let Some(name) = given.next() else {
+            return Ok(Self(None));
+        };
+        let name = name.to_str().ok().filter(|name| is_user_name(name));
+        match (name, given.next()) {
+            (Some(name), None) => Ok(Self(Some(name.to_owned()))),
+            _ => Err(Problem::new(
+                Code::OutOfRange,
+                "Meshwright-User has 1 to 128 visible ASCII characters, and stands once.",
+            )),
+        }
+    }
+
+    /// Refuses it in a request with a token.
+    ///
+    /// # Errors
+    ///
+    /// `conflicting_fields`.
+    pub(super) fn refuse_beside_token(headers: &HeaderMap) -> Result<(), Problem> {
+        if headers.contains_key(Self::HEADER) {
+            let detail = "A token names its user itself; send it without Meshwright-User.";
+            return Err(Problem::new(Code::ConflictingFields, detail));
+        }
+        Ok(())
+    }
+}
+
 /// The header of a conditional request; what it asks for is answered with an `ETag`, or 304.
 #[derive(IntoParams)]
 #[into_params(parameter_in = Header)]
@@ -107,6 +156,7 @@ ids! {
     JobId, JobNotFound: "There is no job of this id.";
     StudyId, StudyNotFound: "There is no study of this id.";
     WebhookId, WebhookNotFound: "There is no webhook of this id.";
+    ShareId, NotFound: "There is no link of this id.";
 }
 
 /// A parameter or header that is not understood.

@@ -98,7 +98,7 @@ fn render(problem: &Problem, mut headers: HeaderMap) -> Response {
 }
 
 /// After so many seconds it is worth asking again.
-fn retry_after(code: Code) -> Option<&'static str> {
+pub(super) fn retry_after(code: Code) -> Option<&'static str> {
     match code {
         Code::ResultNotReady => Some("1"),
         // Previews take a fraction of a second each.
@@ -120,7 +120,7 @@ impl From<JobError> for Problem {
                 Code::QueueFull,
                 format!("{}. Try again later.", sentence(&error)),
             ),
-            JobError::ClientQueueFull { .. } => Problem::new(
+            JobError::ClientQueueFull { .. } | JobError::UserQueueFull { .. } => Problem::new(
                 Code::ClientQueueFull,
                 format!("{}. Try again when some have ended.", sentence(&error)),
             ),

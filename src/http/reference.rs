@@ -22,7 +22,7 @@ use super::client::Onlooker;
 use super::problem::Refusal;
 use super::static_files::StaticFile;
 use crate::compute::PreviewRules;
-use crate::jobs::Rules;
+use crate::jobs::{LONGEST_LINK_DAYS, MOST_LINKS, Rules};
 use crate::webhooks::most_webhooks;
 
 /// Check a submission
@@ -134,6 +134,8 @@ document! {
     pub(super) struct ClientLimits as ClientLimits, "ClientLimits" view of (rules: &Rules) {
         /// The most jobs that may wait, those of studies aside.
         jobs_waiting: u32 = rules.client_queue_limit,
+        /// The most of them that one user of it may have.
+        jobs_waiting_of_user: u32 = rules.user_limit(rules.client_queue_limit),
         /// The most designs of studies that may wait.
         designs_waiting: i64 = rules.client_design_limit,
         /// The most memory that one job may take, in MB.
@@ -142,6 +144,10 @@ document! {
         batch: usize = MOST_IN_BATCH,
         /// The most webhooks.
         webhooks: i64 = most_webhooks(),
+        /// The most links to the results of one job.
+        shares_of_job: i64 = MOST_LINKS,
+        /// The longest time that a link to results is open, in days.
+        share_days: i64 = LONGEST_LINK_DAYS,
     }
 }
 

@@ -6,6 +6,7 @@ use axum::http::header::HeaderMap;
 use axum::response::{IntoResponse, Response};
 use meshwright_connections::{Keep, Tag};
 use serde::Serialize;
+use tracing::warn;
 use uuid::Uuid;
 
 use super::answer::{json, tell_when_to_return};
@@ -17,7 +18,7 @@ use super::events::{self, Watching};
 use super::page;
 use super::prefer::Wait;
 use super::problem::Refusal;
-use crate::jobs::{JobError, Jobs, Resource};
+use crate::jobs::{By, JobError, Jobs, Resource, Role, Status};
 
 /// A job or a study as clients see it.
 pub(super) trait Shown: Resource {
@@ -96,13 +97,44 @@ pub(super) async fn watch<R: Shown>(client: Client, id: Uuid) -> Result<Response
 
 /// Cancels the one of this id.
 pub(super) async fn cancel<R: Shown>(client: Client, id: Uuid) -> Result<Response, Refusal> {
-    let cancelled = R::cancel(&client.app.jobs, client.name(), id).await?;
+    let (owner, by) = whose::<R>(&client, id).await?;
+    let cancelled = R::cancel(&client.app.jobs, &owner, id, by).await?;
+    note(&client, by, "cancelled", R::PATH, id, &owner);
     let view = axum::Json(cancelled.view(&client.app.edge));
     Ok((StatusCode::ACCEPTED, view).into_response())
 }
 
 /// Deletes the one of this id.
 pub(super) async fn delete<R: Shown>(client: Client, id: Uuid) -> Result<StatusCode, Refusal> {
-    R::delete(&client.app.jobs, client.name(), id).await?;
+    let (owner, by) = whose::<R>(&client, id).await?;
+    let jobs = &client.app.jobs;
+    if by == By::Administrator {
+        let waits = R::find(jobs, &owner, id).await?.status() == Status::Accepted;
+        if waits {
+            // Who watches it is told.
+            R::cancel(jobs, &owner, id, by).await?;
+        }
+    }
+    R::delete(jobs, &owner, id, by).await?;
+    note(&client, by, "deleted", R::PATH, id, &owner);
     Ok(StatusCode::NO_CONTENT)
+}
+
+/// The client whose job or study has this id, for who may end or remove it: oneself, or, for an administrator, whoever it is.
+async fn whose<R: Shown>(client: &Client, id: Uuid) -> Result<(String, By), JobError> {
+    let own = (client.name().to_owned(), By::Owner);
+    if client.role != Role::Administrator {
+        return Ok(own);
+    }
+    let owner = R::owner(&client.app.jobs, id).await?;
+    let other = owner.filter(|owner| owner != client.name());
+    Ok(other.map_or(own, |owner| (owner, By::Administrator)))
+}
+
+/// Logs what an administrator has done to another client's job or study. The span of the request says who that is.
+fn note(client: &Client, by: By, done: &str, path: &str, id: Uuid, owner: &str) {
+    if by == By::Administrator {
+        let administrator = client.name();
+        warn!(%id, path, owner, administrator, "an administrator {done} what belongs to another client");
+    }
 }

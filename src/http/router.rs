@@ -30,8 +30,9 @@ use super::problem::Refusal;
 use super::{
     access, batch, contact_pattern, docs, draw, events, fields, guides, headers, health, jobs,
     memory, metrics, outline, packing, previews, problem, problem_pages, reference, results, rexs,
-    studies, submit, tables, web, webhooks,
+    shares, studies, submit, tables, usage, web, webhooks,
 };
+use crate::jobs::without_secrets;
 
 /// The service.
 pub fn router(app: App) -> Router {
@@ -76,6 +77,7 @@ pub fn router(app: App) -> Router {
         .merge(web::routes_of_page())
         .merge(guides::routes_of_guides())
         .route("/v1/studies/{id}/results.csv", get(studies::old_csv))
+        .route("/shared/{secret}", get(shares::page))
         .fallback(nothing_here)
         .method_not_allowed_fallback(not_that_method)
         .layer(layers)
@@ -122,6 +124,10 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(jobs::show, jobs::delete))
         .routes(routes!(jobs::cancel))
         .routes(routes!(results::results))
+        .routes(routes!(shares::make, shares::list))
+        .routes(routes!(shares::end))
+        .routes(routes!(shares::results))
+        .routes(routes!(shares::table))
         .routes(routes!(events::events))
         .routes(routes!(previews::preview))
         .routes(routes!(studies::list))
@@ -143,6 +149,7 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(health::live))
         .routes(routes!(health::ready))
         .routes(routes!(metrics::metrics))
+        .routes(routes!(usage::usage))
         .routes(routes!(reference::validate))
         .routes(routes!(outline::outline))
         .routes(routes!(draw::draw))
@@ -195,6 +202,7 @@ fn cors(origins: &[HeaderValue]) -> CorsLayer {
             IF_NONE_MATCH,
             name("idempotency-key"),
             name("last-event-id"),
+            name("meshwright-user"),
             name("prefer"),
             name("traceparent"),
             name("x-request-id"),
@@ -216,7 +224,7 @@ fn cors(origins: &[HeaderValue]) -> CorsLayer {
         .max_age(Duration::from_secs(3600))
 }
 
-/// What stands in the log beside a request: never its query or headers, which may hold secrets; of a key its
+/// What stands in the log beside a request: never its query or headers, which may hold secrets, nor the secret of a link; of a key its
 /// public part, of a token what its issuer calls it and its bearer.
 fn span(request: &Request) -> tracing::Span {
     let id = request
@@ -229,7 +237,7 @@ fn span(request: &Request) -> tracing::Span {
     tracing::info_span!(
         "request",
         method = metrics::known(request.method()),
-        path = request.uri().path(),
+        path = without_secrets(request.uri().path()),
         request_id = id,
         trace_id = trace,
         key = Empty,

@@ -10,7 +10,7 @@ use super::body::JsonBody;
 use super::client::Client;
 use super::headers::Made;
 use super::memory::{AnswerMemory, SMALL_ANSWER};
-use super::parameters::IdempotencyKey;
+use super::parameters::{IdempotencyKey, User};
 use super::prefer::Wait;
 use super::problem::Refusal;
 use super::results::text_of;
@@ -24,7 +24,7 @@ use crate::jobs::Job;
 #[utoipa::path(
     post, path = "/v1/jobs", tag = "Jobs", operation_id = "submit_job",
     request_body(content = Submission, content_type = "application/json", description = "The submission."),
-    params(IdempotencyKey, Wait),
+    params(IdempotencyKey, User, Wait),
     responses(
         (status = 202, description = "The job is queued, or is known and successful already.", body = JobView, headers(
             ("Location" = String, description = "The address of the job."),

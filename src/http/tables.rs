@@ -17,6 +17,7 @@ use serde_json::{Value, json};
 use utoipa::{IntoParams, ToSchema};
 
 use super::answer::file;
+use super::app::App;
 use super::blocking::blocking;
 use super::client::Client;
 use super::parameters::{IfNoneMatch, JobId, Parameters};
@@ -257,33 +258,43 @@ pub(super) struct TableParameters {
 pub(super) async fn table(
     client: Client,
     Path((id, file)): Path<(String, String)>,
-    Parameters(TableParameters { torque }): Parameters<TableParameters>,
+    Parameters(parameters): Parameters<TableParameters>,
     request: HeaderMap,
 ) -> Result<Response, Refusal> {
-    let wanted = find_file(&file)?;
+    find_file(&file)?;
     let JobId(id) = JobId::of(&id)?;
     let job = Job::find(&client.app.jobs, client.name(), id).await?;
+    answer(&client.app, &job, &file, parameters, &request).await
+}
+
+/// The `file` of the results of a job, or why there is none.
+pub(super) async fn answer(
+    app: &App,
+    job: &Job,
+    file: &str,
+    TableParameters { torque }: TableParameters,
+    request: &HeaderMap,
+) -> Result<Response, Refusal> {
+    let wanted = find_file(file)?;
     let Some(hash) = &job.document else {
         return Err(of_missing_results(job.status, job.problem.as_ref()).into());
     };
     let part = torque.map_or_else(|| format!("/{file}"), |torque| format!("/{file}/{torque}"));
     let made = async {
-        let stored = client.app.jobs.stored(&job).await?;
+        let stored = app.jobs.stored(job).await?;
         let times = match wanted {
             File::Fmu => TIMES_FOR_AN_FMU,
             _ => TIMES_THE_RESULTS,
         };
         let most = times * stored.bytes;
-        let memory = client.app.bodies.for_answer(client.name(), most).await?;
-        let document = client.app.jobs.document_of(&job, &stored).await?;
-        let name = format!("{id}-{file}");
-        let made = blocking(client.name(), move |_| {
-            make(&document, wanted, torque, &name)
-        });
+        let memory = app.bodies.for_answer(&job.client, most).await?;
+        let document = app.jobs.document_of(job, &stored).await?;
+        let name = format!("{}-{file}", job.id);
+        let made = blocking(&job.client, move |_| make(&document, wanted, torque, &name));
         memory.hold_body(made.await??).await
     };
     Tag::of_hash(hash, &part)
-        .answer(Keep::ForGood, &request, made)
+        .answer(Keep::ForGood, request, made)
         .await
 }
 

@@ -32,6 +32,8 @@ document! {
         /// How often the job was begun, attempts that ended by no fault of its own aside. A job that ends its process is begun
         /// three times at most.
         attempt: i64 = job.attempts_counted,
+        /// The user of the client who submitted it (`Meshwright-User`, or the claim of a token); null where the client names none.
+        submitted_by: Option<&'a str> = job.submitted_by.as_deref(),
         /// When the job was submitted (UTC).
         submitted_at: Timestamp = job.submitted_at,
         /// When the computation began (UTC); null while the job waits.
@@ -44,6 +46,9 @@ document! {
         /// had by submitting the design alone.
         #[schema(example = "statistics")]
         keep?: Kept = Some(shown_kept(job.keep)).filter(|keep| *keep != Kept::Results),
+        /// `administrator` where an administrator of the service dismissed the job; absent elsewhere.
+        #[schema(example = "administrator")]
+        dismissed_by?: &'a str = job.dismissed_by.as_deref(),
         /// Of a failed job: why.
         #[schema(value_type = Option<meshwright_wire::Problem>)]
         problem?: Value = job

@@ -26,6 +26,12 @@ enum EventKind {
     /// A study has ended.
     #[serde(rename = "study.ended")]
     StudyEnded,
+    /// An administrator of the service has deleted a job.
+    #[serde(rename = "job.deleted")]
+    JobDeleted,
+    /// An administrator of the service has deleted a study.
+    #[serde(rename = "study.deleted")]
+    StudyDeleted,
 }
 
 impl From<Kind> for EventKind {
@@ -33,6 +39,8 @@ impl From<Kind> for EventKind {
         match kind {
             Kind::JobEnded => Self::JobEnded,
             Kind::StudyEnded => Self::StudyEnded,
+            Kind::JobDeleted => Self::JobDeleted,
+            Kind::StudyDeleted => Self::StudyDeleted,
         }
     }
 }
@@ -42,6 +50,8 @@ impl From<EventKind> for Kind {
         match kind {
             EventKind::JobEnded => Self::JobEnded,
             EventKind::StudyEnded => Self::StudyEnded,
+            EventKind::JobDeleted => Self::JobDeleted,
+            EventKind::StudyDeleted => Self::StudyDeleted,
         }
     }
 }
@@ -102,7 +112,7 @@ document! {
     pub(super) struct DeliveryView as Delivery, "Delivery" view of (delivery: Delivery) {
         /// The id of the message, which its header `webhook-id` bears at every attempt.
         id: Uuid = delivery.id,
-        /// What it tells: `job.ended`, `study.ended`, or `webhook.ping`, which tells nothing.
+        /// What it tells: `job.ended`, `study.ended`, `job.deleted`, `study.deleted`, or `webhook.ping`, which tells nothing.
         #[serde(rename = "type")]
         kind: String = delivery.kind,
         /// Whose end it tells: the id of a job or a study; of a ping that of the webhook.

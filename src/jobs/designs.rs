@@ -17,6 +17,8 @@ pub(super) const CHUNK: usize = 500;
 pub(super) struct Owner {
     pub(super) study: Uuid,
     pub(super) client: String,
+    /// The user of the client.
+    user: Option<String>,
     submitted_at: Timestamp,
     /// So much memory may a design take.
     memory_mb: u64,
@@ -39,6 +41,7 @@ impl Owner {
             Ok(submission) => Ok(NewJob {
                 study: Some(self.study),
                 keep: self.keep,
+                submitted_by: self.user.clone(),
                 cost: rough_cost(&submission, is_known_as_drawn),
                 ..new_job(&submission, &self.client, self.submitted_at)
             }),
@@ -53,17 +56,18 @@ impl Owner {
 }
 
 impl Jobs {
-    /// The owner of the designs of a study.
+    /// The owner of the designs of a study that a user of a client submitted.
     pub(super) fn owner(
         &self,
         study: &Study,
         id: Uuid,
-        client: String,
+        (client, user): (String, Option<String>),
         submitted_at: Timestamp,
     ) -> Owner {
         Owner {
             study: id,
             client,
+            user,
             submitted_at,
             memory_mb: self.rules.job_memory_mb,
             keep: kept_by(study),

@@ -22,6 +22,14 @@ pub enum JobError {
         /// So many may.
         limit: i64,
     },
+    /// So many jobs of this user of the client wait that no more are taken from it.
+    #[error("{waiting} jobs of this user wait; at most {limit} may")]
+    UserQueueFull {
+        /// Jobs of the user that wait.
+        waiting: i64,
+        /// So many may.
+        limit: i64,
+    },
     /// The computation would take more memory than a job may.
     #[error("the job needs about {needed_mb} MB; a job may take {limit_mb} MB here")]
     TooMuchMemory {

@@ -82,6 +82,7 @@ impl Jobs {
             self.store.empty_journal().await?;
         }
         self.forget_keys().await?;
+        self.forget_links().await?;
         self.forget_messages().await
     }
 

@@ -9,6 +9,7 @@ mod clock;
 mod designs;
 mod error;
 mod keeper;
+mod links;
 mod live;
 mod others;
 mod queue;
@@ -21,14 +22,16 @@ mod worker;
 mod worker_context;
 
 pub use meshwright_store::{
-    BackupError, Cursor, Damaged, DatabaseAddress, Depth, Document, DocumentLine, EventKind,
-    Filter, Job, Kept, KeyRecord, Membership, Migrate, NoCursor, OpenError, Progress, Removed,
-    Role, Space, Span, Status, Store, StoreError, StudyFilter, StudyRecord,
+    BackupError, By, ClientUsage, Cursor, Damaged, DatabaseAddress, Depth, Document, DocumentLine,
+    EventKind, Filter, Job, Kept, KeyRecord, LinkRecord, Membership, Migrate, NoCursor, OpenError,
+    Progress, Removed, Role, Space, Span, Status, Store, StoreError, StudyFilter, StudyRecord,
+    UserUsage,
 };
 
 pub use clock::Clock;
 pub use error::{JobError, damage_problem};
 pub use keeper::{Keep, Keeper};
+pub use links::{LONGEST_LINK_DAYS, LinkError, LinkSecret, MOST_LINKS, without_secrets};
 pub use live::{Changes, News};
 pub(crate) use queue::KEY_LIFETIME;
 pub use queue::{Jobs, Member, Rules};

@@ -7,7 +7,8 @@ use jiff::Timestamp;
 use meshwright_connections::Budget;
 use meshwright_engine::analysis::Method;
 use meshwright_store::{
-    Depth, Document, Filter, Job, Kept, NewJob, Outcome, QueueBounds, Status, Store, StoreError,
+    By, ClientUsage, Depth, Document, Filter, Job, Kept, NewJob, Outcome, QueueBounds, Status,
+    Store, StoreError,
 };
 use meshwright_wire::{DOCUMENT_VERSION, SOLVER_VERSION, Submission};
 use tokio::sync::{Notify, mpsc, oneshot};
@@ -34,6 +35,8 @@ pub struct Rules {
     pub queue_limit: u32,
     /// So many of them may be of one client.
     pub client_queue_limit: u32,
+    /// So many of them may be of one user of a client; half of what the client may have, if it is not given.
+    pub user_queue_limit: Option<u32>,
     /// So many designs of studies of one client may wait.
     pub client_design_limit: i64,
     /// A job whose computation is estimated to take more memory is refused, in MB.
@@ -49,10 +52,17 @@ impl Rules {
         Self {
             queue_limit: u32::MAX,
             client_queue_limit: u32::MAX,
+            user_queue_limit: None,
             client_design_limit: i64::MAX,
             job_memory_mb: memory_mb,
             memory_mb,
         }
+    }
+
+    /// So many jobs of one user of a client may wait, of which `client_limit` may.
+    pub fn user_limit(&self, client_limit: u32) -> u32 {
+        let usual = client_limit.div_ceil(2);
+        self.user_queue_limit.unwrap_or(usual).min(client_limit)
     }
 }
 
@@ -61,6 +71,8 @@ impl Rules {
 pub struct Member {
     /// The name that its jobs bear.
     pub client: String,
+    /// The user of the client, if it says. Of what it submits, all of the client see everything.
+    pub user: Option<String>,
     /// So many jobs of it may wait, where that is not the usual number.
     pub queue_limit: Option<u32>,
 }
@@ -70,6 +82,7 @@ impl Member {
     pub fn usual(client: &str) -> Self {
         Self {
             client: client.to_owned(),
+            user: None,
             queue_limit: None,
         }
     }
@@ -135,8 +148,8 @@ impl Jobs {
     ///
     /// # Errors
     ///
-    /// [`JobError::QueueFull`], [`JobError::ClientQueueFull`], [`JobError::TooMuchMemory`], [`JobError::KeyConflict`],
-    /// [`JobError::ShuttingDown`], [`JobError::Unavailable`], [`JobError::Database`].
+    /// [`JobError::QueueFull`], [`JobError::ClientQueueFull`], [`JobError::UserQueueFull`], [`JobError::TooMuchMemory`],
+    /// [`JobError::KeyConflict`], [`JobError::ShuttingDown`], [`JobError::Unavailable`], [`JobError::Database`].
     pub async fn submit(
         &self,
         member: &Member,
@@ -146,9 +159,12 @@ impl Jobs {
         self.refuse_if_failing()?;
         self.check_memory(submission)?;
         let client_limit = member.queue_limit.unwrap_or(self.rules.client_queue_limit);
+        let user_limit = self.rules.user_limit(client_limit);
         let job = NewJob {
             idempotency_key,
             client_limit,
+            submitted_by: member.user.clone(),
+            user_limit,
             ..new_job(submission, &member.client, self.clock.now())
         };
         let (answer, outcome) = oneshot::channel();
@@ -170,6 +186,10 @@ impl Jobs {
             Outcome::ClientQueueFull { waiting } => Err(JobError::ClientQueueFull {
                 waiting,
                 limit: client_limit.into(),
+            }),
+            Outcome::UserQueueFull { waiting } => Err(JobError::UserQueueFull {
+                waiting,
+                limit: user_limit.into(),
             }),
         }
     }
@@ -327,6 +347,15 @@ impl Jobs {
         Ok(self.store.depth().await?)
     }
 
+    /// Who uses the service: at most `limit` clients behind the one named `after`.
+    ///
+    /// # Errors
+    ///
+    /// [`JobError::Unavailable`], [`JobError::Database`].
+    pub async fn usage(&self, after: &str, limit: u32) -> Result<Vec<ClientUsage>, JobError> {
+        Ok(self.store.usage(after, limit, self.clock.now()).await?)
+    }
+
     /// Whether the database takes writes: what it said last, or what it says now.
     ///
     /// # Errors
@@ -425,9 +454,14 @@ impl Resource for Job {
         Ok(Listed::first(found.collect(), limit, |job| job.sequence))
     }
 
-    async fn cancel(jobs: &Jobs, client: &str, id: Uuid) -> Result<Self, JobError> {
+    async fn owner(jobs: &Jobs, id: Uuid) -> Result<Option<String>, JobError> {
+        Ok(jobs.store.owner_of_job(id).await?)
+    }
+
+    async fn cancel(jobs: &Jobs, client: &str, id: Uuid, by: By) -> Result<Self, JobError> {
         let running = jobs.live.running(id);
-        if let Some(job) = jobs.store.cancel(client, id, jobs.clock.now()).await? {
+        let cancelled = jobs.store.cancel(client, id, by, jobs.clock.now());
+        if let Some(job) = cancelled.await? {
             // If this future is dropped before the stop, the worker's next report finds out.
             if let Some(running) = running.or_else(|| jobs.live.running(id)) {
                 running.stop();
@@ -443,8 +477,10 @@ impl Resource for Job {
         }
     }
 
-    async fn delete(jobs: &Jobs, client: &str, id: Uuid) -> Result<(), JobError> {
-        if jobs.store.delete(client, id).await? {
+    async fn delete(jobs: &Jobs, client: &str, id: Uuid, by: By) -> Result<(), JobError> {
+        let now = jobs.clock.now();
+        if jobs.store.delete(client, id, by, now).await? {
+            jobs.live.mail.notify_one();
             jobs.live.changed(id);
             return Ok(());
         }
@@ -474,6 +510,8 @@ pub(super) fn new_job(submission: &Submission, client: &str, now: Timestamp) -> 
         study: None,
         keep: Kept::Results,
         client_limit: u32::MAX,
+        submitted_by: None,
+        user_limit: u32::MAX,
     }
 }
 

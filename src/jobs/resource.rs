@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use meshwright_store::{Cursor, Status};
+use meshwright_store::{By, Cursor, Status};
 use uuid::Uuid;
 
 use super::error::JobError;
@@ -39,6 +39,12 @@ pub trait Resource: Sized + Send + Sync {
         limit: u32,
     ) -> impl Future<Output = Result<Listed<Self>, JobError>> + Send;
 
+    /// The client that submitted the one of this id, if there is one.
+    fn owner(
+        jobs: &Jobs,
+        id: Uuid,
+    ) -> impl Future<Output = Result<Option<String>, JobError>> + Send;
+
     /// Ends it: what waits or runs of it is dismissed, and what has results keeps them. One that was cancelled before stays so.
     ///
     /// # Errors
@@ -48,6 +54,7 @@ pub trait Resource: Sized + Send + Sync {
         jobs: &Jobs,
         client: &str,
         id: Uuid,
+        by: By,
     ) -> impl Future<Output = Result<Self, JobError>> + Send;
 
     /// Removes it, with its results.
@@ -59,6 +66,7 @@ pub trait Resource: Sized + Send + Sync {
         jobs: &Jobs,
         client: &str,
         id: Uuid,
+        by: By,
     ) -> impl Future<Output = Result<(), JobError>> + Send;
 
     /// Where it stands.

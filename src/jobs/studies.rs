@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use meshwright_engine::run::Run;
 use meshwright_store::{
-    NewRow, NewStudy, Status, StoreError, StudyFilter, StudyOutcome, StudyRecord,
+    By, NewRow, NewStudy, Status, StoreError, StudyFilter, StudyOutcome, StudyRecord,
 };
 use meshwright_studies::Study;
 use meshwright_wire::DOCUMENT_VERSION;
@@ -34,7 +34,8 @@ impl Jobs {
     ) -> Result<Submitted<StudyRecord>, JobError> {
         self.refuse_if_failing()?;
         let now = self.clock.now();
-        let owner = self.owner(&study, Uuid::now_v7(), member.client.clone(), now);
+        let whose = (member.client.clone(), member.user.clone());
+        let owner = self.owner(&study, Uuid::now_v7(), whose, now);
         let Expanded {
             study,
             rows,
@@ -55,6 +56,7 @@ impl Jobs {
             submitted_at: now,
             idempotency_key,
             client_limit: self.rules.client_design_limit,
+            submitted_by: member.user.clone(),
         };
         let outcome = self.store.begin_study(&new, &rows, self.bounds()).await?;
         let (id, repeated) = match outcome {
@@ -104,7 +106,8 @@ impl Jobs {
             match Study::parse(document.as_bytes(), &Run::unattended()) {
                 Ok(study) => {
                     info!(study = %id, expanded = record.expanded, designs = record.total, "study resumed");
-                    let owner = self.owner(&study, id, client, record.submitted_at);
+                    let whose = (client, record.submitted_by.clone());
+                    let owner = self.owner(&study, id, whose, record.submitted_at);
                     let expanded = usize::try_from(record.expanded).unwrap_or(usize::MAX);
                     self.continue_in_background(study, expanded, owner);
                 }
@@ -112,7 +115,7 @@ impl Jobs {
                 Err(problem) => {
                     error!(study = %id, %problem, "a study is no longer understood, and cancelled");
                     let now = self.clock.now();
-                    self.store.cancel_study(&client, id, now).await?;
+                    self.store.cancel_study(&client, id, By::Owner, now).await?;
                     self.dismiss_designs(id).await?;
                 }
             }
@@ -278,9 +281,13 @@ impl Resource for StudyRecord {
         Ok(Listed::first(found, limit, |study| study.sequence))
     }
 
-    async fn cancel(jobs: &Jobs, client: &str, id: Uuid) -> Result<Self, JobError> {
+    async fn owner(jobs: &Jobs, id: Uuid) -> Result<Option<String>, JobError> {
+        Ok(jobs.store.owner_of_study(id).await?)
+    }
+
+    async fn cancel(jobs: &Jobs, client: &str, id: Uuid, by: By) -> Result<Self, JobError> {
         let now = jobs.clock.now();
-        let cancelled = jobs.store.cancel_study(client, id, now).await?;
+        let cancelled = jobs.store.cancel_study(client, id, by, now).await?;
         let study = Self::find(jobs, client, id).await?;
         if !cancelled && study.cancelled_at.is_none() {
             return Err(JobError::StudyEnded(study.status()));
@@ -292,8 +299,10 @@ impl Resource for StudyRecord {
         Self::find(jobs, client, id).await
     }
 
-    async fn delete(jobs: &Jobs, client: &str, id: Uuid) -> Result<(), JobError> {
-        if jobs.store.delete_study(client, id).await? {
+    async fn delete(jobs: &Jobs, client: &str, id: Uuid, by: By) -> Result<(), JobError> {
+        let now = jobs.clock.now();
+        if jobs.store.delete_study(client, id, by, now).await? {
+            jobs.live.mail.notify_one();
             jobs.live.changed(id);
             return Ok(());
         }

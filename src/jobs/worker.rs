@@ -290,11 +290,12 @@ mod tests {
     use super::super::resource::Resource as _;
     use super::*;
     use crate::testing::RESULTS;
-    use meshwright_store::{DatabaseAddress, Job, Status, Store};
+    use meshwright_store::{By, DatabaseAddress, Job, Status, Store};
 
     const RULES: Rules = Rules {
         queue_limit: 100,
         client_queue_limit: 100,
+        user_queue_limit: None,
         client_design_limit: 100,
         job_memory_mb: 1000,
         memory_mb: 1000,
@@ -411,7 +412,9 @@ mod tests {
         let workers = Workers::beside(desk.jobs.clone(), solve, 1, pace).await;
         let mut workers = workers.unwrap();
         desk.runs(ids[11]).await;
-        Job::cancel(&desk.jobs, "portal", ids[7]).await.unwrap();
+        Job::cancel(&desk.jobs, "portal", ids[7], By::Owner)
+            .await
+            .unwrap();
         let before = desk.commits("yes");
         go.send(()).unwrap();
         for id in &ids {
@@ -489,7 +492,9 @@ mod tests {
             tokio::time::sleep(Duration::from_millis(1)).await;
         }
         if is_cancelled {
-            Job::cancel(&desk.jobs, "portal", first).await.unwrap();
+            Job::cancel(&desk.jobs, "portal", first, By::Owner)
+                .await
+                .unwrap();
             go.send(()).unwrap();
         }
         go.send(()).unwrap();

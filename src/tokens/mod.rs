@@ -18,7 +18,7 @@ use jsonwebtoken::{Algorithm, DecodingKey, Header, Validation, decode, decode_he
 use self::provider::{Found, Provider};
 use self::rules::Claims;
 use crate::jobs::{Clock, Role};
-use crate::keys::is_client_name;
+use crate::keys::{is_client_name, is_user_name};
 
 pub use self::rules::{Claim, ClaimValue, IssuerUrl, TokenRules, algorithm};
 
@@ -44,6 +44,8 @@ pub struct Tokens {
 pub struct Bearer {
     /// Whose jobs he reads and makes.
     pub client: String,
+    /// Which user of the client he is.
+    pub user: Option<String>,
     /// What he may do.
     pub role: Role,
     /// From when on the token opens nothing.
@@ -219,17 +221,31 @@ impl TokenRules {
                 self.client.name()
             ))
         })?;
-        let is_operator = |operator: &ClaimValue| operator.is_in(&claims);
+        let user = self.user.as_ref().and_then(|claim| {
+            let user = claim.of(&claims)?;
+            Some((claim.name(), user.as_str().unwrap_or_default()))
+        });
+        if let Some((name, _)) = user.filter(|(_, user)| !is_user_name(user)) {
+            return Err(refused(format!(
+                "The claim {name:?} of the token has to name the user in 1 to 128 visible ASCII characters."
+            )));
+        }
+        let is_in = |role: &Option<ClaimValue>| role.as_ref().is_some_and(|it| it.is_in(&claims));
+        let role = if is_in(&self.administrator) {
+            Role::Administrator
+        } else if is_in(&self.operator) {
+            Role::Operator
+        } else {
+            Role::Client
+        };
         let logged = |name: &str| {
             let text = claims.get(name)?.as_str()?;
             Some(text.chars().take(LONGEST_LOGGED).collect())
         };
         Ok(Bearer {
             client: client.to_owned(),
-            role: match self.operator.as_ref().is_some_and(is_operator) {
-                true => Role::Operator,
-                false => Role::Client,
-            },
+            user: user.map(|(_, user)| user.to_owned()),
+            role,
             until,
             subject: logged("sub"),
             id: logged("jti"),
@@ -266,7 +282,9 @@ mod tests {
             audience: "gears".to_owned(),
             algorithms: Vec::new(),
             client: "sub".parse().unwrap(),
+            user: None,
             operator: None,
+            administrator: None,
         }
     }
 

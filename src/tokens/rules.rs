@@ -23,8 +23,12 @@ pub struct TokenRules {
     pub algorithms: Vec<Algorithm>,
     /// The claim that names the client.
     pub client: Claim,
+    /// The claim that names the user of the client; a token without it names none.
+    pub user: Option<Claim>,
     /// What makes an operator; without it no token does.
     pub operator: Option<ClaimValue>,
+    /// What makes an administrator; without it no token does. Of a token that makes both it is this.
+    pub administrator: Option<ClaimValue>,
 }
 
 /// The address of an identity provider, as its tokens have it.

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use crate::bench::{Asked, Bench, problem, submission};
 
 /// Makes a key in the database of a service that runs, as `meshwright keys create` does.
-async fn make_key(
+pub(crate) async fn make_key(
     bench: &Bench,
     client: &str,
     role: Role,
@@ -500,6 +500,13 @@ async fn the_log_says_which_key_did_what_and_not_its_secret() {
         .delete(format!("{base}/v1/webhooks/no-id"))
         .bearer_auth(key);
     assert!(answer.answer().await.status().is_client_error());
+    // The secret of a link stands in its address, and in no log of that.
+    let shared = format!("mws_{}", "5ec2e7".repeat(11).split_at(64).0);
+    for path in ["shared/{}", "shared/{}/results/ste.svg", "elsewhere/{}"] {
+        let url = format!("{base}/{}", path.replace("{}", &shared));
+        let answer = reqwest::Client::new().get(url).answer().await;
+        assert!(answer.status().is_client_error());
+    }
     service.kill().unwrap();
     service.wait().unwrap();
     let log = std::fs::read_to_string(folder.path().join("log")).unwrap();
@@ -510,4 +517,6 @@ async fn the_log_says_which_key_did_what_and_not_its_secret() {
     };
     assert!(log.lines().any(|line| told(&line)), "{log}");
     assert!(!log.contains(secret));
+    assert!(log.contains("/shared/mws_.../results/ste.svg"), "{log}");
+    assert!(!log.contains(&shared), "{log}");
 }

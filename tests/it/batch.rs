@@ -1,8 +1,10 @@
 //! Many submissions in one request, and many results in one answer.
 
+use meshwright::config::Config;
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 
+use crate::admission::key_of;
 use crate::bench::{Asked, Bench, RESULTS, problem, submission};
 
 #[tokio::test]
@@ -20,7 +22,10 @@ async fn each_submission_of_a_batch_is_taken_or_refused_by_itself() {
     let answer = send().await;
     assert_eq!(answer.status(), StatusCode::ACCEPTED);
     let answer = answer.document().await;
-    assert_eq!(answer["taken"], 2);
+    assert_eq!(
+        (&answer["taken"], &answer["refused"]),
+        (&json!(2), &json!(1))
+    );
     assert_eq!(answer["items"][1]["problem"]["code"], "teeth_do_not_reach");
     assert_eq!(
         answer["items"][1]["problem"]["errors"][0]["pointer"],
@@ -44,6 +49,92 @@ async fn each_submission_of_a_batch_is_taken_or_refused_by_itself() {
     assert_eq!(single.status(), StatusCode::ACCEPTED);
     let single = single.document().await;
     assert_ne!(single["id"], answer["items"][0]["job"]["id"]);
+}
+
+#[tokio::test]
+async fn a_submission_with_a_wrong_field_refuses_itself_alone() {
+    let (bench, _engine) = Bench::steered().await;
+    let mut odd = submission(3.0);
+    odd["colour"] = json!("red");
+    let batch = json!({ "submissions": [submission(1.0), submission(-1.0), odd] });
+    let answer = bench.post("/v1/jobs/batch", &batch).answer().await;
+    assert_eq!(answer.status(), StatusCode::ACCEPTED);
+    assert_eq!(answer.headers()["retry-after"], "1");
+    let answer = answer.document().await;
+    assert_eq!(
+        (&answer["taken"], &answer["refused"]),
+        (&json!(1), &json!(2))
+    );
+    let problem = |place: usize| &answer["items"][place]["problem"];
+    assert_eq!(problem(0), &Value::Null);
+    assert_eq!(problem(1)["code"], "torque_not_positive");
+    assert_eq!(problem(1)["errors"][0]["pointer"], "/output_torques_n_m/0");
+    assert_eq!(problem(2)["code"], "unknown_field");
+}
+
+#[tokio::test]
+async fn a_batch_that_takes_nothing_is_refused_with_every_place() {
+    let bench = Bench::quick().await;
+    let mut apart = submission(1.0);
+    apart["pair"]["center_distance_mm"] = json!(118.5);
+    let batch = json!({ "submissions": [submission(-1.0), apart] });
+    let asked = bench.post("/v1/jobs/batch", &batch);
+    let refused = problem(asked, 422, "torque_not_positive").await;
+    let pointers: Vec<&Value> = refused["errors"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|error| &error["pointer"])
+        .collect();
+    assert_eq!(
+        pointers,
+        [
+            "/submissions/0/output_torques_n_m/0",
+            "/submissions/1/pair/center_distance_mm"
+        ]
+    );
+}
+
+#[tokio::test]
+async fn a_batch_that_finds_no_room_is_refused_as_a_job_is() {
+    // The queue has room for two, or the client's part of it.
+    for (adjust, status, code) in [
+        (
+            (|config: &mut Config| {
+                config.queue_limit = 2;
+                config.admission.client_queue_limit = Some(10);
+            }) as fn(&mut Config),
+            503,
+            "queue_full",
+        ),
+        (
+            |config| config.admission.client_queue_limit = Some(2),
+            429,
+            "client_queue_full",
+        ),
+    ] {
+        let (bench, mut engine) = Bench::steered_with(adjust).await;
+        let key = key_of(&bench, "portal").await;
+        let send = async |torques: [f64; 3]| {
+            let batch = json!({ "submissions": torques.map(submission) });
+            let request = bench.post("/v1/jobs/batch", &batch).bearer_auth(&key);
+            request.answer().await
+        };
+        let first = bench.post("/v1/jobs", &submission(50.0)).bearer_auth(&key);
+        assert_eq!(first.answer().await.status(), StatusCode::ACCEPTED);
+        let _work = engine.next().await;
+        let some = send([1.0, 2.0, 3.0]).await;
+        assert_eq!(some.status(), StatusCode::ACCEPTED);
+        // The one that found no room may be sent again then.
+        assert_eq!(some.headers()["retry-after"], "5");
+        let some = some.document().await;
+        assert_eq!((&some["taken"], &some["refused"]), (&json!(2), &json!(1)));
+        assert_eq!(some["items"][2]["problem"]["code"], code);
+        // A field that is wrong does not hide that there is no room.
+        let none = send([-1.0, 4.0, 5.0]).await;
+        assert_eq!(none.headers()["retry-after"], "5");
+        problem(none, status, code).await;
+    }
 }
 
 #[tokio::test]

@@ -289,11 +289,20 @@ pub(crate) struct Events {
 
 impl Events {
     pub(crate) async fn of(bench: &Bench, path: &str) -> Self {
+        Self::with(bench, path, |request| request).await
+    }
+
+    /// The same, asked for by an adjusted request.
+    pub(crate) async fn with(
+        bench: &Bench,
+        path: &str,
+        adjust: impl FnOnce(RequestBuilder) -> RequestBuilder,
+    ) -> Self {
         let request = bench
             .get(&format!("{path}/events"))
             .header("last-event-id", "7")
             .timeout(PATIENCE);
-        let response = request.answer().await;
+        let response = adjust(request).answer().await;
         assert_eq!(response.status(), StatusCode::OK);
         assert_eq!(response.headers()["content-type"], "text/event-stream");
         Self {

@@ -22,6 +22,7 @@ mod either_store {
     mod events;
     mod growth;
     mod life;
+    mod links;
     mod lists;
     mod members;
     mod page;
@@ -40,6 +41,8 @@ mod either_store {
     mod studies;
     mod tables;
     mod time;
+    mod usage;
+    mod users;
     pub(crate) mod webhooks;
 }
 

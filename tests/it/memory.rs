@@ -126,7 +126,7 @@ async fn refusal(bench: &Bench, way: usize, submission: &Value) -> Option<String
         1 => return code(&send("/v1/preview", submission).await.1),
         2 => {
             let batch = json!({ "submissions": [submission] });
-            return code(&send("/v1/jobs/batch", &batch).await.1["items"][0]["problem"]);
+            return code(&send("/v1/jobs/batch", &batch).await.1);
         }
         3 => {
             study["designs"] = json!([{ "label": "a", "changes": { "/output_torques_n_m/0": 77 } }])

@@ -170,9 +170,8 @@ async fn a_job_that_needs_more_memory_than_it_may_have_is_refused_wherever_it_co
     assert!(told["detail"].as_str().unwrap().contains("1 MB"), "{told}");
 
     let batch = serde_json::json!({ "submissions": [document] });
-    let answer = bench.post("/v1/jobs/batch", &batch).answer().await;
-    let answer = answer.document().await;
-    assert_eq!(answer["items"][0]["problem"]["code"], "too_large");
+    let told = problem(bench.post("/v1/jobs/batch", &batch), 422, "too_large").await;
+    assert_eq!(told["errors"][0]["pointer"], "/submissions/0");
 
     let study = serde_json::json!({
         "base": document,

@@ -68,6 +68,7 @@ fn rules() -> Rules {
     Rules {
         queue_limit: 100,
         client_queue_limit: 100,
+        user_queue_limit: None,
         client_design_limit: 1000,
         job_memory_mb: 1000,
         memory_mb: 1000,

@@ -247,6 +247,39 @@ async fn who_names_an_issuer_wants_to_know_everybody() {
 }
 
 #[tokio::test]
+async fn the_claim_that_the_operator_says_names_the_user() {
+    let signer = Signer::new("first");
+    let provider = Provider::with(Keys::These(vec![signer.public()])).await;
+    let bench = Bench::start(
+        |config| {
+            provider.configure(config);
+            config.oidc.oidc_user_claim = Some("/person/login".parse().unwrap());
+        },
+        Arc::new(|_, _| Ok(crate::bench::results())),
+    )
+    .await;
+    let claims = |person: Value| {
+        let mut claims = provider.claims("works");
+        claims["person"] = person;
+        signer.token(&claims)
+    };
+    let submit = |token: &str| bench.post("/v1/jobs", &submission(1.0)).bearer_auth(token);
+    let ada = claims(json!({ "login": "ada" }));
+    let told = submit(&ada).document().await;
+    assert_eq!(told["submitted_by"], "ada");
+    let told = submit(&claims(json!({}))).document().await;
+    assert_eq!(told["submitted_by"], Value::Null, "a program has no user");
+    problem(
+        submit(&claims(json!({ "login": "a b" }))),
+        401,
+        "unauthorized",
+    )
+    .await;
+    let other = submit(&ada).header("meshwright-user", "bob");
+    problem(other, 422, "conflicting_fields").await;
+}
+
+#[tokio::test]
 async fn the_claim_that_the_operator_says_makes_an_operator() {
     let (bench, provider, signer) = trusting().await;
     let mut claims = provider.claims("ada");

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use jiff::{SignedDuration, Timestamp};
-use meshwright::jobs::Clock;
+use meshwright::jobs::{Clock, Role};
 
 use meshwright::webhooks::HookRules;
 use reqwest::StatusCode;
@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpListener;
 
-use crate::admission::key_of;
+use crate::admission::{key_of, make_key};
 use crate::bench::{Asked, Bench, PATIENCE, problem, results, submission};
 use crate::stores;
 
@@ -89,6 +89,33 @@ fn header<'a>(message: &'a str, name: &str) -> &'a str {
         .lines()
         .find(|line| line.to_ascii_lowercase().starts_with(&format!("{name}:")));
     line.unwrap().split_once(':').unwrap().1.trim()
+}
+
+#[tokio::test]
+async fn what_an_administrator_ends_and_deletes_is_told_to_its_client() {
+    let (port, mut received) = receiver(&["200 OK", "200 OK", "200 OK"]).await;
+    let bench = bench(port).await;
+    let portal = key_of(&bench, "portal").await;
+    let key = make_key(&bench, "operations", Role::Administrator, |_| {}).await;
+    let hook = json!({ "url": format!("http://localhost:{port}/hook") });
+    let made = bench.post("/v1/webhooks", &hook).bearer_auth(&portal);
+    assert_eq!(made.answer().await.status(), StatusCode::CREATED);
+    let job = bench
+        .post("/v1/jobs", &submission(1.0))
+        .bearer_auth(&portal);
+    let job = job.document().await;
+    let mut data = async || {
+        let message = next(&mut received).await;
+        let body = message.split("\r\n\r\n").nth(1).unwrap();
+        let body: Value = serde_json::from_str(body).unwrap();
+        assert_eq!(body["data"]["id"], job["id"]);
+        (body["type"].clone(), body["data"]["by"].clone())
+    };
+    assert_eq!(data().await, (json!("job.ended"), Value::Null));
+    let path = job["links"]["self"].as_str().unwrap();
+    let gone = bench.delete(path).bearer_auth(&key).answer().await;
+    assert_eq!(gone.status(), StatusCode::NO_CONTENT);
+    assert_eq!(data().await, (json!("job.deleted"), json!("administrator")));
 }
 
 #[tokio::test]

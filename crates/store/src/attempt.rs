@@ -9,8 +9,9 @@ use uuid::Uuid;
 use super::documents::{Packed, forget_document, insert_documents};
 use super::endings::tell_ends;
 use super::rows::job_columns;
+use super::shares::{self, LaneOf};
 use super::statement::{list, query_as};
-use super::{Job, Progress, Status, Store, StoreError, column, dialect, micros, shares};
+use super::{Job, Progress, Status, Store, StoreError, column, dialect, micros};
 
 /// A word for one attempt at one job: only the latest claim may report or finish.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -195,7 +196,7 @@ impl Store {
         .fetch_optional(&mut *write)
         .await?;
         if let Some(job) = &job {
-            shares::activate(&mut write, &job.client, job.study).await?;
+            shares::activate(&mut write, &LaneOf::of(job)).await?;
         }
         write.commit().await?;
         Ok(job.is_some())

@@ -7,7 +7,7 @@ use jiff::Timestamp;
 use super::attempt::Lease;
 use super::documents::{Damaged, checked};
 use super::endings::tell_end;
-use super::rows::{Record, Row, job_columns};
+use super::rows::{Record, Row, job_columns, lane_of_job};
 use super::shares::{self, Here, Lane};
 use super::statement::{Connection, list, query, query_as, query_scalar};
 use super::submit::{Known, find_known};
@@ -295,9 +295,11 @@ impl Look<'_> {
 
 /// A lane whose jobs all wait for an equal one keeps its turn. True if it rests.
 async fn rest_if_empty(connection: &mut Connection, lane: &Lane) -> Result<bool, sqlx::Error> {
-    let waits = query(
-        "select 1 from jobs where status = 'accepted' and client = $1 and coalesce(study, '') = $2 limit 1",
-    )
+    let waits = query(concat!(
+        "select 1 from jobs where status = 'accepted' and client = $1 and ",
+        lane_of_job!(),
+        " = $2 limit 1"
+    ))
     .bind(&lane.client)
     .bind(&lane.lane)
     .exists(&mut *connection)

@@ -7,9 +7,11 @@ use uuid::Uuid;
 
 use super::documents::forget_document;
 use super::endings::{note_study, tell_end};
+use super::outbox::{Event, EventKind, tell};
 use super::rows::job_columns;
+use super::shares::{self, LaneOf};
 use super::statement::query_as;
-use super::{Job, Store, StoreError, dialect, micros, shares};
+use super::{By, Job, Store, StoreError, dialect, micros};
 
 /// Which running jobs have lost their worker.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,7 +74,7 @@ impl Store {
             .fetch_one(&mut *write)
             .await?;
             if job.attempts_counted < i64::from(attempts_limit) {
-                to_activate.insert((job.client, job.study));
+                to_activate.insert(LaneOf::of(&job));
                 continue;
             }
             let job: Job = query_as(concat!(
@@ -99,13 +101,14 @@ impl Store {
         &self,
         client: &str,
         id: Uuid,
+        by: By,
         now: Timestamp,
     ) -> Result<Option<Job>, StoreError> {
         let mut write = self.begin().await?;
         let job: Option<Job> = query_as(
             concat!(
             "update jobs set status = 'dismissed', finished_at = max(max($3, submitted_at), coalesce(started_at, 0)),
-                             lease_until = null
+                             lease_until = null, dismissed_by = $4
              where id = $1 and client = $2 and status in ('accepted', 'running')
              returning ",
             job_columns!()
@@ -114,6 +117,7 @@ impl Store {
         .bind(id.to_string())
         .bind(client)
         .bind(now.as_microsecond())
+        .bind(by.word())
         .fetch_optional(&mut *write)
         .await?;
         if let Some(job) = &job {
@@ -125,7 +129,13 @@ impl Store {
 
     /// Any state but running -> nothing, with the results unless another job has the same. False if the client has
     /// no such job in these states.
-    pub async fn delete(&self, client: &str, id: Uuid) -> Result<bool, StoreError> {
+    pub async fn delete(
+        &self,
+        client: &str,
+        id: Uuid,
+        by: By,
+        now: Timestamp,
+    ) -> Result<bool, StoreError> {
         let mut write = self.begin().await?;
         let deleted: Option<Job> = query_as(concat!(
             "delete from jobs where id = $1 and client = $2 and status <> 'running' returning ",
@@ -142,6 +152,10 @@ impl Store {
             if let Some(study) = job.study {
                 // With its last waiting design a study has ended.
                 note_study(&mut write, study, job.submitted_at).await?;
+            }
+            if by == By::Administrator {
+                let event = Event::of_job(EventKind::JobDeleted, job);
+                tell(&mut write, client, event, now).await?;
             }
         }
         write.commit().await?;

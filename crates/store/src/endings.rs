@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use jiff::Timestamp;
 use uuid::Uuid;
 
-use super::outbox::{EventKind, tell};
+use super::outbox::{Event, EventKind, tell};
 use super::rows::study_columns;
 use super::statement::{Connection, query_as, query_scalar};
 use super::{Job, StudyRecord};
@@ -20,8 +20,8 @@ pub(super) async fn tell_end(
         // The designs of a study end by the thousand; the study is what its client waits for.
         Some(study) => note_study(connection, study, now).await,
         None if job.status.has_ended() => {
-            let kind = EventKind::JobEnded;
-            tell(connection, &job.client, kind, job.id, job.status, now).await
+            let event = Event::of_job(EventKind::JobEnded, job);
+            tell(connection, &job.client, event, now).await
         }
         None => Ok(()),
     }
@@ -68,8 +68,8 @@ pub(super) async fn note_study(
             .bind(id.to_string())
             .fetch_one(&mut *connection)
             .await?;
-        let kind = EventKind::StudyEnded;
-        tell(connection, &client, kind, id, study.status(), now).await?;
+        let event = Event::of_study(EventKind::StudyEnded, &study);
+        tell(connection, &client, event, now).await?;
     }
     Ok(())
 }

@@ -64,6 +64,10 @@ pub struct Job {
     pub same_as: Option<Uuid>,
     /// The study that it computes a design of.
     pub study: Option<Uuid>,
+    /// The user of the client who submitted it, if the client says.
+    pub submitted_by: Option<String>,
+    /// Who dismissed it, in a word, if that was not its client.
+    pub dismissed_by: Option<String>,
 }
 
 #[cfg(test)]

@@ -15,6 +15,8 @@ pub enum Role {
     Reader,
     /// As client, and read the numbers of the whole service.
     Operator,
+    /// As client, and see who uses the service, and cancel and delete what others have submitted.
+    Administrator,
 }
 
 impl Role {
@@ -24,6 +26,7 @@ impl Role {
             Self::Client => "client",
             Self::Reader => "reader",
             Self::Operator => "operator",
+            Self::Administrator => "administrator",
         }
     }
 
@@ -32,6 +35,7 @@ impl Role {
         match word {
             "client" => Self::Client,
             "operator" => Self::Operator,
+            "administrator" => Self::Administrator,
             // A word of a later version gives the least that there is.
             _ => Self::Reader,
         }

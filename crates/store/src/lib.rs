@@ -8,8 +8,8 @@
 //! - the states (`state`), a [`Job`], a [`StudyRecord`], and how they are read (`rows`);
 //! - the transitions of a job: `submit`, `claim` in its turn (`shares`), `attempt`, and other ends (`end`); those of a study (`studies`);
 //! - what is read: lists, documents, tables; what other processes report (`news`);
-//! - keys, [`webhooks`], and the messages to them, which are written with what they report (`outbox`);
-//! - for operators: retention and backup.
+//! - keys, `links` to results, [`webhooks`], and the messages to them, which are written with what they report (`outbox`);
+//! - for operators: who uses the service (`usage`), retention and backup.
 //!
 //! Each transition is one transaction that names the state it leaves; when the job is not in that state the transition does
 //! not happen, and says so. Time comes in as an argument.
@@ -36,6 +36,7 @@ mod hash;
 mod health;
 mod job;
 mod keys;
+mod links;
 mod lists;
 mod lock;
 mod news;
@@ -53,6 +54,7 @@ mod study_tables;
 mod submit;
 #[cfg(test)]
 mod tests;
+mod usage;
 pub mod webhooks;
 mod write;
 
@@ -73,17 +75,19 @@ pub use end::Lost;
 pub use error::StoreError;
 pub use job::{Job, Progress};
 pub use keys::{KeyRecord, Role};
+pub use links::{LinkOutcome, LinkRecord, NewLink};
 pub use lists::{Cursor, Depth, Filter, Membership, NoCursor, Span, StudyFilter};
 pub use lock::{DatabaseLock, LockError};
 pub use news::{Listener, Notice};
 pub use open::{Migrate, OpenError};
 pub use outbox::EventKind;
 pub use retention::{Removed, Space};
-pub use state::{Kept, Status};
+pub use state::{By, Kept, Status};
 pub use studies::{NewRow, NewStudy, SearchStep, StudyOutcome};
 pub use study::StudyRecord;
 pub use study_tables::{DocumentLine, StoredRow};
 pub use submit::{NewJob, Outcome, QueueBounds};
+pub use usage::{ClientUsage, UserUsage};
 
 /// The database.
 ///

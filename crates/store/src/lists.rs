@@ -22,6 +22,8 @@ pub struct Filter {
     pub ids: Option<Vec<Uuid>>,
     /// Those that compute designs of this study, or those that stand alone.
     pub study: Option<Membership>,
+    /// Those that this user of the client submitted.
+    pub submitted_by: Option<String>,
     /// Those that were submitted in this time.
     pub span: Span,
     /// Those that stand behind this place in the list.
@@ -35,6 +37,8 @@ pub struct StudyFilter {
     pub name: Option<String>,
     /// Those that bear this tag.
     pub tag: Option<String>,
+    /// Those that this user of the client submitted.
+    pub submitted_by: Option<String>,
     /// Those that were submitted in this time.
     pub span: Span,
     /// Those that stand behind this place in the list.
@@ -73,6 +77,18 @@ impl Store {
         .fetch_optional(&self.readers)
         .await?;
         Ok(job)
+    }
+
+    /// The client that submitted a job.
+    pub async fn owner_of_job(&self, id: Uuid) -> Result<Option<String>, StoreError> {
+        let owner = query_scalar("select client from jobs where id = $1").bind(id.to_string());
+        Ok(owner.fetch_optional(&self.readers).await?)
+    }
+
+    /// The client that submitted a study.
+    pub async fn owner_of_study(&self, id: Uuid) -> Result<Option<String>, StoreError> {
+        let owner = query_scalar("select client from studies where id = $1").bind(id.to_string());
+        Ok(owner.fetch_optional(&self.readers).await?)
     }
 
     /// The submission of a job, JSON.
@@ -275,6 +291,16 @@ impl Filter {
         if let Some(status) = status {
             query.push(" and jobs.status = ").push_bind(status.as_str());
         }
+        if let Some(user) = &self.submitted_by {
+            // Designs of one study and named jobs are few.
+            let sign = if named || self.tag.is_some() {
+                no_index
+            } else {
+                ""
+            };
+            query.push(&format!(" and {sign}jobs.submitted_by = "));
+            query.push_bind(user);
+        }
         if let Some(ids) = &self.ids {
             // A list is not empty in SQL; nothing is equal to null.
             query.push(" and jobs.id in (null");
@@ -328,6 +354,9 @@ impl StudyFilter {
             "studies"
         };
         bound_sequence(&mut query, walked, "studies", client, self.span, self.after);
+        if let Some(user) = &self.submitted_by {
+            query.push(" and studies.submitted_by = ").push_bind(user);
+        }
         if let Some(name) = &self.name {
             query.push(" and studies.name = ").push_bind(name);
         }

@@ -6,7 +6,7 @@ use serde::Serialize;
 use uuid::Uuid;
 
 use super::statement::{Connection, query, query_as};
-use super::{Status, Store, StoreError};
+use super::{By, Job, Status, Store, StoreError, StudyRecord};
 
 /// What can be reported.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,17 +15,36 @@ pub enum EventKind {
     JobEnded,
     /// A study has ended.
     StudyEnded,
+    /// An administrator has deleted a job.
+    JobDeleted,
+    /// An administrator has deleted a study.
+    StudyDeleted,
 }
 
 impl EventKind {
     /// All kinds.
-    pub const ALL: [Self; 2] = [Self::JobEnded, Self::StudyEnded];
+    pub const ALL: [Self; 4] = [
+        Self::JobEnded,
+        Self::StudyEnded,
+        Self::JobDeleted,
+        Self::StudyDeleted,
+    ];
 
     /// Its word.
     pub fn word(self) -> &'static str {
         match self {
             Self::JobEnded => "job.ended",
             Self::StudyEnded => "study.ended",
+            Self::JobDeleted => "job.deleted",
+            Self::StudyDeleted => "study.deleted",
+        }
+    }
+
+    /// Who does what is told, where it is never the client.
+    fn by(self) -> Option<&'static str> {
+        match self {
+            Self::JobEnded | Self::StudyEnded => None,
+            Self::JobDeleted | Self::StudyDeleted => By::Administrator.word(),
         }
     }
 
@@ -47,22 +66,56 @@ pub(crate) struct NewMessage<'a> {
     pub(crate) subject: Uuid,
     /// Where that stands.
     pub(crate) status: Option<Status>,
+    /// Who did it, in a word, if that was not its client.
+    pub(crate) by: Option<&'a str>,
+}
+
+/// What has happened to a job or a study.
+pub(super) struct Event<'a> {
+    kind: EventKind,
+    subject: Uuid,
+    status: Status,
+    by: Option<&'a str>,
+}
+
+impl<'a> Event<'a> {
+    /// Of a job; only an administrator's deletion is told.
+    pub(super) fn of_job(kind: EventKind, job: &'a Job) -> Self {
+        Self {
+            kind,
+            subject: job.id,
+            status: job.status,
+            by: kind.by().or(job.dismissed_by.as_deref()),
+        }
+    }
+
+    /// The same of a study.
+    pub(super) fn of_study(kind: EventKind, study: &'a StudyRecord) -> Self {
+        Self {
+            kind,
+            subject: study.id,
+            status: study.status(),
+            by: kind.by().or(study.dismissed_by.as_deref()),
+        }
+    }
 }
 
 /// The body of a message: small, because who wants more asks for it.
 #[derive(Serialize)]
-struct Body {
+struct Body<'a> {
     #[serde(rename = "type")]
     kind: &'static str,
     timestamp: Timestamp,
-    data: BodyData,
+    data: BodyData<'a>,
 }
 
 #[derive(Serialize)]
-struct BodyData {
+struct BodyData<'a> {
     id: Uuid,
     #[serde(skip_serializing_if = "Option::is_none")]
     status: Option<&'static str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    by: Option<&'a str>,
 }
 
 impl NewMessage<'_> {
@@ -79,6 +132,7 @@ impl NewMessage<'_> {
             data: BodyData {
                 id: self.subject,
                 status: self.status.map(Status::as_str),
+                by: self.by,
             },
         };
         let insert = query(
@@ -99,9 +153,7 @@ impl NewMessage<'_> {
 pub(super) async fn tell(
     connection: &mut Connection,
     client: &str,
-    kind: EventKind,
-    subject: Uuid,
-    status: Status,
+    event: Event<'_>,
     now: Timestamp,
 ) -> Result<(), sqlx::Error> {
     let webhooks: Vec<(String, String)> =
@@ -111,13 +163,14 @@ pub(super) async fn tell(
             .await?;
     let wanting = webhooks
         .iter()
-        .filter(|(_, events)| EventKind::of_words(events).contains(&kind));
+        .filter(|(_, events)| EventKind::of_words(events).contains(&event.kind));
     for (webhook, _) in wanting {
         let message = NewMessage {
             webhook,
-            kind: kind.word(),
-            subject,
-            status: Some(status),
+            kind: event.kind.word(),
+            subject: event.subject,
+            status: Some(event.status),
+            by: event.by,
         };
         message.insert(connection, now).await?;
     }

@@ -57,6 +57,7 @@ tuple!(A 0_usize);
 tuple!(A 0_usize, B 1_usize);
 tuple!(A 0_usize, B 1_usize, C 2_usize);
 tuple!(A 0_usize, B 1_usize, C 2_usize, D 3_usize);
+tuple!(A 0_usize, B 1_usize, C 2_usize, D 3_usize, E 4_usize);
 tuple!(A 0_usize, B 1_usize, C 2_usize, D 3_usize, E 4_usize, F 5_usize);
 tuple!(A 0_usize, B 1_usize, C 2_usize, D 3_usize, E 4_usize, F 5_usize, G 6_usize);
 
@@ -65,7 +66,7 @@ tuple!(A 0_usize, B 1_usize, C 2_usize, D 3_usize, E 4_usize, F 5_usize, G 6_usi
 macro_rules! job_columns {
     () => {
         "id, sequence, client, method, tags, status, attempt, returned, positions_done, positions_total, submitted_at, started_at, \
-         finished_at, elapsed, problem, keep, document, solver_version, same_as, study"
+         finished_at, elapsed, problem, keep, document, solver_version, same_as, study, submitted_by, dismissed_by"
     };
 }
 
@@ -73,11 +74,18 @@ macro_rules! job_columns {
 macro_rules! study_columns {
     () => {
         "id, sequence, name, tags, gear, total, expanded, unbuildable, accepted, running, successful, failed, dismissed, version, \
-         submitted_at, last_end, cancelled_at, search"
+         submitted_at, last_end, cancelled_at, search, submitted_by, dismissed_by"
     };
 }
 
-pub(crate) use {job_columns, study_columns};
+/// The lane of a job, as `shares` names it: its study, or the jobs of its user that stand alone.
+macro_rules! lane_of_job {
+    () => {
+        "coalesce(study, '!' || submitted_by, '')"
+    };
+}
+
+pub(crate) use {job_columns, lane_of_job, study_columns};
 
 /// Columns as those of a table, where another one has columns of the same names.
 pub(crate) fn of_table(table: &str, columns: &str) -> String {
@@ -119,6 +127,8 @@ impl Record for Job {
             solver_version: row.get("solver_version")?,
             same_as: optional_uuid(row, "same_as")?,
             study: optional_uuid(row, "study")?,
+            submitted_by: row.get("submitted_by")?,
+            dismissed_by: row.get("dismissed_by")?,
         })
     }
 }
@@ -144,6 +154,8 @@ impl Record for StudyRecord {
             last_end: optional_instant(row, "last_end")?,
             cancelled_at: optional_instant(row, "cancelled_at")?,
             search: row.get("search")?,
+            submitted_by: row.get("submitted_by")?,
+            dismissed_by: row.get("dismissed_by")?,
         })
     }
 }

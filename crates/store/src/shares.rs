@@ -1,7 +1,8 @@
-//! Whose turn it is: clients share the service, and the lanes of a client share its part.
+//! Whose turn it is: clients share the service, the users of a client its part, and the lanes of a user theirs.
 //!
-//! A lane is a study, or the jobs that stand alone. Each client and each lane has a time at which its next job is due, which
-//! moves on by what its jobs cost; the least is served next (start-time fair queueing, Goyal et al. 1996). Who begins to
+//! A lane is a study, or the jobs of a user that stand alone. What a client submits without the name of a user is of one user without a name.
+//! Each client, user and lane has a time at which its next job is due, which moves on by what its jobs cost; the least is served next
+//! (start-time fair queueing, Goyal et al. 1996). Who begins to
 //! wait starts where those are that are being served: nobody saves up a claim, and nobody pays for having been alone. So
 //! while a client has work to do, no other one gets more than its share, however many jobs or studies it brings.
 
@@ -9,18 +10,44 @@ use std::collections::BTreeSet;
 
 use uuid::Uuid;
 
-use super::dialect;
-use super::rows::{Record, Row};
+use super::rows::{Record, Row, lane_of_job};
 use super::statement::{Connection, query, query_as};
+use super::{Job, dialect};
 
 /// Jobs that stand alone have so many times the part of a study: somebody waits for them, but a study is not to starve.
 const WEIGHT_ALONE: i64 = 3;
 
-/// The lane of jobs that stand alone.
-const ALONE: &str = "";
+/// What the name of a lane of jobs that stand alone begins with, if they are of a user; those of no user have the lane ''.
+const ALONE: char = '!';
 
-/// A client and its study, or its jobs that stand alone, in the order in which shares are locked.
-pub(super) type LaneOf = (String, Option<Uuid>);
+/// The lane of a job, in the order in which shares are locked.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct LaneOf {
+    pub(super) client: String,
+    /// The user of the client.
+    pub(super) person: Option<String>,
+    /// None for jobs that stand alone.
+    pub(super) study: Option<Uuid>,
+}
+
+impl LaneOf {
+    pub(super) fn of(job: &Job) -> Self {
+        Self {
+            client: job.client.clone(),
+            person: job.submitted_by.clone(),
+            study: job.study,
+        }
+    }
+
+    /// As `lane_of_job` has it.
+    fn name(&self) -> String {
+        match (self.study, &self.person) {
+            (Some(study), _) => study.to_string(),
+            (None, Some(person)) => format!("{ALONE}{person}"),
+            (None, None) => String::new(),
+        }
+    }
+}
 
 /// Keeps others from changing the shares of some clients until the end of the transaction.
 pub(super) async fn lock(
@@ -41,8 +68,8 @@ pub(super) async fn activate_all(
     connection: &mut Connection,
     lanes: &BTreeSet<LaneOf>,
 ) -> Result<(), sqlx::Error> {
-    for (client, study) in lanes {
-        activate(connection, client, *study).await?;
+    for lane in lanes {
+        activate(connection, lane).await?;
     }
     Ok(())
 }
@@ -50,19 +77,27 @@ pub(super) async fn activate_all(
 /// Makes sure that a lane in which a job waits is looked at.
 pub(super) async fn activate(
     connection: &mut Connection,
-    client: &str,
-    study: Option<Uuid>,
+    lane: &LaneOf,
 ) -> Result<(), sqlx::Error> {
+    // A program from before there were users would find no job in the lane of one.
+    let active: i64 = if lane.person.is_some() { 2 } else { 1 };
     let activate = query(
-        "insert into shares (client, lane, due, active)
-           select $1, '*', (select due from served), 1
-           union all select $1, $2, coalesce((select served from shares where client = $1 and lane = '*'), 0), 1
+        "insert into shares (client, lane, due, active, served, person)
+           select $1, '*', (select due from served), 1, 0, ''
+           union all
+           select $1, '@' || $3, coalesce((select served from shares where client = $1 and lane = '*'), 0), 2,
+                  coalesce((select served from shares where client = $1 and lane = '*'), 0), $3
+           union all
+           select $1, $2, coalesce((select served from shares where client = $1 and lane = '@' || $3),
+                                   (select served from shares where client = $1 and lane = '*'), 0), $4, 0, $3
            where true
          on conflict (client, lane) do update
-           set active = 1, due = case shares.active when 1 then shares.due else max(shares.due, excluded.due) end",
+           set active = excluded.active, due = case shares.active when 0 then max(shares.due, excluded.due) else shares.due end",
     )
-    .bind(client)
-    .bind(study.map_or_else(|| ALONE.to_owned(), |study| study.to_string()));
+    .bind(&lane.client)
+    .bind(lane.name())
+    .bind(lane.person.as_deref().unwrap_or_default())
+    .bind(active);
     connection.later(activate).await
 }
 
@@ -70,9 +105,12 @@ pub(super) async fn activate(
 #[derive(Debug, Clone)]
 pub(super) struct Lane {
     pub(super) client: String,
-    /// The id of the study; empty for jobs that stand alone.
+    /// The user of the client; empty for none.
+    person: String,
+    /// Its name: the id of a study, or that of jobs that stand alone.
     pub(super) lane: String,
     client_due: i64,
+    person_due: i64,
     lane_due: i64,
 }
 
@@ -97,8 +135,10 @@ impl Record for LaneHere {
         Ok(Self {
             lane: Lane {
                 client: row.get("client")?,
+                person: row.get("person")?,
                 lane: row.get("lane")?,
                 client_due: row.get("client_due")?,
+                person_due: row.get("person_due")?,
                 lane_due: row.get("lane_due")?,
             },
             here: Here {
@@ -132,7 +172,8 @@ impl Lane {
         all: bool,
     ) -> Result<bool, sqlx::Error> {
         let cost = cost.max(1);
-        let of_lane = if self.lane == ALONE {
+        let stands_alone = self.lane.is_empty() || self.lane.starts_with(ALONE);
+        let of_lane = if stands_alone {
             (cost / WEIGHT_ALONE).max(1)
         } else {
             cost
@@ -140,29 +181,34 @@ impl Lane {
         let serve = query("update served set due = max(due, $1)").bind(self.client_due);
         connection.later(serve).await?;
         // One that only waits for an equal one keeps the lane its turn.
-        let rows: Vec<(String, i64)> = query_as(
+        let rows: Vec<(String, i64)> = query_as(concat!(
             "update shares
-             set due = due + case lane when '*' then $3 else $4 end,
-                 served = case lane when '*' then max(served, $5) else served end,
+             set due = due + case lane when $2 then $4 else $3 end,
+                 served = case lane when '*' then max(served, $5) when '@' || $8 then max(served, $6) else served end,
                  active = case
-                   when $6 = 0 then active
-                   when exists (select 1 from jobs where status = 'accepted' and jobs.client = $1 and coalesce(study, '') = $2) then active
-                   when lane = '*' and exists (select 1 from shares as others where others.client = $1
-                                                 and others.lane not in ('*', $2) and others.active = 1) then active
+                   when $7 = 0 then active
+                   when exists (select 1 from jobs where status = 'accepted' and jobs.client = $1 and ",
+            lane_of_job!(),
+            " = $2) then active
+                   when lane <> $2 and exists (select 1 from shares as others
+                                               where others.client = $1 and others.active > 0 and others.lane not in ('*', $2)
+                                                 and others.lane not like '@%' and (shares.lane = '*' or others.person = $8)) then active
                    else 0 end
-             where client = $1 and lane in ('*', $2)
-             returning lane, active",
-        )
+             where client = $1 and lane in ('*', '@' || $8, $2)
+             returning lane, active"
+        ))
         .bind(&self.client)
         .bind(&self.lane)
         .bind(cost)
         .bind(of_lane)
+        .bind(self.person_due)
         .bind(self.lane_due)
         .bind(i64::from(all))
+        .bind(&self.person)
         .fetch_all(&mut *connection)
         .await?;
         let rests = rows.contains(&(self.lane.clone(), 0));
-        if rests && self.lane != ALONE {
+        if rests && !self.lane.is_empty() {
             forget(connection, &self.client).await?;
         }
         Ok(rests)
@@ -186,8 +232,10 @@ pub(super) async fn rest(
         .execute(&mut *connection)
         .await?;
     query(
-        "update shares set active = 0 where client = $1 and lane = '*'
-           and not exists (select 1 from shares where client = $1 and lane <> '*' and active = 1)",
+        "update shares set active = 0 where client = $1 and active > 0 and (lane = '*' or lane like '@%')
+           and not exists (select 1 from shares as others where others.client = $1 and others.active > 0
+                             and others.lane <> '*' and others.lane not like '@%'
+                             and (shares.lane = '*' or others.person = shares.person))",
     )
     .bind(client)
     .execute(&mut *connection)
@@ -195,11 +243,23 @@ pub(super) async fn rest(
     forget(connection, client).await
 }
 
-/// A lane that others have caught up with begins anew where they are, remembered or not.
+/// A lane or a user that others have caught up with begins anew where they are, remembered or not; and where nothing of a client waits,
+/// all of them do.
 async fn forget(connection: &mut Connection, client: &str) -> Result<(), sqlx::Error> {
     query(
-        "delete from shares where client = $1 and lane not in ('*', '') and active = 0
-           and due <= (select served from shares where client = $1 and lane = '*')",
+        "delete from shares where client = $1 and active = 0 and lane not in ('*', '', '@')
+           and (not exists (select 1 from shares as others where others.client = $1 and others.active > 0)
+                or lane not like '@%' and due <= (select level.served from shares as level
+                                                  where level.client = $1 and level.lane = '@' || shares.person))",
+    )
+    .bind(client)
+    .execute(&mut *connection)
+    .await?;
+    // A user goes behind the last of its lanes, which have their time from it.
+    query(
+        "delete from shares where client = $1 and active = 0 and lane like '@_%'
+           and due <= (select whole.served from shares as whole where whole.client = $1 and whole.lane = '*')
+           and not exists (select 1 from shares as own where own.client = $1 and own.person = shares.person and own.lane not like '@%')",
     )
     .bind(client)
     .execute(connection)

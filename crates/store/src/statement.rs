@@ -336,6 +336,7 @@ value_of! {
     String => |value| Self::Text(Some(value)),
     &str => |value| Self::Text(Some(value.to_owned())),
     &String => |value| Self::Text(Some(value.clone())),
+    Option<&str> => |value| Self::Text(value.map(str::to_owned)),
     Option<String> => |value| Self::Text(value),
     Option<&String> => |value| Self::Text(value.cloned()),
     &Option<String> => |value| Self::Text(value.clone()),

@@ -9,9 +9,11 @@ use uuid::Uuid;
 
 use super::documents::{checksum, forget_document};
 use super::endings::note_study;
+use super::outbox::{Event, EventKind, tell};
+use super::shares::{self, LaneOf};
 use super::statement::{Connection, list, query, query_as, query_scalar};
 use super::submit::{QueueBounds, find_known, insert_jobs, insert_submissions, words};
-use super::{NewJob, Status, Store, StoreError, column, dialect, micros, shares};
+use super::{By, NewJob, Status, Store, StoreError, column, dialect, micros};
 
 /// So many jobs of studies may wait; further studies are refused.
 const MOST_WAITING_DESIGNS: i64 = 250_000;
@@ -54,6 +56,8 @@ pub struct NewStudy {
     pub idempotency_key: Option<String>,
     /// So many designs of the client may wait.
     pub client_limit: i64,
+    /// The user of the client who submits it, if the client says.
+    pub submitted_by: Option<String>,
 }
 
 /// A row to be kept.
@@ -118,7 +122,12 @@ impl Store {
             return Ok(refusal);
         }
         insert_study(&mut write, study).await?;
-        append(&mut write, &study.client, study.id, 0, rows, bounds).await?;
+        let lane = LaneOf {
+            client: study.client.clone(),
+            person: study.submitted_by.clone(),
+            study: Some(study.id),
+        };
+        append(&mut write, &lane, study.id, 0, rows, bounds).await?;
         note_study(&mut write, study.id, study.submitted_at).await?;
         write.commit().await?;
         Ok(StudyOutcome::Taken)
@@ -135,16 +144,21 @@ impl Store {
         bounds: QueueBounds<'_>,
     ) -> Result<bool, StoreError> {
         let mut write = self.begin().await?;
-        let client: Option<String> = query_scalar(
-            "select client from studies where id = $1 and expanded = $2 and cancelled_at is null",
+        let owner: Option<(String, Option<String>)> = query_as(
+            "select client, submitted_by from studies where id = $1 and expanded = $2 and cancelled_at is null",
         )
         .bind(id.to_string())
         .bind(column(expanded))
         .fetch_optional(&mut *write)
         .await?;
-        let Some(client) = client else {
+        let Some((client, person)) = owner else {
             write.rollback().await?;
             return Ok(false);
+        };
+        let lane = LaneOf {
+            client,
+            person,
+            study: Some(id),
         };
         if let Some(step) = step {
             query("update studies set search = $2, total = coalesce($3, total) where id = $1")
@@ -154,7 +168,7 @@ impl Store {
                 .execute(&mut *write)
                 .await?;
         }
-        if !append(&mut write, &client, id, expanded, rows, bounds).await? {
+        if !append(&mut write, &lane, id, expanded, rows, bounds).await? {
             write.rollback().await?;
             return Ok(false);
         }
@@ -203,16 +217,18 @@ impl Store {
         &self,
         client: &str,
         id: Uuid,
+        by: By,
         now: Timestamp,
     ) -> Result<bool, StoreError> {
         let mut write = self.begin().await?;
         let cancelled = query(
-            "update studies set cancelled_at = max($3, submitted_at), version = version + 1
+            "update studies set cancelled_at = max($3, submitted_at), version = version + 1, dismissed_by = $4
              where id = $1 and client = $2 and cancelled_at is null and (expanded < total or accepted + running > 0)",
         )
         .bind(id.to_string())
         .bind(client)
         .bind(now.as_microsecond())
+        .bind(by.word())
         .execute(&mut *write)
         .await?;
         if cancelled > 0 {
@@ -262,15 +278,34 @@ impl Store {
 
     /// Ended -> nothing, for a study, its jobs, and their results unless another job has the same. False if the client
     /// has no such study, or it has not ended.
-    pub async fn delete_study(&self, client: &str, id: Uuid) -> Result<bool, StoreError> {
+    pub async fn delete_study(
+        &self,
+        client: &str,
+        id: Uuid,
+        by: By,
+        now: Timestamp,
+    ) -> Result<bool, StoreError> {
         match self.find_study(client, id).await? {
-            Some(_) => self.delete_ended_study(id).await,
+            Some(study) => {
+                let event = Event::of_study(EventKind::StudyDeleted, &study);
+                let event = (by == By::Administrator).then_some((client, event, now));
+                self.delete_and_tell(id, event).await
+            }
             None => Ok(false),
         }
     }
 
     /// The same, whoever the client is. Commits some jobs at a time, so that others may write meanwhile.
     pub async fn delete_ended_study(&self, id: Uuid) -> Result<bool, StoreError> {
+        self.delete_and_tell(id, None).await
+    }
+
+    /// The same. What happened is told to its client with the last commit.
+    async fn delete_and_tell(
+        &self,
+        id: Uuid,
+        mut event: Option<(&str, Event<'_>, Timestamp)>,
+    ) -> Result<bool, StoreError> {
         loop {
             let mut write = self.begin().await?;
             let ended = query(
@@ -305,6 +340,9 @@ impl Store {
                     .bind(id.to_string())
                     .execute(&mut *write)
                     .await?;
+                if let Some((client, event, now)) = event.take() {
+                    tell(&mut write, client, event, now).await?;
+                }
             }
             write.commit().await?;
             if last {
@@ -384,6 +422,7 @@ async fn insert_study(connection: &mut Connection, study: &NewStudy) -> Result<(
         .bind(study.submitted_at.as_microsecond())
         .bind(&study.idempotency_key)
         .bind(study.document_version)
+        .bind(&study.submitted_by)
         .fetch_one(&mut *connection)
         .await?;
     query("insert into study_documents (study, body, checksum) values ($1, $2, $3)")
@@ -411,11 +450,11 @@ async fn insert_study(connection: &mut Connection, study: &NewStudy) -> Result<(
     Ok(())
 }
 
-/// Adds rows behind the first `expanded` ones, with their jobs. False if the study has not just so many, or wants no more:
+/// Adds rows behind the first `expanded` ones, with their jobs, which wait in `lane`. False if the study has not just so many, or wants no more:
 /// somebody was faster.
 async fn append(
     connection: &mut Connection,
-    client: &str,
+    lane: &LaneOf,
     study: Uuid,
     expanded: u64,
     rows: &[NewRow],
@@ -427,7 +466,7 @@ async fn append(
         .collect();
     let inputs: Vec<&str> = jobs.iter().map(|new| new.input_hash.as_str()).collect();
     let computed: Vec<String> = query_scalar(dialect::known_among())
-        .bind(client)
+        .bind(&lane.client)
         .bind(bounds.solver_version)
         .bind(list(&inputs))
         .fetch_all(&mut *connection)
@@ -438,7 +477,7 @@ async fn append(
         let known = if computed.contains(new.input_hash.as_str()) {
             find_known(
                 connection,
-                client,
+                &lane.client,
                 &new.input_hash,
                 new.keep,
                 bounds.solver_version,
@@ -494,7 +533,7 @@ async fn append(
         .bind(micros(EXPANDING_FOR));
     connection.later(expanding).await?;
     if waiting > 0 {
-        shares::activate(connection, client, Some(study)).await?;
+        shares::activate(connection, lane).await?;
     }
     Ok(true)
 }

@@ -44,6 +44,10 @@ pub struct StudyRecord {
     pub last_end: Option<Timestamp>,
     /// How far a search has come, JSON; none for other studies.
     pub search: Option<String>,
+    /// The user of the client who submitted it, if the client says.
+    pub submitted_by: Option<String>,
+    /// Who dismissed it, in a word, if that was not its client.
+    pub dismissed_by: Option<String>,
 }
 
 impl StudyRecord {
@@ -110,6 +114,8 @@ mod tests {
             cancelled_at: None,
             last_end: None,
             search: None,
+            submitted_by: None,
+            dismissed_by: None,
         };
         let status = |accepted, running, successful, failed, dismissed| {
             StudyRecord {

@@ -10,8 +10,9 @@ use super::documents::checksum;
 use super::endings::tell_end;
 use super::hash::sha256_hex;
 use super::rows::job_columns;
+use super::shares::{self, LaneOf};
 use super::statement::{Connection, list, query, query_as};
-use super::{Job, Kept, Store, StoreError, column, dialect, shares};
+use super::{Job, Kept, Store, StoreError, column, dialect};
 
 /// A job to be queued.
 #[derive(Debug, Clone)]
@@ -44,6 +45,10 @@ pub struct NewJob {
     pub keep: Kept,
     /// So many jobs of the client may wait, those of studies aside.
     pub client_limit: u32,
+    /// The user of the client who submits it, if the client says.
+    pub submitted_by: Option<String>,
+    /// So many jobs of that user may wait.
+    pub user_limit: u32,
 }
 
 /// What came of a submission.
@@ -64,6 +69,11 @@ pub enum Outcome {
     },
     /// So many jobs of this client wait already.
     ClientQueueFull {
+        /// They.
+        waiting: i64,
+    },
+    /// So many jobs of this user of the client wait already.
+    UserQueueFull {
         /// They.
         waiting: i64,
     },
@@ -103,7 +113,11 @@ impl Store {
         for job in batch {
             let outcome = submit_one(&mut write, job, &mut room, bounds).await?;
             if matches!(outcome, Outcome::Queued(_)) {
-                lanes.insert((job.client.clone(), job.study));
+                lanes.insert(LaneOf {
+                    client: job.client.clone(),
+                    person: job.submitted_by.clone(),
+                    study: job.study,
+                });
             }
             outcomes.push(outcome);
         }
@@ -116,15 +130,39 @@ impl Store {
 /// The room in the queue, within one transaction: nobody else queues a job meanwhile, so that one count serves all of it.
 struct Room {
     limit: i64,
-    /// How many jobs of each client wait, those of studies aside.
-    waiting: Option<HashMap<String, i64>>,
+    waiting: Option<Waiting>,
 }
 
-/// Only lanes in which a job waits are counted, so that designs of studies are not even passed over.
-pub(super) const WAITING_ALONE: &str = "select client, count(*) from jobs
-     where client in (select client from shares where lane = '' and active = 1)
+/// How many jobs wait, those of studies aside.
+#[derive(Default)]
+struct Waiting {
+    all: i64,
+    of_clients: HashMap<String, i64>,
+    /// By client and user.
+    of_users: HashMap<(String, String), i64>,
+}
+
+/// Only clients that have jobs alone that wait are counted, so that designs of studies are not even passed over. Lanes before `"` are of such
+/// jobs (`shares`).
+pub(super) const WAITING_ALONE: &str =
+    "select client, coalesce(submitted_by, ''), count(*) from jobs
+     where client in (select client from shares where lane < '\"' and active > 0)
        and status = 'accepted' and coalesce(study, '') = ''
-     group by client";
+     group by client, submitted_by";
+
+impl Waiting {
+    async fn count(connection: &mut Connection) -> Result<Self, sqlx::Error> {
+        let counts: Vec<(String, String, i64)> =
+            query_as(WAITING_ALONE).fetch_all(connection).await?;
+        let mut waiting = Self::default();
+        for (client, user, count) in counts {
+            waiting.all += count;
+            *waiting.of_clients.entry(client.clone()).or_default() += count;
+            waiting.of_users.insert((client, user), count);
+        }
+        Ok(waiting)
+    }
+}
 
 impl Room {
     fn new(limit: u32) -> Self {
@@ -134,30 +172,36 @@ impl Room {
         }
     }
 
-    /// Takes a place for `client`, of which `client_limit` jobs may wait, or says who has none left.
+    /// Takes a place for a job of its client and user, or says who has none left.
     async fn take(
         &mut self,
         connection: &mut Connection,
-        client: &str,
-        client_limit: u32,
+        new: &NewJob,
     ) -> Result<Result<(), Outcome>, sqlx::Error> {
         let waiting = match &mut self.waiting {
             Some(waiting) => waiting,
-            none => {
-                let counts: Vec<(String, i64)> =
-                    query_as(WAITING_ALONE).fetch_all(connection).await?;
-                none.insert(counts.into_iter().collect())
-            }
+            none => none.insert(Waiting::count(connection).await?),
         };
-        let all: i64 = waiting.values().sum();
-        if all >= self.limit {
-            return Ok(Err(Outcome::QueueFull { waiting: all }));
+        if waiting.all >= self.limit {
+            let waiting = waiting.all;
+            return Ok(Err(Outcome::QueueFull { waiting }));
         }
-        let own = waiting.entry(client.to_owned()).or_default();
-        if *own >= i64::from(client_limit) {
-            return Ok(Err(Outcome::ClientQueueFull { waiting: *own }));
+        let of_client = waiting.of_clients.entry(new.client.clone()).or_default();
+        if *of_client >= i64::from(new.client_limit) {
+            let waiting = *of_client;
+            return Ok(Err(Outcome::ClientQueueFull { waiting }));
         }
-        *own += 1;
+        if let Some(user) = &new.submitted_by {
+            let key = (new.client.clone(), user.clone());
+            let of_user = waiting.of_users.entry(key).or_default();
+            if *of_user >= i64::from(new.user_limit) {
+                let waiting = *of_user;
+                return Ok(Err(Outcome::UserQueueFull { waiting }));
+            }
+            *of_user += 1;
+        }
+        *of_client += 1;
+        waiting.all += 1;
         Ok(Ok(()))
     }
 }
@@ -179,7 +223,7 @@ async fn submit_one(
     let known = find_known(connection, client, input, new.keep, bounds.solver_version).await?;
     let is_known = known.is_some();
     if !is_known {
-        let taken = room.take(connection, client, new.client_limit);
+        let taken = room.take(connection, new);
         if let Err(full) = taken.await? {
             return Ok(full);
         }
@@ -294,6 +338,7 @@ pub(super) async fn insert_jobs(
                 "study": new.study,
                 "keep": new.keep.as_str(),
                 "version": new.document_version,
+                "person": new.submitted_by,
             })
         })
         .collect();

@@ -363,6 +363,7 @@ impl Store {
                     kind: PING,
                     subject: webhook,
                     status: None,
+                    by: None,
                 };
                 ping.insert(&mut write, now).await?
             }

@@ -23,7 +23,7 @@ use super::body::JsonBody;
 use super::client::Client;
 use super::edge::Edge;
 use super::page::{self, Page, USUAL_LIMIT};
-use super::parameters::{IdempotencyKey, IfNoneMatch, Parameters, StudyId};
+use super::parameters::{IdempotencyKey, IfNoneMatch, Parameters, StudyId, User};
 use super::prefer::Wait;
 use super::problem::Refusal;
 use super::resource::{self, Shown};
@@ -49,7 +49,7 @@ const LONGEST_IN_VIEW: u64 = 64 << 10;
 #[utoipa::path(
     post, path = "/v1/studies", tag = "Studies", operation_id = "submit_study",
     request_body(content = Study, content_type = "application/json", description = "The study."),
-    params(IdempotencyKey),
+    params(IdempotencyKey, User),
     responses(
         (status = 202, description = "The study is taken.", body = StudyView, headers(
             ("Location" = String, description = "The address of the study."),
@@ -97,6 +97,9 @@ pub(in crate::http) struct StudyListParameters {
     /// Studies with this tag.
     #[param(pattern = "^[^\\x00]*$")]
     tag: Option<String>,
+    /// Studies that this user of the client submitted (`Meshwright-User`).
+    #[param(pattern = "^[^\\x00]*$")]
+    submitted_by: Option<String>,
     /// Studies from the first one on that was submitted at this instant or later (RFC 3339).
     #[param(format = DateTime, example = "2026-01-01T00:00:00Z")]
     submitted_since: Option<String>,
@@ -133,12 +136,14 @@ pub(super) async fn list(
     let filter = StudyFilter {
         name: parameters.name.clone(),
         tag: parameters.tag.clone(),
+        submitted_by: parameters.submitted_by.clone(),
         span: page::span(since.as_deref(), before.as_deref())?,
         after: page::cursor(parameters.cursor.as_deref())?,
     };
     let pairs = [
         ("name", parameters.name.as_deref()),
         ("tag", parameters.tag.as_deref()),
+        ("submitted_by", parameters.submitted_by.as_deref()),
         ("submitted_since", since.as_deref()),
         ("submitted_before", before.as_deref()),
     ];

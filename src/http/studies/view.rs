@@ -35,10 +35,15 @@ document! {
         name: Option<String> = study.name.clone(),
         /// The tags of the study.
         tags: Vec<String> = study.tags.clone(),
+        /// The user of the client who submitted it (`Meshwright-User`, or the claim of a token); null where the client names none.
+        submitted_by: Option<String> = study.submitted_by.clone(),
         /// When the study was submitted (UTC).
         submitted_at: Timestamp = study.submitted_at,
         /// When its last design ended, or it was cancelled (UTC); null until then.
         finished_at: Option<Timestamp> = study.finished_at(),
+        /// `administrator` where an administrator of the service dismissed the study; absent elsewhere.
+        #[schema(example = "administrator")]
+        dismissed_by?: String = study.dismissed_by.clone(),
         /// Of a failed study: why.
         #[schema(value_type = Option<Problem>)]
         problem?: Value = why_failed(study, edge),

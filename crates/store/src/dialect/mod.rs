@@ -9,7 +9,8 @@ macro_rules! insert_jobs {
     ($next:literal, $list:literal) => {
         concat!(
             "insert into jobs (id, sequence, client, method, tags, input_hash, cost, status, positions_done, positions_total,
-                               submitted_at, started_at, finished_at, elapsed, document, solver_version, same_as, study, keep, document_version)
+                               submitted_at, started_at, finished_at, elapsed, document, solver_version, same_as, study, keep, document_version,
+                               submitted_by)
              select made.job, ",
             $next,
             ", made.owner, made.method, made.tags, made.input, made.cost,
@@ -17,7 +18,7 @@ macro_rules! insert_jobs {
                     case when made.results is null then 0 else made.positions end, made.positions, made.at,
                     case when made.results is not null then made.at end, case when made.results is not null then made.at end,
                     case when made.results is not null then 0 end, made.results, case when made.results is not null then $2 end,
-                    made.equal, made.study, made.keep, made.version
+                    made.equal, made.study, made.keep, made.version, made.person
              from ",
             $list,
             " returning ",
@@ -48,13 +49,15 @@ macro_rules! end_jobs {
 macro_rules! lanes {
     ($here:literal) => {
         concat!(
-            "select own.client, own.lane, whole.due as client_due, own.due as lane_due, here.running, here.alone, here.waiting
-             from shares as whole join shares as own on own.client = whole.client and own.lane <> '*' and own.active = 1
+            "select own.client, own.person, own.lane, whole.due as client_due, coalesce(level.due, whole.served) as person_due,
+                    own.due as lane_due, here.running, here.alone, here.waiting
+             from shares as own join shares as whole on whole.client = own.client and whole.lane = '*'
+             left join shares as level on level.client = own.client and level.lane = '@' || own.person
              cross join (",
             $here,
             ") as here
-             where whole.lane = '*' and whole.active = 1
-             order by whole.due, whole.client, own.due, own.lane"
+             where own.active > 0 and own.lane <> '*' and own.lane not like '@%'
+             order by whole.due, whole.client, coalesce(level.due, whole.served), own.person, own.due, own.lane"
         )
     };
 }
@@ -64,10 +67,10 @@ macro_rules! insert_study {
     ($next:literal) => {
         concat!(
             "insert into studies (id, sequence, client, name, tags, body_hash, gear, total, expanded, submitted_at,
-                                  idempotency_key, document_version)
+                                  idempotency_key, document_version, submitted_by)
              values ($1, ",
             $next,
-            ", $2, $3, $4, $5, $6, $7, 0, $8, $9, $10)
+            ", $2, $3, $4, $5, $6, $7, 0, $8, $9, $10, $11)
              returning sequence"
         )
     };
@@ -121,6 +124,8 @@ pairs! {
     lock_studies = LOCK_STUDIES;
     /// The same of webhooks.
     lock_webhooks = LOCK_WEBHOOKS;
+    /// The same of links.
+    lock_links = LOCK_LINKS;
     /// From here to its end, no other transaction decides whose turn it is.
     lock_turn = LOCK_TURN;
     /// From here to its end, no other transaction changes the shares of the client $1.
@@ -155,7 +160,7 @@ pairs! {
     running = RUNNING;
     /// New jobs. $1: a list, $2: the solver's version for those that have results. See `insert_jobs`.
     insert_jobs = INSERT_JOBS;
-    /// A study. $1 to $10: see `insert_study`.
+    /// A study. $1 to $11: see `insert_study`.
     insert_study = INSERT_STUDY;
     /// Keeps documents, unless they are kept already. $1: a list of them, $2: their bodies, one behind the other.
     insert_documents = INSERT_DOCUMENTS;

@@ -4,7 +4,7 @@
 //!
 //! Leases run by the database's clock (`steady_now`), so that the clocks of the machines need not agree.
 
-use crate::rows::job_columns;
+use crate::rows::{job_columns, lane_of_job};
 
 type Words = Option<&'static str>;
 
@@ -44,6 +44,9 @@ pub(crate) const LOCK_STUDIES: Words =
 pub(crate) const LOCK_WEBHOOKS: Words =
     Some("select 1 from pg_advisory_xact_lock(hashtext('meshwright'), 3)");
 
+pub(crate) const LOCK_LINKS: Words =
+    Some("select 1 from pg_advisory_xact_lock(hashtext('meshwright'), 6)");
+
 // Whose turn it is follows from who was served before. What is claimed is skipped by those who would wait for it.
 pub(crate) const LOCK_TURN: Words =
     Some("select 1 from pg_advisory_xact_lock(hashtext('meshwright'), 4)");
@@ -67,18 +70,20 @@ pub(crate) const NEXT_SUSPECT: Words = Some(
 );
 
 // The offsets have each equal one looked up by its input; joined, all that run, ran lately or have ended would be read.
-pub(crate) const NEXT_WAITING: Words = Some(
+pub(crate) const NEXT_WAITING: Words = Some(concat!(
     "select id, sequence, input_hash, cost, keep,
             cast(cast(exists (select 1 from jobs as equal
                               where equal.status = 'successful' and equal.client = waiting.client
                                 and equal.input_hash = waiting.input_hash and equal.solver_version = $6 offset 0) as int) as bigint)
      from jobs as waiting
-     where status = 'accepted' and client = $1 and coalesce(study, '') = $2 and document_version <= $3 and sequence > $4
+     where status = 'accepted' and client = $1 and ",
+    lane_of_job!(),
+    " = $2 and document_version <= $3 and sequence > $4
        and not exists (select 1 from jobs as equal
                        where equal.status = 'running' and equal.client = waiting.client
                          and equal.input_hash = waiting.input_hash offset 0)
-     order by sequence limit $5 for update of waiting skip locked",
-);
+     order by sequence limit $5 for update of waiting skip locked"
+));
 
 // Nobody removes what is about to be pointed to.
 pub(crate) const KNOWN: Words = Some(
@@ -150,7 +155,7 @@ pub(crate) const INSERT_JOBS: Words = Some(insert_jobs!(
     "nextval('jobs_arrived')",
     "json_to_recordset(cast($1 as json))
        as made(job text, owner text, method text, tags text, input text, cost bigint, positions bigint, at bigint, results text, equal text,
-               study text, keep text, version bigint)"
+               study text, keep text, version bigint, person text)"
 ));
 
 pub(crate) const INSERT_STUDY: Words = Some(insert_study!("nextval('studies_arrived')"));

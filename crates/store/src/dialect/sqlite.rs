@@ -1,7 +1,7 @@
 //! As SQLite says it. A transaction that writes has the file to itself, so that it needs no further locks; leases run by the
 //! steady clock of the one process that there is.
 
-use crate::rows::job_columns;
+use crate::rows::{job_columns, lane_of_job};
 
 type Words = Option<&'static str>;
 
@@ -20,6 +20,8 @@ pub(crate) const LOCK_STUDIES: Words = None;
 
 pub(crate) const LOCK_WEBHOOKS: Words = None;
 
+pub(crate) const LOCK_LINKS: Words = None;
+
 pub(crate) const LOCK_TURN: Words = None;
 
 pub(crate) const LOCK_SHARES: Words = None;
@@ -34,18 +36,20 @@ pub(crate) const NEXT_SUSPECT: Words = Some(
     "select id from jobs where suspect = 1 and status = 'accepted' and document_version <= $1 order by sequence limit 1",
 );
 
-pub(crate) const NEXT_WAITING: Words = Some(
+pub(crate) const NEXT_WAITING: Words = Some(concat!(
     "select id, sequence, input_hash, cost, keep,
             exists (select 1 from jobs as equal
                     where equal.status = 'successful' and equal.client = waiting.client
                       and equal.input_hash = waiting.input_hash and equal.solver_version = $6)
      from jobs as waiting
-     where status = 'accepted' and client = $1 and coalesce(study, '') = $2 and document_version <= $3 and sequence > $4
+     where status = 'accepted' and client = $1 and ",
+    lane_of_job!(),
+    " = $2 and document_version <= $3 and sequence > $4
        and not exists (select 1 from jobs as equal indexed by jobs_running
                        where equal.status = 'running' and equal.client = waiting.client
                          and equal.input_hash = waiting.input_hash)
-     order by sequence limit $5",
-);
+     order by sequence limit $5"
+));
 
 // The one that was computed comes before those that were given its results.
 pub(crate) const KNOWN: Words = Some(
@@ -113,7 +117,7 @@ pub(crate) const INSERT_JOBS: Words = Some(insert_jobs!(
      (select key as behind, value ->> 'job' as job, value ->> 'owner' as owner, value ->> 'method' as method, value ->> 'tags' as tags,
              value ->> 'input' as input, value ->> 'cost' as cost, value ->> 'positions' as positions, value ->> 'at' as at,
              value ->> 'results' as results, value ->> 'equal' as equal, value ->> 'study' as study, value ->> 'keep' as keep,
-             value ->> 'version' as version
+             value ->> 'version' as version, value ->> 'person' as person
       from json_each($1)) as made"
 ));
 

@@ -15,7 +15,7 @@ use uuid::Uuid;
 
 use super::statement::{Pool, query, query_as, query_scalar};
 use super::{
-    Came, Claim, DatabaseAddress, End, Ended, Job, Kept, Lease, Lost, NewJob, Outcome, Packed,
+    By, Came, Claim, DatabaseAddress, End, Ended, Job, Kept, Lease, Lost, NewJob, Outcome, Packed,
     Progress, QueueBounds, Reader, Status, Store, StoreError,
 };
 
@@ -154,6 +154,8 @@ fn new(second: i64, input: &str) -> NewJob {
         study: None,
         keep: Kept::Results,
         client_limit: u32::MAX,
+        submitted_by: None,
+        user_limit: u32::MAX,
     }
 }
 

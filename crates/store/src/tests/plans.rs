@@ -25,6 +25,7 @@ async fn no_list_walks_the_history_or_sorts_it() {
         until: Some(at(2)),
     };
     let tag = || Some("a".to_owned());
+    let user = || Some("u".to_owned());
     #[rustfmt::skip]
     let cases = [
         (Filter::default(), None, "jobs_of_client"),
@@ -35,6 +36,8 @@ async fn no_list_walks_the_history_or_sorts_it() {
         (Filter { study: alone, ..Filter::default() }, None, "jobs_alone"),
         (Filter { study: alone, ..Filter::default() }, Some(Status::Failed), "jobs_alone_by_status"),
         (Filter { tag: tag(), ..Filter::default() }, None, "job_tags"),
+        (Filter { submitted_by: user(), ..Filter::default() }, None, "jobs_of_user"),
+        (Filter { submitted_by: user(), ..Filter::default() }, Some(Status::Failed), "jobs_of_user_by_status"),
     ];
     for (filter, status, index) in cases {
         let steps = plan(&store, &filter, status).await;
@@ -74,7 +77,7 @@ async fn a_claim_looks_at_no_job_that_has_ended() {
     let uses = |index: &str| steps.iter().filter(|step| step.3.contains(index)).count();
     assert_eq!(
         (
-            uses("jobs_waiting"),
+            uses("jobs_of_lane"),
             uses("jobs_running"),
             uses("TEMP B-TREE")
         ),

@@ -208,14 +208,17 @@ async fn a_waiting_and_a_running_job_can_be_cancelled_and_an_ended_one_cannot() 
     for id in [running.id, waiting.id] {
         assert_eq!(
             store
-                .cancel(CLIENT, id, at(4))
+                .cancel(CLIENT, id, By::Owner, at(4))
                 .await
                 .unwrap()
                 .unwrap()
                 .status,
             Status::Dismissed
         );
-        assert_eq!(store.cancel(CLIENT, id, at(5)).await.unwrap(), None);
+        assert_eq!(
+            store.cancel(CLIENT, id, By::Owner, at(5)).await.unwrap(),
+            None
+        );
     }
     assert!(
         !store
@@ -244,13 +247,28 @@ async fn equal_input_gets_the_results_at_once_even_after_the_first_job_is_delete
     };
     assert_eq!(third.same_as, Some(first.id));
 
-    assert!(store.delete(CLIENT, first.id).await.unwrap());
+    assert!(
+        store
+            .delete(CLIENT, first.id, By::Owner, at(9))
+            .await
+            .unwrap()
+    );
     let second = find(&store, second.id).await;
     assert_eq!(second.same_as, None);
     let hash = second.document.unwrap();
     assert!(store.document(&hash).await.unwrap().is_some());
-    assert!(store.delete(CLIENT, second.id).await.unwrap());
-    assert!(store.delete(CLIENT, third.id).await.unwrap());
+    assert!(
+        store
+            .delete(CLIENT, second.id, By::Owner, at(9))
+            .await
+            .unwrap()
+    );
+    assert!(
+        store
+            .delete(CLIENT, third.id, By::Owner, at(9))
+            .await
+            .unwrap()
+    );
     assert_eq!(
         store.document(&hash).await.unwrap(),
         None,
@@ -356,10 +374,31 @@ async fn a_running_job_is_not_deleted() {
     let (store, _folder) = store().await;
     let job = queued(&store, 1, "a").await;
     claim(&store, 2).await;
-    assert!(!store.delete(CLIENT, job.id).await.unwrap());
-    assert!(store.cancel(CLIENT, job.id, at(3)).await.unwrap().is_some());
-    assert!(!store.delete("other", job.id).await.unwrap());
-    assert!(store.delete(CLIENT, job.id).await.unwrap());
+    assert!(
+        !store
+            .delete(CLIENT, job.id, By::Owner, at(9))
+            .await
+            .unwrap()
+    );
+    assert!(
+        store
+            .cancel(CLIENT, job.id, By::Owner, at(3))
+            .await
+            .unwrap()
+            .is_some()
+    );
+    assert!(
+        !store
+            .delete("other", job.id, By::Owner, at(9))
+            .await
+            .unwrap()
+    );
+    assert!(
+        store
+            .delete(CLIENT, job.id, By::Owner, at(9))
+            .await
+            .unwrap()
+    );
     assert_eq!(store.find(CLIENT, job.id).await.unwrap(), None);
 }
 

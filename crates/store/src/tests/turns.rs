@@ -24,6 +24,17 @@ async fn study_of(store: &Store, inputs: &[&str]) -> Uuid {
 }
 
 async fn study_with(store: &Store, id: Uuid, client: &str, inputs: Vec<String>) -> Uuid {
+    study_by(store, id, client, None, inputs).await
+}
+
+/// The same, by a user of the client.
+async fn study_by(
+    store: &Store,
+    id: Uuid,
+    client: &str,
+    user: Option<String>,
+    inputs: Vec<String>,
+) -> Uuid {
     let study = NewStudy {
         id,
         client: client.to_owned(),
@@ -38,12 +49,14 @@ async fn study_with(store: &Store, id: Uuid, client: &str, inputs: Vec<String>) 
         submitted_at: at(1),
         idempotency_key: None,
         client_limit: i64::MAX,
+        submitted_by: user.clone(),
     };
     let row = |input: &String| NewRow {
         label: input.clone(),
         changes: "{}".to_owned(),
         job: Ok(NewJob {
             study: Some(id),
+            submitted_by: user.clone(),
             ..of_client(client, input)
         }),
     };
@@ -99,6 +112,132 @@ async fn clients_take_turns_however_many_jobs_each_brings() {
         ),
         (4, 4)
     );
+}
+
+fn of_user(client: &str, user: &str, input: &str) -> NewJob {
+    NewJob {
+        submitted_by: Some(user.to_owned()),
+        ..of_client(client, input)
+    }
+}
+
+/// Who submitted the jobs that are served, in this order.
+async fn served_users(store: &Store, count: usize) -> Vec<Option<String>> {
+    let mut users = Vec::new();
+    for i in 0..count {
+        let job = next(store, 10).await.unwrap();
+        assert!(store.ends(of(&job), 11 + i as i64).await);
+        users.push(job.submitted_by);
+    }
+    users
+}
+
+#[tokio::test]
+async fn users_of_a_client_take_turns_and_have_no_more_of_the_service_than_their_client() {
+    let (store, _folder) = store().await;
+    for i in 0..12 {
+        submit(&store, of_user("a", "many", &format!("m{i}"))).await;
+    }
+    served_users(&store, 2).await;
+    for i in 0..3 {
+        submit(&store, of_user("a", "few", &format!("f{i}"))).await;
+    }
+    // The one who comes later waits for no more than what runs.
+    let few = Some("few".to_owned());
+    let users = served_users(&store, 6).await;
+    assert_eq!((count(&users, &few), &users[0]), (3, &few));
+    // Another client has half of the service, however many users the first one names.
+    for i in 0..4 {
+        submit(&store, of_user("a", &format!("user {i}"), &format!("u{i}"))).await;
+        submit(&store, of_client("b", &format!("b{i}"))).await;
+    }
+    let served = served(&store, 8).await;
+    let of_b = served.iter().filter(|(client, _)| client == "b").count();
+    assert_eq!(of_b, 4, "{served:?}");
+}
+
+#[tokio::test]
+async fn who_names_no_user_takes_turns_with_those_who_do() {
+    let (store, _folder) = store().await;
+    for i in 0..4 {
+        submit(&store, of_client("a", &format!("n{i}"))).await;
+        submit(&store, of_user("a", "ada", &format!("a{i}"))).await;
+        submit(&store, of_user("a", "bob", &format!("b{i}"))).await;
+    }
+    let users = served_users(&store, 6).await;
+    for user in [None, Some("ada".to_owned()), Some("bob".to_owned())] {
+        assert_eq!(count(&users, &user), 2, "{users:?}");
+    }
+    // Nothing is left over where the last of a client's jobs was served.
+    served_users(&store, 6).await;
+    assert_eq!(next(&store, 30).await, None);
+    let left: i64 = query_scalar("select count(*) from shares where person <> ''")
+        .fetch_one(&store.readers)
+        .await
+        .unwrap();
+    assert_eq!(left, 0, "users that are idle are forgotten");
+}
+
+#[tokio::test]
+async fn the_studies_of_a_user_have_no_more_than_the_study_of_another() {
+    let (store, _folder) = store().await;
+    let by = async |user: &str| {
+        let id = Uuid::now_v7();
+        let inputs = (0..30).map(|i| format!("{id} {i}")).collect();
+        study_by(&store, id, CLIENT, Some(user.to_owned()), inputs).await
+    };
+    let mut many = Vec::new();
+    for _ in 0..5 {
+        many.push(by("many").await);
+    }
+    let one = by("one").await;
+    let served = served(&store, 20).await;
+    let of_one = served.iter().filter(|(_, id)| *id == Some(one)).count();
+    assert_eq!(of_one, 10, "{served:?}");
+    let least = many
+        .iter()
+        .map(|id| served.iter().filter(|(_, it)| it == &Some(*id)).count());
+    assert_eq!(
+        least.min(),
+        Some(2),
+        "the studies of one user advance together"
+    );
+}
+
+#[tokio::test]
+async fn a_user_has_its_part_of_the_queue_and_its_client_no_more_than_before() {
+    let (store, _folder) = store().await;
+    let bounded = async |user: &str, input: &str| {
+        let job = NewJob {
+            user_limit: 2,
+            client_limit: 3,
+            ..of_user("a", user, input)
+        };
+        submit(&store, job).await
+    };
+    for input in ["1", "2"] {
+        assert!(matches!(bounded("ada", input).await, Outcome::Queued(_)));
+    }
+    let third = bounded("ada", "3").await;
+    assert_eq!(third, Outcome::UserQueueFull { waiting: 2 });
+    assert!(matches!(bounded("bob", "3").await, Outcome::Queued(_)));
+    let fourth = bounded("bob", "4").await;
+    assert_eq!(fourth, Outcome::ClientQueueFull { waiting: 3 });
+}
+
+#[tokio::test]
+async fn lists_can_be_of_what_one_user_submitted() {
+    let (store, _folder) = store().await;
+    submit(&store, of_user(CLIENT, "ada", "1")).await;
+    submit(&store, of_client(CLIENT, "2")).await;
+    submit(&store, of_user("other", "ada", "3")).await;
+    let filter = crate::Filter {
+        submitted_by: Some("ada".to_owned()),
+        ..crate::Filter::default()
+    };
+    let listed = store.list(CLIENT, &filter, 9).await.unwrap();
+    let inputs: Vec<&str> = listed.iter().map(|job| job.tags[0].as_str()).collect();
+    assert_eq!(inputs, ["1"]);
 }
 
 #[tokio::test]
@@ -277,7 +416,10 @@ async fn what_is_written_together_stands_or_falls_each_by_its_own_claim() {
     let mut claims: Vec<Claim> = claimed.started.iter().map(|it| of(&it.job)).collect();
     assert_eq!(claims.len(), 5);
     // One is cancelled; one has lost its lease and is run again; one could not be computed.
-    let cancelled = store.cancel(CLIENT, claims[1].id, at(3)).await.unwrap();
+    let cancelled = store
+        .cancel(CLIENT, claims[1].id, By::Owner, at(3))
+        .await
+        .unwrap();
     assert!(cancelled.is_some());
     assert!(store.release(claims[2]).await.unwrap());
     let again = claim(&store, 3).await;
@@ -520,7 +662,12 @@ async fn a_study_that_is_cancelled_ends_with_the_last_of_its_jobs() {
     let (store, _folder) = store().await;
     let id = study(&store, CLIENT, 1200).await;
     let running = claim(&store, 2).await;
-    assert!(store.cancel_study(CLIENT, id, at(3)).await.unwrap());
+    assert!(
+        store
+            .cancel_study(CLIENT, id, By::Owner, at(3))
+            .await
+            .unwrap()
+    );
     assert_eq!(next(&store, 3).await, None, "no further one is begun");
     // What ends meanwhile keeps its results, and does not end the study; another process finds it.
     assert!(store.ends(running, 4).await);
@@ -543,5 +690,10 @@ async fn a_study_that_is_cancelled_ends_with_the_last_of_its_jobs() {
         (1, 1199, 0)
     );
     assert_eq!(study.finished_at(), Some(at(3)));
-    assert!(!store.cancel_study(CLIENT, id, at(6)).await.unwrap());
+    assert!(
+        !store
+            .cancel_study(CLIENT, id, By::Owner, at(6))
+            .await
+            .unwrap()
+    );
 }

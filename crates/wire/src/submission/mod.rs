@@ -189,15 +189,6 @@ impl Submission {
         errors.settle(read)
     }
 
-    /// What is wrong with the fields of a submission, each by itself.
-    pub fn field_errors(document: &[u8]) -> Vec<FieldError> {
-        let node = refuse_many_values(document, MOST_VALUES).and_then(|()| Node::parse(document));
-        match node {
-            Ok(node) => Self::wrong_fields(&node),
-            Err(problem) => problem.errors,
-        }
-    }
-
     /// What is wrong with the fields of a submission, each by itself. Whether they go together is not looked at.
     pub fn wrong_fields(node: &Node) -> Vec<FieldError> {
         let errors = Errors::default();

@@ -248,6 +248,7 @@ fn study(total: u64) -> NewStudy {
         submitted_at: at(1),
         idempotency_key: Some("k".to_owned()),
         client_limit: 100,
+        submitted_by: None,
     }
 }
 
@@ -341,7 +342,7 @@ async fn a_study_that_a_process_left_is_expanded_by_one_other() {
 
 /// Cancels a study, to the last of its jobs.
 async fn cancel(store: &Store, id: Uuid) -> Result<(), crate::StoreError> {
-    store.cancel_study(CLIENT, id, at(4)).await?;
+    store.cancel_study(CLIENT, id, By::Owner, at(4)).await?;
     while store.dismiss_designs(id, at(4)).await?.1 {}
     Ok(())
 }
@@ -420,7 +421,7 @@ async fn a_document_that_jobs_come_to_need_is_not_removed_under_them() {
             {
                 tokio::task::yield_now().await;
             }
-            assert!(store.delete(&client, id).await.unwrap());
+            assert!(store.delete(&client, id, By::Owner, at(9)).await.unwrap());
         }
     })
     .await;
@@ -441,7 +442,7 @@ async fn what_one_process_does_another_one_hears() {
     let claim = claim(&speaker, 2).await;
     assert_eq!(heard().await, Notice::Jobs(Status::Running, vec![job.id]));
     speaker
-        .cancel(CLIENT, job.id, at(3))
+        .cancel(CLIENT, job.id, By::Owner, at(3))
         .await
         .unwrap()
         .unwrap();

@@ -19,7 +19,10 @@ async fn warm(store: &Store) {
             .list_studies(CLIENT, &StudyFilter::default(), 9)
             .await
             .unwrap();
-        store.cancel(CLIENT, job.id, at(4)).await.unwrap();
+        store
+            .cancel(CLIENT, job.id, By::Owner, at(4))
+            .await
+            .unwrap();
     }
 }
 
