@@ -575,6 +575,7 @@ mod tests {
     }
 
     #[test]
+    #[ignore = "./test all"]
     fn what_presses_the_flanks_goes_through_every_circle_of_rim_web_and_hub() {
         for (_, inside, moved) in &*MADE {
             let [force, moment] = pressed(inside);
@@ -638,6 +639,7 @@ mod tests {
     }
 
     #[test]
+    #[ignore = "./test all"]
     fn parts_move_together_where_they_meet() {
         for (_, _, moved) in &*MADE {
             let most = |levels: &[Level]| {
@@ -668,6 +670,7 @@ mod tests {
     }
 
     #[test]
+    #[ignore = "./test all"]
     fn fillets_and_holes_are_stressed_inside_as_on_their_surfaces() {
         let run = Run::unattended();
         let (gear, inside, moved) = &MADE[1];
@@ -707,6 +710,7 @@ mod tests {
     }
 
     #[test]
+    #[ignore = "./test all"]
     fn elements_fill_the_gear_once() {
         for (gear, _, moved) in &*MADE {
             let mut volume = Volume::default();

@@ -150,6 +150,7 @@ mod tests {
     }
 
     #[test]
+    #[ignore = "./test all"]
     fn teeth_of_all_shapes_keep_angles_above_twenty_five_degrees() {
         let cases = sweep();
         assert!(cases.len() > 300);
@@ -184,6 +185,7 @@ mod tests {
     }
 
     #[test]
+    #[ignore = "./test all"]
     fn broken_edges_are_followed_by_sound_elements_and_take_off_the_area_that_they_should() {
         let mut count = 0;
         for (gear, depth) in sweep().into_iter().step_by(19) {
