@@ -148,6 +148,7 @@ impl Twins {
 }
 
 #[test]
+#[ignore = "./test all"]
 fn narrow_and_wide_straight_faces_have_what_the_plane_has_of_every_departure_and_load() {
     let bronze = Material {
         youngs_modulus: 100e9,
@@ -212,6 +213,7 @@ fn peaks(of: &GearStresses) -> [&[PeakStress]; 3] {
 }
 
 #[test]
+#[ignore = "./test all"]
 fn a_narrow_straight_pair_is_stressed_as_in_plane_stress() {
     // Holes feel orders that are left out, the more the nearer they are to the roots: 5.2 % at one position here.
     let near_roots = holed(gear(40, 20e-3), 8, 29e-3, 5e-3, 0.1);

@@ -229,6 +229,7 @@ fn out_of_bounds(
 }
 
 #[test]
+#[ignore = "./test all"]
 fn extremes_and_lines_are_those_of_the_curve_between_its_positions() {
     let out = out_of_bounds(in_the_plane, 0..8, 400);
     let [few, many] = &out;
@@ -291,6 +292,7 @@ fn the_peak_of_the_standard_pair_is_found_between_ten_and_between_forty_position
 }
 
 #[test]
+#[ignore = "./test all"]
 fn along_faces_extremes_and_lines_are_those_of_the_curve_between_its_positions() {
     let out = out_of_bounds(along_faces, 0..2, 200);
     assert!(out.iter().all(Out::is_empty), "{out:#?}");

@@ -135,6 +135,7 @@ fn a_web_that_ends_on_lines_of_the_sectors_is_the_same_as_a_whole() {
 }
 
 #[test]
+#[ignore = "./test all"]
 fn triangles_agree_with_quadrilaterals_on_a_pattern_of_holes() {
     let holes = pattern(8, 30e-3, 8e-3);
     let region = region(holes.holes(), None);
@@ -476,6 +477,7 @@ fn answers(grid: &BlankGrid, forces: &[(u32, Vector)], asked: &[Functional]) -> 
 }
 
 #[test]
+#[ignore = "./test all"]
 fn a_ring_under_pressure_is_stressed_as_lame_says() {
     let (a, b, pressure) = (15e-3, INTERFACE, 50e6);
     // σ_r = A − B/r², σ_t = A + B/r² under inner pressure.
