@@ -286,7 +286,22 @@ impl WarningDocument {
                     plain(significant(to_mm(diameter), 6))
                 ),
             ),
-            Warning::FewPositions { positions } => (
+            Warning::FewPositions {
+                positions,
+                open: Some(open),
+            } => (
+                Code::FewPositions,
+                None,
+                Some((f64::from(positions), "positions")),
+                format!(
+                    "{positions} positions a mesh period, and those that were solved between them, leave the peak-to-peak of the transmission error open by about {} % of it, by their own estimate. More positions find it.",
+                    plain(significant(100.0 * open, 2))
+                ),
+            ),
+            Warning::FewPositions {
+                positions,
+                open: None,
+            } => (
                 Code::FewPositions,
                 None,
                 Some((f64::from(positions), "positions")),

@@ -32,6 +32,9 @@ pub const FEW_POSITIONS: u32 = 20;
 /// There is a warning of forces beyond this part of the largest load of a table; up to it they are it but for rounding.
 const BEYOND: f64 = 1.0 + 1e-9;
 
+/// There is a warning of positions that leave more than this part of the peak-to-peak open, by their own estimate, and more than so many meters.
+pub const OPEN_PEAK_TO_PEAK: (f64, f64) = (0.02, 2e-9);
+
 /// From this part on by which the natural frequency is another with the inertia of rims and teeth where it is, there is a warning: the estimate is as good.
 const RIMS_MATTER: f64 = 0.05;
 
@@ -139,7 +142,7 @@ pub enum Warning {
         /// The pressure in Pa.
         pressure: f64,
     },
-    /// So few positions a mesh period give the orders of its higher multiples wrongly.
+    /// So few positions a mesh period give the orders of its higher multiples wrongly, or leave the peak-to-peak open.
     FewPositions {
         /// The positions.
         positions: u32,
@@ -148,6 +151,8 @@ pub enum Warning {
     PartialSpan {
         /// Mesh periods computed.
         span: u32,
+        /// How much of the peak-to-peak of δ they leave open, where it is more than [`OPEN_PEAK_TO_PEAK`]: the estimate of the curve of which it is most.
+        open: Option<f64>,
         /// Mesh periods of the true period.
         period: u32,
     },
@@ -208,7 +213,10 @@ pub fn warnings(case: &Case) -> Vec<Warning> {
     }
     let positions = case.resolution.positions_per_mesh_period;
     if case.covers_whole_periods() && positions < FEW_POSITIONS {
-        warnings.push(Warning::FewPositions { positions });
+        warnings.push(Warning::FewPositions {
+            positions,
+            open: None,
+        });
     }
     if let Model::Formulas(formulas) = case.model {
         if !case.holed().is_empty() {
@@ -338,6 +346,26 @@ pub(super) fn warn_of_pressures(warnings: &mut Vec<Warning>, case: &Case, curves
             pressure: largest.pressure,
         }),
     );
+/// Warns of a `curve` whose positions leave its peak-to-peak open; of that which leaves most once.
+pub(super) fn warn_of_positions(warnings: &mut Vec<Warning>, case: &Case, curve: &Curve) {
+    let error = curve.sampling_error.peak_to_peak;
+    let (part, least) = OPEN_PEAK_TO_PEAK;
+    let found = error / curve.transmission_error_statistics.peak_to_peak;
+    if error <= least || found.is_nan() || found <= part {
+        return;
+    }
+    for warning in &mut *warnings {
+        if let Warning::FewPositions { open, .. } = warning {
+            *open = Some(open.map_or(found, |known| known.max(found)));
+            return;
+        }
+    }
+    warnings.push(Warning::FewPositions {
+        positions: case.resolution.positions_per_mesh_period,
+        open: Some(found),
+    });
+}
+
 }
 
 /// Warns of speeds at which the motion grows without bound or loads the mesh beyond its `table`, whose loads are those of the base radius `driven`, and of
