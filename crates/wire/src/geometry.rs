@@ -29,11 +29,16 @@ document! {
         /// The normal backlash j_bn of ISO 21771, in mm, of teeth as drawn: across the flanks in the normal section. Straight teeth have it along the line of
         /// action.
         backlash_mm: f64 = to_mm(pair.backlash() * normal),
-        /// The transverse backlash along the line of action, in mm, of teeth as drawn: the normal one over the cosine of the helix angle at the base
+        /// The circumferential backlash j_wt of ISO 21771, in mm, of teeth as drawn: in the transverse section, along the working pitch circles. It is the
+        /// backlash along the line of action over the cosine of the working pressure angle.
+        #[serde(default = "not_a_number")]
+        #[schema(required)]
+        backlash_transverse_mm: f64 = to_mm(pair.backlash() / pair.working_pressure_angle().cos()),
+        /// The backlash along the line of action in the transverse section, in mm, of teeth as drawn: the normal one over the cosine of the helix angle at the base
         /// circles. Force tables have it so.
         #[serde(default = "not_a_number")]
         #[schema(required)]
-        backlash_transverse_mm: f64 = to_mm(pair.backlash()),
+        backlash_line_of_action_mm: f64 = to_mm(pair.backlash()),
         /// The least normal backlash over the true period, in mm: what the pitch deviations of teeth in mesh at the same time, slopes that stand out and
         /// eccentricity leave of it.
         least_backlash_mm: f64 = to_mm(pair.least_backlash() * normal),

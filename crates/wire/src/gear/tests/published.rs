@@ -397,7 +397,13 @@ fn the_backlash_of_a_helical_pair_is_normal_and_its_transverse_one_stands_beside
     let pair = taken(&khk(125.0001, &thinner)).pair;
     // Two teeth that are 69.282 um cos 30° = 60 um thinner in the normal section: 2 x 60 um cos 20°, and what the distance adds.
     near(pair.backlash_mm, 0.11283, 6e-6);
-    near(pair.backlash_transverse_mm, 0.12782, 6e-6);
+    near(pair.backlash_line_of_action_mm, 0.12782, 6e-6);
+    // j_wt of ISO 21771 stands at the working pitch circle, under the 23.1126 degrees of the handbook: over their cosine.
+    near(
+        pair.backlash_transverse_mm,
+        0.12782 / 23.1126_f64.to_radians().cos(),
+        8e-6,
+    );
     near(pair.least_backlash_mm, pair.backlash_mm, 0.0);
     // s_an = s_at cos β_a, tan β_a = tan β d_a/d.
     let tip = &pair.driving;
