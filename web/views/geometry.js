@@ -26,6 +26,7 @@ export const OF_GEARS = [
   ["Teeth", "z", "", (_, gear) => String(gear.tooth_count)],
   ["Module, normal", "m_n", "mm", (_, gear) => number(gear.module_mm, 5)],
   ["Profile shift", "x", "", (_, gear) => number(gear.profile_shift ?? 0, 5)],
+  ["Generating profile shift", "x_E", "", (it) => fixed(it.generating_profile_shift, 4)],
   ["Face width", "b", "mm", (_, gear) => number(gear.face_width_mm, 6)],
   ["Reference diameter", "d", "mm", (it) => fixed(twice(it.reference_radius_mm), 3)],
   ["Base diameter", "d_b", "mm", (it) => fixed(twice(it.base_radius_mm), 3)],

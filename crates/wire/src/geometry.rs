@@ -113,12 +113,18 @@ document! {
         // What rounding leaves of holes that balance each other has no direction.
         let noise = 1e-12 * gear.mass() * gear.tip_radius();
         let normal = solid.map_or(1.0, |solid| solid.helix_angle_at(gear.tip_radius()).cos());
+        let module = solid.map_or(gear.data().rack.module, |solid| solid.normal_rack().module);
         let [sliding_a, sliding_e] = pair.specific_sliding(member);
         let imbalance = Some(gear.imbalance()).filter(|imbalance| imbalance.norm() > noise);
     } {
         /// The number of mesh periods after which this gear stands alike again: 1 for a solid blank, fewer than its teeth for holes that
         /// repeat, all of its teeth where they deviate.
         period_mesh_periods: u32 = pair.period_of(member),
+        /// The generating profile shift x_E, in normal modules, at which the tool stood that cut the root: root circle, fillet and form circle follow from it. It is the
+        /// profile shift x of teeth of nominal thickness.
+        #[serde(default = "not_a_number")]
+        #[schema(required)]
+        generating_profile_shift: f64 = gear.generating_shift_length() / module,
         /// The reference radius, in mm.
         reference_radius_mm: f64 = to_mm(gear.reference_radius()),
         /// The base radius, in mm.
