@@ -8,7 +8,8 @@ use meshwright_engine::assembly::{FaceResolution, FaceYield};
 use meshwright_engine::fem::axial::AxialBasis;
 use meshwright_engine::fem::prism::Prism;
 use meshwright_engine::gear::{
-    BlankRegion, GearData, Helix, HolePattern, Material, Rack, SolidGear, TipEdge, ToothDeviations,
+    BlankRegion, GearData, Helix, HolePattern, Material, Rack, SolidGear, TipEdge, ToolDepth,
+    ToothDeviations,
 };
 use meshwright_engine::grid::{BlankGrid, GridLevel};
 use meshwright_engine::quadrature::gauss_legendre;
@@ -50,6 +51,7 @@ fn helical_gear() -> SolidGear {
         },
         profile_shift: 0.0,
         thickness_deviation: 0.0,
+        tool_depth: ToolDepth::ByThickness,
         tip_edge: TipEdge::Sharp,
         face_width: 20e-3,
         modifications: Vec::new(),

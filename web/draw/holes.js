@@ -4,6 +4,7 @@
 import { dress, s, within } from "./dom.js";
 import { at } from "../state/design.js";
 import { number } from "../state/numbers.js";
+import { rootRadius } from "../state/tool.js";
 
 /** @import { Design } from "../state/design.js" */
 /** @import { Blank, GearName, GearOutline, Holes, Slot } from "../state/documents.js" */
@@ -70,8 +71,7 @@ export class HoleHandles {
   /** Where circles of holes can lie: between the bore and the root circle. */
   #bounds() {
     const gear = this.design.get(`/pair/${this.member}`) ?? {};
-    const root =
-      gear.module_mm * (gear.tooth_count / 2 + (gear.profile_shift ?? 0)) - (gear.dedendum_mm ?? 1.25 * gear.module_mm);
+    const root = rootRadius(gear);
     this.bounds = [gear.blank?.bore_radius_mm ?? 0, Number.isFinite(root) ? Number(root.toPrecision(6)) : 0];
   }
 

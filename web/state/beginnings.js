@@ -3,6 +3,7 @@
 
 import { USUAL_POSITIONS } from "./preview.js";
 import { kindOf, resolve } from "./schema.js";
+import { dedendumOf, rootRadius, toolShift } from "./tool.js";
 
 /** @import { Design } from "./design.js" */
 /** @import { Blank, Gear, GearName, Holes, Limits, Results } from "./documents.js" */
@@ -308,8 +309,8 @@ export class Beginnings {
  * @param {Gear} gear
  */
 function circlesOf(gear) {
-  const { module_mm: module, tooth_count: teeth, profile_shift: shift = 0 } = gear;
-  const root = module * (teeth / 2 + (shift ?? 0)) - (gear.dedendum_mm ?? 1.25 * module);
+  const { module_mm: module } = gear;
+  const root = rootRadius(gear);
   return { module, root, bore: gear.blank?.bore_radius_mm ?? root / 3 };
 }
 
@@ -339,8 +340,8 @@ function flankOf(gear) {
   const r = (m * z) / 2;
   const base = r * Math.cos(alpha);
   const tipRadius = gear.tip_diameter_mm ? gear.tip_diameter_mm / 2 : r + (gear.addendum_mm ?? m) + x * m;
-  const straight = (gear.dedendum_mm ?? 1.25 * m) - (gear.rack_tip_radius_mm ?? 0.38 * m) * (1 - Math.sin(alpha));
-  const form = Math.max(0, r * Math.sin(alpha) - (straight - x * m) / Math.sin(alpha));
+  const straight = dedendumOf(gear) - (gear.rack_tip_radius_mm ?? 0.38 * m) * (1 - Math.sin(alpha));
+  const form = Math.max(0, r * Math.sin(alpha) - (straight - toolShift(gear) * m) / Math.sin(alpha));
   /** @type {(radius: number) => number} */
   const roll = (radius) => Math.sqrt(Math.max(0, radius ** 2 - base ** 2));
   /** @type {(length: number) => number} */

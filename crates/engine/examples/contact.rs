@@ -9,7 +9,7 @@ use meshwright_engine::contact::{
 };
 use meshwright_engine::gear::{
     BlankRegion, GearData, GearPair, HolePattern, Material, ModificationData, Rack, ReliefData,
-    ReliefShape, ReliefStart, SpurGear, TipEdge, ToothDeviations,
+    ReliefShape, ReliefStart, SpurGear, TipEdge, ToolDepth, ToothDeviations,
 };
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::run::Run;
@@ -29,6 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         },
         profile_shift: 0.0,
         thickness_deviation: 0.0,
+        tool_depth: ToolDepth::ByThickness,
         face_width: 20e-3,
         material: Material::STEEL,
         tip_edge: TipEdge::Sharp,

@@ -2,7 +2,8 @@
 //! `-- blank BORE INTERFACE TEETH [COUNT CIRCLE RADIUS]`, with lengths in millimeters.
 
 use meshwright_engine::gear::{
-    BlankRegion, GearData, HolePattern, Material, Rack, SpurGear, TipEdge, ToothDeviations,
+    BlankRegion, GearData, HolePattern, Material, Rack, SpurGear, TipEdge, ToolDepth,
+    ToothDeviations,
 };
 use meshwright_engine::grid::ring_grid::ELEMENTS_PER_TOOTH;
 use meshwright_engine::grid::{BlankGrid, Grid, GridLevel, ToothGrid};
@@ -72,6 +73,7 @@ fn gear(tooth_count: u32, profile_shift: f64) -> Result<SpurGear, Box<dyn std::e
         },
         profile_shift,
         thickness_deviation: 0.0,
+        tool_depth: ToolDepth::ByThickness,
         tip_edge: TipEdge::Sharp,
         face_width: 20e-3,
         modifications: Vec::new(),

@@ -9,7 +9,7 @@ use meshwright_engine::assembly::{FaceResolution, FaceYield};
 use meshwright_engine::contact::face::{FaceModel, FlankYield, SLICES};
 use meshwright_engine::gear::{
     Alignment, BlankRegion, GearData, Helix, LeadModification, Material, Member, Rack, SolidGear,
-    SolidPair, TipEdge, ToothDeviations, Web,
+    SolidPair, TipEdge, ToolDepth, ToothDeviations, Web,
 };
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::run::Run;
@@ -30,6 +30,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         },
         profile_shift: 0.0,
         thickness_deviation: -0.1e-3,
+        tool_depth: ToolDepth::ByThickness,
         face_width: 20e-3,
         material: Material::STEEL,
         tip_edge: TipEdge::Sharp,

@@ -169,7 +169,10 @@ fn fewer_than_twenty_positions_a_mesh_period_are_warned_of_where_orders_are_told
         let mut case = case(relieved(ReliefShape::Linear), &[200.0]);
         case.resolution.positions_per_mesh_period = positions;
         case.resolution.span_mesh_periods = span;
-        let few = Warning::FewPositions { positions };
+        let few = Warning::FewPositions {
+            positions,
+            open: None,
+        };
         warnings(&case).contains(&few)
     };
     assert!(told(19, None) && told(8, Some(1)));

@@ -29,11 +29,16 @@ document! {
         /// The normal backlash j_bn of ISO 21771, in mm, of teeth as drawn: across the flanks in the normal section. Straight teeth have it along the line of
         /// action.
         backlash_mm: f64 = to_mm(pair.backlash() * normal),
-        /// The transverse backlash along the line of action, in mm, of teeth as drawn: the normal one over the cosine of the helix angle at the base
+        /// The circumferential backlash j_wt of ISO 21771, in mm, of teeth as drawn: in the transverse section, along the working pitch circles. It is the
+        /// backlash along the line of action over the cosine of the working pressure angle.
+        #[serde(default = "not_a_number")]
+        #[schema(required)]
+        backlash_transverse_mm: f64 = to_mm(pair.backlash() / pair.working_pressure_angle().cos()),
+        /// The backlash along the line of action in the transverse section, in mm, of teeth as drawn: the normal one over the cosine of the helix angle at the base
         /// circles. Force tables have it so.
         #[serde(default = "not_a_number")]
         #[schema(required)]
-        backlash_transverse_mm: f64 = to_mm(pair.backlash()),
+        backlash_line_of_action_mm: f64 = to_mm(pair.backlash()),
         /// The least normal backlash over the true period, in mm: what the pitch deviations of teeth in mesh at the same time, slopes that stand out and
         /// eccentricity leave of it.
         least_backlash_mm: f64 = to_mm(pair.least_backlash() * normal),
@@ -108,12 +113,18 @@ document! {
         // What rounding leaves of holes that balance each other has no direction.
         let noise = 1e-12 * gear.mass() * gear.tip_radius();
         let normal = solid.map_or(1.0, |solid| solid.helix_angle_at(gear.tip_radius()).cos());
+        let module = solid.map_or(gear.data().rack.module, |solid| solid.normal_rack().module);
         let [sliding_a, sliding_e] = pair.specific_sliding(member);
         let imbalance = Some(gear.imbalance()).filter(|imbalance| imbalance.norm() > noise);
     } {
         /// The number of mesh periods after which this gear stands alike again: 1 for a solid blank, fewer than its teeth for holes that
         /// repeat, all of its teeth where they deviate.
         period_mesh_periods: u32 = pair.period_of(member),
+        /// The generating profile shift x_E, in normal modules, at which the tool stood that cut the root: root circle, fillet and form circle follow from it. It is the
+        /// profile shift x of teeth of nominal thickness.
+        #[serde(default = "not_a_number")]
+        #[schema(required)]
+        generating_profile_shift: f64 = gear.generating_shift_length() / module,
         /// The reference radius, in mm.
         reference_radius_mm: f64 = to_mm(gear.reference_radius()),
         /// The base radius, in mm.

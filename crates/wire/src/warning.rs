@@ -47,7 +47,7 @@ pub enum WarningCode {
     ZeroBacklash,
     /// Module or pressure angle of the gears differ in printed digits only; the value with more digits is taken for both.
     PrintedDigits,
-    /// The tips of a gear nearly touch the root circle of the other one.
+    /// The tips of a gear stand nearer to the root circle of the other one than the racks leave them, by more than 0.05 modules: nobody shortened them.
     SmallTipClearance,
     /// Undercut ends a flank before the mate's tip does: the path of contact is shorter.
     UndercutShortensPath,
@@ -143,11 +143,16 @@ impl WarningDocument {
             Warning::SmallTipClearance {
                 member,
                 clearance,
+                of_racks,
                 shortened,
             } => {
-                let (clearance, sentence) = (to_mm(clearance), small_clearance(member, clearance));
+                let sentence = small_clearance(member, [clearance, of_racks]);
+                let clearance = to_mm(clearance);
                 let advice = match shortened {
-                    None => "The racks leave no more: a larger dedendum of the other gear or a smaller addendum does.".to_owned(),
+                    None => {
+                        "A larger dedendum of the other gear or a smaller addendum leaves more."
+                            .to_owned()
+                    }
                     Some((shortening, diameters)) => {
                         let [driving, driven] = diameters.map(tip_diameter);
                         changes = Member::BOTH
@@ -286,7 +291,22 @@ impl WarningDocument {
                     plain(significant(to_mm(diameter), 6))
                 ),
             ),
-            Warning::FewPositions { positions } => (
+            Warning::FewPositions {
+                positions,
+                open: Some(open),
+            } => (
+                Code::FewPositions,
+                None,
+                Some((f64::from(positions), "positions")),
+                format!(
+                    "{positions} positions a mesh period, and those that were solved between them, leave the peak-to-peak of the transmission error open by about {} % of it, by their own estimate. More positions find it.",
+                    plain(significant(100.0 * open, 2))
+                ),
+            ),
+            Warning::FewPositions {
+                positions,
+                open: None,
+            } => (
                 Code::FewPositions,
                 None,
                 Some((f64::from(positions), "positions")),
@@ -421,17 +441,19 @@ fn out_of_range(found: &FormulaRange) -> (f64, &'static str, String) {
 }
 
 /// How little room the tips of a gear have.
-fn small_clearance(member: Member, clearance: f64) -> String {
+fn small_clearance(member: Member, [clearance, of_racks]: [f64; 2]) -> String {
     let other = member.other();
+    let mm = |length: f64| plain(significant(to_mm(length), 4));
+    let racks = mm(of_racks);
     if clearance < 0.0 {
         format!(
-            "The tips of the {member} gear reach {} mm below the root circle of the {other} gear.",
-            plain(significant(to_mm(-clearance), 4))
+            "The tips of the {member} gear reach {} mm below the root circle of the {other} gear; the racks leave a clearance of {racks} mm.",
+            mm(-clearance)
         )
     } else {
         format!(
-            "The tips of the {member} gear clear the root circle of the {other} gear by {} mm, less than 0.1 modules.",
-            plain(significant(to_mm(clearance), 4))
+            "The tips of the {member} gear clear the root circle of the {other} gear by {} mm; the racks leave {racks} mm.",
+            mm(clearance)
         )
     }
 }

@@ -78,6 +78,14 @@ pub(super) struct Further {
 }
 
 impl Further {
+    /// Those beside so many positions of contacts that repeat after so many mesh periods.
+    fn of(positions: usize, repeats_after: u32) -> Self {
+        Self {
+            most: most_further(positions, repeats_after),
+            repeats_after,
+        }
+    }
+
     const NONE: Self = Self {
         most: 0,
         repeats_after: 1,
@@ -205,10 +213,7 @@ impl Sweep {
         let positions = case.mesh_positions();
         Self {
             blanks: Blanks::Flexible,
-            further: Further {
-                most: most_further(positions.len()),
-                repeats_after: case.curves_repeat_after(),
-            },
+            further: Further::of(positions.len(), case.curves_repeat_after()),
             positions,
             repeats_after: case.span(),
             step,
@@ -220,10 +225,7 @@ impl Sweep {
         let (positions, repeats_after) = (case.repeating_positions(), case.contacts_repeat_after());
         Self {
             blanks,
-            further: Further {
-                most: most_further(positions.len()),
-                repeats_after,
-            },
+            further: Further::of(positions.len(), repeats_after),
             positions,
             repeats_after,
             step,

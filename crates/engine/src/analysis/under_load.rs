@@ -6,7 +6,9 @@ use super::curve_parts::CurveParts;
 use super::evidence::Evidence;
 use super::found::Found;
 use super::plan::{Pass, Sweep};
-use super::warning::{Warning, warn_of_pressures, warn_of_projection, warn_of_tips, warnings};
+use super::warning::{
+    Warning, warn_of_positions, warn_of_pressures, warn_of_projection, warn_of_tips, warnings,
+};
 use super::{Analysis, AnalysisError};
 use crate::run::Run;
 
@@ -110,6 +112,7 @@ pub(super) fn curves(
         let parts = solve(&mut under)?;
         let error = under.projection_error;
         let curve = parts.into_curve(case, output_torque);
+        warn_of_positions(under.warnings, case, &curve);
         if let Some(error) = error {
             let known = evidence.projection_error.unwrap_or(0.0);
             evidence.projection_error = Some(error.max(known));

@@ -11,8 +11,11 @@ use crate::load_distribution::{FormulaRange, out_of_range};
 /// Backlash below this, in modules, counts as none.
 const NO_BACKLASH: f64 = 1e-6;
 
-/// There is a warning of tip clearances below this, in modules: racks leave 0.2 to 0.3.
-const LEAST_TIP_CLEARANCE: f64 = 0.1;
+/// There is a warning of tip clearances that are less than what the racks leave by more than this, in modules.
+const LOST_TIP_CLEARANCE: f64 = 0.05;
+
+/// The least clearance that racks leave, in modules, where their addendum is not known because a tip diameter is given.
+const CLEARANCE_OF_RACKS: f64 = 0.2;
 
 /// Beyond this ratio of the face widths there is a warning of plane models: the load spreads over the wider gear's width by bending it, which
 /// a plane does not see.
@@ -28,6 +31,9 @@ const DOUBTFUL_PROJECTION: [f64; 2] = [0.01, 0.05];
 
 /// Below so many positions a mesh period there is a warning of orders: each position gives half a mesh harmonic, and the upper ones badly.
 pub const FEW_POSITIONS: u32 = 20;
+
+/// There is a warning of positions that leave more than this part of the peak-to-peak open, by their own estimate, and more than so many meters.
+pub const OPEN_PEAK_TO_PEAK: (f64, f64) = (0.02, 2e-9);
 
 /// There is a warning of forces beyond this part of the largest load of a table; up to it they are it but for rounding.
 const BEYOND: f64 = 1.0 + 1e-9;
@@ -52,12 +58,14 @@ pub enum Warning {
         /// By how much the other flanks are moved back, in meters, because the last printed digits leave no room.
         moved_back: f64,
     },
-    /// Little room between the tips of a gear and the root circle of the other one.
+    /// Less room between the tips of a gear and the root circle of the other one than the racks leave.
     SmallTipClearance {
         /// The gear whose tips they are.
         member: Member,
         /// The clearance in meters.
         clearance: f64,
+        /// The clearance that the racks leave, dedendum less addendum, in meters.
+        of_racks: f64,
         /// By how much gear programs shorten the tips of both gears, in meters, and the tip diameters that follow, driving and driven; none where the racks
         /// themselves leave no more.
         shortened: Option<(f64, [f64; 2])>,
@@ -139,10 +147,12 @@ pub enum Warning {
         /// The pressure in Pa.
         pressure: f64,
     },
-    /// So few positions a mesh period give the orders of its higher multiples wrongly.
+    /// So few positions a mesh period give the orders of its higher multiples wrongly, or leave the peak-to-peak open.
     FewPositions {
         /// The positions.
         positions: u32,
+        /// How much of the peak-to-peak of δ they leave open, where it is more than [`OPEN_PEAK_TO_PEAK`]: the estimate of the curve of which it is most.
+        open: Option<f64>,
     },
     /// The span is not whole true periods: statistics are partial and there is no spectrum.
     PartialSpan {
@@ -208,7 +218,10 @@ pub fn warnings(case: &Case) -> Vec<Warning> {
     }
     let positions = case.resolution.positions_per_mesh_period;
     if case.covers_whole_periods() && positions < FEW_POSITIONS {
-        warnings.push(Warning::FewPositions { positions });
+        warnings.push(Warning::FewPositions {
+            positions,
+            open: None,
+        });
     }
     if let Model::Formulas(formulas) = case.model {
         if !case.holed().is_empty() {
@@ -222,20 +235,37 @@ pub fn warnings(case: &Case) -> Vec<Warning> {
     warnings
 }
 
-/// Warns of tips that nearly touch the root circle of the other gear.
+/// Warns of tips that stand nearer to the root circle of the other gear than the racks leave them: those of gears that nobody shortened.
 fn small_tip_clearance(pair: &GearPair, member: Member) -> Option<Warning> {
     let clearance = pair.tip_clearance(member);
+    let module = pair.gear(member).normal_rack().module;
+    let dedendum = |member: Member| pair.gear(member.other()).data().rack.dedendum;
+    let of_racks = dedendum(member) - addendum_of_rack(pair, member);
     // Rounding of what was typed at the limit is not below it.
-    let least = LEAST_TIP_CLEARANCE * pair.gear(member).normal_rack().module;
+    let is_lost = of_racks - clearance > LOST_TIP_CLEARANCE * module * (1.0 + 1e-9);
     let shortening = pair.usual_tip_shortening();
-    (clearance < least * (1.0 - 1e-9)).then(|| Warning::SmallTipClearance {
+    is_lost.then(|| Warning::SmallTipClearance {
         member,
         clearance,
+        of_racks,
         shortened: (shortening > 0.0).then(|| {
-            let shorter = |member| 2.0 * (pair.gear(member).tip_radius() - shortening);
+            let shorter = |member| {
+                let gear = pair.gear(member);
+                let done = addendum_of_rack(pair, member) - gear.data().rack.addendum;
+                2.0 * (gear.tip_radius() - (shortening - done).max(0.0))
+            };
             (shortening, Member::BOTH.map(shorter))
         }),
     })
+}
+
+/// The addendum of the rack of `member`. Where it is less than a module the tips may have been shortened: it is a module then, as far as the dedendum of the
+/// other gear leaves [`CLEARANCE_OF_RACKS`].
+fn addendum_of_rack(pair: &GearPair, member: Member) -> f64 {
+    let gear = pair.gear(member);
+    let module = gear.normal_rack().module;
+    let room = pair.gear(member.other()).data().rack.dedendum - CLEARANCE_OF_RACKS * module;
+    gear.data().rack.addendum.max(module.min(room))
 }
 
 /// Warns of a web and a rim that a plane takes for stiffer than they are.
@@ -314,6 +344,26 @@ pub(super) fn warn_of_projection(warnings: &mut Vec<Warning>, error: f64, statis
             part_of_peak_to_peak: parts[1],
         });
     }
+}
+
+/// Warns of a `curve` whose positions leave its peak-to-peak open; of that which leaves most once.
+pub(super) fn warn_of_positions(warnings: &mut Vec<Warning>, case: &Case, curve: &Curve) {
+    let error = curve.sampling_error.peak_to_peak;
+    let (part, least) = OPEN_PEAK_TO_PEAK;
+    let found = error / curve.transmission_error_statistics.peak_to_peak;
+    if error <= least || found.is_nan() || found <= part {
+        return;
+    }
+    for warning in &mut *warnings {
+        if let Warning::FewPositions { open, .. } = warning {
+            *open = Some(open.map_or(found, |known| known.max(found)));
+            return;
+        }
+    }
+    warnings.push(Warning::FewPositions {
+        positions: case.resolution.positions_per_mesh_period,
+        open: Some(found),
+    });
 }
 
 /// Warns of pressures that no material bears in proportion.

@@ -11,6 +11,18 @@ pub const LEAST_TIP_THICKNESS: f64 = 0.05;
 /// The least rim between the bore and the root circle, in modules.
 pub const LEAST_RIM: f64 = 1.0;
 
+/// The generating profile shift x_E at which the tool stood when it cut the root. Fillet, root circle and form circle follow from it; the tip circle follows
+/// from the profile shift x.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ToolDepth {
+    /// A hob cuts thinner teeth by standing deeper, at x_E = x + A_s/(2 m tan α).
+    ByThickness,
+    /// The tool stands at x_E = x. The flanks are ground until the teeth are as thin as they are, and the fillets move with them.
+    Nominal,
+    /// The tool stands at this x_E. The flanks are ground by the rest of the deviation, as with [`ToolDepth::Nominal`].
+    At(f64),
+}
+
 /// What a drawing says of a spur gear; [`super::SpurGear::new`] checks it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GearData {
@@ -22,6 +34,8 @@ pub struct GearData {
     pub profile_shift: f64,
     /// The deviation A_s of the tooth thickness, a transverse arc on the reference circle; negative is thinner.
     pub thickness_deviation: f64,
+    /// Where the tool stood that cut the root.
+    pub tool_depth: ToolDepth,
     /// The edge between flanks and tip circle.
     pub tip_edge: TipEdge,
     /// The face width b.
@@ -34,6 +48,36 @@ pub struct GearData {
     pub material: Material,
     /// What carries the teeth.
     pub blank: BlankRegion,
+}
+
+impl GearData {
+    /// The generating profile shift x_E, in modules of this section.
+    pub fn generating_profile_shift(&self) -> f64 {
+        match self.tool_depth {
+            ToolDepth::ByThickness => {
+                self.profile_shift + self.thickness_deviation / self.thickness_of_shift(1.0)
+            }
+            ToolDepth::Nominal => self.profile_shift,
+            ToolDepth::At(x_e) => x_e,
+        }
+    }
+
+    /// How much thicker the flanks are than the tool leaves them at x_E, a transverse arc on the reference circle: A_s − 2 (x_E − x) m tan α. 0 of a gear that a hob
+    /// has finished.
+    pub(super) fn thickness_of_flanks(&self) -> f64 {
+        match self.tool_depth {
+            ToolDepth::ByThickness => 0.0,
+            ToolDepth::Nominal => self.thickness_deviation,
+            ToolDepth::At(x_e) => {
+                self.thickness_deviation - self.thickness_of_shift(x_e - self.profile_shift)
+            }
+        }
+    }
+
+    /// By how much a profile shift of `shift` makes teeth thicker, an arc on the reference circle: 2 `shift` m tan α.
+    pub fn thickness_of_shift(&self, shift: f64) -> f64 {
+        2.0 * shift * self.rack.module * self.rack.pressure_angle.tan()
+    }
 }
 
 /// The least rim between a web and the root circle, in modules: less is no rim that teeth could stand on.
@@ -90,11 +134,13 @@ pub enum GearError {
         largest: f64,
     },
     /// The rack cuts so far into the flanks that next to nothing of the tooth is left between them.
-    #[error("undercut leaves no tooth at profile shift {profile_shift}; {smallest} avoids it")]
+    #[error(
+        "undercut leaves no tooth at the generating profile shift {generating_profile_shift}; {smallest} avoids it"
+    )]
     Undercut {
-        /// The profile shift coefficient asked for.
-        profile_shift: f64,
-        /// The smallest that avoids undercut.
+        /// The generating profile shift x_E.
+        generating_profile_shift: f64,
+        /// The smallest x_E that avoids undercut.
         smallest: f64,
     },
     /// The flanks meet, or nearly, below the tip circle.

@@ -35,7 +35,7 @@ pub use blank::{
     BlankRegion, Contour, ContourFault, Core, Drawn, Hole, HolePattern, HoleShape, Ligament,
     Moments, Side, Spokes, SpokesFault, Symmetry, Web,
 };
-pub use data::{DeviationList, GearData, GearError};
+pub use data::{DeviationList, GearData, GearError, ToolDepth};
 pub use deviation::{Eccentricity, ToothDeviations};
 pub use involute::{Involute, involute_function};
 pub use lead::{FaceEnds, LeadError, LeadModification};

@@ -3,7 +3,7 @@
 //! Everything stands in the frame of its gear: z = 0 is the middle of its face, the x axis the centerline of tooth 0 there, the
 //! loaded flank lies on the side of positive y. The section at z is that at 0, turned counter-clockwise by τ z.
 
-use super::{GearData, GearError, Hole, Rack, SpurGear, Web};
+use super::{GearData, GearError, Hole, Rack, SpurGear, ToolDepth, Web};
 
 /// The largest helix angle, in radians (45 degrees): beyond, teeth are those of a worm.
 pub const LARGEST_HELIX_ANGLE: f64 = std::f64::consts::FRAC_PI_4;
@@ -197,6 +197,10 @@ impl SolidGear {
                 ..rack
             },
             profile_shift: normal.profile_shift * cos,
+            tool_depth: match normal.tool_depth {
+                ToolDepth::At(x_e) => ToolDepth::At(x_e * cos),
+                depth => depth,
+            },
             ..normal
         };
         let section =
@@ -465,10 +469,10 @@ pub(super) fn transverse_angle(normal: f64, cos: f64) -> f64 {
 fn in_normal_section(error: GearError, cos: f64) -> GearError {
     match error {
         GearError::Undercut {
-            profile_shift,
+            generating_profile_shift,
             smallest,
         } => GearError::Undercut {
-            profile_shift: profile_shift / cos,
+            generating_profile_shift: generating_profile_shift / cos,
             smallest: smallest / cos,
         },
         other => other,

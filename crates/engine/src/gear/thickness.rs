@@ -86,6 +86,16 @@ impl MeasuredTeeth {
         half / self.teeth() + involute_function(self.transverse_angle())
     }
 
+    /// The profile shift, in normal modules, that makes the teeth thicker by the transverse arc `deviation`: A_st cos β/(2 m_n tan α_n).
+    pub fn profile_shift_of(&self, deviation: f64) -> f64 {
+        deviation / self.deviation_of(1.0)
+    }
+
+    /// The transverse arc by which a further profile `shift`, in normal modules, makes the teeth thicker.
+    pub fn deviation_of(&self, shift: f64) -> f64 {
+        2.0 * shift * self.module * self.pressure_angle.tan() / self.helix_angle.cos()
+    }
+
     /// The share of a diameter at which balls stand to both sides of a gear.
     fn opposite(&self) -> f64 {
         if self.tooth_count.is_multiple_of(2) {

@@ -17,7 +17,7 @@ use meshwright_engine::contact::{MeshContact, PairModel, PositionError, WarmStar
 use meshwright_engine::gear::{
     Alignment, BlankRegion, FaceEnds, GearData, GearPair, Helix, HolePattern, LeadModification,
     Material, Member, ModificationData, PairDeviations, Rack, ReliefData, ReliefShape, ReliefStart,
-    SolidGear, SolidPair, SpurGear, TipEdge, ToothDeviations,
+    SolidGear, SolidPair, SpurGear, TipEdge, ToolDepth, ToothDeviations,
 };
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
@@ -38,6 +38,7 @@ pub(crate) fn gear(tooth_count: u32, bore_radius: f64) -> GearData {
         },
         profile_shift: 0.0,
         thickness_deviation: 0.0,
+        tool_depth: ToolDepth::ByThickness,
         tip_edge: TipEdge::Sharp,
         face_width: 20e-3,
         modifications: Vec::new(),

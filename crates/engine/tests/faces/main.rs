@@ -12,7 +12,7 @@ use meshwright_engine::contact::face::{FaceContact, FaceModel, FlankYield, SLICE
 use meshwright_engine::gear::{
     Alignment, BlankRegion, FaceEnds, GearData, Helix, LeadModification, Material, Member,
     ModificationData, Rack, ReliefData, ReliefShape, ReliefStart, SolidGear, SolidPair, TipEdge,
-    ToothDeviations,
+    ToolDepth, ToothDeviations,
 };
 use meshwright_engine::run::Run;
 
@@ -139,6 +139,7 @@ impl Drawing {
                 },
                 profile_shift: 0.0,
                 thickness_deviation: -0.05 * m,
+                tool_depth: ToolDepth::ByThickness,
                 tip_edge: TipEdge::Sharp,
                 face_width: self.widths[g] * self.scale,
                 modifications: if self.relief == 0.0 {

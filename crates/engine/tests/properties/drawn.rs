@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use meshwright_engine::gear::{
     BlankRegion, Core, Eccentricity, GearData, GearPair, Hole, HolePattern, HoleShape, Material,
     Member, ModificationData, Rack, ReliefData, ReliefShape, ReliefStart, SpurGear, TablePlaces,
-    TipEdge, ToothDeviations, Web,
+    TipEdge, ToolDepth, ToothDeviations, Web,
 };
 
 /// A stream of pseudo-random numbers (xorshift*), so that a seed names a draw forever.
@@ -341,6 +341,7 @@ impl DrawnPair {
                 rack,
                 profile_shift,
                 thickness_deviation: 0.0,
+                tool_depth: ToolDepth::ByThickness,
                 tip_edge: TipEdge::Sharp,
                 face_width: if draw.chance(0.3) {
                     width * draw.between(1.0, 2.0)

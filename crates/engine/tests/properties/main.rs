@@ -8,6 +8,7 @@ mod between;
 #[path = "../cases/mod.rs"]
 mod cases;
 mod drawn;
+mod long_periods;
 mod seen;
 mod truths;
 

@@ -2,7 +2,7 @@
 
 use meshwright_engine::gear::{
     BlankRegion, GearData, GearPair, HolePattern, Material, ModificationData, Rack, ReliefData,
-    ReliefShape, ReliefStart, SpurGear, TipEdge, ToothDeviations,
+    ReliefShape, ReliefStart, SpurGear, TipEdge, ToolDepth, ToothDeviations,
 };
 
 use crate::drawn::DrawnPair;
@@ -30,6 +30,7 @@ fn gear(
         },
         profile_shift,
         thickness_deviation: 0.0,
+        tool_depth: ToolDepth::ByThickness,
         tip_edge: TipEdge::Sharp,
         face_width: face_width * 1e-3,
         modifications: Vec::new(),

@@ -7,7 +7,7 @@ use meshwright_engine::gear::{Member, SpurGear};
 use serde_json::Value;
 
 use super::flank::{ROOT, ReliefNames, TIP};
-use super::gear::GENERATED_SHIFT;
+use super::gear::{GENERATED_SHIFT, SAME_SHIFT};
 use super::import::HELIX_ANGLE;
 use super::own;
 use super::unit::{DEG, KG_PER_DM3, MM, MPA, MUM, N_M, N_PER_MM, NONE, PER_MINUTE, Unit, mm_of_um};
@@ -27,6 +27,8 @@ struct Ids {
     data: usize,
     tool: usize,
     settings: usize,
+    /// Those of the grinding, where it leaves the teeth of another thickness than the tool that cut the root.
+    grinding: Option<usize>,
     material: usize,
     body: usize,
     /// The modifications of both flanks, which are the same.
@@ -180,6 +182,7 @@ impl Gear<'_> {
             data: id(),
             tool: id(),
             settings: id(),
+            grinding: self.is_ground().then(&mut id),
             material: id(),
             body: id(),
             modifications: self.modifications().iter().map(|_| id()).collect(),
@@ -195,8 +198,18 @@ impl Gear<'_> {
         number(self.document, name)
     }
 
-    /// The profile shift with which the teeth come out as thick as they are.
+    /// The generating profile shift of the tool that cut the root.
     fn generated_shift(&self) -> f64 {
+        to_mm(self.section.generating_shift_length()) / self.number("module_mm")
+    }
+
+    /// Whether the flanks are ground to another thickness than that tool leaves.
+    fn is_ground(&self) -> bool {
+        (self.finished_shift() - self.generated_shift()).abs() > SAME_SHIFT
+    }
+
+    /// The profile shift with which the teeth come out as thick as they are.
+    fn finished_shift(&self) -> f64 {
         let angle = self.number("pressure_angle_deg").to_radians();
         let thicker = to_mm(self.section.data().thickness_deviation);
         let normal = thicker * self.helix_angle_deg.to_radians().cos();
@@ -281,7 +294,7 @@ impl Gear<'_> {
             DEG,
             self.number("pressure_angle_deg"),
         );
-        let reach = self.number("dedendum_mm") / module + self.generated_shift() - shift;
+        let reach = to_mm(section.data().rack.dedendum) / module;
         out.number("addendum_coefficient_reference_profile", NONE, reach);
         let rounding = self.number("rack_tip_radius_mm") / module;
         out.number("tip_corner_radius_factor_reference_profile", NONE, rounding);
@@ -289,6 +302,11 @@ impl Gear<'_> {
         out.open(ids.settings, "cylindrical_gear_manufacturing_settings");
         out.number(GENERATED_SHIFT, NONE, self.generated_shift());
         out.close();
+        if let Some(grinding) = ids.grinding {
+            out.open(grinding, "cylindrical_gear_manufacturing_settings");
+            out.number(GENERATED_SHIFT, NONE, self.finished_shift());
+            out.close();
+        }
         let material = &self.document["material"];
         out.open(ids.material, "material");
         out.number(
@@ -453,6 +471,10 @@ impl Gear<'_> {
                 ("manufacturing_settings", ids.settings),
             ];
             out.add("manufacturing_step", Some(1), &step);
+            if let Some(grinding) = ids.grinding {
+                let step = [("workpiece", flank), ("manufacturing_settings", grinding)];
+                out.add("manufacturing_step", Some(2), &step);
+            }
             for modification in ids.modifications.iter().chain(&ids.leads) {
                 out.add(
                     "reference",

@@ -1,7 +1,7 @@
 //! From the components of one gear to the gear of a submission.
 
-use meshwright_engine::gear::Rack;
 use meshwright_engine::gear::data::LEAST_RIM;
+use meshwright_engine::gear::{Rack, ToolDepth};
 use serde_json::{Map, Value, json};
 
 use super::file::Component;
@@ -12,6 +12,9 @@ use crate::significant;
 
 /// What two ways to say one radius may differ by, in mm, to be the same.
 pub(super) const SAME: f64 = 5e-4;
+
+/// What two ways to say one profile shift may differ by to be the same: less than a file has digits of it.
+pub(super) const SAME_SHIFT: f64 = 1e-9;
 
 /// The digits of what is computed from several attributes.
 pub(super) const DIGITS: usize = 12;
@@ -248,7 +251,7 @@ impl<'a> Gear<'a> {
             reading.from(format!("{pointer}/addendum_mm"), of, attribute);
         }
         let (dedendum, from_root) = self.dedendum();
-        let root = 2.0 * (self.shifted_radius() - dedendum);
+        let root = 2.0 * (self.generated_radius() - dedendum);
         if let Some((of, attribute)) = from.filter(|_| 2.0 * self.tip_radius() <= root) {
             let detail = format!(
                 "It is {tip} mm; a tip circle lies outside the root circle, {} mm.",
@@ -264,6 +267,12 @@ impl<'a> Gear<'a> {
         if let Some((deviation, settings)) = self.thickness_deviation() {
             let from = (settings, GENERATED_SHIFT);
             put("tooth_thickness_deviation_um", json!(deviation), Some(from));
+        }
+        let from = self.settings.first().map(|of| (*of, GENERATED_SHIFT));
+        match self.tool_depth() {
+            ToolDepth::ByThickness => {}
+            ToolDepth::Nominal => put("thinned_by", json!("flank_grinding"), from),
+            ToolDepth::At(shift) => put("generating_profile_shift", json!(shift), from),
         }
         if let Some(rounding) = reading.number(self.gear, own::TIP_ROUNDING, MM) {
             put(
@@ -357,15 +366,48 @@ impl<'a> Gear<'a> {
         // As a submission has it where it is not said.
         let usual = (0.38 * module).min(rack.largest_tip_radius());
         rack.tip_radius = self.rack_tip_radius().map_or(usual, |(radius, _)| radius);
-        let depth = rack.straight_depth() - self.profile_shift * module;
+        let depth = rack.straight_depth() - self.generating_shift() * module;
         let sine = self.transverse_angle().sin();
         let form = self.reference_radius() * sine - depth / sine;
         (form >= 0.0 && self.tip_length() > form).then_some(form)
     }
 
-    /// From where addendum and dedendum count.
+    /// From where the addendum counts.
     fn shifted_radius(&self) -> f64 {
         self.reference_radius() + self.profile_shift * self.module
+    }
+
+    /// From where the dedendum counts.
+    fn generated_radius(&self) -> f64 {
+        self.reference_radius() + self.generating_shift() * self.module
+    }
+
+    /// Where the tool stood that cut the root: by the generated shift of the first step, which may be that of the finished teeth, the nominal one or another.
+    /// Where the first step says none, a hob is taken that left the finished teeth.
+    fn tool_depth(&self) -> ToolDepth {
+        let first = self.settings.first();
+        let first = first.and_then(|settings| self.generated_shift(settings));
+        let (Some((first, _)), Some((finished, _))) = (first, self.finished_shift()) else {
+            return ToolDepth::ByThickness;
+        };
+        let alike = |one: f64, other: f64| (one - other).abs() <= SAME_SHIFT;
+        if alike(first, finished) {
+            ToolDepth::ByThickness
+        } else if alike(first, self.profile_shift) {
+            ToolDepth::Nominal
+        } else {
+            ToolDepth::At(first)
+        }
+    }
+
+    /// The generating profile shift x_E.
+    fn generating_shift(&self) -> f64 {
+        let finished = || self.finished_shift().map(|(shift, _)| shift);
+        match self.tool_depth() {
+            ToolDepth::ByThickness => finished().unwrap_or(self.profile_shift),
+            ToolDepth::Nominal => self.profile_shift,
+            ToolDepth::At(shift) => shift,
+        }
     }
 
     /// The tip circle. The basic profile has the rounder numbers, and holds where the diameter agrees or is not said.
@@ -446,20 +488,18 @@ impl<'a> Gear<'a> {
                 ("addendum_reference_profile", 1.0),
             ];
             let (reach, name) = self.reading.either(tool, names, [NONE, MM])?;
-            // The tool stands where it generates the teeth, which may be off the nominal profile shift.
+            // A step that says where its tool stood is followed there; otherwise an allowance moves the tool out.
             let first = self.settings.first();
             let generated = first.and_then(|settings| self.generated_shift(settings));
-            let off = match generated {
-                Some((shift, _)) => shift - self.profile_shift,
-                None => {
-                    self.allowance() / (self.module * self.pressure_angle_deg.to_radians().sin())
-                }
+            let out = match generated {
+                Some(_) => 0.0,
+                None => self.allowance() / self.pressure_angle_deg.to_radians().sin(),
             };
-            Some((significant(reach - off * self.module, DIGITS), (tool, name)))
+            Some((significant(reach - out, DIGITS), (tool, name)))
         });
         let diameter = self.reading.number(self.gear, of_circle, MM);
         let of_diameter = diameter.map(|diameter| {
-            let dedendum = self.shifted_radius() - diameter / 2.0;
+            let dedendum = self.generated_radius() - diameter / 2.0;
             (significant(dedendum, DIGITS), (self.gear, of_circle))
         });
         match (of_tool, of_diameter) {
@@ -516,13 +556,18 @@ impl<'a> Gear<'a> {
         found
     }
 
-    /// How much thicker than nominal the teeth are on the reference circle, by the shift of the last step that says one, in um.
-    fn thickness_deviation(&self) -> Option<(f64, &'a Component)> {
+    /// The profile shift with which the finished teeth are as thick as they are, by the last step that says one.
+    fn finished_shift(&self) -> Option<(f64, &'a Component)> {
         let mut shifts = self.settings.iter().rev();
         let finished = "addendum_modification_coefficient_after_finishing";
         let of_flank = || Some((self.of_flanks(finished, NONE)?, *self.flanks.first()?));
         let generated = shifts.find_map(|settings| self.generated_shift(settings));
-        let (shift, settings) = generated.or_else(of_flank)?;
+        generated.or_else(of_flank)
+    }
+
+    /// How much thicker than nominal the teeth are on the reference circle, in um.
+    fn thickness_deviation(&self) -> Option<(f64, &'a Component)> {
+        let (shift, settings) = self.finished_shift()?;
         let off = (shift - self.profile_shift) * self.module;
         let thicker = 2.0 * off * self.pressure_angle_deg.to_radians().tan() / self.cosine;
         // Of a difference of two numbers near each other fewer digits are left.
@@ -559,7 +604,7 @@ impl<'a> Gear<'a> {
     fn blank(&self, pointer: &str, bore: Option<f64>, dedendum: f64) -> Option<Value> {
         let reading = self.reading;
         let pointer = format!("{pointer}/blank");
-        let root = self.shifted_radius() - dedendum;
+        let root = self.generated_radius() - dedendum;
         let inner = |of: &'a Component| Some((reading.number(of, "inner_diameter", MM)?, of));
         let said = inner(self.gear).filter(|(diameter, _)| *diameter > 0.0);
         let said = said.or_else(|| self.body.and_then(inner));

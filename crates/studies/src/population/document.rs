@@ -24,6 +24,15 @@ words! {
     }
 }
 
+words! {
+    /// Where the tool stands in members whose tooth thickness varies.
+    pub(crate) enum MembersDepth {
+        AsDrawn = "as_drawn":
+            "as in the drawn gear, that with the middle of each law: root and form circle stay, and the flanks vary",
+        ByThickness = "by_thickness": "as the thickness of each member says: a hob that stands deeper or less deep",
+    }
+}
+
 document! {
     /// The design as it is made: members that are drawn from laws, each computed by itself. The same seed gives the same members on every machine.
     pub(crate) struct PopulationDocument as "Population", "Population" {
@@ -35,6 +44,9 @@ document! {
         pub(crate) sampling: Sampling = word("Sampling").or(Sampling::Sobol),
         /// The fields that vary, independently of each other. Default: none.
         pub(crate) vary: Vec<VariedDocument> = list("Varied fields", EACH, MOST_VARIED).or_empty(),
+        /// Where the tool that cuts the root stands in members whose tooth thickness varies.
+        pub(crate) generating_profile_shift: MembersDepth =
+            word("Generating profile shift").or(MembersDepth::AsDrawn),
         /// How accurately teeth are made.
         pub(crate) accuracy: Option<AccuracyDocument> =
             absent(nested("Accuracy"), "the teeth of the base"),

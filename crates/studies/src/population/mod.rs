@@ -22,7 +22,7 @@ use serde_json::{Value, json};
 use crate::sample::law::Law;
 use crate::sample::normal;
 use crate::sample::points::Points;
-use document::GearAccuracy;
+use document::{GearAccuracy, MembersDepth};
 
 pub(crate) use document::PopulationDocument;
 pub(crate) use reading::{number_at, rises};
@@ -33,6 +33,8 @@ pub(crate) struct Population {
     size: u32,
     pub(crate) points: Points,
     varied: Vec<Varied>,
+    /// Where the tools of members stand whose thickness varies.
+    generating_profile_shift: MembersDepth,
     /// Of each gear, driving and driven: how accurately it is made.
     pub(crate) accuracy: [Option<GearAccuracy>; 2],
 }
@@ -108,6 +110,36 @@ impl Population {
         let axes = self.varied.iter().zip(0..);
         axes.map(|(varied, axis)| varied.at(self.points.at(member, axis)))
             .collect()
+    }
+
+    /// Gives the gears of `pair`, a member written as `node`, the generating profile shift of the drawn gear where their thickness varies: that with the middle of
+    /// its laws. A gear that says its generating profile shift by itself keeps that.
+    pub(crate) fn keep_roots(&self, node: &Node, pair: &mut PairDocument) {
+        if self.generating_profile_shift == MembersDepth::ByThickness {
+            return;
+        }
+        for gear in GEARS {
+            let mut drawn = node.clone();
+            let of_thickness = self.varied.iter().filter(|varied| {
+                let mut fields = GearDocument::THICKNESS.iter();
+                fields.any(|field| varied.path.starts_with(&["pair", gear.word(), field]))
+            });
+            let mut varies = false;
+            for varied in of_thickness {
+                varies = true;
+                drawn.put(varied.path.steps(), Node::Number(varied.median()));
+            }
+            let drawn = drawn.at(&["pair", gear.word()]).filter(|_| varies);
+            let Some(drawn) = drawn.and_then(GearDocument::at) else {
+                continue;
+            };
+            let x_e = drawn.tool_shift(pair.helix(gear));
+            let own = match gear {
+                Member::Driving => &mut pair.driving,
+                Member::Driven => &mut pair.driven,
+            };
+            own.keep_generating_profile_shift(significant(x_e, 12));
+        }
     }
 
     /// Gives the gears of a member their teeth, with slopes of their leads for a `method` that sees the faces; what prevents a gear is reported to `errors`.

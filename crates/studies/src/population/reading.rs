@@ -86,6 +86,7 @@ impl PopulationDocument {
                 seed: self.seed,
             },
             varied,
+            generating_profile_shift: self.generating_profile_shift,
             accuracy,
         })
     }

@@ -656,3 +656,41 @@ fn lead_slopes_are_drawn_where_the_method_sees_the_faces_and_leave_the_other_tee
         }
     }
 }
+
+#[test]
+fn members_of_other_thickness_keep_the_root_of_the_drawn_gear_unless_asked() {
+    let thinner = json!({ "path": "/pair/driven/tooth_thickness_deviation_um", "kind": "uniform", "low": -60, "high": -20 });
+    let shift = json!({ "path": "/pair/driving/profile_shift", "kind": "uniform", "low": -0.01, "high": 0.01 });
+    let roots = |more: Value| {
+        let mut population = json!({ "size": 16, "vary": [thinner, shift] });
+        for (name, value) in more.as_object().expect("fields") {
+            population[name] = value.clone();
+        }
+        let whole = study(population);
+        let roots = (0..16).map(|row| {
+            let submission = whole.design(row).unwrap().submission.expect("valid");
+            let pair = &submission.case().pair;
+            let of = |gear: &SpurGear| gear.generating_shift_length() / gear.data().rack.module;
+            let thickness = pair.driven().data().thickness_deviation;
+            (of(pair.driving()), of(pair.driven()), thickness)
+        });
+        roots.collect::<Vec<_>>()
+    };
+    let module = 2e-3;
+    let tan = 20_f64.to_radians().tan();
+    let kept = roots(json!({}));
+    // The middle of the law is 40 um thinner; the driving gear follows its own profile shift.
+    let drawn = -40e-6 / (2.0 * module * tan);
+    assert!(
+        kept.iter()
+            .all(|(_, driven, _)| (driven - drawn).abs() < 1e-9),
+        "{kept:?}"
+    );
+    assert!(
+        kept.windows(2)
+            .any(|pair| pair[0].0 != pair[1].0 && pair[0].2 != pair[1].2)
+    );
+    for (_, driven, thickness) in roots(json!({ "generating_profile_shift": "by_thickness" })) {
+        assert!((driven - thickness / (2.0 * module * tan)).abs() < 1e-9);
+    }
+}

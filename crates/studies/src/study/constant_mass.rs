@@ -2,9 +2,10 @@
 
 use std::f64::consts::PI;
 
-use meshwright_engine::gear::Member;
+use meshwright_engine::gear::{Helix, Member};
 use meshwright_wire::declare::{Choice, Declared, Node, Number, document, number, word};
 use meshwright_wire::gear::{BlankDocument, GearDocument, PatternDocument, SlotDocument};
+use meshwright_wire::pair::PairDocument;
 use meshwright_wire::units::significant;
 use serde_json::{Map, Value, json};
 
@@ -63,9 +64,13 @@ impl ConstantMass {
     pub(super) fn apply(&self, submission: &mut Node, changes: &mut Map<String, Value>) {
         let gear = ["pair", self.gear.word()];
         let holes = ["pair", self.gear.word(), "blank", "holes"];
-        let Some(blank_area) = submission.at(&gear).and_then(blank_area) else {
+        let helix = submission.number_at(&["pair", PairDocument::helix_angle_deg.name]);
+        let helix = Helix::right(helix.unwrap_or(0.0).to_radians());
+        let Some(gear) = submission.at(&gear) else {
             return;
         };
+        // Of a gear that cannot be read, as of one without a blank, any radius will do for the check to come to that.
+        let blank_area = blank_area(gear, helix).unwrap_or(0.0);
         let patterns: Option<Vec<Pattern>> = match submission.at(&holes) {
             Some(pattern @ Node::Object(_)) => {
                 Pattern::of(pattern, None).map(|pattern| vec![pattern])
@@ -80,7 +85,6 @@ impl ConstantMass {
         let Some(patterns) = patterns.filter(|patterns| !patterns.is_empty()) else {
             return;
         };
-        // If the bore leaves no blank, any radius will do for the check to come to that.
         let radius = if blank_area > 0.0 {
             let wanted = self.mass_removed_percent / 100.0 * blank_area;
             let round: f64 = PI * patterns.iter().map(|pattern| pattern.count).sum::<f64>();
@@ -139,24 +143,11 @@ fn count_of(pattern: &Node) -> Option<f64> {
     count.filter(|&count| count >= 1.0)
 }
 
-/// The area between the bore and the mean of tip and root circle, in mm².
-fn blank_area(gear: &Node) -> Option<f64> {
-    let given = |name: &str| {
-        let node = gear.at(&[name]).filter(|node| **node != Node::Null);
-        node.map(|_| gear.number_at(&[name]))
-    };
-    let m = given(GearDocument::module_mm.name)??;
-    let z = given(GearDocument::tooth_count.name)??;
-    let or_preset =
-        |name: &str, number: Number| given(name).unwrap_or_else(|| number.preset(Some(m)));
-    let (shift, dedendum) = (GearDocument::profile_shift, GearDocument::dedendum_mm);
-    let addendum = GearDocument::addendum_mm.given();
-    let shifted = m * z / 2.0 + or_preset(shift.name, shift.spec)? * m;
-    let r_a = match given(GearDocument::tip_diameter_mm.name) {
-        Some(diameter) => diameter? / 2.0,
-        None => shifted + or_preset(addendum.name, addendum.spec)?,
-    };
-    let r_f = shifted - or_preset(dedendum.name, dedendum.spec)?;
+/// The area between the bore and the mean of tip and root circle, in mm², of a gear whose teeth wind by `helix`.
+fn blank_area(gear: &Node, helix: Helix) -> Option<f64> {
+    let mut solid = gear.clone();
+    solid.put(&["blank", BlankDocument::holes.name], Node::Null)?;
+    let [r_a, r_f] = GearDocument::at(&solid)?.tip_and_root_mm(helix);
     let shaft = gear.at(&["blank", BlankDocument::shaft.name]);
     let bore = match shaft.filter(|shaft| **shaft != Node::Null) {
         Some(_) => 0.0,

@@ -101,6 +101,7 @@ impl Composed {
         let submission = self.submission.and_then(|node| match member {
             Some((population, member)) => {
                 Submission::of_node_with(&node, |pair, method, errors| {
+                    population.keep_roots(&node, pair);
                     population.give_teeth(member, pair, method, errors)
                 })
             }

@@ -122,7 +122,7 @@ impl BlankDocument {
             }),
         };
         match self.outline {
-            Some(_) => region.evened(),
+            Some(_) => region.evened(self.last_decimal()),
             None => region,
         }
     }

@@ -65,15 +65,18 @@ impl GearDocument {
                 let deepest =
                     to_mm((PI * rack.module / 4.0 - rounding * (1.0 - sin) / cos) * cos / sin);
                 Fault::new(
-                    Field::of("", Self::dedendum_mm),
+                    self.root_field(),
                     Code::OutOfRange,
                     format!(
                         "At a pressure angle of {} deg a rack with a dedendum of {} mm comes to a point; at most {} mm leaves room for a rounding of {LEAST_RACK_TIP_RADIUS} modules.",
                         plain(self.pressure_angle_deg),
-                        plain(self.dedendum_mm),
+                        mm(rack.dedendum),
                         plain(deepest)
                     ),
-                    Some((deepest, Side::AtMost)),
+                    Some(match self.root_diameter_mm {
+                        Some(_) => (self.root_said(deepest, helix), Side::AtLeast),
+                        None => (deepest, Side::AtMost),
+                    }),
                 )
             }
             GearError::RackTipRadius {
@@ -101,19 +104,9 @@ impl GearDocument {
                 largest,
             } => Self::protuberance_height(height, [least, largest]),
             GearError::Undercut {
-                profile_shift,
+                generating_profile_shift,
                 smallest,
-            } => Fault::new(
-                Field::of("", Self::profile_shift),
-                Code::Undercut,
-                format!(
-                    "{} teeth at profile shift {} are undercut until hardly anything is left of them; a profile shift of {} avoids it.",
-                    self.tooth_count,
-                    plain(profile_shift),
-                    plain(smallest)
-                ),
-                Some((smallest, Side::AtLeast)),
-            ),
+            } => self.undercut_fault(helix, [generating_profile_shift, smallest]),
             GearError::PointedTip {
                 thickness,
                 largest_addendum,
@@ -243,6 +236,24 @@ impl GearDocument {
                 largest,
             } => self.web_fault([inner_radius, outer_radius], [least, largest]),
         }
+    }
+
+    /// A tool at the generating profile shift `x_e` leaves next to nothing of the teeth; at `smallest` it undercuts no flank.
+    fn undercut_fault(&self, helix: Helix, [x_e, smallest]: [f64; 2]) -> Fault {
+        let which = if self.profile_shift == x_e {
+            "profile shift"
+        } else {
+            "generating profile shift"
+        };
+        let detail = format!(
+            "{} teeth at {which} {} are undercut until hardly anything is left of them; a {which} of {} avoids it.",
+            self.tooth_count,
+            plain(x_e),
+            plain(smallest)
+        );
+        let (field, bound) = self.depth_said(smallest, helix);
+        let bound = bound.map(|bound| (bound, Side::AtLeast));
+        Fault::new(field, Code::Undercut, detail, bound)
     }
 
     /// The radii at which a relief with its amount at `end` can start, of a flank between these radii.

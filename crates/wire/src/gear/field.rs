@@ -70,6 +70,15 @@ impl GearDocument {
         Field::of("", said.given())
     }
 
+    /// The root circle, by dedendum or by diameter.
+    pub(super) fn root_field(&self) -> Field {
+        let said = match self.root_diameter_mm {
+            Some(_) => Self::root_diameter_mm,
+            None => Self::dedendum_mm,
+        };
+        Field::of("", said.given())
+    }
+
     /// The rounding or the chamfer of the tip edges, and what it says.
     pub(super) fn tip_edge_field(&self) -> (Field, f64) {
         let (said, value) = match self.tip_rounding_mm {

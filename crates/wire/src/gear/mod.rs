@@ -38,11 +38,11 @@ pub use modification::{CrowningDocument, ModificationDocument, SlopeDocument, Ta
 pub use openings::{Point, SideDocument, SpokesDocument};
 pub use protuberance::ProtuberanceDocument;
 pub use relief::{ReliefEnd, RootReliefDocument, StartDocument, StartWay, TipReliefDocument};
-pub use thickness::{BallsDocument, SpanDocument};
+pub use thickness::{BallsDocument, SpanDocument, ThinnedBy};
 
 use super::declare::{
     EACH, Errors, Kind as _, Location, Node, ObjectReader, absent, document, list, nested, number,
-    unless, words,
+    unless, word, words,
 };
 use super::units::{Side, from_mm, rounded_inward};
 
@@ -67,7 +67,7 @@ document! {
         /// The pressure angle of the basic rack, the same for both gears but for printed digits.
         pub(super) pressure_angle_deg: f64 = number("Pressure angle", "deg", 10.0, 40.0).or(20.0),
         /// The profile shift x in modules, positive outward.
-        profile_shift: f64 = number("Profile shift coefficient", "1", -2.0, 2.0).or(0.0),
+        profile_shift: f64 = number("Profile shift coefficient", "1", -2.5, 2.5).or(0.0),
         /// The tip radius is the reference radius plus the addendum plus the profile shift; tips are not shortened. Between 0.2 and 2
         /// modules.
         addendum_mm: Option<f64> = unless(
@@ -77,8 +77,15 @@ document! {
         /// The diameter of the tip circle, said instead of the addendum, which it then decides: the same bounds hold for that.
         tip_diameter_mm: Option<f64> =
             absent(number("Tip diameter", "mm", 0.1, 52_500.0), "the addendum decides"),
-        /// The root radius is the reference radius less the dedendum plus the profile shift. Between 0.5 and 2.5 modules.
-        dedendum_mm: f64 = number("Dedendum of the basic rack", "mm", 0.05, 125.0).or_modules(1.25),
+        /// The root radius is the reference radius less the dedendum plus the generating profile shift: the dedendum and the tip rounding are those of the tool,
+        /// and move with it. Between 0.5 and 2.5 modules.
+        dedendum_mm: Option<f64> = unless(
+            &["root_diameter_mm"],
+            number("Dedendum of the basic rack", "mm", 0.05, 125.0).or_modules(USUAL_DEDENDUM),
+        ),
+        /// The diameter of the root circle, said instead of the dedendum, which it then decides: the same bounds hold for that.
+        root_diameter_mm: Option<f64> =
+            absent(number("Root diameter", "mm", 0.1, 52_500.0), "the dedendum decides").left_out(),
         /// The radius of the rack's tip rounding, which generates the fillet. At least 0.05 modules, and it has to fit between the
         /// rack's flanks; where the default does not, the largest that does is taken.
         rack_tip_radius_mm: f64 = number("Tip rounding of the basic rack", "mm", 0.005, 50.0)
@@ -90,7 +97,7 @@ document! {
             "the rack of the ground flanks cuts the root",
         )
         .left_out(),
-        /// How much thicker the teeth are than the rack leaves them, as a transverse arc on the reference circle; negative is thinner and
+        /// How much thicker the teeth are than the rack leaves them at the profile shift, as a transverse arc on the reference circle; negative is thinner and
         /// gives backlash. Half a module to either side, and a space has to be left between fillets. A drawing may say the thickness in another way;
         /// at most one of them is given.
         tooth_thickness_deviation_um: Option<f64> = unless(
@@ -122,6 +129,16 @@ document! {
                     "span_measurement",
                 ])
                 .left_out(),
+        /// How the teeth became thinner, or thicker, than the rack leaves them at the profile shift x. It decides the generating profile shift x_E, at which the
+        /// tool cut the root; the tip circle stays at x.
+        thinned_by: ThinnedBy = word("Thinned by").or(ThinnedBy::Hob),
+        /// The generating profile shift x_E of the tool that cut the root, where it is known by itself: a gear program prints it, or the tool of the first step stood
+        /// elsewhere than the thickness says. Fillet, root circle and form circle follow from it. Results say it of each gear.
+        generating_profile_shift: Option<f64> = absent(
+            number("Generating profile shift coefficient", "1", -4.0, 4.0),
+            "as thinned_by says",
+        )
+        .left_out(),
         /// The radius of an arc between flank and tip circle, tangent to both, on both flanks alike: 0, or at least 0.01 modules.
         tip_rounding_mm: Option<f64> = absent(
             number("Rounding of the tip edges", "mm", 0.001, 50.0).or_zero(),
@@ -153,6 +170,9 @@ document! {
     }
 }
 
+/// The dedendum of a rack where none is given, in modules.
+const USUAL_DEDENDUM: f64 = 1.25;
+
 /// The least rounding of a rack's tip, in modules.
 const LEAST_RACK_TIP_RADIUS: f64 = 0.05;
 
@@ -163,13 +183,14 @@ const INTERNAL: &str =
 /// The rounding of a rack's tip where none is given: `usual`, or the largest that fits between its flanks. In mm.
 fn usual_tip_radius(usual: f64, gear: &ObjectReader<'_>) -> f64 {
     let read = |name| gear.number(name);
-    let (Some(module), Some(angle), Some(dedendum)) = (
+    let (Some(module), Some(angle)) = (
         read(GearDocument::module_mm.name),
         read(GearDocument::pressure_angle_deg.name),
-        read(GearDocument::dedendum_mm.name),
     ) else {
         return usual;
     };
+    // A root diameter decides the dedendum together with the thickness; the usual one stands for it.
+    let dedendum = read(GearDocument::dedendum_mm.name).unwrap_or(USUAL_DEDENDUM * module);
     let rack = Rack {
         module,
         pressure_angle: angle.to_radians(),
@@ -218,6 +239,36 @@ impl GearDocument {
         }
     }
 
+    /// The radius from which the dedendum counts, in mm: the reference radius plus the generating profile shift.
+    fn generated_radius_mm(&self, helix: Helix) -> f64 {
+        let further = self.tool_shift(helix) - self.profile_shift;
+        self.shifted_radius_mm(helix) + further * self.module_mm
+    }
+
+    /// The dedendum in mm, however the root circle is said.
+    fn dedendum(&self, helix: Helix) -> f64 {
+        match self.root_diameter_mm {
+            Some(diameter) => self.generated_radius_mm(helix) - diameter / 2.0,
+            None => self.dedendum_mm.unwrap_or(USUAL_DEDENDUM * self.module_mm),
+        }
+    }
+
+    /// What the field of the root circle would say of another dedendum, in mm.
+    fn root_said(&self, dedendum: f64, helix: Helix) -> f64 {
+        match self.root_diameter_mm {
+            Some(_) => 2.0 * (self.generated_radius_mm(helix) - dedendum),
+            None => dedendum,
+        }
+    }
+
+    /// The radii of tip and root circle, in mm, as the drawing means them.
+    pub fn tip_and_root_mm(&self, helix: Helix) -> [f64; 2] {
+        [
+            self.shifted_radius_mm(helix) + self.addendum(helix),
+            self.generated_radius_mm(helix) - self.dedendum(helix),
+        ]
+    }
+
     /// The addendum in mm, however the tip circle is said.
     fn addendum(&self, helix: Helix) -> f64 {
         match self.tip_diameter_mm {
@@ -242,13 +293,14 @@ impl GearDocument {
                 module: from_mm(self.module_mm),
                 pressure_angle: self.pressure_angle_deg.to_radians(),
                 addendum: from_mm(self.addendum(helix)),
-                dedendum: from_mm(self.dedendum_mm),
+                dedendum: from_mm(self.dedendum(helix)),
                 tip_radius: from_mm(self.rack_tip_radius_mm),
                 protuberance: self.protuberance.as_ref().map(ProtuberanceDocument::data),
             },
             profile_shift: self.profile_shift,
             face_width: from_mm(self.face_width_mm),
             thickness_deviation: self.thickness_deviation(helix).unwrap_or(0.0),
+            tool_depth: self.tool_depth(),
             tip_edge: match (self.tip_rounding_mm, self.tip_chamfer_mm) {
                 (Some(radius), _) if radius > 0.0 => TipEdge::Rounded(from_mm(radius)),
                 (None, Some(depth)) if depth > 0.0 => TipEdge::Chamfered(from_mm(depth)),

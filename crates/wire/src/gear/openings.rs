@@ -1,5 +1,6 @@
 //! The openings of a blank that are no pattern of holes: those between spokes, and those of an outline.
 
+use meshwright_engine::gear::printed::last_unit;
 use meshwright_engine::gear::{
     Contour, ContourFault, Drawn, Hole, Side, Spokes, SpokesFault, Vector,
 };
@@ -27,6 +28,9 @@ const MOST_LOOPS: usize = MOST_HOLES + 2;
 
 /// The most sides of all loops together: each place of a grid is looked at from many of them.
 const MOST_SIDES_IN_ALL: usize = 1000;
+
+/// The coarsest last decimal of coordinates, in mm, to within which openings are meant as equal: coordinates with fewer decimals are round numbers.
+const COARSEST_DECIMAL: f64 = 1e-3;
 
 /// How far the bore of an outline may be from the bore radius, as a part of it: the digits of a drawing.
 const DIGITS: f64 = 1e-6;
@@ -210,6 +214,14 @@ impl BlankDocument {
         };
         openings.extend(self.outlined()?.into_iter().map(|(_, hole)| hole));
         Ok(openings)
+    }
+
+    /// The last decimal of the coordinates of the outline, in meters: that of the coordinate that has most decimals.
+    pub(super) fn last_decimal(&self) -> f64 {
+        let sides = self.outline.iter().flatten().flatten();
+        let points = sides.flat_map(|side| [side.line_to, side.arc_to, side.through]);
+        let coordinates = points.flatten().flat_map(|point| point.0);
+        from_mm(coordinates.map(last_unit).fold(COARSEST_DECIMAL, f64::min))
     }
 
     /// The openings of the outline.

@@ -6,7 +6,7 @@ use super::faults::Fault;
 use super::field::Field;
 use super::holes::HolesDocument;
 use super::relief::Relief;
-use super::{GearDocument, LEAST_RACK_TIP_RADIUS};
+use super::{GearDocument, LEAST_RACK_TIP_RADIUS, USUAL_DEDENDUM};
 use crate::problem::{Code, FieldError};
 use crate::units::{Side, from_mm, plain};
 
@@ -38,23 +38,16 @@ impl GearDocument {
     fn check_proportions(&self, helix: Helix) -> Result<(), Fault> {
         let m = self.module_mm;
         self.check_addendum(helix)?;
-        for (declared, value, least, most) in [
-            (Self::dedendum_mm, self.dedendum_mm, 0.5, 2.5),
-            (
-                Self::rack_tip_radius_mm,
-                self.rack_tip_radius_mm,
-                LEAST_RACK_TIP_RADIUS,
-                2.0,
-            ),
-        ] {
-            let (field, said) = (
-                Field::of("", declared),
-                format!("{least} and {most} modules"),
-            );
-            check_between(field, value, least * m, most * m, &said)?;
-        }
-        self.check_protuberance()?;
         self.check_thickness(helix)?;
+        self.check_dedendum(helix)?;
+        check_between(
+            Field::of("", Self::rack_tip_radius_mm),
+            self.rack_tip_radius_mm,
+            LEAST_RACK_TIP_RADIUS * m,
+            2.0 * m,
+            &format!("{LEAST_RACK_TIP_RADIUS} and 2 modules"),
+        )?;
+        self.check_protuberance()?;
         let (edge, broken) = self.tip_edge_field();
         if broken > 0.0 {
             let least = 0.01 * m;
@@ -95,13 +88,31 @@ impl GearDocument {
         )
     }
 
+    /// The dedendum has its bounds in modules, and they are those of the root diameter too.
+    fn check_dedendum(&self, helix: Helix) -> Result<(), Fault> {
+        let said = |modules: f64| self.root_said(modules * self.module_mm, helix);
+        let (at_least, at_most) = (said(0.5).min(said(2.5)), said(0.5).max(said(2.5)));
+        check_between(
+            self.root_field(),
+            self.root_diameter_mm
+                .unwrap_or_else(|| self.dedendum(helix)),
+            at_least,
+            at_most,
+            "a dedendum of 0.5 to 2.5 modules",
+        )
+    }
+
     pub(super) fn least_hole_mm(&self) -> f64 {
         0.01 * self.root_radius_mm()
     }
 
+    /// The root radius of straight teeth of nominal thickness, in mm: as near as the least sizes of bores and holes need it.
     fn root_radius_mm(&self) -> f64 {
-        self.module_mm * f64::from(self.tooth_count) / 2.0 - self.dedendum_mm
-            + self.profile_shift * self.module_mm
+        let nominal = |dedendum: f64| self.shifted_radius_mm(Helix::STRAIGHT) - dedendum;
+        match self.root_diameter_mm {
+            Some(diameter) => diameter / 2.0,
+            None => nominal(self.dedendum_mm.unwrap_or(USUAL_DEDENDUM * self.module_mm)),
+        }
     }
 
     /// The base radius, in mm.

@@ -1,12 +1,12 @@
 //! The thickness of the teeth, in the way in which a drawing says it.
 
-use meshwright_engine::gear::{Helix, MeasuredTeeth, SpurGear, Thickness};
+use meshwright_engine::gear::{Helix, MeasuredTeeth, SpurGear, Thickness, ToolDepth};
 
 use super::GearDocument;
 use super::faults::Fault;
 use super::field::Field;
 use super::proportions::check_between;
-use crate::declare::{document, number};
+use crate::declare::{document, number, words};
 use crate::problem::Code;
 use crate::units::{Side, from_mm, from_um, plain, to_mm, to_um};
 
@@ -30,7 +30,77 @@ document! {
     }
 }
 
+words! {
+    /// How teeth became thinner than the rack leaves them at the profile shift.
+    pub enum ThinnedBy {
+        Hob = "hob": "a hob that stands deeper: x_E = x + A_sn/(2 m_n tan alpha_n), A_sn negative for thinner teeth. Root and form circle lie deeper with it",
+        FlankGrinding = "flank_grinding":
+            "a tool that stands at x_E = x, and grinding of the flanks alone; the fillets move with the flanks, the root circle stays",
+    }
+}
+
 impl GearDocument {
+    /// The fields that say the thickness, each in another way.
+    pub const THICKNESS: [&str; 4] = [
+        Self::tooth_thickness_deviation_um.name,
+        Self::tooth_thickness_deviation_normal_um.name,
+        Self::span_measurement.name,
+        Self::ball_measurement.name,
+    ];
+
+    /// Has the tool that cut the root stand at the generating profile shift `x_e`, where nothing else is said of it than the thickness.
+    pub fn keep_generating_profile_shift(&mut self, x_e: f64) {
+        if self.tool_depth() == ToolDepth::ByThickness {
+            self.generating_profile_shift = Some(x_e);
+        }
+    }
+
+    /// Where the tool stands that cuts the root.
+    pub(super) fn tool_depth(&self) -> ToolDepth {
+        match (self.generating_profile_shift, self.thinned_by) {
+            (Some(x_e), _) => ToolDepth::At(x_e),
+            (None, ThinnedBy::Hob) => ToolDepth::ByThickness,
+            (None, ThinnedBy::FlankGrinding) => ToolDepth::Nominal,
+        }
+    }
+
+    /// The generating profile shift x_E; x where the thickness cannot be measured.
+    pub fn tool_shift(&self, helix: Helix) -> f64 {
+        match self.tool_depth() {
+            ToolDepth::At(x_e) => x_e,
+            ToolDepth::Nominal => self.profile_shift,
+            ToolDepth::ByThickness => {
+                let deviation = self.thickness_deviation(helix).unwrap_or(0.0);
+                self.profile_shift + self.measured(helix).profile_shift_of(deviation)
+            }
+        }
+    }
+
+    /// The field that decides at which generating profile shift the tool stands, and what it says where that is `x_e`; the root circle where its diameter
+    /// is given, because it then stays while x_E changes.
+    pub(super) fn depth_said(&self, x_e: f64, helix: Helix) -> (Field, Option<f64>) {
+        let more = x_e - self.tool_shift(helix);
+        if let Some(diameter) = self.root_diameter_mm {
+            let wider = diameter + 2.0 * more * self.module_mm;
+            return (self.root_field(), Some(wider));
+        }
+        let shift = || Field::of("", Self::profile_shift);
+        match (self.tool_depth(), self.thickness()) {
+            (ToolDepth::At(_), _) => {
+                let field = Field::of("", Self::generating_profile_shift.given());
+                (field, Some(x_e))
+            }
+            // A size that is measured fixes x_E, whatever the nominal shift.
+            (ToolDepth::ByThickness, Thickness::Span { .. } | Thickness::Balls { .. }) => {
+                let measured = self.measured(helix);
+                let deviation = measured.deviation_of(x_e - self.profile_shift);
+                let said = self.thickness_said(deviation, helix);
+                (self.thickness_field(), said)
+            }
+            _ => (shift(), Some(self.profile_shift + more)),
+        }
+    }
+
     /// What the engine would be told of the thickness, in the way in which it is said.
     fn thickness(&self) -> Thickness {
         let Self {

@@ -376,7 +376,7 @@ fn the_force_table_of_a_helical_pair_tells_its_backlash_along_the_transverse_lin
     });
     let submission = parse(&document).expect("valid");
     let results = solve(&submission, &Library::default(), &Run::unattended()).expect("results");
-    let transverse = 1e3 * results.pair.backlash_transverse_mm;
+    let transverse = 1e3 * results.pair.backlash_line_of_action_mm;
     assert!(transverse > 1.1e3 * results.pair.backlash_mm && transverse > 50.0);
     let table = results.force_table.expect("asked for");
     assert!(table.backlash_um.len() >= 8);

@@ -286,8 +286,13 @@ fn the_tool_stands_where_it_generates_the_teeth() {
         "-0.02",
     );
     let imported = taken(&thin);
-    // Cut 0.02 modules deeper: the root by 0.04 mm, the tooth thinner by 2 * 0.04 mm * tan 20 deg.
-    assert_eq!(field(&imported, "/pair/driving/dedendum_mm"), 2.54);
+    // Cut 0.02 modules deeper by the same tool: the root by 0.04 mm, the tooth thinner by 2 * 0.04 mm * tan 20 deg.
+    assert_eq!(field(&imported, "/pair/driving/dedendum_mm"), 2.5);
+    let validation = crate::validate(&parse(&imported.submission).expect("valid"));
+    let driving = &validation.pair.driving;
+    assert!((driving.generating_profile_shift + 0.02).abs() < 1e-9);
+    let root = driving.reference_radius_mm - 2.54;
+    assert!((driving.root_radius_mm - root).abs() < 1e-9);
     let thinner = field(&imported, "/pair/driving/tooth_thickness_deviation_um");
     let expected = -80.0 * 20_f64.to_radians().tan();
     assert!((thinner.as_f64().expect("a number") - expected).abs() < 1e-6);
@@ -1287,4 +1292,39 @@ fn a_lead_is_crowned_sloped_and_relieved_as_is_said_along_a_part_of_the_face() {
         field(&taken(&both), "/pair/driving/lead_modifications"),
         json!([{ "kind": "end_relief", "amount_um": 12.0, "length_mm": 3.0, "side": "both" }])
     );
+}
+
+#[test]
+fn a_pair_keeps_the_tool_that_cut_its_roots_there_and_back() {
+    let thinner = ("/pair/driving/tooth_thickness_deviation_um", json!(-40));
+    for (more, means) in [
+        (vec![], ("hob", None)),
+        (
+            vec![("/pair/driving/thinned_by", json!("flank_grinding"))],
+            ("flank_grinding", None),
+        ),
+        (
+            vec![("/pair/driving/generating_profile_shift", json!(-0.05))],
+            ("hob", Some(-0.05)),
+        ),
+    ] {
+        let changes: Vec<_> = [thinner.clone()].into_iter().chain(more).collect();
+        let gone = parse(&testing::with(example("test-case-2"), &changes)).expect("valid");
+        let back = taken(&model_of(&gone, None, DATE));
+        let back = parse(&back.submission).expect("valid");
+        let [gone, found] = [&gone, &back].map(|submission| {
+            let gear = submission.case().pair.driving();
+            [gear.root_radius(), gear.form_radius(), gear.tip_thickness()]
+        });
+        for (gone, found) in gone.iter().zip(found) {
+            assert!((gone - found).abs() < 1e-12, "{means:?}: {gone} {found}");
+        }
+        let written = serde_json::to_value(&back).expect("JSON");
+        let driving = &written["pair"]["driving"];
+        assert_eq!(driving["thinned_by"], means.0);
+        let shift = driving["generating_profile_shift"].as_f64();
+        assert_eq!(shift.is_some(), means.1.is_some());
+        let apart = shift.unwrap_or(0.0) - means.1.unwrap_or(0.0);
+        assert!(apart.abs() < 1e-9);
+    }
 }

@@ -24,6 +24,10 @@ const ROUNDS: [f64; 5] = [0.4, 0.4, 0.5, 0.7, 1.0];
 /// Further positions that any curve may have, and how many it may have for each of its own.
 const FURTHER: (usize, f64) = (20, 0.2);
 
+/// Further positions that a curve may have for each event of a mesh period, in which one pair takes up the load and another one leaves it: over a long period with few
+/// positions each of its events is looked for by itself.
+const FURTHER_AT_EVENTS: usize = 2 * 3;
+
 /// How a curve is looked at between its positions.
 pub(in crate::analysis) struct Refinement {
     span: Span,
@@ -33,9 +37,11 @@ pub(in crate::analysis) struct Refinement {
     repeats_after: u32,
 }
 
-/// How many positions are solved further at most for a curve of so many.
-pub(in crate::analysis) fn most_further(positions: usize) -> usize {
-    FURTHER.0.max((FURTHER.1 * positions as f64) as usize)
+/// How many positions are solved further at most for a curve of so many, over the mesh `periods` after which contact repeats.
+pub(in crate::analysis) fn most_further(positions: usize, periods: u32) -> usize {
+    let of_positions = (FURTHER.1 * positions as f64) as usize;
+    let at_events = FURTHER_AT_EVENTS * periods as usize;
+    FURTHER.0.max(of_positions).max(at_events)
 }
 
 /// A position at which the curve is little known.
@@ -49,7 +55,7 @@ impl Refinement {
     pub(in crate::analysis) fn of(case: &Case, repeats_after: u32, positions: usize) -> Self {
         Self {
             span: Span::of(case),
-            most: most_further(positions),
+            most: most_further(positions, repeats_after),
             repeats_after,
         }
     }
@@ -313,7 +319,7 @@ mod tests {
             .sum::<f64>();
         let rms = (square / dense.len() as f64).sqrt();
         for (per_period, allowed) in [(10, 1e-2), (40, 2e-3)] {
-            let (sections, solved) = refined(span(per_period, 1, true), most_further(10));
+            let (sections, solved) = refined(span(per_period, 1, true), most_further(10, 1));
             let [delta, stiffness] = sections.statistics();
             let even = (0..per_period).map(|i| sample(f64::from(i) / f64::from(per_period)));
             let even = even.map(|sample| sample.transmission_error);
@@ -335,7 +341,7 @@ mod tests {
             // One spring carries, or two.
             assert!((stiffness.smallest / 2e8 - 1.0).abs() < 1e-9);
             assert!((stiffness.largest / 4e8 - 1.0).abs() < 1e-9);
-            assert!(solved <= most_further(10));
+            assert!(solved <= most_further(10, 1));
         }
     }
 
@@ -398,7 +404,7 @@ mod tests {
         let span = span(10, 1, false);
         let refinement = Refinement {
             span,
-            most: most_further(10),
+            most: most_further(10, 1),
             repeats_after: 1,
         };
         let samples = (0..10).map(|i| sample(f64::from(i) / 10.0)).collect();

@@ -15,6 +15,9 @@ const OVERLAP: usize = 8;
 /// How much the error of a section with too few nodes for two cubics is less than the difference to the next lower degree.
 const LOWER_DEGREE: f64 = 0.3;
 
+/// A polynomial may go beyond both of its ends by so many times as much as another one through the nodes beside does: farther, it swings.
+const SWING: f64 = 2.0;
+
 /// The error of δ between two places of which nothing else is known, for their difference.
 const UNKNOWN: f64 = 0.1;
 
@@ -412,8 +415,12 @@ fn add_piece(
 }
 
 /// The curve of δ between the nodes `i` and `i + 1`, and by how much others through the nodes beside differ from it.
+///
+/// Between two nodes that are no events a curve has an extreme that is smooth, on which polynomials through other nodes agree. A cubic whose nodes lie on both sides of
+/// a kink, or two of whose nodes are an event and a position beside it, swings in their place: then the one that goes least beyond both ends is taken.
 fn curve_of(nodes: &[(f64, f64)], i: usize) -> (Cubic, f64) {
-    let middle = f64::midpoint(nodes[i].0, nodes[i + 1].0);
+    let ends = [nodes[i], nodes[i + 1]];
+    let middle = f64::midpoint(ends[0].0, ends[1].0);
     let degree = (nodes.len() - 1).min(3);
     // Windows of `count` nodes that hold both, that with as many on either side first.
     let windows = |count: usize| {
@@ -425,15 +432,37 @@ fn curve_of(nodes: &[(f64, f64)], i: usize) -> (Cubic, f64) {
             .chain(others)
             .map(move |start| Cubic::through(&nodes[start..start + count]))
     };
-    let mut found = windows(degree + 1);
-    let curve = found.next().unwrap_or_else(|| Cubic::through(nodes));
+    let mut found: Vec<Cubic> = windows(degree + 1).collect();
+    let lower = (degree > 2).then(|| windows(degree)).into_iter().flatten();
+    let least = found
+        .iter()
+        .copied()
+        .chain(lower)
+        .map(|curve| (curve, beyond(&curve, ends)));
+    let least = least.reduce(|least, next| if next.1 < least.1 { next } else { least });
+    let even = found[0];
+    let curve = match least {
+        Some((curve, swing)) if beyond(&even, ends) > SWING * swing + TOLERANCE.1 => {
+            // All cubics differ from it.
+            found.push(curve);
+            curve
+        }
+        _ => even,
+    };
     let difference = |other: Cubic| (other.at(middle) - curve.at(middle)).abs();
-    let others = found.map(difference).reduce(f64::max);
-    let error = others.unwrap_or_else(|| match degree {
-        0 | 1 => UNKNOWN * (nodes[i + 1].1 - nodes[i].1).abs(),
-        _ => LOWER_DEGREE * windows(degree).map(difference).fold(0.0, f64::max),
-    });
+    let error = match (found.len(), degree) {
+        (1, 0 | 1) => UNKNOWN * (ends[1].1 - ends[0].1).abs(),
+        (1, _) => LOWER_DEGREE * windows(degree).map(difference).fold(0.0, f64::max),
+        _ => found.into_iter().map(difference).fold(0.0, f64::max),
+    };
     (curve, error)
+}
+
+/// How far `curve` goes beyond both of its `ends` between them.
+fn beyond(curve: &Cubic, [from, to]: [(f64, f64); 2]) -> f64 {
+    let (low, high) = (from.1.min(to.1), from.1.max(to.1));
+    let level = curve.level_within(from.0, to.0).map(|x| curve.at(x));
+    level.fold(0.0, |most, value| most.max(value - high).max(low - value))
 }
 
 /// The curve of k on the section `within`, which begins with the sample `first` of a piece or, where there is none, with an event.
@@ -476,5 +505,57 @@ fn line<'a>(
     match others.find(|other| (other.0 - near.0).abs() >= width) {
         Some(&other) => Cubic::through(&[near, other]),
         None => Cubic::through(&[near]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The largest value of the curve between the nodes `i` and `i + 1`.
+    fn largest(nodes: &[(f64, f64)], i: usize) -> f64 {
+        let (curve, _) = curve_of(nodes, i);
+        let within = curve.level_within(nodes[i].0, nodes[i + 1].0);
+        let ends = [nodes[i].0, nodes[i + 1].0].into_iter();
+        let values = ends.chain(within).map(|x| curve.at(x));
+        values.fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    #[test]
+    fn a_curve_does_not_swing_beyond_a_position_beside_an_event() {
+        // The event stands a thousandth before a position, and is a hundredth of the values off: a cubic through both would rise by 0.5 beyond.
+        let nodes = [
+            (0.749, 9.9e-6),
+            (0.75, 10e-6),
+            (0.83, 9.9e-6),
+            (0.91, 9.8e-6),
+            (0.99, 9.7e-6),
+        ];
+        assert!(largest(&nodes, 1) < 10.01e-6, "{:e}", largest(&nodes, 1));
+        // Nor where it lies level before a flank that rises steeply from one position on.
+        let nodes = [
+            (0.0, 3e-6),
+            (0.1, 1.1e-6),
+            (0.2, 1e-6),
+            (0.3, 1e-6),
+            (0.35, 4e-6),
+        ];
+        let (curve, error) = curve_of(&nodes, 2);
+        assert!(curve.at(0.25) > 0.98e-6 && error > 0.1e-6, "{error:e}");
+    }
+
+    #[test]
+    fn an_extreme_on_which_all_polynomials_agree_stays_beyond_the_positions() {
+        // A crest of a sine, ten positions in its period.
+        let sine = |i: i32| {
+            (
+                f64::from(i) * 0.1,
+                1e-6 * (0.2 * f64::from(i) * std::f64::consts::PI).sin(),
+            )
+        };
+        let nodes: Vec<(f64, f64)> = (0..10).map(sine).collect();
+        let found = largest(&nodes, 2);
+        assert!((found / 1e-6 - 1.0).abs() < 4e-3, "{found:e}");
+        assert!(found > 1.04 * nodes[2].1);
     }
 }

@@ -368,14 +368,19 @@ impl Contour {
         Self(self.0.iter().map(side).collect())
     }
 
-    /// Whether the sides of both are the same to within `slack`.
+    /// Whether the sides of both are the same to within `slack`, whichever side is the first. The middle of an arc may be off by twice as much as its ends: it moves
+    /// with both of them and with the point that says it.
     pub(super) fn is_like(&self, other: &Self, slack: f64) -> bool {
-        let pairs = || self.0.iter().zip(other.0.iter());
         let near = |a: &Side, b: &Side| {
             (a.from - b.from).norm() <= slack
-                && (a.bulge - b.bulge).abs() * a.length <= slack * (1.0 + a.bulge * a.bulge)
+                && (a.bulge - b.bulge).abs() * a.length <= 4.0 * slack * (1.0 + a.bulge * a.bulge)
         };
-        self.0.len() == other.0.len() && pairs().all(|(a, b)| near(a, b))
+        let count = self.0.len();
+        let begins_at = |first: usize| {
+            let turned = other.0[first..].iter().chain(&other.0[..first]);
+            self.0.iter().zip(turned).all(|(a, b)| near(a, b))
+        };
+        count == other.0.len() && (0..count).any(begins_at)
     }
 
     /// The length all around.

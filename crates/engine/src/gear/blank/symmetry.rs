@@ -6,10 +6,43 @@ use super::hole::{Hole, HoleShape, wrapped};
 use super::{BlankRegion, HolePattern};
 use crate::gear::gcd;
 
-/// What holes may differ by and still count as equal: relative for lengths, in radians for angles.
+/// What holes may differ by and still count as equal: as a part of the radius of their circle for lengths, in radians for angles.
 const ALIKE: f64 = 1e-12;
 /// What holes of a drawing may differ by and still be meant as equal, likewise: its coordinates have six or more digits.
 const DRAWN: f64 = 1e-6;
+/// The same in units of the last decimal of its coordinates, each of which is rounded by up to half a unit: a corner is off by 0.7 units, and so is the middle of its
+/// opening, by which it is compared with another.
+const UNITS: f64 = 3.0;
+
+/// What holes may differ by and still count as equal.
+#[derive(Debug, Clone, Copy)]
+struct Slack {
+    /// As a part of the radius of their circle, and in radians.
+    relative: f64,
+    /// In meters.
+    length: f64,
+}
+
+impl Slack {
+    /// That of holes that are computed.
+    const ROUNDING: Self = Self {
+        relative: ALIKE,
+        length: 0.0,
+    };
+
+    /// That of holes of a drawing whose coordinates have decimals of `unit`, in meters.
+    fn of_drawing(unit: f64) -> Self {
+        Self {
+            relative: DRAWN,
+            length: UNITS * unit,
+        }
+    }
+
+    /// As a part of the radius of the circle of `hole`.
+    fn at(&self, hole: &Hole) -> f64 {
+        self.relative.max(self.length / hole.circle_radius)
+    }
+}
 
 /// The turns that map a blank onto itself.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -24,13 +57,15 @@ pub struct Symmetry {
 impl BlankRegion {
     /// The symmetry of the blank, to rounding.
     pub fn symmetry(&self) -> Symmetry {
-        let classes = self.classes(ALIKE);
+        let classes = self.classes(Slack::ROUNDING);
         // Each class is taken to itself, so that the number of its holes is a multiple of N.
         let most = classes
             .iter()
             .fold(0, |most, class| gcd(most, class.len() as u32));
         let orbits_of = |count: u32| -> Option<Vec<Vec<usize>>> {
-            let orbits = classes.iter().map(|class| self.orbits(class, count, ALIKE));
+            let orbits = classes
+                .iter()
+                .map(|class| self.orbits(class, count, Slack::ROUNDING));
             Some(orbits.collect::<Option<Vec<_>>>()?.concat())
         };
         (1..=most)
@@ -58,12 +93,14 @@ impl BlankRegion {
     }
 
     /// The same blank with holes that are equal and equally spaced to within the digits of a drawing made so to the last digit: a hole stands by the first of its kind.
-    pub fn evened(mut self) -> Self {
-        for class in self.classes(DRAWN) {
+    /// `unit` is the last decimal of the drawing's coordinates, in meters.
+    pub fn evened(mut self, unit: f64) -> Self {
+        let slack = Slack::of_drawing(unit);
+        for class in self.classes(slack) {
             let most = class.len() as u32;
             let counts = (2..=most).rev().filter(|count| most.is_multiple_of(*count));
             let even = counts
-                .map(|count| (count, self.orbits(&class, count, DRAWN)))
+                .map(|count| (count, self.orbits(&class, count, slack)))
                 .find_map(|(count, orbits)| Some((count, orbits?)));
             let Some((count, orbits)) = even else {
                 continue;
@@ -88,7 +125,7 @@ impl BlankRegion {
     }
 
     /// The holes that are equal but for their angle, to within `slack`.
-    fn classes(&self, slack: f64) -> Vec<Vec<usize>> {
+    fn classes(&self, slack: Slack) -> Vec<Vec<usize>> {
         let mut classes: Vec<Vec<usize>> = Vec::new();
         for (i, hole) in self.holes.iter().enumerate() {
             match classes
@@ -103,11 +140,12 @@ impl BlankRegion {
     }
 
     /// The orbits of `class` under a turn by 2π/`count`; `None` if the turn takes a hole to where there is none.
-    fn orbits(&self, class: &[usize], count: u32, slack: f64) -> Option<Vec<Vec<usize>>> {
+    fn orbits(&self, class: &[usize], count: u32, slack: Slack) -> Option<Vec<Vec<usize>>> {
         let turn = TAU / f64::from(count);
         let mut left = class.to_vec();
         let mut orbits = Vec::new();
         while let Some(&first) = left.first() {
+            let slack = slack.at(&self.holes[first]);
             let mut orbit = Vec::new();
             for k in 0..count {
                 let angle = self.holes[first].angle + f64::from(k) * turn;
@@ -122,8 +160,9 @@ impl BlankRegion {
 }
 
 /// Whether two holes are equal but for their angle; a slot of no angle is a round hole.
-fn alike(one: &Hole, other: &Hole, slack: f64) -> bool {
-    let near = |a: f64, b: f64| (a - b).abs() <= slack * a.abs().max(b.abs());
+fn alike(one: &Hole, other: &Hole, slack: Slack) -> bool {
+    let slack = slack.at(one);
+    let near = |a: f64, b: f64| (a - b).abs() <= slack * one.circle_radius;
     near(one.circle_radius, other.circle_radius)
         && near(one.half_width(), other.half_width())
         && (one.span() - other.span()).abs() <= slack
@@ -239,11 +278,13 @@ mod tests {
             hole.circle_radius *= 1.0 + 1e-7 * i as f64;
         }
         assert_eq!(region.symmetry().count, 1);
-        let evened = region.clone().evened();
+        let evened = region.clone().evened(1e-9);
         assert_eq!(evened.pattern(), Some(drawn));
-        assert_eq!(evened.clone().evened(), evened);
+        assert_eq!(evened.clone().evened(1e-9), evened);
         region.holes[3].angle += 1e-5;
-        assert_eq!(region.clone().evened(), region);
+        assert_eq!(region.clone().evened(1e-9), region);
+        // Of a drawing with three decimals of a millimeter that is a third of a micrometer.
+        assert_eq!(region.evened(1e-6).pattern(), Some(drawn));
     }
 
     #[test]

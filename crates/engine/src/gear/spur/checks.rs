@@ -24,10 +24,14 @@ impl SpurGear {
         let stretch = self.data.rack.module / rack.module;
         let largest = 2.0 * (stretch * rack.half_tip_land());
         // Rounding of a full tip radius leaves a land of nothing, or a little less.
-        if self.data.thickness_deviation > largest.max(0.0) {
+        let (deviation, of_flanks) = (
+            self.data.thickness_deviation,
+            self.data.thickness_of_flanks(),
+        );
+        if of_flanks > largest.max(0.0) {
             return Err(GearError::TeethTooThick {
-                deviation: self.data.thickness_deviation,
-                largest: largest.max(0.0),
+                deviation,
+                largest: largest.max(0.0) + (deviation - of_flanks),
             });
         }
         Ok(())
@@ -72,7 +76,7 @@ impl SpurGear {
             let (r, sin) = (self.reference_radius(), rack.pressure_angle.sin());
             let smallest = (self.normal_rack.straight_depth() - r * sin * sin) / rack.module;
             return Err(GearError::Undercut {
-                profile_shift: self.data.profile_shift,
+                generating_profile_shift: self.generating_profile_shift(),
                 smallest,
             });
         }

@@ -64,11 +64,11 @@ impl Hob {
     /// The angle down to which the hob cuts at `radius`, from the centerline of the tooth: of all rollings that bring a point of its profile there.
     fn swept(&self, gear: &SpurGear, radius: f64) -> f64 {
         const STEPS: u32 = 4_000;
-        let (r, shift) = (gear.reference_radius(), gear.profile_shift_length());
+        let (r, shift) = (gear.reference_radius(), gear.generating_shift_length());
         // Across the teeth of a helical gear lengths along the rack are those of the normal section; along the section they are longer.
         let stretch = gear.data().rack.module / self.rack.module;
         let tip = self.rack.dedendum - shift;
-        let space = gear.pitch_angle() / 2.0 + gear.data().thickness_deviation / (2.0 * r);
+        let space = gear.pitch_angle() / 2.0 + gear.data().thickness_of_flanks() / (2.0 * r);
         let widest = ((r - tip) / radius).min(1.0).acos();
         (0..=STEPS)
             .map(|i| {

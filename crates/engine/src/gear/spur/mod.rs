@@ -59,14 +59,14 @@ impl SpurGear {
             + 2.0 * data.profile_shift * alpha.tan() / z
             + involute_function(alpha)
             + data.thickness_deviation / (2.0 * r);
-        let shift = data.profile_shift * rack.module;
+        let shift = data.generating_profile_shift() * rack.module;
         let flank = Involute::new(r * alpha.cos(), psi_b);
         let whole = Trochoid::new(
             rack,
             &normal_rack,
             data.tooth_count,
             shift,
-            data.thickness_deviation,
+            data.thickness_of_flanks(),
         );
         let end_of_rack = r * alpha.sin() - (normal_rack.straight_depth() - shift) / alpha.sin();
         let is_undercut = end_of_rack < 0.0 || normal_rack.residual_undercut() > 0.0;
@@ -300,9 +300,19 @@ impl SpurGear {
         self.reference_radius() + self.data.rack.addendum + self.profile_shift_length()
     }
 
-    /// The root radius r_f = r − h_f + x m.
+    /// The root radius r_f = r − h_f + x_E m.
     pub fn root_radius(&self) -> f64 {
-        self.reference_radius() - self.data.rack.dedendum + self.profile_shift_length()
+        self.reference_radius() - self.data.rack.dedendum + self.generating_shift_length()
+    }
+
+    /// The generating profile shift x_E, at which the tool stood that cut the root, in modules of this section.
+    pub fn generating_profile_shift(&self) -> f64 {
+        self.data.generating_profile_shift()
+    }
+
+    /// x_E as a length, the same in every section.
+    pub fn generating_shift_length(&self) -> f64 {
+        self.generating_profile_shift() * self.data.rack.module
     }
 
     /// The base pitch p_b = π m cos α.
@@ -382,7 +392,7 @@ impl SpurGear {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::gear::{ModificationData, ReliefData, ReliefShape, ReliefStart};
+    use crate::gear::{ModificationData, ReliefData, ReliefShape, ReliefStart, ToolDepth};
 
     /// The paper's gears (Table 1): module 2 mm, 20 degrees, addendum 2 mm, dedendum 2.5 mm, width 20 mm, steel.
     pub(crate) fn paper_gear(tooth_count: u32) -> GearData {
@@ -398,6 +408,7 @@ pub(crate) mod tests {
             },
             profile_shift: 0.0,
             thickness_deviation: 0.0,
+            tool_depth: ToolDepth::ByThickness,
             tip_edge: TipEdge::Sharp,
             face_width: 20e-3,
             modifications: Vec::new(),

@@ -6,6 +6,7 @@ mod hob;
 mod openings;
 mod published;
 mod teeth;
+mod tool;
 
 use meshwright_engine::gear::GearData;
 use serde_json::{Value, json};

@@ -374,3 +374,55 @@ fn an_outline_takes_away_the_area_of_its_loops() {
     let area = data.blank.hole_area();
     assert!((area / (PI * 36e-6) - 1.0).abs() < 1e-12);
 }
+
+/// `value` with every number in it rounded to so many decimals.
+fn rounded(value: &Value, decimals: i32) -> Value {
+    match value {
+        Value::Array(items) => items.iter().map(|item| rounded(item, decimals)).collect(),
+        Value::Object(fields) => {
+            let fields = fields.iter();
+            fields
+                .map(|(name, item)| (name.clone(), rounded(item, decimals)))
+                .collect()
+        }
+        Value::Number(number) => {
+            let unit = 10_f64.powi(decimals);
+            json!((number.as_f64().expect("a number") * unit).round() / unit)
+        }
+        other => other.clone(),
+    }
+}
+
+#[test]
+fn openings_that_are_drawn_with_three_decimals_repeat_as_they_are_meant() {
+    let mut six = spokes();
+    six["count"] = json!(6);
+    let several: Vec<(Vec<Value>, u32)> = vec![
+        ((0..6).map(|i| between_spokes(&six, i)).collect(), 6),
+        ((0..5).map(|i| between_spokes(&spokes(), i)).collect(), 5),
+        (
+            (0..7)
+                .map(|i| kidney(30.0, 9.0, 7.0 + 360.0 / 7.0 * f64::from(i), 30.0))
+                .collect(),
+            7,
+        ),
+    ];
+    for (loops, count) in several {
+        let drawn = Value::Array(loops);
+        for decimals in [3, 4, 6] {
+            let outline = rounded(&drawn, decimals);
+            let blank = data_of(&blank(&json!({ "outline": outline }))).blank;
+            assert_eq!(blank.symmetry().count, count, "{decimals} decimals");
+        }
+        // One of them moved by a hundredth of a millimeter is drawn so.
+        let mut uneven = rounded(&drawn, 3);
+        for side in uneven[1].as_array_mut().expect("sides") {
+            for (_, point) in side.as_object_mut().expect("a side") {
+                let x = point[0].as_f64().expect("a coordinate");
+                point[0] = json!(((x + 0.01) * 1e3).round() / 1e3);
+            }
+        }
+        let blank = data_of(&blank(&json!({ "outline": uneven }))).blank;
+        assert_eq!(blank.symmetry().count, 1);
+    }
+}

@@ -397,7 +397,13 @@ fn the_backlash_of_a_helical_pair_is_normal_and_its_transverse_one_stands_beside
     let pair = taken(&khk(125.0001, &thinner)).pair;
     // Two teeth that are 69.282 um cos 30° = 60 um thinner in the normal section: 2 x 60 um cos 20°, and what the distance adds.
     near(pair.backlash_mm, 0.11283, 6e-6);
-    near(pair.backlash_transverse_mm, 0.12782, 6e-6);
+    near(pair.backlash_line_of_action_mm, 0.12782, 6e-6);
+    // j_wt of ISO 21771 stands at the working pitch circle, under the 23.1126 degrees of the handbook: over their cosine.
+    near(
+        pair.backlash_transverse_mm,
+        0.12782 / 23.1126_f64.to_radians().cos(),
+        8e-6,
+    );
     near(pair.least_backlash_mm, pair.backlash_mm, 0.0);
     // s_an = s_at cos β_a, tan β_a = tan β d_a/d.
     let tip = &pair.driving;
@@ -553,4 +559,53 @@ fn a_thickness_may_be_said_by_a_span_or_by_balls_and_at_most_once() {
         error.pointer,
         "/pair/driving/ball_measurement/ball_diameter_mm"
     );
+}
+
+#[test]
+fn tips_that_stand_nearer_than_the_racks_leave_them_are_told_though_they_are_far_from_the_roots() {
+    // A handbook's pair (KHK): 12/24 of module 3, whose tips it shortens: h_a1 = (1 + y - x_2) m, and its contact ratio is 1.202 with d_a of 44.840 and 79.400.
+    let typed = |tips: [Value; 2]| {
+        let [pinion, wheel] = tips;
+        let document = pair(
+            "flexible",
+            56.4999,
+            20.0,
+            [
+                gear(
+                    12,
+                    3.0,
+                    20.0,
+                    5.0,
+                    &and(json!({ "profile_shift": 0.6 }), &pinion),
+                ),
+                gear(
+                    24,
+                    3.0,
+                    20.0,
+                    10.0,
+                    &and(json!({ "profile_shift": 0.36 }), &wheel),
+                ),
+            ],
+        );
+        taken(&document)
+    };
+    let whole = typed([json!({}), json!({})]);
+    near(whole.pair.contact_ratio, 1.348, 6e-4);
+    near(whole.pair.driving.tip_clearance_mm, 0.123 * 3.0, 2e-3);
+    let mut told = whole.warnings.iter();
+    let told = told.find(|warning| warning.code == WarningCode::SmallTipClearance);
+    let told = told.expect("nobody shortened the tips");
+    near(told.changes["/pair/driving/tip_diameter_mm"], 44.840, 2e-3);
+    near(told.changes["/pair/driven/tip_diameter_mm"], 79.400, 2e-3);
+    let diameter = |d: f64| json!({ "tip_diameter_mm": d });
+    let shortened = typed([diameter(44.840), diameter(79.400)]);
+    near(shortened.pair.contact_ratio, 1.202, 6e-4);
+    assert!(!codes(&shortened).contains(&WarningCode::SmallTipClearance));
+    // Racks that leave a tenth of a module themselves lose nothing.
+    let tight = |x: f64| {
+        let fields = json!({ "profile_shift": x, "dedendum_mm": 3.3, "rack_tip_radius_mm": 0.6 });
+        gear(24, 3.0, 20.0, 10.0, &fields)
+    };
+    let exact = taken(&pair("flexible", 72.02, 20.0, [tight(0.0), tight(0.0)]));
+    assert!(!codes(&exact).contains(&WarningCode::SmallTipClearance));
 }

@@ -67,7 +67,7 @@ fn thickness_and_edges_reach_the_engine_in_meters() {
 #[test]
 fn teeth_and_edges_that_do_not_fit_are_answered_with_those_that_do() {
     for (fields, place, code, _) in refused! {
-        json!({ "tooth_thickness_deviation_um": 900 }) => "tooth_thickness_deviation_um", TeethTooThick;
+        json!({ "tooth_thickness_deviation_um": 900, "thinned_by": "flank_grinding" }) => "tooth_thickness_deviation_um", TeethTooThick;
         json!({ "tooth_thickness_deviation_um": -1100 }) => "tooth_thickness_deviation_um", OutOfRange;
         json!({ "tip_rounding_mm": 3.0 }) => "tip_rounding_mm", TipEdgeTooLarge;
         json!({ "tip_chamfer_mm": 3.0 }) => "tip_chamfer_mm", TipEdgeTooLarge;

@@ -41,7 +41,7 @@ fn the_least_submission_is_echoed_with_every_default() {
             json!({
                 "tooth_count": 50, "module_mm": 2.0, "pressure_angle_deg": 20.0, "profile_shift": 0.0,
                 "addendum_mm": 2.0, "tip_diameter_mm": null, "dedendum_mm": 2.5, "rack_tip_radius_mm": 0.76,
-                "tooth_thickness_deviation_um": 0.0, "tip_rounding_mm": null, "tip_chamfer_mm": null,
+                "tooth_thickness_deviation_um": 0.0, "thinned_by": "hob", "tip_rounding_mm": null, "tip_chamfer_mm": null,
                 "face_width_mm": 20.0, "tip_relief": null, "profile_modifications": [], "lead_modifications": [],
                 "tooth_deviations": null,
                 "material": { "youngs_modulus_gpa": 210.0, "poisson_ratio": 0.3, "density_kg_m3": 7850.0 },

@@ -39,6 +39,8 @@ fn every_field_of_the_schema_has_a_title_and_the_defaults_are_those_that_are_fil
                 "tooth_thickness_deviation_normal_um",
                 "span_measurement",
                 "ball_measurement",
+                "root_diameter_mm",
+                "generating_profile_shift",
                 "shaft",
                 "protuberance",
                 "spokes",
@@ -139,8 +141,8 @@ fn a_submission_with_other_fields_or_words_has_another_version() {
     assert_eq!(
         (DOCUMENT_VERSION, sha256_hex(told.join("\n")).as_str()),
         (
-            3,
-            "b7a3ded6ccb9c153c65532e0550ab944c5337e021a4ef71f8f4c79ebeee80d6c"
+            4,
+            "28381ecc3340644f38652a1ceedbab0478bec0d659e23a306e6d96e3905371dc"
         ),
         "{told:#?}"
     );
