@@ -23,7 +23,7 @@ pub(super) fn solve(
         let load = under.load;
         let find = |sweep: &Sweep, run: &Run| found((case, &formulas), sweep, load, run);
         let found = find(&pass.curve, run)?;
-        under.parts(&found, &ends, find)
+        Ok(under.parts(&found, &ends, find)?.0)
     })
 }
 
@@ -84,6 +84,7 @@ fn contact(pair: &GearPair, eta: f64, shared: &Shared, load: f64) -> MeshContact
             // The pressure is Hertz's of unmodified flanks.
             half_width: 0.0,
         }),
+        smooth_pressure: shared.peak_pressure,
         equilibrium: shared.residual,
         ..MeshContact::default()
     }

@@ -4,13 +4,15 @@
 
 use std::f64::consts::TAU;
 
-use super::AnalysisError;
+use super::found::Kept;
 use super::setup::Setup;
+use super::{AnalysisError, Case};
+use crate::assembly::face_roots::UNDER_CONTACT;
 use crate::assembly::inside::{Answer, LoadedGear};
 use crate::assembly::{Blanks, Inside, PartError, Probes};
 use crate::contact::{ContactCells, ContactSolution, FlankLoad};
 use crate::fem::recovery::edge_stresses;
-use crate::gear::Member;
+use crate::gear::{Involute, Member, Vector, radial};
 use crate::grid::{BlankGrid, Grid};
 use crate::run::Run;
 
@@ -41,6 +43,21 @@ pub struct GearStresses {
     pub root_compression: Vec<PeakStress>,
     /// The largest stress along the edges of the holes; empty without holes.
     pub holes: Vec<PeakStress>,
+    /// The largest of all of them at further mesh positions between those.
+    pub between: Vec<(f64, GearPeaks)>,
+}
+
+/// The places of a gear of which the largest stress is told.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StressedPlace {
+    /// [`GearStresses::root`].
+    Root,
+    /// [`GearStresses::root_tension`].
+    RootTension,
+    /// [`GearStresses::root_compression`].
+    RootCompression,
+    /// [`GearStresses::holes`].
+    Hole,
 }
 
 /// Both gears, to be asked for the stresses under a contact.
@@ -53,6 +70,9 @@ struct StressedGear {
     inside: Inside,
     sector_angles: Vec<f64>,
     tooth_count: usize,
+    /// The loaded flank, and how near to a contact on it a place is stressed by that rather than by the bending of the tooth.
+    flank: Involute,
+    under_contact: f64,
     /// Where the nodes along the fillet beside the loaded flank stand and those along the other one: polar angles from the centerline of their
     /// tooth, and radii.
     fillets: Vec<[f64; 2]>,
@@ -62,14 +82,17 @@ struct StressedGear {
     edges: Vec<[f64; 2]>,
 }
 
-/// The peaks of one gear at one position.
-#[derive(Clone, Copy)]
-pub(super) struct GearPeaks {
-    pub(super) root: PeakStress,
-    pub(super) tension: PeakStress,
-    pub(super) compression: PeakStress,
-    /// `None` without holes.
-    pub(super) hole: Option<PeakStress>,
+/// The largest stresses of one gear at one position.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GearPeaks {
+    /// As [`GearStresses::root`].
+    pub root: PeakStress,
+    /// As [`GearStresses::root_tension`].
+    pub tension: PeakStress,
+    /// As [`GearStresses::root_compression`].
+    pub compression: PeakStress,
+    /// As [`GearStresses::holes`]; `None` without holes.
+    pub hole: Option<PeakStress>,
 }
 
 /// The peaks of both gears at one position.
@@ -106,6 +129,8 @@ impl StressModel {
                 sector_angles: inside.sector_angles(),
                 inside,
                 tooth_count: gear.tooth_count() as usize,
+                flank: *gear.flank(),
+                under_contact: UNDER_CONTACT * gear.data().rack.module,
                 fillets: polar(tooth, &sides.map(Vec::as_slice).concat()),
                 beside_loaded: loaded.len(),
                 edges,
@@ -206,7 +231,7 @@ pub(super) fn teeth_away(
 }
 
 impl StressedGear {
-    /// The stresses at the roots of all teeth that `loads` reach, tooth by tooth.
+    /// The stresses at the roots of all teeth that `loads` reach, tooth by tooth, but for places under a contact.
     fn roots(&self, loads: &[FlankLoad], answer: &Answer<'_>) -> Vec<RootStress> {
         let z = self.tooth_count;
         let away = |tooth| teeth_away(tooth, loads.iter().map(|load| load.tooth), z);
@@ -214,8 +239,17 @@ impl StressedGear {
         let of_tooth = |tooth: usize| {
             let turn = TAU * tooth as f64 / z as f64;
             let along = answer.in_tooth(tooth).into_iter().zip(&self.fillets);
+            let own = loads.iter().find(|load| load.tooth == tooth);
+            let pressed = own.map_or(&[][..], |load| &load.roll_lengths).iter();
+            let pressed: Vec<Vector> = pressed.map(|s| self.flank.point(*s)).collect();
+            let is_free = move |[angle, radius]: [f64; 2]| {
+                let place = radius * radial(angle);
+                let mut pressed = pressed.iter();
+                pressed.all(|contact| (place - contact).norm() >= self.under_contact)
+            };
             along
                 .enumerate()
+                .filter(move |(_, (_, place))| is_free(**place))
                 .map(move |(i, (stress, place))| RootStress {
                     peak: in_plane(stress, turn, *place),
                     // Nothing presses on a free edge.
@@ -227,14 +261,69 @@ impl StressedGear {
     }
 }
 
+impl Kept for PositionPeaks {
+    fn watched(&self) -> Vec<f64> {
+        let of = |peaks: &GearPeaks| {
+            let hole = peaks.hole.map_or(0.0, |peak| peak.stress);
+            let roots = [peaks.root.stress, peaks.tension.stress];
+            [roots[0], roots[1], -peaks.compression.stress, hole]
+        };
+        self.iter().flat_map(of).collect()
+    }
+}
+
+impl StressedPlace {
+    /// The largest of `peaks` there.
+    fn of(self, peaks: &GearPeaks) -> Option<PeakStress> {
+        match self {
+            Self::Root => Some(peaks.root),
+            Self::RootTension => Some(peaks.tension),
+            Self::RootCompression => Some(peaks.compression),
+            Self::Hole => peaks.hole,
+        }
+    }
+}
+
 impl GearStresses {
-    /// Those of both gears, of the peaks at each position.
-    pub(super) fn of_positions(peaks: &[PositionPeaks]) -> [Self; 2] {
+    /// The largest stress at `place` over a curve of `case`, between its positions too, and the mesh position at which it stands; `None` where there is no
+    /// such place.
+    pub fn largest(&self, place: StressedPlace, case: &Case) -> Option<(f64, PeakStress)> {
+        let at_positions = match place {
+            StressedPlace::Root => &self.root,
+            StressedPlace::RootTension => &self.root_tension,
+            StressedPlace::RootCompression => &self.root_compression,
+            StressedPlace::Hole => &self.holes,
+        };
+        let between = self.between.iter();
+        let between = between.filter_map(|(eta, peaks)| Some((*eta, place.of(peaks)?)));
+        let at_positions = case
+            .mesh_positions()
+            .into_iter()
+            .zip(at_positions.iter().copied());
+        at_positions.chain(between).reduce(|one, other| {
+            if other.1.stress.abs() > one.1.stress.abs() {
+                other
+            } else {
+                one
+            }
+        })
+    }
+
+    /// Those of both gears, of the peaks at each position, and at others `between` these.
+    pub(super) fn of_positions(
+        peaks: &[PositionPeaks],
+        (places, between): (&[f64], &[PositionPeaks]),
+    ) -> [Self; 2] {
+        let between = |gear: usize| {
+            let each = places.iter().zip(between);
+            each.map(move |(eta, both)| (*eta, both[gear]))
+        };
         [0, 1].map(|gear| Self {
             root: peaks.iter().map(|both| both[gear].root).collect(),
             root_tension: peaks.iter().map(|both| both[gear].tension).collect(),
             root_compression: peaks.iter().map(|both| both[gear].compression).collect(),
             holes: peaks.iter().filter_map(|both| both[gear].hole).collect(),
+            between: between(gear).collect(),
         })
     }
 }
