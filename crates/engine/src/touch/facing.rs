@@ -11,6 +11,12 @@ const PLACES: u32 = 64;
 /// What coordinates may be rounded by, in meters.
 pub(crate) const ROUNDING: f64 = 1e-12;
 
+/// Flanks meet only where a force along their common normal has at least this arm about both axes, over the base radii.
+///
+/// The normal of an involute has an arm of 1 about its own axis, and that at the top of a rounded tip has none. The mean of such two directions has at least
+/// half of the arm. It has less only where both flanks are roundings and turn away from the line of action: they pass each other there and do not drive.
+const LEAST_ARM: f64 = 0.5;
+
 /// Turns to the flanks that touch; each squares what is left.
 pub(crate) const MOST_TURNS: u32 = 4;
 
@@ -127,12 +133,6 @@ impl Facing {
     /// The δ at which the flanks touch first.
     pub fn touch(&self) -> f64 {
         self.minima[0].touch
-    }
-
-    /// Whether a force where the flanks touch first drives the driven gear on. Far off the path of contact it may turn that back; flanks touch elsewhere
-    /// long before they do there.
-    pub(crate) fn drives(&self) -> bool {
-        self.minima[0].arms[1] > 0.0
     }
 
     /// Whether it is the tip corner of the other gear that touches first.
@@ -287,8 +287,36 @@ impl<'a> View<'a> {
             .map_or(f64::NEG_INFINITY, |point| point.sight.roll_length)
     }
 
-    /// The part of the seat's flank that sees the other flank between its form circle, or somewhat below the corner of its undercut, and its tip.
+    /// The part of the seat's flank that sees the other flank between its form circle, or somewhat below the corner of its undercut, and its tip, as far as
+    /// a force between both drives the driven gear ([`LEAST_ARM`]).
     pub(crate) fn range(&self) -> Option<FlankRange> {
+        let range = self.seen_range()?;
+        let drives = |arc: f64| {
+            let arms = self.point(arc).map(|point| self.meeting(&point).arms);
+            arms.is_some_and(|arms| arms[0].min(arms[1]) >= LEAST_ARM)
+        };
+        let ends_drive = [range.from, range.to].map(drives);
+        if ends_drive == [true; 2] {
+            return Some(range);
+        }
+        // Arms are longest about where the flanks are parallel, and shorter towards either tip.
+        let parallel = self.least_between(range.from, range.to);
+        if !drives(parallel) {
+            return None;
+        }
+        let [from, to] =
+            [(range.from, ends_drive[0]), (range.to, ends_drive[1])].map(|(end, drives_there)| {
+                if drives_there {
+                    end
+                } else {
+                    bisect(parallel, end, drives)
+                }
+            });
+        (from < to).then_some(FlankRange { from, to, ..range })
+    }
+
+    /// The part of the seat's flank that sees the other flank, whether a force there drives or not.
+    fn seen_range(&self) -> Option<FlankRange> {
         let (gear, mate) = (
             self.gears().gear(self.seat),
             self.gears().gear(self.seat.other()),
@@ -387,15 +415,10 @@ impl<'a> View<'a> {
     /// changes sign, or at an end. Modifications of other kinds may give it several minima; between kinks each is found in the same way.
     fn least_places(&self, range: &FlankRange, kinks: &[f64]) -> Vec<f64> {
         let FlankRange { from, to, .. } = *range;
-        let falls = |arc: f64| self.slope(arc) < 0.0;
-        let least = |low: f64, high: f64| match (falls(low), falls(high)) {
-            (_, true) => high,
-            (true, false) => bisect(low, high, falls),
-            (false, false) => low,
-        };
         if self.gears().driving().is_convex() && self.gears().driven().is_convex() {
-            return vec![least(from, to)];
+            return vec![self.least_between(from, to)];
         }
+        let falls = |arc: f64| self.falls(arc);
         let evenly = (0..=PLACES).map(|i| from + (to - from) * f64::from(i) / f64::from(PLACES));
         let mut places: Vec<f64> = evenly.chain(kinks.iter().copied()).collect();
         places.sort_by(f64::total_cmp);
@@ -420,6 +443,20 @@ impl<'a> View<'a> {
             found.push(to);
         }
         found
+    }
+
+    /// Where the gap is least between the arcs `low` and `high`, between which it falls and then rises.
+    fn least_between(&self, low: f64, high: f64) -> f64 {
+        match (self.falls(low), self.falls(high)) {
+            (_, true) => high,
+            (true, false) => bisect(low, high, |arc| self.falls(arc)),
+            (false, false) => low,
+        }
+    }
+
+    /// Whether the gap falls along the seat's flank, towards its tip.
+    fn falls(&self, arc: f64) -> bool {
+        self.slope(arc) < 0.0
     }
 
     fn minimum(&self, arc: f64, range: &FlankRange) -> Option<GapMinimum> {
@@ -577,6 +614,54 @@ pub(crate) mod tests {
             SpurGear::new(data).expect("can be made")
         };
         GearPair::new(gear(10), gear(80), 45e-3).expect("meshes")
+    }
+
+    #[test]
+    fn roundings_face_each_other_only_where_a_force_between_them_drives() {
+        let gear = |tooth_count, radius| {
+            let mut data = paper_gear(tooth_count);
+            data.blank.bore_radius = 0.3e-3 * f64::from(tooth_count);
+            data.tip_edge = crate::gear::TipEdge::Rounded(radius);
+            SpurGear::new(data).expect("can be made")
+        };
+        let (mut ended, mut last_ones) = (0, 0);
+        for radius in [0.1e-3, 0.2e-3, 0.3e-3] {
+            let pair = GearPair::new(gear(20, radius), gear(40, radius), 60.2e-3).expect("meshes");
+            for i in -100..100 {
+                let phase = 0.02 * f64::from(i);
+                let placement = Placement::drawn(&pair, phase);
+                let seat = nearer_tip(&pair, phase);
+                let view = View { placement, seat };
+                let (Some(range), Some(seen)) = (view.range(), view.seen_range()) else {
+                    // Both tips turn away from the line of action, if they face each other at all.
+                    last_ones += i32::from(view.seen_range().is_some());
+                    continue;
+                };
+                ended += i32::from(range != seen);
+                let arms_at = |arc: f64| {
+                    let point = view.point(arc).expect("outside the base circle");
+                    view.meeting(&point).arms
+                };
+                for k in 0..=50 {
+                    let arc = range.from + (range.to - range.from) * f64::from(k) / 50.0;
+                    let arms = arms_at(arc);
+                    assert!(arms.iter().all(|arm| *arm > 0.499), "{phase} {k}: {arms:?}");
+                }
+                // What one involute faces is not cut, and no flank touches beside what is left.
+                let tips = [(seat, range.to), (seat.other(), range.from)];
+                let first = view.facing(phase).expect("they face each other").minima[0];
+                for (member, arc) in tips {
+                    let place = view.point(arc).expect("outside the base circle");
+                    let on_both = view.on_both(place.roll_length, place.sight.roll_length);
+                    let is_cut = arc != seen.from && arc != seen.to;
+                    let on_rounding = Member::BOTH
+                        .map(|of| on_both[of.index()] > pair.gear(of).tip_form_roll_length());
+                    assert!(!is_cut || on_rounding[member.index()], "{phase}");
+                }
+                assert!(first.arms.iter().all(|arm| *arm > 0.5));
+            }
+        }
+        assert!(ended > 50 && last_ones > 0, "{ended} {last_ones}");
     }
 
     #[test]

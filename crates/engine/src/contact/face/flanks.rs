@@ -97,7 +97,7 @@ impl FaceFlanks {
         }
     }
 
-    /// The flanks in a `section` where they just touch; `None` where a force there would not drive the driven gear on.
+    /// The flanks in a `section` where they just touch; `None` where they do not face each other.
     pub(super) fn touching(&self, section: Section) -> Option<Touching<'_>> {
         // In modules: 20 nm at 2 mm. So short a way is straight to 0.1 nm.
         const NEAR: f64 = 1e-5;
@@ -114,8 +114,7 @@ impl FaceFlanks {
         let seat = nearer_tip(gears, section.phase);
         let within = NEAR * gears.driving().data().rack.module;
         let from = missing[0] + missing[1];
-        let touching = Touching::of((gears, deviations), section, seat, from, within);
-        touching.filter(|touching| touching.facing.drives())
+        Touching::of((gears, deviations), section, seat, from, within)
     }
 
     /// How far the driving tooth of a `section` stands ahead of the drawing, in mesh periods.
@@ -185,9 +184,9 @@ impl FaceFlanks {
         ]
     }
 
-    /// The δ at which sections at `phase` as drawn touch, seen from where they are drawn; infinite where a force there would not drive on.
+    /// The δ at which sections at `phase` as drawn touch, seen from where they are drawn; infinite where they do not face each other.
     fn drawn_touch(&self, phase: f64) -> f64 {
-        let facing = Facing::drawn(&self.plane_strain, phase).filter(Facing::drives);
+        let facing = Facing::drawn(&self.plane_strain, phase);
         facing.map_or(f64::INFINITY, |facing| facing.touch())
     }
 
