@@ -3,18 +3,27 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use meshwright_exchange::dxf::outline;
+use meshwright_exchange::dxf::{Choices, TOLERANCE_MM, outline};
 
 use super::document::{EXIT_PROBLEM, read, write};
 
 /// Write the outline that a drawing comes to, for `blank.outline` of a submission.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Outline {
-    /// The drawing, DXF as text, the axis of the gear at its origin; - reads standard input.
+    /// The drawing, DXF as text; - reads standard input.
     drawing: PathBuf,
     /// Take only what is on this layer; may be given several times.
     #[arg(long, value_name = "NAME")]
     layer: Vec<String>,
+    /// The place of the axis of the gear, in the unit of the drawing; without it, the origin.
+    #[arg(long, value_name = "X,Y", value_parser = point, allow_hyphen_values = true)]
+    center: Option<[f64; 2]>,
+    /// Join ends that are no farther apart, 0 to 0.1 mm.
+    #[arg(long, value_name = "MM", default_value_t = TOLERANCE_MM)]
+    tolerance: f64,
+    /// The radius of the bore, where it is not drawn as a circle: it is left out then, with keyways and splines.
+    #[arg(long, value_name = "MM")]
+    bore_radius: Option<f64>,
     /// Where to write the outline.
     #[arg(long, short, default_value = "-")]
     output: PathBuf,
@@ -27,7 +36,13 @@ impl Outline {
     ///
     /// If a file cannot be read or written. What is wrong with the drawing is printed, and is exit code 2.
     pub(crate) fn run(&self) -> anyhow::Result<ExitCode> {
-        match outline(&read(&self.drawing)?, &self.layer) {
+        let choices = Choices {
+            layers: self.layer.clone(),
+            center: self.center,
+            tolerance_mm: self.tolerance,
+            bore_radius_mm: self.bore_radius,
+        };
+        match outline(&read(&self.drawing)?, &choices) {
             Ok(outline) => {
                 for remark in &outline.remarks {
                     eprintln!("{remark}");
@@ -43,9 +58,17 @@ impl Outline {
     }
 }
 
+/// The point that `X,Y` says.
+fn point(text: &str) -> Result<[f64; 2], String> {
+    meshwright_exchange::dxf::point(text)
+        .ok_or_else(|| "two numbers with a comma between them are expected".to_owned())
+}
+
 #[cfg(test)]
 mod tests {
     use std::fs;
+
+    use clap::Parser;
 
     use super::*;
 
@@ -58,6 +81,9 @@ mod tests {
         let mut command = Outline {
             drawing: folder.path().join("gear.dxf"),
             layer: vec!["Holes".to_owned()],
+            center: None,
+            tolerance: TOLERANCE_MM,
+            bore_radius: None,
             output: folder.path().join("outline.json"),
         };
         fs::write(&command.drawing, text).expect("written");
@@ -72,5 +98,21 @@ mod tests {
             format!("{code:?}"),
             format!("{:?}", ExitCode::from(EXIT_PROBLEM))
         );
+    }
+    #[derive(Debug, clap::Parser)]
+    struct Line {
+        #[command(flatten)]
+        outline: Outline,
+    }
+
+    #[test]
+    fn a_center_is_two_numbers_which_may_be_negative() {
+        let read = |center: &str| Line::try_parse_from(["outline", "a.dxf", "--center", center]);
+        let center = |text: &str| read(text).expect("a center").outline.center;
+        assert_eq!(center("-12.5,80"), Some([-12.5, 80.0]));
+        assert_eq!(center("1e2, -3"), Some([100.0, -3.0]));
+        for wrong in ["12", "12;80", "1,2,3", "1,", "nan,0"] {
+            assert!(read(wrong).is_err(), "{wrong}");
+        }
     }
 }

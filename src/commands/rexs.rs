@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::Context;
 use jiff::Zoned;
-use meshwright_exchange::rexs::{Choices, Import, import};
+use meshwright_exchange::rexs::{Choices, Import, LoadedFlank, import};
 use meshwright_wire::{Submission, model_of};
 use serde_json::Value;
 
@@ -56,6 +56,9 @@ pub(crate) struct ModelChoices {
     /// Of a REXS model: the bore radius of both gears, or of the driving and the driven one, instead of what it says.
     #[arg(long, value_name = "MM", value_delimiter = ',')]
     bore_radius: Vec<f64>,
+    /// Of a REXS model: the flanks of both gears that are loaded, instead of those that it says.
+    #[arg(long, value_parser = ["left", "right"])]
+    flank: Option<String>,
 }
 
 impl ModelChoices {
@@ -66,6 +69,7 @@ impl ModelChoices {
             (!self.torque.is_empty(), "--torque"),
             (self.method.is_some(), "--method"),
             (!self.bore_radius.is_empty(), "--bore-radius"),
+            (self.flank.is_some(), "--flank"),
         ]
         .into_iter()
         .find_map(|(given, name)| given.then_some(name))
@@ -78,6 +82,7 @@ impl ModelChoices {
             torques: self.torque.clone(),
             method: self.method.clone(),
             bore_radii: self.bore_radius.clone(),
+            flank: self.flank.as_deref().and_then(LoadedFlank::named),
         };
         let imported: Import = match import(model, &choices) {
             Ok(imported) => imported,

@@ -23,6 +23,7 @@ use utoipa::openapi::{RefOr, Response};
 use super::app::App;
 use super::blocking::blocking;
 use super::client::ClientName;
+use super::memory::{weight, weight_of_lines};
 use super::problem::Refusal;
 
 /// So many times the limit is read and thrown away, because a client that is still sending does not see the answer.
@@ -40,7 +41,7 @@ impl<const MIB: usize> FromRequest<App> for JsonBody<MIB> {
     type Rejection = Refusal;
 
     async fn from_request(request: Request, app: &App) -> Result<Self, Refusal> {
-        let (body, memory) = taken(request, app, MIB, &["json"]).await?;
+        let (body, memory) = taken(request, app, MIB, &["json"], weight).await?;
         Ok(Self(body, memory))
     }
 }
@@ -83,6 +84,7 @@ async fn taken(
     app: &App,
     mib: usize,
     kinds: &[&str],
+    weigh: fn(&[u8]) -> u64,
 ) -> Result<(Bytes, Memory), Problem> {
     let limit = mib * 1024 * 1024;
     let media_type = check_media_type(request.headers(), kinds);
@@ -100,7 +102,7 @@ async fn taken(
     let body = timeout(app.times.body, read(request.into_body(), limit, length)).await;
     let body = body.map_err(|_| late(app.times.body))??;
     media_type?;
-    let made = app.bodies.to_read(&client, &body).await?;
+    let made = app.bodies.to_read(&client, &body, weigh).await?;
     Ok((body, [bytes, made]))
 }
 
@@ -132,7 +134,7 @@ impl FromRequest<App> for ModelBody {
 
     async fn from_request(request: Request, app: &App) -> Result<Self, Refusal> {
         let client = client_of(&request);
-        let (body, memory) = taken(request, app, MODEL_MIB, MODEL_TYPES).await?;
+        let (body, memory) = taken(request, app, MODEL_MIB, MODEL_TYPES, weight).await?;
         if !is_packed(&body) {
             return Ok(Self(body, memory));
         }
@@ -144,7 +146,7 @@ impl FromRequest<App> for ModelBody {
         let refuse =
             |refused: Refused| Problem::new(Code::ModelRefused, refused.to_string().trim_end());
         let model = model.map_err(refuse)?;
-        let made = app.bodies.to_read(&client, &model).await?;
+        let made = app.bodies.to_read(&client, &model, weight).await?;
         Ok(Self(model.into(), [bytes, made]))
     }
 }
@@ -155,6 +157,47 @@ impl IntoResponses for ModelBody {
         refusals.into_iter().map(declared).collect()
     }
 }
+
+/// The body of a request for an outline, and the memory that it takes.
+pub(super) enum OutlineBody {
+    /// A submission.
+    Submission(Bytes, Memory),
+    /// A drawing in DXF.
+    Drawing(Bytes, Memory),
+}
+
+impl FromRequest<App> for OutlineBody {
+    type Rejection = Refusal;
+
+    async fn from_request(request: Request, app: &App) -> Result<Self, Refusal> {
+        if check_media_type(request.headers(), &["json"]).is_ok() {
+            let (body, memory) = taken(request, app, 1, &["json"], weight).await?;
+            return Ok(Self::Submission(body, memory));
+        }
+        let kinds = ["json", "dxf"];
+        let (body, memory) = taken(request, app, DRAWING_MIB, &kinds, weight_of_lines).await?;
+        Ok(Self::Drawing(body, memory))
+    }
+}
+
+impl IntoResponses for OutlineBody {
+    fn responses() -> BTreeMap<String, RefOr<Response>> {
+        let large =
+            format!("The body has more than 1 MiB, as a drawing more than {DRAWING_MIB} MiB.");
+        let mut answers = JsonBody::<1>::responses();
+        answers.extend([
+            declared(("413", large)),
+            declared((
+                "415",
+                "The body is not declared as JSON or a drawing.".to_owned(),
+            )),
+        ]);
+        answers
+    }
+}
+
+/// A drawing may have so many MiB.
+const DRAWING_MIB: usize = 4;
 
 /// Whether the body is declared as one of `kinds`, by whichever of its names.
 fn check_media_type(headers: &HeaderMap, kinds: &[&str]) -> Result<(), Problem> {
@@ -187,8 +230,13 @@ fn check_media_type(headers: &HeaderMap, kinds: &[&str]) -> Result<(), Problem> 
                 || name.ends_with(&format!("+{kind}"))
                 // What browsers call an archive, and a file whose name they do not know.
                 || (*kind == "zip" && ["x-zip-compressed", "octet-stream"].contains(&name))
+                || (*kind == "dxf" && ["x-dxf", "octet-stream"].contains(&name))
         }
-        None => *kind == "xml" && essence == "text/xml",
+        None => match *kind {
+            "xml" => essence == "text/xml",
+            "dxf" => ["image/vnd.dxf", "image/x-dxf"].contains(&&*essence),
+            _ => false,
+        },
     };
     if kinds.iter().any(known) {
         return Ok(());

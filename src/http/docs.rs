@@ -64,10 +64,11 @@ pub(super) fn introduction() -> OpenApi {
     openapi
 }
 
-/// A submission, a study, and a model that operations show as what may be sent to them: they work as they stand.
+/// A submission, a study, a model and a drawing that operations show as what may be sent to them: they work as they stand.
 const SUBMISSION: &str = include_str!("../../api/examples/standard-pair.json");
 const STUDY: &str = include_str!("../../api/examples/study-section-5.json");
 const MODEL: &str = include_str!("../../api/examples/test-case-2.rexs");
+const DRAWING: &str = include_str!("../../api/examples/openings.dxf");
 
 /// What may be sent to the operation at `path`, where it takes a body.
 fn example_of(path: &str) -> Option<Value> {
@@ -94,9 +95,12 @@ fn show_body(path: &str, operation: &mut Operation) {
     for (media_type, content) in &mut body.content {
         let RefOr::T(content) = content else { continue };
         // A model is shown as XML; its other containers hold the same.
-        let example = example_of(path);
-        content.example =
-            example.filter(|one| one.is_string() == (media_type == "application/xml"));
+        let example = match media_type.as_str() {
+            "image/vnd.dxf" => Some(DRAWING.into()),
+            _ => example_of(path),
+        };
+        let is_text = ["application/xml", "image/vnd.dxf"].contains(&media_type.as_str());
+        content.example = example.filter(|one| one.is_string() == is_text);
         if !media_type.ends_with("json") {
             let bytes = ObjectBuilder::new()
                 .schema_type(Type::String)

@@ -30,6 +30,9 @@ const TIMES_ITS_SIZE: u64 = 3;
 /// And so many bytes for each of its values, with what a study makes of them.
 const FOR_A_VALUE: u64 = 150;
 
+/// A line of a drawing takes so many bytes, in lists that grow twofold, beside its share of the lines and arcs.
+const FOR_A_LINE: u64 = 40;
+
 /// The memory for bodies, in three budgets. A client sends and reads as slowly as it likes: the bytes of requests and those of answers
 /// have a budget each, of which no client has so much that there is none for the next. A document is read only when it has come, in
 /// the memory for that, which is free again as soon as the processor is done.
@@ -67,7 +70,7 @@ impl BodyMemory {
         part(&self.sent, client, length as u64).await
     }
 
-    /// The memory for what is made of `document`; none where it is small.
+    /// The memory for what is made of `document`, by its weight; none where it is small.
     ///
     /// # Errors
     ///
@@ -76,11 +79,12 @@ impl BodyMemory {
         &self,
         client: &str,
         document: &[u8],
+        weigh: fn(&[u8]) -> u64,
     ) -> Result<Option<Part>, Problem> {
         if document.len() <= SMALL {
             return Ok(None);
         }
-        part(&self.made, client, weight(document)).await
+        part(&self.made, client, weigh(document)).await
     }
 
     /// Refuses an answer of so many bytes that there is never memory for it.
@@ -211,10 +215,16 @@ pub(super) async fn hold(
 /// What is made of a document takes so many bytes, about. Every value of JSON but the first stands behind one of three signs, and every
 /// element of XML behind a fourth, so their number is known without reading them. Texts that contain such signs count as larger than
 /// they are.
-fn weight(document: &[u8]) -> u64 {
+pub(super) fn weight(document: &[u8]) -> u64 {
     let is_sign = |byte: &&u8| matches!(byte, b',' | b'[' | b'{' | b'<');
     let values = document.iter().filter(is_sign).count() as u64;
     TIMES_ITS_SIZE * document.len() as u64 + FOR_A_VALUE * values
+}
+
+/// What is made of a drawing takes so many bytes, about: each two lines are a group.
+pub(super) fn weight_of_lines(document: &[u8]) -> u64 {
+    let lines = document.iter().filter(|byte| **byte == b'\n').count() as u64;
+    TIMES_ITS_SIZE * document.len() as u64 + FOR_A_LINE * lines
 }
 
 #[cfg(test)]

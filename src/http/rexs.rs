@@ -3,7 +3,9 @@
 use axum::Json;
 use axum::response::Response;
 use meshwright_engine::run::Run;
-use meshwright_exchange::rexs::{Choices, Fault, Import, NotRead, Refused, import, stages};
+use meshwright_exchange::rexs::{
+    Choices, Fault, Import, LoadedFlank, NotRead, Refused, import, stages,
+};
 use meshwright_wire::declare::document;
 use meshwright_wire::{Code, FieldError, Problem, Submission, model_of};
 use serde::{Deserialize, Serialize};
@@ -38,6 +40,27 @@ pub(super) struct ModelParameters {
     /// The bore radius of both gears, in mm, instead of those of the model.
     #[param(example = 16.0)]
     bore_radius_mm: Option<f64>,
+    /// The flanks of both gears that are loaded, instead of those of the model.
+    #[param(example = "left", inline)]
+    flank: Option<FlankParameter>,
+}
+
+/// The side of the loaded flanks.
+#[derive(Clone, Copy, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+#[schema(as = LoadedFlank, title = "Loaded flank")]
+pub(super) enum FlankParameter {
+    Left,
+    Right,
+}
+
+impl FlankParameter {
+    fn flank(self) -> LoadedFlank {
+        match self {
+            Self::Left => LoadedFlank::Left,
+            Self::Right => LoadedFlank::Right,
+        }
+    }
 }
 
 /// What a model comes to.
@@ -129,6 +152,7 @@ fn model_view(model: &[u8], parameters: &ModelParameters) -> Result<ModelView, P
             torques: parameters.torque.into_iter().collect(),
             method: parameters.method.clone(),
             bore_radii: parameters.bore_radius_mm.into_iter().collect(),
+            flank: parameters.flank.map(FlankParameter::flank),
         };
         let taken = import(model, &choices).map_err(|Refused(faults)| {
             let faults = faults.into_iter();

@@ -142,6 +142,72 @@ async fn the_outline_of_a_pair_comes_as_numbers_or_as_a_drawing() {
 }
 
 #[tokio::test]
+async fn the_outline_of_a_drawing_is_that_of_a_submission() {
+    let bench = Bench::quick().await;
+    let post = |drawing: &str, media_type: &str, query: &str| {
+        let request = bench.send(&format!("/v1/outline{query}"));
+        let request = request.header("content-type", media_type);
+        request.body(drawing.to_owned()).send()
+    };
+    let drawing = include_str!("../../api/examples/openings.dxf");
+    for media_type in [
+        "image/vnd.dxf",
+        "application/dxf",
+        "application/octet-stream",
+    ] {
+        let read = post(drawing, media_type, "").await.unwrap();
+        assert_eq!(read.status(), StatusCode::OK, "{media_type}");
+        let kind = "application/vnd.meshwright.outline+json";
+        assert_eq!(read.headers()["content-type"], kind);
+        let read = read.document().await;
+        assert_eq!(read["bore_radius_mm"], 16.0);
+        assert!(!read["remarks"].as_array().unwrap().is_empty());
+        let mut submission = example("standard-pair");
+        let blank = &mut submission["pair"]["driven"]["blank"];
+        *blank = json!({ "bore_radius_mm": read["bore_radius_mm"], "outline": read["outline"] });
+        let outline = bench.post("/v1/outline", &submission).document().await;
+        let holes = outline["driven"]["holes"].as_array().unwrap();
+        assert_eq!(holes.len(), 2, "{outline}");
+        assert_eq!(holes[0]["radius_mm"], 7.5);
+    }
+    // The office drawing turns about (150, 105), and has a keyway.
+    let office = include_str!("../reference/dxf/office.dxf");
+    let refused = post(office, "image/vnd.dxf", "?bore_radius_mm=11").await;
+    let refused = problem(refused.unwrap(), 422, "drawing_refused").await;
+    let detail = refused["detail"].as_str().unwrap();
+    assert!(detail.contains("turn about (150, 105)"), "{detail}");
+    let query = "?center=150,105&bore_radius_mm=11&tolerance=0.005";
+    let read = post(office, "image/vnd.dxf", query).await.unwrap();
+    let read = read.document().await;
+    assert_eq!(read["outline"].as_array().unwrap().len(), 15);
+    let query = "?center=150,105&bore_radius_mm=11&layer=openings";
+    let read = post(office, "image/vnd.dxf", query).await.unwrap();
+    assert_eq!(
+        read.document().await["outline"].as_array().unwrap().len(),
+        14
+    );
+    for query in [
+        "?center=150",
+        "?tolerance=0.2",
+        "?bore_radius_mm=-1",
+        "?scale=2",
+    ] {
+        let refused = post(office, "image/vnd.dxf", query).await.unwrap();
+        problem(refused, 400, "invalid_parameter").await;
+    }
+    let json = example("test-case-2").to_string();
+    let refused = post(&json, "application/json", "?center=0,0")
+        .await
+        .unwrap();
+    problem(refused, 400, "invalid_parameter").await;
+    let refused = post(drawing, "text/plain", "").await.unwrap();
+    problem(refused, 415, "unsupported_media_type").await;
+    let long = drawing.replace("EOF", &" ".repeat(4 << 20));
+    let refused = post(&long, "image/vnd.dxf", "").await.unwrap();
+    problem(refused, 413, "payload_too_large").await;
+}
+
+#[tokio::test]
 async fn pictures_and_look_up_tables_stand_beside_the_results() {
     let bench = Bench::real().await;
     let path = bench.submit(&example("test-case-2")).await;

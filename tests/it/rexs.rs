@@ -363,5 +363,47 @@ async fn every_file_of_another_program_is_read_over_http_as_on_the_command_line(
         }
         files += 1;
     }
-    assert_eq!(files, 13);
+    assert_eq!(files, 14);
+}
+
+#[tokio::test]
+async fn the_loaded_flanks_are_chosen_where_they_differ_and_other_files_are_named() {
+    let bench = Bench::real().await;
+    let model = std::fs::read_to_string(example("test-case-2.rexs")).unwrap();
+    // The relief is that of one flank alone.
+    let left = r#"<ref id="12" role="origin"/>"#;
+    let differs = model.replacen(left, r#"<ref id="10" role="origin"/>"#, 1);
+    let post = |model: &str, query: &str| {
+        let request = bench.send(&format!("/v1/rexs{query}"));
+        let request = request.header("content-type", "application/xml");
+        request.body(model.to_owned()).send()
+    };
+    let refused = problem(post(&differs, "").await.unwrap(), 422, "model_refused").await;
+    let detail = refused["detail"].as_str().unwrap();
+    assert!(detail.contains("--flank left"), "{detail}");
+    for (query, relieved) in [("?flank=right", true), ("?flank=left", false)] {
+        let read = post(&differs, query).await.unwrap().document().await;
+        let relief = &read["submissions"][0]["pair"]["driving"]["tip_relief"];
+        assert_eq!(relief.is_object(), relieved, "{query}: {relief}");
+    }
+    let wrong = post(&differs, "?flank=up").await.unwrap();
+    problem(wrong, 400, "invalid_parameter").await;
+
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("differs.rexs");
+    std::fs::write(&file, &differs).unwrap();
+    let import = [path("rexs"), path("import"), &file];
+    assert_eq!(meshwright(&import).status.code(), Some(2));
+    let chosen = meshwright(&[&import[..], &[path("--flank"), path("right")]].concat());
+    assert!(chosen.status.success(), "{chosen:?}");
+
+    let reference = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/rexs");
+    let elsewhere = reference.join("material-in-a-database.rexs");
+    let refused = meshwright(&[path("solve"), &elsewhere]);
+    assert_eq!(refused.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&refused.stderr);
+    assert!(
+        said.contains("component 9 (material)") && said.contains("./database_material.rexs"),
+        "{said}"
+    );
 }

@@ -2,7 +2,7 @@
 //! read is read again from its echo, or from the model that it is written as.
 
 use meshwright_engine::run::Run;
-use meshwright_exchange::dxf::outline;
+use meshwright_exchange::dxf::{Choices as Drawn, outline};
 use meshwright_exchange::rexs::{Choices, import, is_model};
 use meshwright_studies::{Searching, Study};
 use meshwright_wire::{Preview, Problem, Submission, model_of};
@@ -17,7 +17,7 @@ const DESIGNS: usize = 8;
 /// If something does not hold that should, whatever they are.
 pub fn check(bytes: &[u8]) {
     // Loops, or why there are none.
-    let _ = outline(bytes, &[]);
+    let _ = outline(bytes, &Drawn::default());
     if is_model(bytes) {
         check_model(bytes);
         return;

@@ -83,7 +83,9 @@ impl PairDocument {
             misalignment.in_plane_um != 0.0 || misalignment.out_of_plane_um != 0.0
         });
         let own = [
-            number(self.helix_angle_deg, Self::helix_angle_deg.name),
+            // Without its helix it would be another pair: the method is the choice.
+            number(self.helix_angle_deg, Self::helix_angle_deg.name)
+                .map(|(pointer, _)| (pointer, None)),
             number(self.axial_offset_mm, Self::axial_offset_mm.name),
             askew.map(|_| (format!("/pair/{}", Self::misalignment_um.name), None)),
         ];
@@ -92,7 +94,7 @@ impl PairDocument {
             of_gears.flat_map(|(gear, member)| gear.beyond_the_plane(&format!("/pair/{member}")));
         for (pointer, nearest) in own.into_iter().flatten().chain(of_gears) {
             let detail = format!(
-                "{pointer} is not known to the plane, in which {method} computes; three_dimensional knows it."
+                "{pointer} is not known to the plane, in which {method} computes. The method three_dimensional knows it."
             );
             errors.push(
                 FieldError::new(pointer, Code::NeedsThreeDimensions, detail).nearest(nearest),

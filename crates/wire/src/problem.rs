@@ -108,6 +108,8 @@ codes! {
         "A submission may have at most 60 torques and 20,000 positions, 200,000 with a projected method on teeth that do not deviate, a preview fewer, counted as mesh periods times positions per mesh period times torques. The detail says how many were asked for and what would fit: fewer positions, fewer torques or a shorter span. /v1/limits tells the limits."
     ModelRefused "model-refused" 422 "The model has no pair that can be taken"
         "The body is no REXS model, or none of its cylindrical stages is a pair of external gears that can be computed. The errors say why of each, with its component and attribute; the pointer of an error is that of the submission that would come of the stage, and empty where none does."
+    DrawingRefused "drawing-refused" 422 "The drawing has no outline that can be taken"
+        "The body is no DXF in text, or what is drawn bounds no openings of a blank. The detail says why, with the entities, their layers and lines: loops that are open, entities that are not read, one loop inside another, or another center than the axis."
     NotConverged "not-converged" 422 "The contact did not converge"
         "The contact solver did not meet its tolerance at a position, which the detail names with the residual gap, or no flanks came near each other there. A larger gap tolerance, another penalty or the active set helps where the augmented Lagrangian was asked for."
     NoFormula "no-formula" 422 "A formula does not hold for this pair"

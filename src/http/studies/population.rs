@@ -15,7 +15,7 @@ use crate::http::answer::{json, tag_of_parts, tell_when_to_return};
 use crate::http::app::App;
 use crate::http::blocking::blocking;
 use crate::http::client::Client;
-use crate::http::memory::SMALL;
+use crate::http::memory::{SMALL, weight};
 use crate::http::parameters::{IfNoneMatch, StudyId};
 use crate::http::problem::Refusal;
 use crate::jobs::{Resource as _, StudyRecord, shown_status};
@@ -104,7 +104,7 @@ async fn document(
             (app.jobs.study_text(record.id).await?, bytes)
         }
     };
-    let memory = app.bodies.to_read(client, text.as_bytes()).await?;
+    let memory = app.bodies.to_read(client, text.as_bytes(), weight).await?;
     let read = move |run: &Run| {
         let study = Study::parse(text.as_bytes(), run);
         drop((text, bytes));

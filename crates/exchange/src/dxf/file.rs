@@ -1,13 +1,14 @@
-//! The file: pairs of lines, a group code and its value, of which the entities of one section are kept.
+//! The file: pairs of lines, a group code and its value, of which the entities and those of blocks are kept.
 
 use std::borrow::Cow;
+use std::collections::HashMap;
 use std::str::FromStr;
 
 /// The most bytes of a file: a drawing of a gear has some hundred thousand.
 const MOST_BYTES: usize = 16 << 20;
 
-/// The most entities of a file.
-const MOST_ENTITIES: usize = 100_000;
+/// The most entities of a file, and of its drawing with those of its blocks in each place where they stand.
+pub(super) const MOST_ENTITIES: usize = 100_000;
 
 /// What a binary file begins with.
 const BINARY: &[u8] = b"AutoCAD Binary DXF";
@@ -17,6 +18,8 @@ const DWG: &[u8] = b"AC10";
 
 /// The codes of the groups that are read of an entity.
 pub(super) mod code {
+    /// The file of a block that stands in another.
+    pub(in super::super) const PATH: i32 = 1;
     /// The block that an entity stands for.
     pub(in super::super) const NAME: i32 = 2;
     pub(in super::super) const LAYER: i32 = 8;
@@ -27,7 +30,20 @@ pub(super) mod code {
     pub(in super::super) const END_Y: i32 = 21;
     pub(in super::super) const END_Z: i32 = 31;
     pub(in super::super) const RADIUS: i32 = 40;
+    /// The length of the minor axis of an ellipse over that of the major one.
+    pub(in super::super) const RATIO: i32 = 40;
+    pub(in super::super) const KNOT: i32 = 40;
+    pub(in super::super) const WEIGHT: i32 = 41;
     pub(in super::super) const BULGE: i32 = 42;
+    /// Where an ellipse begins and ends, in radians from its major axis.
+    pub(in super::super) const PARAMETERS: [i32; 2] = [41, 42];
+    /// The scales of a block along x and y.
+    pub(in super::super) const SCALES: [i32; 2] = [41, 42];
+    /// The columns and rows of a block that stands in several places, and how far they are apart.
+    pub(in super::super) const COUNTS: [i32; 2] = [70, 71];
+    pub(in super::super) const SPACINGS: [i32; 2] = [44, 45];
+    /// The angle of a block, in degrees.
+    pub(in super::super) const ROTATION: i32 = 50;
     pub(in super::super) const START_ANGLE: i32 = 50;
     pub(in super::super) const END_ANGLE: i32 = 51;
     /// Not 0 if it is not seen.
@@ -35,6 +51,7 @@ pub(super) mod code {
     /// Not 0 if it belongs to a sheet of paper.
     pub(in super::super) const PAPER: i32 = 67;
     pub(in super::super) const FLAGS: i32 = 70;
+    pub(in super::super) const DEGREE: i32 = 71;
     /// The direction out of its plane.
     pub(in super::super) const NORMAL: [i32; 3] = [210, 220, 230];
     /// The unit of a drawing, in its header.
@@ -45,8 +62,18 @@ pub(super) mod code {
 #[derive(Debug)]
 pub(super) struct File<'a> {
     pub(super) entities: Vec<Entity<'a>>,
+    /// The blocks, by their names in small letters.
+    pub(super) blocks: HashMap<String, Block<'a>>,
     /// The unit, if it says one.
     pub(super) unit: Option<Unit>,
+}
+
+/// A part of a drawing that stands in one or several places of it.
+#[derive(Debug)]
+pub(super) struct Block<'a> {
+    /// Says its name, its flags and its base point.
+    pub(super) head: Entity<'a>,
+    pub(super) entities: Vec<Entity<'a>>,
 }
 
 /// A unit of length.
@@ -61,7 +88,7 @@ pub(super) struct Unit {
 pub(super) struct Entity<'a> {
     pub(super) name: &'a str,
     /// The line of its name, counted from 1.
-    line: usize,
+    pub(super) line: usize,
     pub(super) groups: Vec<(i32, &'a str)>,
 }
 
@@ -93,16 +120,6 @@ impl Entity<'_> {
     pub(super) fn layer(&self) -> &str {
         self.text(code::LAYER).unwrap_or("0")
     }
-
-    /// What it is and where it stands.
-    pub(super) fn place(&self) -> String {
-        format!(
-            "{} on layer {}, line {}",
-            self.name,
-            self.layer(),
-            self.line
-        )
-    }
 }
 
 /// A number of a group.
@@ -126,6 +143,8 @@ fn whole<T: FromStr>(text: &str) -> Option<T> {
 /// A sentence, if it is too large, no DXF in text or cut off, or if its unit is none for a gear.
 pub(super) fn parsed(text: &str) -> Result<File<'_>, String> {
     let mut entities: Vec<Entity<'_>> = Vec::new();
+    let mut blocks: HashMap<String, Block<'_>> = HashMap::new();
+    let (mut block, mut count): (Option<Block<'_>>, usize) = (None, 0);
     let mut unit = None;
     let (mut section, mut variable) = ("", "");
     let (mut begins, mut is_whole) = (false, false);
@@ -149,17 +168,36 @@ pub(super) fn parsed(text: &str) -> Result<File<'_>, String> {
                 begins = false;
                 section = name;
             }
-            (0, name) if section == "ENTITIES" => {
-                if entities.len() == MOST_ENTITIES {
+            (0, "ENDBLK") if section == "BLOCKS" => {
+                if let Some(block) = block.take() {
+                    let name = block.head.text(code::NAME).unwrap_or_default();
+                    blocks.insert(name.to_lowercase(), block);
+                }
+            }
+            (0, name) if section == "ENTITIES" || section == "BLOCKS" => {
+                count += 1;
+                if count > MOST_ENTITIES {
                     return Err(format!(
                         "It has more than {MOST_ENTITIES} entities, of which no more are read."
                     ));
                 }
-                entities.push(Entity {
+                let entity = Entity {
                     name,
                     line: line + 1,
                     groups: Vec::new(),
-                });
+                };
+                match &mut block {
+                    _ if section == "ENTITIES" => entities.push(entity),
+                    _ if name == "BLOCK" => {
+                        block = Some(Block {
+                            head: entity,
+                            entities: Vec::new(),
+                        });
+                    }
+                    Some(block) => block.entities.push(entity),
+                    // Stands in no block.
+                    None => {}
+                }
             }
             (9, name) if section == "HEADER" => variable = name,
             (code::UNIT, said) if section == "HEADER" && variable == "$INSUNITS" => {
@@ -171,11 +209,21 @@ pub(super) fn parsed(text: &str) -> Result<File<'_>, String> {
                     entity.groups.push((code, value));
                 }
             }
+            (..1000, value) if section == "BLOCKS" => {
+                if let Some(Block { head, entities }) = &mut block {
+                    let entity = entities.last_mut().unwrap_or(head);
+                    entity.groups.push((code, value));
+                }
+            }
             _ => {}
         }
     }
     if is_whole {
-        Ok(File { entities, unit })
+        Ok(File {
+            entities,
+            blocks,
+            unit,
+        })
     } else {
         Err("It has no section ENTITIES, or is cut off within it.".to_owned())
     }

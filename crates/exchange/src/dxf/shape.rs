@@ -4,10 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use meshwright_engine::gear::{Side, Vector};
 
+use super::curve::{Splined, ellipse, spline};
 use super::file::{Entity, code, number};
-
-/// The most that a coordinate of a submission may be, in mm.
-const FARTHEST_MM: f64 = 25_000.0;
 
 /// The largest bulge: an arc that lacks 4e-6 of a circle.
 const LARGEST_BULGE: f64 = 1e6;
@@ -41,10 +39,23 @@ const ANNOTATIONS: [&str; 23] = [
 
 /// What an entity is.
 pub(super) enum Kind {
-    /// Lines and arcs, in the unit of the drawing. No arc turns by more than a half turn.
-    Sides(Vec<Side>),
+    /// Lines and arcs, in the unit of the drawing, and how they are had. No arc turns by more than a half turn.
+    Sides(Vec<Side>, Made),
+    /// A part of the drawing that stands elsewhere in the file.
+    Block,
     /// Nothing of an outline.
     Annotation,
+}
+
+/// How the lines and arcs of an entity are had.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Made {
+    /// The file says them.
+    Drawn,
+    /// They follow a curve to within a micrometer.
+    Fitted,
+    /// They join points of a curve, and how it runs between them is not said: the end of a sentence says why.
+    Guessed(&'static str),
 }
 
 /// What `entity` is; `vertices` are those that follow it.
@@ -57,6 +68,7 @@ pub(super) fn kind(
     vertices: &[Entity<'_>],
     in_mm: f64,
 ) -> Result<Kind, String> {
+    let mut made = Made::Drawn;
     let sides = match entity.name {
         "LINE" => line(entity)?,
         "CIRCLE" => arc(entity, 0.0, TAU)?,
@@ -67,18 +79,40 @@ pub(super) fn kind(
             let turn = (end - start).rem_euclid(TAU);
             arc(entity, start, if turn > 0.0 { turn } else { TAU })?
         }
+        "ELLIPSE" => {
+            made = Made::Fitted;
+            ellipse(entity, is_seen_from_below(entity)?, in_mm)?
+        }
+        "SPLINE" => match spline(entity, in_mm)? {
+            Splined::Sides(sides) => {
+                made = Made::Fitted;
+                sides
+            }
+            Splined::Points(points) => {
+                made = Made::Guessed(THROUGH_POINTS);
+                let closing = (entity.flags(code::FLAGS) & CLOSED != 0).then(|| points[0]);
+                let ends: Vec<Vector> = points.into_iter().chain(closing).collect();
+                joined(&ends)
+            }
+        },
         "LWPOLYLINE" => polyline(entity, &corners(entity)?)?,
         "POLYLINE" => {
-            if entity.flags(code::FLAGS) & (SPLINE | MESH | FACES) != 0 {
-                return Err("is a spline or a surface: draw it in lines and arcs".to_owned());
+            let flags = entity.flags(code::FLAGS);
+            if flags & (MESH | FACES) != 0 {
+                return Err("is a surface: draw its edge in lines and arcs".to_owned());
             }
-            let corners: Result<Vec<_>, _> = vertices.iter().map(corners).collect();
+            let is_splined = flags & SPLINE != 0;
+            if is_splined {
+                made = Made::Guessed(THROUGH_POINTS);
+            }
+            // The frame of a spline is seen beside it.
+            let is_corner =
+                |vertex: &&Entity<'_>| !is_splined || vertex.flags(code::FLAGS) & FRAME == 0;
+            let corners = vertices.iter().filter(is_corner).map(corners);
+            let corners: Result<Vec<_>, _> = corners.collect();
             polyline(entity, &corners?.concat())?
         }
-        "INSERT" => {
-            let block = entity.text(code::NAME).unwrap_or_default();
-            return Err(format!("stands for the block {block}: explode it"));
-        }
+        "INSERT" => return Ok(Kind::Block),
         name if ANNOTATIONS.contains(&name) => return Ok(Kind::Annotation),
         _ => {
             return Err(
@@ -86,16 +120,16 @@ pub(super) fn kind(
             );
         }
     };
-    let is_near = |point: Vector| point.norm() * in_mm <= FARTHEST_MM;
-    if !sides
-        .iter()
-        .all(|side| is_near(side.from) && is_near(side.to))
-    {
-        return Err(format!(
-            "reaches more than {FARTHEST_MM} mm from the origin; look at the unit of the drawing"
-        ));
-    }
-    Ok(Kind::Sides(sides))
+    Ok(Kind::Sides(sides, made))
+}
+
+/// Why the points of a spline are no outline.
+const THROUGH_POINTS: &str = "is a spline of which the file has points that it goes through, and not how it runs between them: write it with control points, or draw it in lines and arcs";
+
+/// The lines from point to point.
+fn joined(points: &[Vector]) -> Vec<Side> {
+    let lines = points.windows(2).filter(|ends| ends[0] != ends[1]);
+    lines.map(|ends| Side::new(ends[0], ends[1], 0.0)).collect()
 }
 
 /// Flags of a polyline.
@@ -104,6 +138,9 @@ const SPLINE: u16 = 4;
 const SPACE: u16 = 8;
 const MESH: u16 = 16;
 const FACES: u16 = 64;
+
+/// The flag of a vertex that belongs to the frame of a spline.
+const FRAME: u16 = 16;
 
 fn line(entity: &Entity<'_>) -> Result<Vec<Side>, String> {
     let [x, y, z] = [code::X, code::Y, code::Z].map(|code| entity.number(code, default(code)));
@@ -200,7 +237,7 @@ fn polyline(entity: &Entity<'_>, corners: &[Corner]) -> Result<Vec<Side>, String
 }
 
 /// Whether the plane of an entity is that of the drawing seen from below: its x axis runs the other way then.
-fn is_seen_from_below(entity: &Entity<'_>) -> Result<bool, String> {
+pub(super) fn is_seen_from_below(entity: &Entity<'_>) -> Result<bool, String> {
     let [x, y, z] = code::NORMAL;
     let [x, y, z] =
         [(x, 0.0), (y, 0.0), (z, 1.0)].map(|(code, default)| entity.number(code, Some(default)));

@@ -21,6 +21,12 @@ impl Fault {
             detail: detail.into(),
         }
     }
+
+    /// Whether it is of the component at `place`, or of one of its attributes.
+    pub(super) fn is_of(&self, place: &str) -> bool {
+        let rest = self.place.strip_prefix(place);
+        rest.is_some_and(|rest| rest.is_empty() || rest.starts_with(", "))
+    }
 }
 
 /// Everything that is wrong with a model.

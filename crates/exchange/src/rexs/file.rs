@@ -25,6 +25,13 @@ const MOST_LOAD_CASES: usize = 1000;
 /// Faults beyond this number are not looked for: each says its line, which is counted from the top.
 const MOST_FAULTS: usize = 100;
 
+/// The most characters of a file's name in a fault.
+const MOST_NAME: usize = 120;
+
+/// The attributes by which a component says, since version 1.5, that its values are those of a component in another file.
+const DATA_SOURCE: &str = "data_source";
+const REFERENCED_COMPONENT: &str = "referenced_component_id";
+
 /// The main versions whose names are read.
 const VERSIONS: RangeInclusive<u32> = 1..=2;
 
@@ -53,6 +60,8 @@ pub(super) struct Component {
     pub(super) attributes: Vec<Attribute>,
     /// Whether it belongs to what is imported.
     pub(super) met: Cell<bool>,
+    /// Whether something was asked for that it does not say here.
+    wanting: Cell<bool>,
 }
 
 /// One number, word or list.
@@ -165,6 +174,8 @@ impl Model {
         known: (&str, &Component),
         wanted: &str,
     ) -> Vec<&'a Component> {
+        // What it belongs to may stand where its values stand.
+        known.1.wanting.set(true);
         let mut relations: Vec<&Relation> = self
             .relations
             .iter()
@@ -292,6 +303,7 @@ impl Component {
             name,
             attributes,
             met: Cell::new(false),
+            wanting: Cell::new(false),
         };
         let mut seen = HashSet::new();
         for attribute in &component.attributes {
@@ -309,19 +321,45 @@ impl Component {
 
     /// The attribute, which is read by that.
     pub(super) fn attribute(&self, id: &str) -> Option<&Attribute> {
-        let found = self
-            .attributes
-            .iter()
-            .find(|attribute| attribute.id == id)?;
+        let found = self.find(id)?;
         self.met.set(true);
         found.read.set(true);
         Some(found)
     }
 
+    /// The attribute, if there is one; else the component is wanting.
+    fn find(&self, id: &str) -> Option<&Attribute> {
+        let found = self.attributes.iter().find(|attribute| attribute.id == id);
+        if found.is_none() {
+            self.wanting.set(true);
+        }
+        found
+    }
+
+    /// A fault, if something was asked of the component that may stand in another file, where it says that its values are.
+    pub(super) fn elsewhere(&self) -> Option<Fault> {
+        let said = |id: &str| {
+            let mut attributes = self.attributes.iter();
+            attributes.find(|attribute| attribute.id == id)?.word().ok()
+        };
+        let (source, component) = (said(DATA_SOURCE), said(REFERENCED_COMPONENT));
+        if !self.wanting.get() || source.or(component).is_none() {
+            return None;
+        }
+        let short = |text: &str| text.chars().take(MOST_NAME).collect::<String>();
+        let mut file = source.map_or_else(|| "a file without a name".to_owned(), short);
+        if let Some(component) = component {
+            let _ = write!(file, ", component {}", short(component));
+        }
+        let detail = format!(
+            "Its values stand in another file, which is not read: {file}. Write them into the model."
+        );
+        Some(Fault::new(self.place(), detail))
+    }
+
     /// The number of an attribute, if it is one, which is not read by that.
     pub(super) fn glance(&self, id: &str, unit: Unit) -> Option<f64> {
-        let found = self.attributes.iter().find(|attribute| attribute.id == id);
-        found?.number(unit).ok()
+        self.find(id)?.number(unit).ok()
     }
 
     /// How a person finds it in the file.

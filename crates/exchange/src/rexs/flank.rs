@@ -85,7 +85,7 @@ impl<'a> Gear<'a> {
         let first = of_each.next().unwrap_or_default();
         if of_each.any(|other| other != first) {
             let detail = format!(
-                "{unlike}, and no loaded_tooth_flank of a cylindrical_stage_gear_data says which is loaded."
+                "{unlike}, and no loaded_tooth_flank of a cylindrical_stage_gear_data says which is loaded. Choose by --flank left or --flank right, or in a request by flank."
             );
             self.reading.wrong(self.gear.place(), detail);
             return None;

@@ -6,8 +6,8 @@ use serde_json::{Map, Value, json};
 
 use super::file::Component;
 use super::own;
-use super::reading::Reading;
-use super::unit::{DEG, KG_PER_DM3, MM, MM_OR_NONE, MPA, NONE, Unit, um_of_mm};
+use super::reading::{LoadedFlank, Reading};
+use super::unit::{DEG, KG_PER_DM3, MM, MPA, NONE, Unit, um_of_mm};
 use crate::significant;
 
 /// What two ways to say one radius may differ by, in mm, to be the same.
@@ -24,19 +24,19 @@ pub(super) struct Gear<'a> {
     pub(super) reading: &'a Reading<'a>,
     pub(super) gear: &'a Component,
     /// Both flanks, or one if the model has one.
-    flanks: Vec<&'a Component>,
+    pub(super) flanks: Vec<&'a Component>,
     /// Those of them that are loaded: one if the model says which, else all.
     pub(super) loaded: Vec<&'a Component>,
-    tool: Option<&'a Component>,
+    pub(super) tool: Option<&'a Component>,
     /// The settings of the manufacturing steps, in their order; before version 1.3 the flank has them itself.
-    settings: Vec<&'a Component>,
+    pub(super) settings: Vec<&'a Component>,
     body: Option<&'a Component>,
     material: Option<&'a Component>,
     /// The basic numbers, without which nothing else can be read.
     pub(super) module: f64,
     tooth_count: f64,
     profile_shift: f64,
-    pressure_angle_deg: f64,
+    pub(super) pressure_angle_deg: f64,
     /// The cosine of the helix angle at the reference circle.
     cosine: f64,
 }
@@ -58,12 +58,13 @@ impl<'a> Gear<'a> {
         };
         let (left, right) = (side("left"), side("right"));
         let flanks: Vec<_> = left.into_iter().chain(right).collect();
-        let loaded = match data
-            .and_then(|data| reading.choice(data, "loaded_tooth_flank", &["left", "right"]))
-        {
-            Some("left") => left.into_iter().collect(),
-            Some("right") => right.into_iter().collect(),
-            _ => flanks.clone(),
+        let said =
+            data.and_then(|data| reading.choice(data, "loaded_tooth_flank", &["left", "right"]));
+        let said = said.and_then(LoadedFlank::named);
+        let loaded = match reading.choices.flank.or(said) {
+            Some(LoadedFlank::Left) => left.into_iter().collect(),
+            Some(LoadedFlank::Right) => right.into_iter().collect(),
+            None => flanks.clone(),
         };
         let steps = |role: &str| {
             let first = flanks.first();
@@ -132,7 +133,7 @@ impl<'a> Gear<'a> {
             reading.wrong(other.place(), detail);
         }
         found.refuse_other_rack();
-        found.refuse_steps();
+        found.refuse_broken_tips();
         if found.material.is_none() {
             found.material = reading.shaft_of(gear).and_then(material);
             if let Some(material) = found.material {
@@ -146,23 +147,8 @@ impl<'a> Gear<'a> {
         Some(found)
     }
 
-    /// A rack that leaves an undercut for the grinding wheel, and a rest of it, make another root than ours.
-    fn refuse_steps(&self) {
-        let of_tool = ["protuberance_amount", "protuberance_amount_factor"];
-        let of_tool = of_tool.map(|name| (self.tool, name));
-        let of_flanks = self.flanks.iter();
-        let of_flanks = of_flanks.map(|flank| (Some(*flank), "remaining_protuberance"));
-        for (of, name) in of_tool.into_iter().chain(of_flanks) {
-            let Some(of) = of else { continue };
-            let number = self.reading.number(of, name, MM_OR_NONE);
-            if let Some(amount) = number.filter(|amount| *amount != 0.0) {
-                let detail = format!(
-                    "It is {amount}: a protuberance leaves another root, which is not known here."
-                );
-                self.reading.wrong(of.place_of(name), detail);
-                return;
-            }
-        }
+    /// A rack that breaks the tip edges by an amount that nothing says.
+    fn refuse_broken_tips(&self) {
         let Some(tool) = self.tool else { return };
         let name = "chamfer_angle";
         let breaks = self
@@ -261,7 +247,8 @@ impl<'a> Gear<'a> {
             return None;
         }
         put("dedendum_mm", json!(dedendum), from_root);
-        if let Some((radius, from)) = self.rack_tip_radius() {
+        let rounding = self.rack_tip_radius();
+        if let Some((radius, from)) = rounding {
             put("rack_tip_radius_mm", json!(radius), Some(from));
         }
         if let Some((deviation, settings)) = self.thickness_deviation() {
@@ -304,8 +291,9 @@ impl<'a> Gear<'a> {
         if !leads.is_empty() {
             put("lead_modifications", Value::Array(leads), None);
         }
-        if let Some(protuberance) = reading.json(self.gear, own::PROTUBERANCE) {
-            put("protuberance", protuberance, of_gear(own::PROTUBERANCE));
+        let rounding = rounding.map(|(radius, _)| radius);
+        if let Some(protuberance) = self.protuberance(pointer, rounding) {
+            put("protuberance", protuberance, None);
         }
         if let Some(deviations) = reading.json(self.gear, own::DEVIATIONS) {
             put("tooth_deviations", deviations, of_gear(own::DEVIATIONS));
@@ -442,14 +430,14 @@ impl<'a> Gear<'a> {
     }
 
     /// The profile shift with which the teeth were generated in a manufacturing step, if it is said.
-    fn generated_shift(&self, settings: &'a Component) -> Option<(f64, &'a Component)> {
+    pub(super) fn generated_shift(&self, settings: &'a Component) -> Option<(f64, &'a Component)> {
         let shift = self.reading.number(settings, GENERATED_SHIFT, NONE)?;
         Some((shift, settings))
     }
 
     /// What the first tool leaves on each flank, normal to it, for another step; the teeth are cut so much thicker, and the root so much
     /// less deep.
-    fn allowance(&self) -> f64 {
+    pub(super) fn allowance(&self) -> f64 {
         let steps = self
             .settings
             .first()

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
-use super::fault::Refused;
+use super::fault::{Fault, Refused};
 use super::file::{Component, Model};
 use super::gear::Gear;
 use super::own;
@@ -59,7 +59,7 @@ pub fn import(bytes: &[u8], choices: &Choices) -> Result<Import, Refused> {
         origins: RefCell::default(),
     };
     let submission = reading.submission();
-    let faults = reading.faults.take();
+    let faults = with_other_files(&model, reading.faults.take());
     match submission {
         Some(submission) if faults.is_empty() => {
             let mut remarks = reading.remarks.take();
@@ -73,6 +73,14 @@ pub fn import(bytes: &[u8], choices: &Choices) -> Result<Import, Refused> {
         }
         _ => Err(Refused(faults)),
     }
+}
+
+/// The faults, with one for each component that was asked for what stands in another file instead of those that follow from that.
+fn with_other_files(model: &Model, mut faults: Vec<Fault>) -> Vec<Fault> {
+    let elsewhere = model.components.iter().filter_map(Component::elsewhere);
+    let elsewhere: Vec<Fault> = elsewhere.collect();
+    faults.retain(|fault| !elsewhere.iter().any(|other| fault.is_of(&other.place)));
+    elsewhere.into_iter().chain(faults).collect()
 }
 
 /// The stage with its gears.

@@ -2,7 +2,7 @@
 //!
 //! A model is a list of components with attributes, relations between components, and load cases. Read in this order: `container` (XML,
 //! JSON or an archive), `file` with `json` and `markup` (what it says), `unit` (what its numbers are in), `fault` (what is wrong with a
-//! model), `reading`, `import` with `gear`, `flank`, `shaft` and `load`, and `export`.
+//! model), `reading`, `import` with `gear`, `hob`, `flank`, `shaft` and `load`, and `export`.
 //!
 //! Names are those of versions 1.0 to 2.0. What the format has no words for stands in attributes `custom_meshwright_...`.
 
@@ -12,6 +12,7 @@ mod fault;
 mod file;
 mod flank;
 mod gear;
+mod hob;
 mod import;
 mod json;
 mod load;
@@ -24,7 +25,7 @@ pub use container::{is_model, is_packed, unpacked};
 pub use export::export;
 pub use fault::{Fault, Refused};
 pub use import::{Import, NotRead, import, stages};
-pub use reading::Choices;
+pub use reading::{Choices, LoadedFlank};
 
 /// The attributes that only this program writes and reads, each named once for both directions.
 mod own {

@@ -19,6 +19,28 @@ pub struct Choices {
     pub method: Option<String>,
     /// The bore radii in mm of the driving and of the driven gear, or one for both, instead of those of the model.
     pub bore_radii: Vec<f64>,
+    /// The flanks that are loaded, instead of those that the model says: of both gears, because left flanks touch left ones.
+    pub flank: Option<LoadedFlank>,
+}
+
+/// A side of the teeth of both gears, as a model calls it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LoadedFlank {
+    /// The flanks in the role `left`.
+    Left,
+    /// The flanks in the role `right`.
+    Right,
+}
+
+impl LoadedFlank {
+    /// The side that a word names.
+    pub fn named(word: &str) -> Option<Self> {
+        match word {
+            "left" => Some(Self::Left),
+            "right" => Some(Self::Right),
+            _ => None,
+        }
+    }
 }
 
 /// A model under way to a submission. Every method reports what is wrong and answers `None` then, so that all is told together.

@@ -97,7 +97,13 @@ impl Number {
     }
 
     /// Checks `value`, which stands at `place`: the code, a sentence with the numbers, and the nearest value that is accepted.
-    fn check(&self, value: f64, place: &str, whole: bool) -> Result<f64, (Code, String, f64)> {
+    /// It is none where a negative value means something that is not known here.
+    fn check(
+        &self,
+        value: f64,
+        place: &str,
+        whole: bool,
+    ) -> Result<f64, (Code, String, Option<f64>)> {
         let (least, most) = self.bounds;
         let is_zero = self.or_zero && value == 0.0;
         if !is_zero && !(least..=most).contains(&value) {
@@ -110,8 +116,8 @@ impl Number {
                 "" | "1" => String::new(),
                 unit => format!(" {unit}"),
             };
-            let meaning = self.meaning.filter(|_| value < 0.0);
-            let meaning = meaning.map_or(String::new(), |meaning| format!("{meaning}; "));
+            let meant = self.meaning.filter(|_| value < 0.0);
+            let meaning = meant.map_or(String::new(), |meaning| format!("{meaning}; "));
             let detail = format!(
                 "{place} is {}{unit}; {meaning}it has to {}lie between {}{unit} and {}{unit}.",
                 plain(value),
@@ -119,11 +125,12 @@ impl Number {
                 plain(least),
                 plain(most),
             );
-            return Err((code, detail, self.nearest(value)));
+            let nearest = meant.is_none().then(|| self.nearest(value));
+            return Err((code, detail, nearest));
         }
         if whole && value.fract() != 0.0 {
             let detail = format!("{place} is {}; a whole number is expected.", plain(value));
-            return Err((Code::WrongType, detail, value.round()));
+            return Err((Code::WrongType, detail, Some(value.round())));
         }
         // A negative zero is as good as zero, and is echoed as it.
         Ok(value + 0.0)
@@ -146,7 +153,7 @@ impl Number {
         };
         match self.check(*value, &place.to_string(), whole) {
             Ok(value) => Some(value),
-            Err((code, detail, nearest)) => place.wrong(code, detail, Some(nearest)),
+            Err((code, detail, nearest)) => place.wrong(code, detail, nearest),
         }
     }
 
@@ -266,19 +273,21 @@ mod tests {
     fn a_value_outside_its_bounds_is_answered_with_the_nearer_bound() {
         let teeth = GearDocument::tooth_count.spec;
         let (code, detail, nearest) = teeth.check(-3.0, "/z", true).expect_err("negative");
-        assert_eq!((code, nearest), (Code::OutOfRange, 4.0));
+        // Another number of teeth would be another gear.
+        assert_eq!((code, nearest), (Code::OutOfRange, None));
         assert!(
             detail.contains("-3") && detail.contains("internal gears are not computed"),
             "{detail}"
         );
-        let (_, detail, _) = teeth.check(3.0, "/z", true).expect_err("three teeth");
+        let (_, detail, nearest) = teeth.check(3.0, "/z", true).expect_err("three teeth");
+        assert_eq!(nearest, Some(4.0));
         assert!(!detail.contains("internal"), "{detail}");
         let module = GearDocument::module_mm.spec;
         let (_, detail, nearest) = module.check(1e308, "/m", false).expect_err("enormous");
-        assert_eq!(nearest, 50.0);
+        assert_eq!(nearest, Some(50.0));
         assert!(detail.contains("1e308 mm"), "{detail}");
         let (code, _, nearest) = teeth.check(30.4, "/z", true).expect_err("a fraction");
-        assert_eq!((code, nearest), (Code::WrongType, 30.0));
+        assert_eq!((code, nearest), (Code::WrongType, Some(30.0)));
     }
 
     #[test]
@@ -287,10 +296,14 @@ mod tests {
         assert_eq!(check(0.0), Ok(0.0));
         assert!(check(-0.0).is_ok_and(f64::is_sign_positive));
         let (code, _, nearest) = check(-115.0).expect_err("reversed");
-        assert_eq!((code, nearest), (Code::TorqueNotPositive, 0.0));
+        assert_eq!((code, nearest), (Code::TorqueNotPositive, Some(0.0)));
         for (torque, nearer) in [(5e-324, 0.0), (9e-7, 1e-6), (1e9, 1e8)] {
             let (code, _, nearest) = check(torque).expect_err("out of range");
-            assert_eq!((code, nearest), (Code::OutOfRange, nearer), "{torque}");
+            assert_eq!(
+                (code, nearest),
+                (Code::OutOfRange, Some(nearer)),
+                "{torque}"
+            );
         }
     }
 }

@@ -192,7 +192,7 @@ impl<'a> ObjectReader<'a> {
 }
 
 /// The known word that takes the fewest edits, if they are few.
-fn nearest_word(word: &str, known: &[&'static str]) -> Option<&'static str> {
+pub(super) fn nearest_word(word: &str, known: &[&'static str]) -> Option<&'static str> {
     if word.len() > 60 {
         return None;
     }

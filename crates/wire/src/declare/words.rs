@@ -3,6 +3,7 @@
 use serde::Serializer;
 use serde_json::{Value, json};
 
+use super::reader::nearest_word;
 use super::{Kind, Location, Node, ObjectReader};
 use crate::problem::Code;
 
@@ -60,11 +61,20 @@ impl<C: Copy> OneWord<C> {
     where
         C: Choice,
     {
-        let word = match node {
-            Node::Text(word) => C::of_word(word),
-            _ => None,
+        let Node::Text(word) = node else {
+            return place.wrong_kind(node, &format!("one of {}", C::words()));
         };
-        word.or_else(|| place.wrong_kind(node, &format!("one of {}", C::words())))
+        C::of_word(word).or_else(|| {
+            let known: Vec<_> = C::OPTIONS.iter().map(|(word, ..)| *word).collect();
+            let meant = nearest_word(&word.to_lowercase(), &known);
+            let meant = meant.map_or_else(String::new, |word| format!(" Is {word} meant?"));
+            let words = C::words();
+            let detail = format!(
+                "{place} is {}; expected is one of {words}.{meant}",
+                node.kind()
+            );
+            place.wrong(Code::WrongType, detail, None)
+        })
     }
 
     /// What stands for the field `name`, which is absent.

@@ -208,6 +208,13 @@ impl Kind for StartDocument {
         one
     }
 
+    fn absent(reader: &mut ObjectReader<'_>, name: &'static str, end: &ReliefEnd) -> Option<Self> {
+        let place = reader.place_of(name);
+        let names = StartWay::ALL.map(|way| way.field(*end).name).join(", ");
+        let detail = format!("{place} is needed, with exactly one of {names}.");
+        place.wrong(Code::MissingField, detail, None)
+    }
+
     fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(Some(1))?;
         self.field().write(&self.value, &mut map)?;

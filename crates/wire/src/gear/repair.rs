@@ -5,7 +5,7 @@ use meshwright_engine::gear::{Helix, SpurGear};
 use super::GearDocument;
 use super::faults::Fault;
 use crate::problem::FieldError;
-use crate::units::{plain, rounded_inward};
+use crate::units::{Side, plain, rounded_inward};
 
 impl GearDocument {
     /// The gear, or its transverse section, if it can be made.
@@ -77,9 +77,14 @@ impl GearDocument {
     pub(super) fn field_errors(pointer: &str, faults: Vec<Fault>) -> Vec<FieldError> {
         let errors = faults.into_iter().map(|fault| {
             let unit = fault.field.unit;
-            let advice = fault
-                .cure
-                .map(|cure| format!(" {} would do.", spoken(cure, unit)));
+            let advice = fault.cure.map(|cure| {
+                let cure = spoken(cure, unit);
+                match fault.bound {
+                    Some((_, Side::AtMost)) => format!(" The largest is {cure}."),
+                    Some((_, Side::AtLeast)) => format!(" The least is {cure}."),
+                    None => format!(" {cure} would do."),
+                }
+            });
             let detail = fault.detail + &advice.unwrap_or_default();
             let place = format!("{pointer}/{}", fault.field.pointer);
             FieldError::new(place, fault.code, detail).nearest(fault.cure)

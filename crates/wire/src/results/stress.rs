@@ -62,7 +62,8 @@ document! {
         /// The largest von Mises stress along the edges of the holes, in MPa; absent without holes.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         hole_mpa: Vec<f64> = stresses(&gear.holes),
-        /// Where that is, in degrees; absent without holes.
+        /// Where that is: the angle about the axis of the gear from the centerline of tooth 0, positive towards the loaded flank of that tooth, from 0 to 360 degrees;
+        /// absent without holes.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         hole_angle_deg: Vec<f64> = angles(&gear.holes),
         /// How high that is, in mm; absent without holes, and in the plane.

@@ -5,7 +5,9 @@ use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use serde_json::{Value, json};
 
-use meshwright_exchange::rexs::{Choices, Import, Refused, import, is_model, is_packed, unpacked};
+use meshwright_exchange::rexs::{
+    Choices, Import, LoadedFlank, Refused, import, is_model, is_packed, unpacked,
+};
 
 use super::model_of;
 use crate::testing::{self, example, parse, submission};
@@ -158,16 +160,30 @@ fn a_helix_an_internal_gear_and_flanks_that_differ_are_refused_with_the_reason()
         r#"<ref id="12" role="origin"/>"#,
         r#"<ref id="10" role="origin"/>"#,
     );
-    assert_refused(&one_relief, "component 10", &["loaded_tooth_flank"]);
+    assert_refused(
+        &one_relief,
+        "component 10",
+        &["loaded_tooth_flank", "--flank left"],
+    );
     let told = one_relief.replacen(
         r#"true</attribute>"#,
         r#"true</attribute><attribute id="loaded_tooth_flank">right</attribute>"#,
         1,
     );
-    assert_eq!(
-        field(&taken(&told), "/pair/driving/tip_relief/amount_um"),
-        5.0
-    );
+    let amount = "/pair/driving/tip_relief/amount_um";
+    assert_eq!(field(&taken(&told), amount), 5.0);
+    // The caller chooses, whatever the model says.
+    for (flank, relieved) in [(LoadedFlank::Right, true), (LoadedFlank::Left, false)] {
+        let choices = Choices {
+            flank: Some(flank),
+            ..Choices::default()
+        };
+        for model in [&one_relief, &told] {
+            let imported = import(model.as_bytes(), &choices).expect("chosen");
+            let relief = imported.submission.pointer(amount);
+            assert_eq!(relief.is_some(), relieved, "{flank:?}");
+        }
+    }
 }
 
 #[test]
@@ -1095,11 +1111,6 @@ fn what_would_make_another_flank_is_refused_by_its_place() {
                 &format!("{}{}</relations>", step(12), step(13)),
             )
     };
-    assert_refused(
-        &hob(&said("protuberance_amount", "mm", "0.1")),
-        "component 70 (rack_shaped_tool), protuberance_amount",
-        &["0.1", "root"],
-    );
     assert!(
         import(
             hob(&said("protuberance_amount", "mm", "0")).as_bytes(),
@@ -1122,8 +1133,168 @@ fn what_would_make_another_flank_is_refused_by_its_place() {
     assert_refused(
         &rest,
         "component 13 (cylindrical_gear_flank), remaining_protuberance",
-        &["0.02"],
+        &["0.02", "protuberance_amount"],
     );
+}
+
+/// `model` with the values of component `id` in another file.
+fn elsewhere(model: &str, id: u32) -> String {
+    let (before, rest) = model
+        .split_once(&format!(r#"<component id="{id}" type=""#))
+        .unwrap_or_else(|| panic!("no component {id}"));
+    let (head, rest) = rest.split_once('>').expect("an end of the tag");
+    let rest = match head.strip_suffix('/') {
+        Some(_) => rest,
+        None => rest.split_once("</component>").expect("an end").1,
+    };
+    let head = head.trim_end_matches('/');
+    let source = said("data_source", "none", "./database.rexs")
+        + &said("referenced_component_id", "none", "7");
+    format!(r#"{before}<component id="{id}" type="{head}>{source}</component>{rest}"#)
+}
+
+#[test]
+fn a_component_whose_values_stand_in_another_file_is_refused_by_its_name_and_never_assumed() {
+    let sections = String::from_utf8_lossy(model!("bore-from-shaft-sections.rexs"));
+    let section = sections
+        .split_once(r#"" type="shaft_section""#)
+        .and_then(|(before, _)| before.rsplit_once(r#"id=""#)?.1.parse().ok())
+        .expect("a section");
+    // Stage, gear, what is said of it there, flank, tool, settings, relief and material.
+    let cases = [2, 10, 11, 12, 30, 31, 32, 33].map(|id| (CASE_2, id));
+    for (model, id) in cases.into_iter().chain([(&*sections, section)]) {
+        let model = elsewhere(model, id);
+        assert_refused(
+            &model,
+            &format!("component {id} ("),
+            &["another file", "./database.rexs, component 7"],
+        );
+    }
+    let whole = attribute("density");
+    let source = said("data_source", "none", "steels.rexs");
+    // All that is asked of a material is said, and nothing is asked of the unit.
+    let told = taken(&with(whole, &(whole.to_owned() + &source)));
+    assert_eq!(field(&told, "/pair/driven/material/density_kg_m3"), 7850.0);
+    assert!(parse(&taken(&elsewhere(CASE_2, 1)).submission).is_ok());
+    let file = "x".repeat(5000);
+    let long = with(whole, &said("data_source", "none", &file));
+    let Refused(faults) = refused(&long);
+    assert!(faults[0].detail.len() < 300, "{faults:?}");
+}
+
+/// Test case 2 whose hob says this too, with these settings of the steps after its own, by their generated shifts.
+fn hobbed(of_hob: &str, later: &[&str]) -> String {
+    let radius = attribute("tip_radius_factor");
+    let mut model = with(radius, &(radius.to_owned() + of_hob));
+    for (i, shift) in later.iter().enumerate() {
+        let (id, order) = (80 + i, i + 2);
+        let shift = said("generated_addendum_modification_coefficient", "none", shift);
+        let settings = format!(
+            r#"<component id="{id}" type="cylindrical_gear_manufacturing_settings">{shift}</component></components>"#
+        );
+        let steps = [12, 22].map(|flank| {
+            format!(
+                r#"<relation id="{order}{flank}" type="manufacturing_step" order="{order}"><ref id="{flank}" role="workpiece"/><ref id="{id}" role="manufacturing_settings"/></relation>"#
+            )
+        });
+        model = model
+            .replace("</components>", &settings)
+            .replace("</relations>", &(steps.concat() + "</relations>"));
+    }
+    model
+}
+
+#[test]
+fn the_protuberance_of_the_hob_is_read_with_its_height_or_its_angle_and_the_stock_that_it_leaves() {
+    let amount = said("protuberance_amount", "mm", "0.12");
+    let height = said("protuberance_height", "mm", "1.1");
+    let stock = said("machining_allowance_din_3972", "mm", "0.1");
+    let fields = |amount: f64, height: f64, stock: f64| json!({ "amount_um": amount, "height_mm": height, "grinding_stock_um": stock });
+    let read = |model: &str| field(&taken(model), "/pair/driving/protuberance");
+    let whole = hobbed(&(amount.clone() + &height + &stock), &[]);
+    assert_eq!(read(&whole), fields(120.0, 1.1, 100.0));
+    assert!(parse(&taken(&whole).submission).is_ok());
+    let factors = said("protuberance_amount_factor", "none", "0.06")
+        + &said("protuberance_height_factor", "none", "0.55");
+    assert_eq!(
+        read(&hobbed(&(factors + &stock), &[])),
+        fields(120.0, 1.1, 100.0)
+    );
+    // The rack of the ground teeth stands 0.1 mm / (2 mm sin 20 deg) of a module deeper: 0.1 mm on each flank.
+    let deeper = format!("{:.12}", -0.05 / 20_f64.to_radians().sin());
+    let steps = hobbed(&(amount.clone() + &height), &[&deeper]);
+    let stepped = read(&steps);
+    let ground = stepped["grinding_stock_um"].as_f64().expect("a number");
+    assert!((ground - 100.0).abs() < 1e-6, "{stepped}");
+    // What is left says the stock as well; without either nothing is ground off.
+    let rest = said("remaining_protuberance", "mm", "0.02");
+    let flank = attribute("normal_pressure_angle");
+    let plain = hobbed(&(amount.clone() + &height), &[]);
+    let left = plain.replacen(flank, &(flank.to_owned() + &rest), 1);
+    assert_eq!(read(&left), fields(120.0, 1.1, 100.0));
+    let unground = taken(&plain);
+    assert_eq!(
+        field(&unground, "/pair/driving/protuberance"),
+        fields(120.0, 1.1, 0.0)
+    );
+    assert_noted(
+        &unground,
+        &["component 30 (rack_shaped_tool \"Hob\") has no machining_allowance"],
+    );
+    // The angle to which a height of 1.1 mm leads, as the engine computes it: tan(delta/2) = p/(u + sqrt(u^2 - p (2 rho - p))).
+    let (alpha, rho, p) = (20_f64.to_radians(), 0.76, 0.12);
+    let u = (1.1 - rho + (rho - p) * alpha.sin()) / alpha.cos();
+    let delta = 2.0 * (p / (u + (u * u - p * (2.0 * rho - p)).sqrt())).atan();
+    let angle = (alpha - delta).to_degrees();
+    let by_angle = |angle: f64| said("protuberance_angle", "deg", &angle.to_string());
+    let angled = read(&hobbed(&(amount.clone() + &by_angle(angle) + &stock), &[]));
+    let found = angled["height_mm"].as_f64().expect("a number");
+    assert!((found - 1.1).abs() < 1e-9, "{angled}");
+    let both = |angle: f64| {
+        taken(&hobbed(
+            &(amount.clone() + &height + &by_angle(angle) + &stock),
+            &[],
+        ))
+    };
+    assert!(
+        !both(angle)
+            .remarks
+            .concat()
+            .contains("protuberance_angle: ")
+    );
+    let other = both(angle + 2.0);
+    assert_eq!(field(&other, "/pair/driving/protuberance/height_mm"), 1.1);
+    assert_noted(
+        &other,
+        &["Not read: component 30 (rack_shaped_tool \"Hob\"), protuberance_angle: "],
+    );
+    let Refused(faults) = refused(&hobbed(&amount, &[]));
+    assert!(
+        faults[0].place.starts_with("component 30")
+            && faults[0].detail.contains("protuberance_height"),
+        "{faults:?}"
+    );
+    // Ours stands before it.
+    let ours = r#"<attribute id="custom_meshwright_protuberance">{ "amount_um": 130, "height_mm": 1, "grinding_stock_um": 90 }</attribute>"#;
+    let both = whole.replacen(
+        attribute("face_width"),
+        &(attribute("face_width").to_owned() + ours),
+        1,
+    );
+    assert_eq!(
+        field(&taken(&both), "/pair/driving/protuberance/amount_um"),
+        130
+    );
+    // Less than the stock is refused at the tool.
+    let less = hobbed(
+        &(said("protuberance_amount", "mm", "0.08") + &height + &stock),
+        &[],
+    );
+    let imported = taken(&less);
+    let problem = parse(&imported.submission).expect_err("a step in the root");
+    let error = &problem.errors[0];
+    let from = imported.origin(&error.pointer).expect("from somewhere");
+    assert!(from.ends_with("protuberance_amount"), "{error:?} {from}");
 }
 
 /// What the profile of the driving gear takes off at a diameter in mm, in um.

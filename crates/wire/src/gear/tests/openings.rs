@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use meshwright_engine::gear::HoleShape;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
-use meshwright_exchange::dxf::outline;
+use meshwright_exchange::dxf::{Choices, outline};
 use serde_json::{Value, json};
 
 use super::{data_of, fault, faults, mended, near};
@@ -317,7 +317,8 @@ fn the_same_gear_drawn_both_ways_has_the_same_curve() {
     // As a drawing has them.
     let [of_lines, of_polylines] = [false, true].map(|of_polylines| {
         let text = dxf(&of_spokes, of_polylines);
-        let read = outline(text.as_bytes(), &[]).unwrap_or_else(|refused| panic!("{refused}"));
+        let read = outline(text.as_bytes(), &Choices::default())
+            .unwrap_or_else(|refused| panic!("{refused}"));
         assert_eq!(read.loops.len(), of_spokes.len());
         read.loops.into_iter().map(Value::from).collect()
     });

@@ -269,3 +269,48 @@ fn stresses_are_refused_by_each_method_that_tells_none() {
         assert!(parse(&silent).is_ok(), "{method}");
     }
 }
+
+#[test]
+fn a_refusal_says_what_is_meant_and_proposes_no_other_pair() {
+    let said = |at: &str, value: Value, code: Code| {
+        let mut document = case_2();
+        put(&mut document, at, value);
+        let error = parse(&document).expect_err(at).errors.remove(0);
+        assert_eq!(error.code, code, "{error:?}");
+        (error.detail, error.nearest)
+    };
+    let (detail, _) = said("/method", json!("flexibel"), Code::WrongType);
+    assert!(detail.contains("Is flexible meant?"), "{detail}");
+    let (detail, _) = said("/method", json!("Flexible"), Code::WrongType);
+    assert!(detail.contains("Is flexible meant?"), "{detail}");
+    let (detail, _) = said("/method", json!("boundary"), Code::WrongType);
+    assert!(!detail.contains("meant"), "{detail}");
+    let relief = json!({ "amount_um": 5 });
+    let (detail, _) = said("/pair/driving/tip_relief", relief, Code::MissingField);
+    for way in [
+        "radial_length_mm",
+        "roll_length_from_tip_mm",
+        "diameter_mm",
+        "roll_angle_deg",
+    ] {
+        assert!(detail.contains(way), "{way}: {detail}");
+    }
+    let (detail, nearest) = said(
+        "/pair/helix_angle_deg",
+        json!(15),
+        Code::NeedsThreeDimensions,
+    );
+    assert!(
+        detail.contains("three_dimensional") && nearest.is_none(),
+        "{detail}"
+    );
+    let (detail, nearest) = said("/pair/driven/tooth_count", json!(-50), Code::OutOfRange);
+    assert!(
+        detail.contains("internal gears are not computed") && nearest.is_none(),
+        "{detail}"
+    );
+    let place = "/pair/driven/blank/bore_radius_mm";
+    let (detail, nearest) = said(place, json!(47), Code::BoreTooLarge);
+    let largest = format!(" The largest is {} mm.", nearest.expect("a radius"));
+    assert!(detail.ends_with(&largest), "{detail}");
+}

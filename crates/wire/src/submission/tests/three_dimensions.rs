@@ -28,7 +28,7 @@ fn planes_refuse_what_they_do_not_know_and_three_dimensions_take_it() {
     let slopes = json!({ "lead_slope_um": vec![3.0; 50] });
     let crowned = json!([{ "kind": "crowning", "amount_um": 5 }]);
     for ((pointer, value), told_at, code, nearest) in refused! {
-        ("/pair/helix_angle_deg", json!(10)) => "/pair/helix_angle_deg", NeedsThreeDimensions, 0.0;
+        ("/pair/helix_angle_deg", json!(10)) => "/pair/helix_angle_deg", NeedsThreeDimensions;
         ("/pair/axial_offset_mm", json!(-1)) => "/pair/axial_offset_mm", NeedsThreeDimensions, 0.0;
         ("/pair/misalignment_um", json!({ "out_of_plane_um": 5 })) => "/pair/misalignment_um", NeedsThreeDimensions;
         ("/pair/driving/lead_modifications", crowned) => "/pair/driving/lead_modifications", NeedsThreeDimensions;
