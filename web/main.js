@@ -249,7 +249,8 @@ class Page {
     const runUp = new RunUp(byId("run-up"), {
       designs,
       ask: () => form.begin("/dynamics"),
-      asked: () => Boolean(design.get("/dynamics")) && !this.#problem,
+      asked: () => Boolean(design.get("/dynamics")),
+      refused: () => this.#problem && form.inWords(reasonOf(this.#problem)),
       focus: () => form.focus("/dynamics/driving_speed_rpm"),
       stage: {
         turn: (by) => this.#turn(this.#position + by),
@@ -303,7 +304,7 @@ class Page {
     await this.#follower.settled();
     const [problem, computed] = [this.#problem, this.#computed];
     if (this.#design.submission !== released || !problem || !computed || same(computed, released)) return;
-    const why = problem.errors?.[0]?.detail ?? problem.detail;
+    const why = reasonOf(problem);
     this.#design.snapBack(computed);
     this.#notice.say(`Back to what can be made. ${why}`, false);
   }
@@ -423,6 +424,7 @@ class Page {
     const [problem, computed] = [this.#problem, this.#computed];
     if (!problem && !this.#problems.isShown) return;
     this.#drawing.refreshHoles((problem?.errors ?? []).map(({ pointer }) => pointer));
+    if (this.tabs?.current === "run-up") this.#panels["run-up"]?.refresh?.();
     if (!problem) return this.#problems.hide();
     const isAnother = computed && !same(computed, this.#design.submission);
     const back = isAnother ? () => this.#design.replace(computed, "open") : null;
@@ -781,6 +783,13 @@ function legendOf({ name, results }, designs) {
   const differ = designs.some((other) => other.results.method !== results.method);
   return differ ? `${name} ${results.method.replace(/_/g, " ")}` : name;
 }
+
+/**
+ * What is wrong, in one sentence.
+ *
+ * @type {(problem: Problem) => string}
+ */
+const reasonOf = ({ errors, detail, title }) => errors?.[0]?.detail ?? detail ?? title ?? "";
 
 const page = new Page();
 page.begin().catch((error) => {

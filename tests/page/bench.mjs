@@ -46,6 +46,33 @@ const LONG = {
   output_torques_n_m: [150, 250],
 };
 
+/** A steel pinion on a wheel of POM, of the drive of a robot, near what the wheel bears. */
+const PLASTIC = {
+  method: "flexible",
+  pair: {
+    center_distance_mm: 40.65,
+    driving: {
+      tooth_count: 18,
+      module_mm: 0.8,
+      face_width_mm: 11.5,
+      blank: { bore_radius_mm: 2.5 },
+      profile_shift: 0.42,
+      span_measurement: { teeth: 3, length_mm: 6.29 },
+    },
+    driven: {
+      tooth_count: 83,
+      module_mm: 0.8,
+      face_width_mm: 10,
+      blank: { bore_radius_mm: 8 },
+      profile_shift: -0.12,
+      material: { youngs_modulus_gpa: 2.8, poisson_ratio: 0.38, density_kg_m3: 1410 },
+      span_measurement: { teeth: 10, length_mm: 23.25 },
+    },
+  },
+  output_torques_n_m: [8.5],
+  resolution: { positions_per_mesh_period: 10, grid: "coarse" },
+};
+
 /** @param service the service whose page is used */
 export async function benchSteps(service) {
   const { opened, step, daily, engine } = stepsOn(service);
@@ -525,6 +552,14 @@ export async function benchSteps(service) {
       const [, hertz] = /outside the webs, it is about (\d+) Hz/.exec(await warning.innerText());
       assert.ok(Math.abs(Number(hertz) / 5286 - 1) < 0.05, hertz);
       assert.match(await warning.locator("a").getAttribute("href"), /guides\/will-it-rattle/);
+      // It stands beside the number that it betters, too.
+      await tab(page, "run-up");
+      const beside = page.locator("#run-up .outdated", { hasText: `it is about ${hertz} Hz` });
+      await beside.waitFor();
+      assert.match(
+        await beside.locator("xpath=following-sibling::table").innerText(),
+        /the natural frequency is \d+ Hz/,
+      );
     },
   );
 
@@ -595,7 +630,36 @@ export async function benchSteps(service) {
     },
   );
 
-  await opened("kept designs stand in one run-up", async (page) => {
+  await step(
+    "a run-up ends at what the teeth bear, and one that is refused says so where it was asked for",
+    async (page) => {
+      await openDesign(page, service, PLASTIC);
+      await settled(page);
+      await tab(page, "run-up");
+      await page.locator("#run-up-ask").click();
+      // Twice the torque is more than these teeth bear, which nobody has asked for.
+      await page.locator("#run-up .waterfall").waitFor();
+      await settled(page);
+      assert.ok(await page.locator("#problem").isHidden(), await page.locator("#problem").innerText());
+      await (await field(page, "/force_table")).check();
+      await (await field(page, "/force_table/largest_output_torque_n_m")).fill("17");
+      await (await field(page, "/dynamics/driving_speed_rpm/to")).fill("500");
+      await page.locator("#problem").waitFor();
+      await page.locator("#problem button", { hasText: "Show the field" }).waitFor();
+      await page.reload();
+      await page.locator("#problem").waitFor();
+      await tab(page, "run-up");
+      await page
+        .locator("#run-up [role=status]", {
+          hasText: /No run-up: “Largest output torque \(force table\)” is 17 N m, which would deflect these teeth/,
+        })
+        .waitFor();
+      assert.doesNotMatch(await page.locator("#run-up").innerText(), /is being computed/);
+      await axe(page);
+    },
+  );
+
+  await engine.opened("kept designs stand in one run-up", async (page) => {
     await tab(page, "run-up");
     await page.locator("#run-up-ask").click();
     await page.locator("#run-up .waterfall").waitFor();
@@ -885,7 +949,7 @@ export async function benchSteps(service) {
     await axe(page);
   });
 
-  await opened("teeth are drawn by a class, and pasted from a spreadsheet", async (page) => {
+  await engine.opened("teeth are drawn by a class, and pasted from a spreadsheet", async (page) => {
     await page.locator("#start").selectOption("standard-pair");
     await named(page, "50/50");
     const before = await answer(page, "p-p");
@@ -1371,7 +1435,7 @@ export async function benchSteps(service) {
     },
   );
 
-  await opened(
+  await engine.opened(
     "a population draws its teeth in place of those of the design, at torques of the design, and a search says where it ends",
     async (page) => {
       const drawn = page.locator("#deviations-driven-class");
@@ -1552,7 +1616,7 @@ export async function benchSteps(service) {
     },
   );
 
-  await step(
+  await engine.step(
     "a population of a pair whose teeth meet late has as many torques as there is room for, without what goes on from its curves",
     async (page) => {
       const posted = [];
@@ -1597,6 +1661,35 @@ export async function benchSteps(service) {
   );
 
   await step(
+    "a population that no number of torques makes small enough says so before it is drawn, with what fits",
+    async (page) => {
+      const pair = {
+        ...LONG.pair,
+        center_distance_mm: 133.5,
+        driving: { ...LONG.pair.driving, tooth_count: 27 },
+        driven: { ...LONG.pair.driven, tooth_count: 79, blank: { bore_radius_mm: 20 } },
+      };
+      await openDesign(page, service, { ...LONG, pair, output_torques_n_m: [150] });
+      await settled(page);
+      await tab(page, "population");
+      // Each tooth meets each other after 27 times 79 mesh periods, of 10 positions each: more than 20,000.
+      const told = page.locator("#population-ahead");
+      await told
+        .filter({
+          hasText:
+            /21330 positions.*What fits: teeth of the driving gear as designed, or teeth of the driven gear as designed\./s,
+        })
+        .waitFor();
+      assert.equal(await page.locator("#population-torques").inputValue(), "150", "one torque, as is told");
+      const [words, run] = await Promise.all([told, page.locator("#population-run")].map((each) => each.boundingBox()));
+      assert.ok(words.y < run.y, "before the button");
+      await page.locator("#population-driving").selectOption("");
+      await told.filter({ hasText: /A member has \d+ positions/ }).waitFor();
+      await axe(page);
+    },
+  );
+
+  await engine.step(
     "jobs say which design each is of: by its tags, its name, and what differs from the design on the page",
     async (page) => {
       const asked = [];
@@ -1750,6 +1843,29 @@ export async function benchSteps(service) {
           );
     }
   });
+
+  await step(
+    "numbers on axes are those of the page in every language of the browser",
+    async (page) => {
+      await page.addInitScript(() => {
+        window.painted = [];
+        const { fillText } = CanvasRenderingContext2D.prototype;
+        CanvasRenderingContext2D.prototype.fillText = function (text, ...place) {
+          window.painted.push(text);
+          return fillText.call(this, text, ...place);
+        };
+      });
+      await open(page, service);
+      await page.locator("#chart-spectrum").scrollIntoViewIfNeeded();
+      const painted = await page.evaluate(() => [...new Set(window.painted)]);
+      assert.ok(painted.includes("0.2") && painted.some((text) => Number(text) >= 100), painted.join(" "));
+      assert.deepEqual(
+        painted.filter((text) => /\d,\d/.test(text)),
+        [],
+      );
+    },
+    { locale: "de-DE" },
+  );
 
   await opened(
     "one tab leads to the holes, and what asks for less motion gets less",

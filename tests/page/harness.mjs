@@ -26,6 +26,10 @@ const browser = await chromium.launch({ executablePath: process.env.BROWSER, arg
 let passed = 0;
 const failed = [];
 const flaky = [];
+// What a step that has failed still waits for ends with its page.
+process.on("unhandledRejection", (error) => {
+  if (!/has been closed/.test(String(error))) throw error;
+});
 const recordings = new Set();
 
 /** The service that most steps use: before it stand recordings, unless every step is run with the real one. */

@@ -136,7 +136,7 @@ await opened("stresses are shown where they are asked for", async (page) => {
   await axe(page);
 });
 
-await step("lists of holes and slots are opened, changed and computed", async (page, context) => {
+await engine.step("lists of holes and slots are opened, changed and computed", async (page, context) => {
   const of = (name) => field(page, `${HOLES}${name}`);
   await open(page, service);
   await page.locator("#start").selectOption("slots");
@@ -431,6 +431,9 @@ await withOwnService({}, (locked, { step: onLocked }) => {
     await page.goto(locked.url);
     await page.locator("#key-dialog[open]").waitFor();
     await axe(page);
+    await page.locator("#key").fill("mw_nobody");
+    await page.locator("#key-form button.primary").click();
+    await page.locator("#key-error", { hasText: /^This key is not known\.$/ }).waitFor();
     await page.locator("#key").fill(key);
     await page.locator("#key-form button.primary").click();
     await answered(page);

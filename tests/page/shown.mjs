@@ -94,7 +94,7 @@ const watch = (page) =>
 /** @param service the service whose page is used */
 export async function shownSteps(service) {
   const { opened, step, daily, engine } = stepsOn(service);
-  await opened(
+  await daily.opened(
     "a decimal comma is a decimal point, in a field, in a list and in a panel, and what can be read in two ways says so",
     async (page) => {
       const type = async (pointer, text) => {
@@ -115,25 +115,83 @@ export async function shownSteps(service) {
       await type("/output_torques_n_m", "60, 80");
       assert.deepEqual((await designOf(page)).output_torques_n_m, [60, 80]);
       assert.ok(await page.locator("#problem").isHidden());
-      await type("/output_torques_n_m", "100,200");
-      await page.locator("#form .field-error", { hasText: "two ways" }).waitFor();
+      await type("/output_torques_n_m", "40,650");
+      assert.deepEqual((await designOf(page)).output_torques_n_m, [40.65]);
       await type("/output_torques_n_m", "60,80,100");
       await page.locator("#form .field-error", { hasText: "stands a space or a semicolon" }).waitFor();
       await type("/output_torques_n_m", "100");
       await type("/pair/center_distance_mm", "100 mm");
       await page.locator("#form .field-error", { hasText: "“100 mm” is no number" }).waitFor();
       await axe(page);
-      await type("/pair/center_distance_mm", "100.5");
-      await page.locator("#problem").waitFor({ state: "hidden" });
+      // A point before three digits is decimal, or stands between thousands: nothing is computed until that is chosen.
+      const asked = [];
+      page.on("request", (request) => {
+        if (/v1\/preview$/.test(request.url())) asked.push(JSON.parse(request.postData()).pair.center_distance_mm);
+      });
+      const distance = await field(page, "/pair/center_distance_mm");
+      await distance.fill("100.600");
+      const reading = (words) => page.locator("#form .field-error button", { hasText: words });
+      await page.locator("#form .field-error", { hasText: "two ways: 100.6 or 100600" }).waitFor();
+      await settled(page);
       await tab(page, "sweep");
-      await page.locator("#sweep-from").fill("12,5");
-      await page.locator("#sweep-to").fill("1,500");
+      await page.locator("#sweep-to").fill("1.500");
       await page.locator("#sweep-run").click();
       await page.locator("#sweep-state", { hasText: "two ways" }).waitFor();
+      assert.deepEqual(asked, []);
+      assert.ok(await reading("Use 100600 mm").isVisible());
+      await changing(page, () => reading("Use 100.6 mm").click());
+      assert.equal((await designOf(page)).pair.center_distance_mm, 100.6);
+      // Who has said so is not asked again.
+      await changing(page, () => distance.fill("100.500"));
+      assert.equal((await designOf(page)).pair.center_distance_mm, 100.5);
+      // An arrow turns the last digit that was typed, a zero too.
+      await distance.press("ArrowUp");
+      assert.equal(await distance.inputValue(), "100.501");
+      await distance.press("ArrowDown");
+      assert.equal(await distance.inputValue(), "100.500");
+      await settled(page);
+      await tab(page, "sweep");
+      await page.locator("#sweep-from").fill("12,5");
       await page.locator("#sweep-to").fill("112,5");
       await page.locator("#sweep-run").click();
       await page.locator("#sweep .scatter .strong").waitFor();
       assert.match(await page.locator("#sweep .scatter circle title").first().textContent(), /12\.5/);
+    },
+  );
+
+  await opened(
+    "no dialog takes the focus from who types, and an expired key is told beside the curves",
+    async (page, context) => {
+      await page.route(/\/v1\/(validate|preview)$/, (route) =>
+        route.fulfill({
+          status: 401,
+          contentType: "application/problem+json",
+          body: JSON.stringify({
+            code: "unauthorized",
+            status: 401,
+            title: "Who asks is not known",
+            detail: "The key is not known here, was revoked or has expired.",
+          }),
+        }),
+      );
+      const torque = await field(page, "/output_torques_n_m");
+      await torque.click();
+      await torque.press("Control+a");
+      const refused = page.waitForResponse((answer) => answer.status() === 401);
+      await torque.press("1");
+      await refused;
+      await page.locator("#problem", { hasText: "Who asks is not known" }).waitFor();
+      await torque.pressSequentially("20");
+      assert.equal(await torque.inputValue(), "120");
+      const other = await context.newPage();
+      await other.route(/\/v1\/(validate|preview|outline)$/, (route) => route.fulfill({ status: 401, body: "{}" }));
+      await other.goto(service.url);
+      await other.locator("#key-dialog[open]").waitFor();
+      assert.equal(await other.locator("#drawing .hole").count(), 0, "no holes without a gear");
+      await other.close();
+      assert.equal(await page.locator("#key-dialog[open]").count(), 0);
+      await page.locator("#problem button", { hasText: "Give a key" }).click();
+      await page.locator("#key-dialog[open]").waitFor();
     },
   );
 
@@ -332,7 +390,9 @@ export async function shownSteps(service) {
       await torque.fill("150");
       await settled(page);
       await page.locator("#projected #whole").click();
-      await page.waitForFunction(() => window.states.some((words) => /^Computing, about \d+ s more$/.test(words)));
+      await page.waitForFunction(() =>
+        window.states.some((words) => /^Computing, three dimensional, about \d+ s more$/.test(words)),
+      );
       // Overtaken while it is computed.
       await torque.fill("160");
       await page.waitForFunction(() => document.body.classList.contains("other"));
@@ -572,6 +632,16 @@ export async function shownSteps(service) {
       await tab(page, "export");
       const { name } = await downloaded(page, () => page.locator("[data-download=csv]").click());
       assert.equal(name, "meshwright-50-50-10xr7.5-34-curves.csv");
+      // So do pictures, with the torque and the version.
+      for (const kind of ["svg", "pair"]) {
+        const { bytes } = await downloaded(page, () => page.locator(`[data-download=${kind}]`).click());
+        assert.match(bytes.toString(), />50\/50, 10×r7\.5@34, 115 N m, flexible, Meshwright[^<]* \d+\.\d+/, kind);
+      }
+      // A table has decimal commas where they are chosen.
+      await page.locator("#decimal-commas").check();
+      const table = await downloaded(page, () => page.locator("[data-download=csv]").click());
+      assert.match(table.bytes.toString(), /^output_torque_n_m;mesh_position;[^\r]*\r\n115;0;-?\d+(,\d+)?;[^.]*\r\n/);
+      await page.locator("#decimal-commas").uncheck();
       await tab(page, "curves");
       const pages = async () =>
         [...(await page.pdf({ preferCSSPageSize: true })).toString("latin1").matchAll(/\/Type\s*\/Page\b/g)].length;

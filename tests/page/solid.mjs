@@ -454,6 +454,35 @@ export async function solidSteps(service) {
       assert.ok(Math.abs(density / 7850 - 1) < 0.01, `steel of ${ratios.join(" and ")} kg/m3`);
   });
 
+  await step(
+    "what is seen in space or deformed is told while it is computed, can be stopped, and ends with its view",
+    async (page) => {
+      await openDesign(page, service, HELICAL);
+      await settled(page);
+      // Jobs go on until they are cancelled.
+      await page.route(/\/v1\/jobs\/[^/]+\/events$/, () => {});
+      const begun = () => page.waitForRequest(/\/v1\/jobs\/[^/]+\/events$/);
+      const cancelled = () => page.waitForRequest(/\/v1\/jobs\/[^/]+\/cancel$/);
+      let [begins, ends] = [begun(), cancelled()];
+      await page.locator("[data-view=space]").click();
+      const told = page.locator("#space-job");
+      await told.filter({ hasText: "Computing the load on each line" }).waitFor();
+      await begins;
+      await axe(page);
+      await page.locator("button[data-view=pair]").click();
+      await ends;
+      assert.equal(await told.textContent(), "");
+      [begins, ends] = [begun(), cancelled()];
+      await page.locator("#deformed").click();
+      const note = page.locator("#deformed-note");
+      await note.filter({ hasText: "Computing the deformed pair" }).waitFor();
+      await begins;
+      await note.locator("button", { hasText: "Stop" }).click();
+      await ends;
+      await note.filter({ hasText: /^Stopped\.$/ }).waitFor();
+    },
+  );
+
   await step("a helical pair is seen deformed in the section through the middle of its face", async (page) => {
     await openDesign(page, service, HELICAL);
     await settled(page);

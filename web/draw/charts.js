@@ -71,6 +71,8 @@ const Plot = /** @type {any} */ (uPlot);
 const LEAST_PIXELS = 14;
 /** Levels of the spectrum are above so many um. */
 const REFERENCE = 0.001;
+/** Lines below this part of the largest are too short to be named, unless levels are drawn. */
+const SEEN = 0.02;
 /** @type {Panel} */
 const SPECTRUM = { id: "spectrum", title: "Spectrum of the transmission error", unit: "µm" };
 const X_TITLE = "mesh position in mesh periods";
@@ -461,6 +463,8 @@ export class Charts {
       font: colors.font,
       grid: { stroke: colors.grid, width: 1 },
       ticks: { stroke: colors.grid, size: 4 },
+      // As everywhere on the page, whichever language the browser has.
+      values: (/** @type {unknown} */ _, /** @type {number[]} */ splits) => splits.map((value) => number(value, 6)),
     };
     /** @satisfies {Partial<import("uplot").Options>} */
     const common = {
@@ -478,12 +482,7 @@ export class Charts {
           size: 1.9 * colors.rem,
           space: 2.8 * colors.rem,
         },
-        {
-          ...axis,
-          size: 3.6 * colors.rem,
-          space: 2.1 * colors.rem,
-          values: (/** @type {unknown} */ _, /** @type {number[]} */ splits) => splits.map((value) => number(value, 6)),
-        },
+        { ...axis, size: 3.6 * colors.rem, space: 2.1 * colors.rem },
       ],
     };
     return common;
@@ -643,7 +642,10 @@ export class Charts {
 
   /** @param {DesignSpectrum[]} spectra */
   #names(spectra) {
-    return namesOf(spectra, this.#lastOrder()).map((name) => ({ ...name, value: this.#level(name.value) }));
+    return namesOf(spectra, this.#lastOrder(), this.decibels ? 0 : SEEN).map((name) => ({
+      ...name,
+      value: this.#level(name.value),
+    }));
   }
 
   /**

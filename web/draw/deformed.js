@@ -2,7 +2,8 @@
 // The pair under load: how it deforms at the position shown, many times enlarged, its edges colored by stress.
 
 import { debounced, h, s } from "./dom.js";
-import { json, ProblemError, solved } from "../state/api.js";
+import { ViewJob } from "./viewjob.js";
+import { json } from "../state/api.js";
 import { isSolid } from "../state/dimensions.js";
 import { number } from "../state/numbers.js";
 
@@ -39,6 +40,7 @@ export class Deformation {
     this.drawing = drawing;
     this.button = button;
     this.note = note;
+    this.job = new ViewJob(note);
     this.live = live;
     this.position = position;
     this.later = debounced(REST, () => this.#show());
@@ -64,12 +66,12 @@ export class Deformation {
   #turnOn() {
     this.#on = true;
     this.button.setAttribute("aria-pressed", "true");
-    this.note.replaceChildren("Computing");
     this.#show();
   }
 
   #hide() {
     this.#asked += 1;
+    this.job.end();
     this.drawing.setDeformed(null);
   }
 
@@ -78,25 +80,18 @@ export class Deformation {
     this.#asked += 1;
     const asked = this.#asked;
     const wanted = () => this.#on && asked === this.#asked;
-    try {
-      const live = await this.live();
-      if (!live) return;
-      const { submission } = live;
-      const job = await solved(submission);
-      if (!wanted()) return;
-      const edges = await json(`v1/jobs/${job.id}/results/edges.json?mesh_position=${this.position().toFixed(4)}`);
-      if (!wanted()) return;
-      const drawn = this.drawing.setDeformed(edges);
-      if (!drawn) return;
-      const { scale, top } = drawn;
-      const section = isSolid(submission.method)
-        ? "In the section through the middle of the common face; parts that end before it, where they end. "
-        : "";
-      this.note.replaceChildren(section, ...words(edges, scale, top));
-    } catch (error) {
-      if (!(error instanceof ProblemError)) throw error;
-      if (wanted()) this.note.replaceChildren(error.reason);
-    }
+    const live = await this.live();
+    if (!live || !wanted()) return;
+    const edges = await this.job.of(live, "the deformed pair", ({ id }, signal) =>
+      json(`v1/jobs/${id}/results/edges.json?mesh_position=${this.position().toFixed(4)}`, { signal }),
+    );
+    const drawn = edges && wanted() && this.drawing.setDeformed(edges);
+    if (!drawn) return;
+    const { scale, top } = drawn;
+    const section = isSolid(live.asked.method)
+      ? "In the section through the middle of the common face; parts that end before it, where they end. "
+      : "";
+    this.note.replaceChildren(section, ...words(edges, scale, top));
   }
 }
 

@@ -2,6 +2,15 @@
 // What is on the page as files, and as text to paste elsewhere.
 
 import { dress, h } from "./dom.js";
+import { withCommas } from "../state/tables.js";
+
+/** Under this name the browser remembers that tables have decimal commas. */
+const COMMAS = "meshwright-decimal-commas";
+
+export const hasCommas = () => localStorage.getItem(COMMAS) === "yes";
+
+/** @param {boolean} on */
+export const chooseCommas = (on) => (on ? localStorage.setItem(COMMAS, "yes") : localStorage.removeItem(COMMAS));
 
 /**
  * Gives the visitor a file.
@@ -16,6 +25,13 @@ export function save(name, type, content) {
   link.remove();
   setTimeout(() => URL.revokeObjectURL(address), 10_000);
 }
+
+/**
+ * Gives the visitor a table of CSV as a file, with the decimals that they have chosen.
+ *
+ * @type {(name: string, csv: string) => void}
+ */
+export const saveTable = (name, csv) => save(name, "text/csv", hasCommas() ? withCommas(csv) : csv);
 
 /**
  * A drawing of the page as an element of its own: looks that come from the style sheet are written into it.

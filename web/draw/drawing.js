@@ -143,7 +143,8 @@ export class Drawing {
    * @param {string[]} wrong pointers of what is wrong with the design
    */
   refreshHoles(wrong = []) {
-    for (const gear of Object.values(this.#gears)) gear.holes.refresh(wrong);
+    // Without its gears a hole has no place.
+    if (this.#outline) for (const gear of Object.values(this.#gears)) gear.holes.refresh(wrong);
   }
 
   /**

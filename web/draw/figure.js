@@ -380,6 +380,32 @@ export function stacked(figures, background) {
   return sheet;
 }
 
+/** The height of the line that says what a picture shows. */
+const CAPTION = 26;
+
+/**
+ * A drawing under a line that says what it shows.
+ *
+ * @type {(svg: SVGSVGElement, said: string, background: string) => SVGSVGElement}
+ */
+export function captioned(svg, said, background) {
+  const [width, height] = ["width", "height"].map((name) => Number(svg.getAttribute(name)));
+  dress(svg, { y: CAPTION });
+  const ink = { "font-family": "system-ui, sans-serif", "font-size": 12, fill: "currentColor" };
+  return s(
+    "svg",
+    {
+      viewBox: `0 0 ${width} ${height + CAPTION}`,
+      width,
+      height: height + CAPTION,
+      xmlns: "http://www.w3.org/2000/svg",
+    },
+    s("rect", { width, height: height + CAPTION, fill: background }),
+    words(said, { ...ink, x: 10, y: 18 }),
+    svg,
+  );
+}
+
 /**
  * A drawing as a picture of so many pixels for each of its units.
  *

@@ -1,7 +1,7 @@
 // @ts-check
 // The files that the service makes of a job.
 
-import { save } from "./download.js";
+import { save, saveTable } from "./download.js";
 import { request } from "../state/api.js";
 import { isSolid } from "../state/dimensions.js";
 
@@ -57,5 +57,7 @@ export const filesOf = (submission) =>
  */
 export async function saveFile(id, name, prefix, query = "") {
   const place = name === "submission.rexs" ? name : `results${name === "results.json" ? "" : `/${name}`}`;
-  save(`${prefix}${name}`, "", await (await request(`v1/jobs/${id}/${place}${query}`)).blob());
+  const file = await request(`v1/jobs/${id}/${place}${query}`);
+  if (name.endsWith(".csv")) saveTable(`${prefix}${name}`, await file.text());
+  else save(`${prefix}${name}`, "", await file.blob());
 }

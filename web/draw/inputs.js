@@ -9,12 +9,32 @@ import { numberOf, unreadable, wordsOf } from "../state/typed.js";
 /** @import { Kind } from "../state/schema.js" */
 
 /**
+ * The numbers that the page itself has written into a control: they have decimal points.
+ *
+ * @type {WeakMap<object, Set<string>>}
+ */
+const written = new WeakMap();
+
+/**
+ * Writes numbers into a control.
+ *
+ * @type {(input: { value: string }, text: string) => void}
+ */
+export function put(input, text) {
+  input.value = text;
+  written.set(input, new Set(wordsOf(text)));
+}
+
+/** @type {(input: object, word: string) => number | string} */
+const numberIn = (input, word) => (written.get(input)?.has(word) ? Number(word) : numberOf(word));
+
+/**
  * The number in a control of a panel, undefined where there is none; throws what is wrong with it.
  *
  * @type {(input: { value: string }) => number | undefined}
  */
 export function given(input) {
-  const value = input.value.trim() === "" ? undefined : numberOf(input.value);
+  const value = input.value.trim() === "" ? undefined : numberIn(input, input.value);
   if (typeof value === "string") throw new ProblemError({ detail: unreadable(value) });
   return value;
 }
@@ -26,7 +46,7 @@ export function given(input) {
  */
 export function allGiven(input) {
   return wordsOf(input.value)
-    .map(numberOf)
+    .map((word) => numberIn(input, word))
     .map((value) => {
       if (typeof value === "string") throw new ProblemError({ detail: unreadable(value) });
       return value;
@@ -51,13 +71,13 @@ export const numeric = (properties) =>
 export function read(input, kind) {
   const text = input.value.trim();
   if (text === "") return undefined;
-  if (kind.kind === "numbers") return wordsOf(text).map(numberOf);
+  if (kind.kind === "numbers") return wordsOf(text).map((word) => numberIn(input, word));
   if (kind.kind === "texts")
     return text
       .split(",")
       .map((word) => word.trim())
       .filter(Boolean);
-  return kind.kind === "number" ? numberOf(text) : text;
+  return kind.kind === "number" ? numberIn(input, text) : text;
 }
 
 /**
@@ -71,6 +91,8 @@ export function write(input, kind, value) {
   if (input instanceof HTMLInputElement && kind.kind === "flag") input.checked = value ?? kind.schema.default ?? false;
   else if (kind.kind === "choice") input.value = value ?? kind.schema.default ?? kind.schema.enum?.[0];
   else if (value === undefined || value === null) input.value = "";
+  else if (typeof value === "number") put(input, String(value));
+  else if (Array.isArray(value) && value.every((each) => typeof each === "number")) put(input, value.join(", "));
   else if (Array.isArray(value)) input.value = value.join(", ");
   else input.value = typeof value === "object" ? JSON.stringify(value) : String(value);
 }

@@ -7,7 +7,8 @@ import { indexAt } from "./drawing.js";
 import { faceOf, rampAt, scaleOf } from "./face.js";
 import { pixelOf, Raster } from "./raster.js";
 import { alongAxis, contactAt, contactLines, surfaceOf } from "./solid.js";
-import { json, ProblemError, solved } from "../state/api.js";
+import { ViewJob } from "./viewjob.js";
+import { json } from "../state/api.js";
 import { extent, fixed, number } from "../state/numbers.js";
 
 /** @import { Along } from "./solid.js" */
@@ -73,6 +74,8 @@ export class Space {
     });
     this.words = h("p", { className: "visually-hidden", id: "space-words" });
     this.legend = h("p", { className: "legend" });
+    const told = h("p", { className: "note", id: "space-job", role: "status" });
+    this.job = new ViewJob(told);
     const gears = h(
       "select",
       { id: "space-gears", on: { change: ({ target }) => this.#choose(target.value) } },
@@ -97,6 +100,7 @@ export class Space {
         ...labelled("Show", gears),
         this.legend,
       ),
+      told,
       this.words,
     );
     place.append(this.element);
@@ -122,6 +126,7 @@ export class Space {
   hide() {
     this.#shown = false;
     this.element.hidden = true;
+    this.job.end();
   }
 
   /**
@@ -164,21 +169,17 @@ export class Space {
   async #fetch() {
     this.#asked += 1;
     const asked = this.#asked;
+    this.job.end();
     if (!this.#shown || !this.#curve?.face || this.#pattern) return;
-    try {
-      const live = await this.live();
-      if (!live || asked !== this.#asked) return;
-      const job = await solved(live.submission);
-      if (asked !== this.#asked) return;
-      const { curves } = await json(
-        `v1/jobs/${job.id}/results/contact-pattern.json?torque=${live.results.curves[0].output_torque_n_m}`,
-      );
-      if (asked !== this.#asked) return;
-      this.#pattern = curves[0] ?? null;
-      this.#ask();
-    } catch (error) {
-      if (!(error instanceof ProblemError)) throw error;
-    }
+    const live = await this.live();
+    if (!live || asked !== this.#asked || !this.#shown) return;
+    const torque = live.results.curves[0].output_torque_n_m;
+    const told = await this.job.of(live, "the load on each line", ({ id }, signal) =>
+      json(`v1/jobs/${id}/results/contact-pattern.json?torque=${torque}`, { signal }),
+    );
+    if (!told || asked !== this.#asked) return;
+    this.#pattern = told.curves[0] ?? null;
+    this.#ask();
   }
 
   /** @param {string} which */

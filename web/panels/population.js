@@ -4,7 +4,7 @@
 
 import { button, debounced, h, inLine, labelled, note, region, s, table, tableRow, unseen } from "../draw/dom.js";
 import { figure } from "../draw/figure.js";
-import { allGiven, given, numeric } from "../draw/inputs.js";
+import { allGiven, given, numeric, put } from "../draw/inputs.js";
 import { offer, options } from "./offer.js";
 import { mostOften, Question } from "./question.js";
 import { json, post, ProblemError } from "../state/api.js";
@@ -95,7 +95,7 @@ export function population(place, design, form, limits, onOpen) {
     inWords: (detail) => form.inWords(detail),
     ignored: NOT_ASKED,
   });
-  const ahead = note();
+  const ahead = h("p", { className: "note", id: "population-ahead", role: "status" });
   const quantity = h("select", { id: "population-quantity", on: { change: () => last && draw() } }, ...options(SHOWN));
   const torque = h("select", { id: "population-torque", on: { change: () => last && draw() } });
   const picker = h(
@@ -129,9 +129,9 @@ export function population(place, design, form, limits, onOpen) {
       ),
       ...laws.map((each) => each.element),
       inLine(...labelled("Torques", torques), h("span", { className: "unit" }, "N m")),
+      ahead,
       inLine(question.run, question.cancel),
     ),
-    ahead,
     question.state,
     question.of.element,
     missing,
@@ -159,24 +159,18 @@ export function population(place, design, form, limits, onOpen) {
       own.length > 1
         ? own
         : TORQUES[Math.min(most, TORQUES.length) - 1].map((part) => Number((part * own[0]).toPrecision(3)));
-    torques.value = about.slice(0, most).join(", ");
+    put(torques, about.slice(0, most).join(", "));
   }
 
   /** Says what the members will take: one whose teeth all differ repeats only when every tooth has met every other. */
   const foresee = debounced(REST, async () => {
     if (place.hidden) return;
+    /** @type {GearName[]} */
+    let differing = [];
     try {
-      const {
-        base,
-        population: { size: count, accuracy },
-      } = asked();
-      for (const member of MEMBERS.filter((each) => accuracy?.[each]))
-        base.pair[member].tooth_deviations = {
-          pitch_cumulative_um: Array.from({ length: base.pair[member].tooth_count }, (_, i) => Number(i === 1)),
-        };
-      const {
-        estimate: { seconds, positions },
-      } = await post("v1/validate", { ...base, output_torques_n_m: base.output_torques_n_m.slice(0, 1) });
+      const { size: count, accuracy } = asked().population;
+      differing = MEMBERS.filter((each) => accuracy?.[each]);
+      const { seconds, positions } = await estimated(differing);
       const most = Math.floor(limits.positions / positions);
       suggestTorques(most);
       const { length } = asked().base.output_torques_n_m;
@@ -187,12 +181,50 @@ export function population(place, design, form, limits, onOpen) {
     } catch (error) {
       if (!(error instanceof ProblemError)) throw error;
       // What is wrong with the design is told beside it.
-      ahead.textContent =
-        error.problem.code === "too_large"
-          ? `${form.inWords(error.reason)} Teeth of one gear as designed leave room too: the pair repeats after fewer mesh periods then.`
-          : "";
+      if (error.problem.code !== "too_large") ahead.textContent = "";
+      else {
+        suggestTorques(1);
+        const ways = await waysOf(differing);
+        ahead.textContent = `${form.inWords(error.reason)}${ways.length ? ` What fits: ${ways.join(", or ")}.` : ""}`;
+      }
     }
   });
+
+  /**
+   * What a member takes under one torque whose teeth differ on these gears.
+   *
+   * @param {GearName[]} differing
+   */
+  async function estimated(differing) {
+    const { base } = asked();
+    for (const member of differing)
+      base.pair[member].tooth_deviations = {
+        pitch_cumulative_um: Array.from({ length: base.pair[member].tooth_count }, (_, i) => Number(i === 1)),
+      };
+    const asking = { ...base, output_torques_n_m: base.output_torques_n_m.slice(0, 1) };
+    return (await post("v1/validate", asking)).estimate;
+  }
+
+  /**
+   * Gears whose teeth may be as designed to make members small enough, in words: the pair repeats after fewer mesh
+   * periods then.
+   *
+   * @param {GearName[]} differing
+   */
+  async function waysOf(differing) {
+    const fits = await Promise.all(
+      differing.map((left) =>
+        estimated(differing.filter((each) => each !== left)).then(
+          () => true,
+          (error) => {
+            if (!(error instanceof ProblemError)) throw error;
+            return false;
+          },
+        ),
+      ),
+    );
+    return differing.filter((_, i) => fits[i]).map((gear) => `teeth of the ${gear} gear as designed`);
+  }
 
   function asked() {
     const base = structuredClone(apart(design.submission).curves);
@@ -407,7 +439,7 @@ function law(index, design, form) {
     id,
     on: {
       change: () => {
-        spread.value = String(suggested());
+        put(spread, String(suggested()));
       },
     },
   });
@@ -452,7 +484,7 @@ function law(index, design, form) {
     if (!element.dataset.begun && [...field.options].some(({ value }) => value === FIRST[index][0]))
       field.value = FIRST[index][0];
     element.dataset.begun = "yes";
-    if (!spread.value) spread.value = String(suggested());
+    if (!spread.value) put(spread, String(suggested()));
   }
   return { element, read, refresh };
 }

@@ -3,9 +3,9 @@
 // other beats; or a search that chooses the values itself.
 
 import { asking, button, h, inLine, labelled, note, region, table, unseen, within } from "../draw/dom.js";
-import { save } from "../draw/download.js";
+import { saveTable } from "../draw/download.js";
 import { figure } from "../draw/figure.js";
-import { allGiven, given, numeric } from "../draw/inputs.js";
+import { allGiven, given, numeric, put } from "../draw/inputs.js";
 import { offer, options } from "./offer.js";
 import { Question } from "./question.js";
 import { search } from "./search.js";
@@ -179,7 +179,7 @@ export function study(place, design, form, onOpen) {
     last = results;
     draw(results);
     const csv = button("Table as CSV", async () =>
-      save(fileOfDesign(called, "study.csv"), "text/csv", await (await request(`${address}/results/table.csv`)).blob()),
+      saveTable(fileOfDesign(called, "study.csv"), await (await request(`${address}/results/table.csv`)).text()),
     );
     out.replaceChildren(region("Designs of the study", tableOf(results)), h("div", { className: "buttons" }, csv));
   }
@@ -303,7 +303,7 @@ function axis(index, design, form) {
     on: {
       change: () => {
         field.dataset.chosen = "yes";
-        values.value = suggested();
+        put(values, suggested());
       },
     },
   });
@@ -364,7 +364,7 @@ function axis(index, design, form) {
     if (!offer(field, "none", all)) values.value = "";
     if (index === 0 && !field.dataset.chosen)
       field.value = all.find(({ pointer }) => COUNT.test(pointer))?.pointer ?? "";
-    if (field.value && field.value !== before) values.value = suggested();
+    if (field.value && field.value !== before) put(values, suggested());
   }
 
   refresh();

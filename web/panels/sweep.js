@@ -4,7 +4,7 @@
 
 import { button, h, note } from "../draw/dom.js";
 import { figure } from "../draw/figure.js";
-import { given, numeric } from "../draw/inputs.js";
+import { given, numeric, put } from "../draw/inputs.js";
 import { Question } from "./question.js";
 import { ProblemError } from "../state/api.js";
 import { apart, nameOf } from "../state/design.js";
@@ -75,8 +75,8 @@ export function sweep(place, design) {
   /** From a tenth of the design's torque to twice as much, until somebody types other ones. */
   const suggest = () => {
     const torque = design.get(`${TORQUE}/0`) ?? 100;
-    if (!from.dataset.typed || !from.value) from.value = number(torque / 10, 2);
-    if (!to.dataset.typed || !to.value) to.value = number(torque * 2, 2);
+    if (!from.dataset.typed || !from.value) put(from, number(torque / 10, 2));
+    if (!to.dataset.typed || !to.value) put(to, number(torque * 2, 2));
   };
 
   /** @type {Watching<StudyResults>} */

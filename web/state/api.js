@@ -4,13 +4,16 @@
 /** @import { AnswerAt, Job, Problem, Submission } from "./documents.js" */
 
 /**
- * @typedef {{ method?: string, body?: unknown, headers?: Record<string, string>, signal?: AbortSignal }} Options
+ * @typedef {{ method?: string, body?: unknown, headers?: Record<string, string>, signal?: AbortSignal,
+ *   keepalive?: boolean }} Options
  */
 const KEY = "meshwright-key";
 /** @type {Set<(problem: Problem) => void>} */
 const listeners = new Set();
 /** @type {string | null} */
 let known = null;
+/** Whether the key that is known has been accepted. */
+let accepted = false;
 const key = () => (known ??= sessionStorage.getItem(KEY) ?? "");
 
 /** So long it takes until a service that did not answer, or had no room, is asked again, in milliseconds. */
@@ -67,9 +70,14 @@ export function hasKey() {
   return key() !== "";
 }
 
+/** What is wrong with the key that was refused: words of the service, where it was a good one before. */
+export const wordsOfRefusedKey = (/** @type {string | undefined} */ detail) =>
+  accepted ? (detail ?? "") : "This key is not known.";
+
 /** @param {string} given */
 export function setKey(given) {
   known = given.trim();
+  accepted = false;
   if (known) sessionStorage.setItem(KEY, known);
   else sessionStorage.removeItem(KEY);
 }
@@ -79,18 +87,21 @@ export function setKey(given) {
  *
  * @type {(path: string, options?: Options) => Promise<Response>}
  */
-export async function request(path, { method = "GET", body, headers = {}, signal } = {}) {
+export async function request(path, { method = "GET", body, headers = {}, signal, keepalive } = {}) {
   /** @type {Record<string, string>} */
   const all = { ...headers };
   if (key()) all.authorization = `Bearer ${key()}`;
   if (body !== undefined) all["content-type"] ??= "application/json";
   /** @type {RequestInit} */
-  const init = { method, headers: all, signal, cache: "no-cache", credentials: "same-origin" };
+  const init = { method, headers: all, signal, keepalive, cache: "no-cache", credentials: "same-origin" };
   if (body !== undefined) init.body = typeof body === "string" || body instanceof Blob ? body : JSON.stringify(body);
   const response = await fetch(new URL(path, document.baseURI), init).catch((error) => {
     throw broken(error);
   });
-  if (response.ok) return response;
+  if (response.ok) {
+    if (all.authorization) accepted = true;
+    return response;
+  }
   const problem = await response
     .json()
     .catch(() => ({ status: response.status, title: response.statusText, code: "unknown" }));

@@ -39,7 +39,16 @@ export function extent(values) {
 }
 
 /** @type {Record<string, string>} */
-const UNITS = { 1: "", um: "µm", deg: "°", "N m": "N m", "1/min": "rpm", "kg/m3": "kg/m³", "%": "%" };
+const UNITS = {
+  1: "",
+  um: "µm",
+  deg: "°",
+  "N m": "N m",
+  "1/min": "rpm",
+  "kg/m3": "kg/m³",
+  "kg m^2": "kg m²",
+  "%": "%",
+};
 
 /**
  * A unit of the schema as it is printed.
@@ -62,6 +71,9 @@ export function timeOf(milliseconds) {
     : `${fixed(milliseconds / 3_600_000, 1)} h`;
 }
 
+/** From one time that is told to the next, it rises to so many times at most. */
+const MOST_LEAP = 2;
+
 /**
  * Says how long the rest takes, in words that go on from others, of how much is done of a total; `expected`
  * milliseconds were thought to be needed before anything was known. The pace is that of the last tenth that has been
@@ -72,6 +84,8 @@ export function timeOf(milliseconds) {
 export function remaining(expected = null, now = () => performance.now()) {
   const begun = now();
   const seen = [{ at: begun, done: 0 }];
+  /** @type {number | null} */
+  let said = null;
   return (done, total) => {
     const at = now();
     const elapsed = at - begun;
@@ -79,10 +93,17 @@ export function remaining(expected = null, now = () => performance.now()) {
     seen.push({ at, done });
     if (done >= total) return "";
     const linear = done > from.done ? ((at - from.at) * (total - done)) / (done - from.done) : null;
-    if (expected === null) return done > 2 && linear !== null ? `, about ${timeOf(linear)} more` : "";
+    if (expected === null) {
+      if (done <= 2 || linear === null) return "";
+      said = said === null ? linear : Math.min(linear, MOST_LEAP * said);
+      return `, about ${timeOf(said)} more`;
+    }
     // What was thought counts until as much has been done, or as much time has passed.
     const known = linear === null ? 0 : Math.min(1, Math.max(done / total, elapsed / expected));
-    const left = known * (linear ?? 0) + (1 - known) * (expected - elapsed);
+    const found = known * (linear ?? 0) + (1 - known) * (expected - elapsed);
+    // What takes longer than all before it is told in steps.
+    const left = said === null ? found : Math.min(found, MOST_LEAP * said);
+    if (left > 0) said = left;
     return left > 0 ? `, about ${timeOf(left)} more` : ", longer than was thought";
   };
 }

@@ -98,7 +98,7 @@ const isTooLarge = (error) =>
  * @typedef {{ took: number | null, since: number, draft: boolean, asked: Submission }} How
  */
 
-/** @typedef {{ seconds: number, since: number, rests: boolean }} Expected */
+/** @typedef {{ seconds: number, since: number, rests: boolean, method: string }} Expected */
 
 /**
  * How far a job is: as the service says it, with when it begun, how long it was expected to take, in milliseconds,
@@ -168,8 +168,8 @@ export class Follower {
   #again = undefined;
 
   /**
-   * `onValid` is told that nothing is wrong with a design, and `onExpect` how long the design takes, `{ seconds, since,
-   * rests }`, or null once that is over.
+   * `onValid` is told that nothing is wrong with a design, and `onExpect` how long the design takes and by which
+   * method, or null once that is over.
    *
    * @param {Hearers} hearers
    */
@@ -281,11 +281,12 @@ export class Follower {
       this.onValid(submission);
       const expected = this.#pace * seconds;
       const rests = now.by === "form" && expected > SHORT;
-      this.onExpect({ seconds: expected, since: performance.now(), rests });
+      const { method } = asked;
+      this.onExpect({ seconds: expected, since: performance.now(), rests, method });
       if (rests) {
         await this.#rest(LONG_REST - (performance.now() - since));
         if (signal.aborted) return;
-        this.onExpect({ seconds: expected, since: performance.now(), rests: false });
+        this.onExpect({ seconds: expected, since: performance.now(), rests: false, method });
       }
       const begun = performance.now();
       const told = seconds > LONG ? "too large" : await this.#ask(now, asked);

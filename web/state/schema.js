@@ -148,6 +148,32 @@ export function schemaAt(api, pointer) {
   return found ? kindOf(api, found).schema : null;
 }
 
+/** @type {(words: string) => string[]} */
+const stems = (words) =>
+  words
+    .toLowerCase()
+    .match(/[a-z]{3,}/g)
+    ?.map((word) => word.replace(/s$/, "")) ?? [];
+
+/**
+ * The name of the part that the field at a pointer is of, a part being what a design may do without; empty where it is
+ * of none, or where its title has a word of that name.
+ *
+ * @type {(api: Api, pointer: string, title: string) => string}
+ */
+export function partOf(api, pointer, title) {
+  const places = pointer.split("/").slice(0, -1);
+  for (; places.length > 1; places.pop()) {
+    const name = places.at(-1) ?? "";
+    const part = schemaAt(api, places.slice(0, -1).join("/"))?.properties?.[name];
+    const { kind, optional, schema } = part ? kindOf(api, part) : { kind: "", optional: false, schema: {} };
+    if (kind !== "object" || !optional) continue;
+    const words = (schema.title ?? "").replace(/ request$/, "").toLowerCase();
+    return stems(words).some((stem) => stems(title).includes(stem)) ? "" : words;
+  }
+  return "";
+}
+
 /**
  * The fields that the one at a pointer stands in place of: where it has a value they have none.
  *

@@ -201,12 +201,12 @@ export function linesOf(panel, designs, crowded = false) {
 
 /**
  * The names of orders up to `last` that spectra have, each at the most that any of them has there: a name stands above
- * every line of its order.
+ * every line of its order. Those that have less than `part` of the largest amplitude are left out.
  *
  * @type {(spectra: { named: { order: number, label: string, transmission_error_um: number }[], orders: Point[] }[],
- *   last: number) => OrderName[]}
+ *   last: number, part?: number) => OrderName[]}
  */
-export function namesOf(spectra, last) {
+export function namesOf(spectra, last, part = 0) {
   /** @type {Map<string, OrderName>} */
   const names = new Map();
   for (const { named, orders } of spectra) {
@@ -221,7 +221,8 @@ export function namesOf(spectra, last) {
       names.set(`${label} ${order}`, { order, label, value: most });
     }
   }
-  return [...names.values()];
+  const largest = Math.max(0, ...spectra.flatMap(({ orders }) => orders.map(([, amplitude]) => amplitude)));
+  return [...names.values()].filter(({ value }) => value >= part * largest);
 }
 
 /**

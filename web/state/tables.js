@@ -55,6 +55,22 @@ export function csvOf(lines) {
   return `${lines.map((line) => line.map(cell).join(",")).join("\r\n")}\r\n`;
 }
 
+/** A value of a line of CSV, and what stands behind it. */
+const CELL = /("(?:[^"]|"")*"|[^,\r\n]*)(,|\r?\n|$)/g;
+const DECIMAL = /^[+-]?\d*\.\d+(e[+-]?\d+)?$/i;
+
+/**
+ * A table as CSV with decimal commas, and with semicolons between its values: as spreadsheets read it whose language
+ * has decimal commas.
+ *
+ * @type {(csv: string) => string}
+ */
+export const withCommas = (csv) =>
+  csv.replace(CELL, (_, cell, end) => {
+    const value = DECIMAL.test(cell) ? cell.replace(".", ",") : cell;
+    return `${!cell.startsWith('"') && cell.includes(";") ? `"${value}"` : value}${end === "," ? ";" : end}`;
+  });
+
 /**
  * Every curve of the results as one table: a line for each torque and position.
  *

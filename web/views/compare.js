@@ -3,7 +3,7 @@
 
 import { looks } from "../draw/charts.js";
 import { button, h, note } from "../draw/dom.js";
-import { save } from "../draw/download.js";
+import { saveTable } from "../draw/download.js";
 import { differences, told } from "../state/design.js";
 import { extent, number } from "../state/numbers.js";
 import { calledOf, inResults, quantities, shown } from "../state/quantities.js";
@@ -106,7 +106,7 @@ export class Compare {
         button("Compare methods", onMethods, { id: "methods" }),
         button(
           "Table as CSV",
-          () => save(fileOfDesign(this.designs[0].name, "designs.csv"), "text/csv", designsCsv(this.designs)),
+          () => saveTable(fileOfDesign(this.designs[0].name, "designs.csv"), designsCsv(this.designs)),
           { id: "table-csv" },
         ),
       ),

@@ -4,10 +4,11 @@
 
 import { looks } from "../draw/charts.js";
 import { button, h, inLine, labelled, note } from "../draw/dom.js";
-import { copied, drawingOf, save } from "../draw/download.js";
-import { fileOf, pictureOf, stacked } from "../draw/figure.js";
+import { chooseCommas, copied, drawingOf, hasCommas, save, saveTable } from "../draw/download.js";
+import { captioned, fileOf, pictureOf, stacked } from "../draw/figure.js";
 import { filesOf, saveFile } from "../draw/files.js";
 import { ProblemError, solved } from "../state/api.js";
+import { number } from "../state/numbers.js";
 import { snippets } from "../state/snippets.js";
 import { csv, fileOfDesign, ordersCsv } from "../state/tables.js";
 import { designsCsv } from "./compare.js";
@@ -31,6 +32,19 @@ import { inLight } from "./sheet.js";
 const LANGUAGES = { curl: "curl", python: "Python", typescript: "TypeScript" };
 
 /**
+ * What a picture of a design says of it: its name, torques and method, and the version that computed it.
+ *
+ * @type {(live: NamedDesign) => string}
+ */
+const saidOf = ({ name, results: { curves, method, evidence } }) =>
+  [
+    name,
+    `${curves.map(({ output_torque_n_m: torque }) => number(torque, 6)).join(", ")} N m`,
+    method.replace(/_/g, " "),
+    evidence.solver_version.replace(/^m/, "M"),
+  ].join(", ");
+
+/**
  * The exports in `place`. `current` waits for the live design and gives it, or null where it cannot be computed;
  * `designs` gives all that are shown, and `sheet` the page of one.
  *
@@ -50,21 +64,24 @@ export function exporting(place, { current, designs, drawing, charts, position, 
           JSON.stringify({ submission: live.asked, results: live.results }, null, 1),
         ),
     ],
-    csv: ["Curves, CSV", (live) => save(called(live, "curves.csv"), "text/csv", csv(live.results))],
-    orders: ["Orders, CSV", (live) => save(called(live, "orders.csv"), "text/csv", ordersCsv(live.results))],
-    designs: ["Designs, CSV", (live) => save(called(live, "designs.csv"), "text/csv", designsCsv(designs()))],
-    svg: ["Curves, SVG", (live) => save(called(live, "curves.svg"), "image/svg+xml", fileOf(curves()))],
-    png: ["Curves, PNG", async (live) => save(called(live, "curves.png"), "image/png", await pictureOf(curves()))],
-    pair: [
-      "Drawing, SVG",
-      (live) => save(called(live, "pair.svg"), "image/svg+xml", fileOf(inLight(() => drawingOf(drawing.element)))),
-    ],
+    csv: ["Curves, CSV", (live) => saveTable(called(live, "curves.csv"), csv(live.results))],
+    orders: ["Orders, CSV", (live) => saveTable(called(live, "orders.csv"), ordersCsv(live.results))],
+    designs: ["Designs, CSV", (live) => saveTable(called(live, "designs.csv"), designsCsv(designs()))],
+    svg: ["Curves, SVG", (live) => save(called(live, "curves.svg"), "image/svg+xml", fileOf(curves(live)))],
+    png: ["Curves, PNG", async (live) => save(called(live, "curves.png"), "image/png", await pictureOf(curves(live)))],
+    pair: ["Drawing, SVG", (live) => save(called(live, "pair.svg"), "image/svg+xml", fileOf(pair(live)))],
     page: ["Report page, SVG", (live) => save(called(live, "report.svg"), "image/svg+xml", fileOf(sheet(live)))],
   };
   const buttons = Object.entries(kinds).map(([kind, [name, work]]) =>
     button(name, () => run(work), { data: { download: kind } }),
   );
   const ofJob = h("div", { className: "buttons wrap" });
+  const commas = h("input", {
+    type: "checkbox",
+    id: "decimal-commas",
+    checked: hasCommas(),
+    on: { change: ({ target }) => chooseCommas(target.checked) },
+  });
   const code = h("pre", { id: "code", tabIndex: 0, ariaLabel: "Program" });
   const language = h(
     "select",
@@ -79,6 +96,7 @@ export function exporting(place, { current, designs, drawing, charts, position, 
   place.replaceChildren(
     note("Everything is of one design: the one that is drawn, with the curves and numbers that are shown."),
     h("div", { className: "buttons wrap" }, ...buttons),
+    inLine(h("label", {}, commas, " CSV with semicolons and decimal commas, here and in other tabs")),
     h("h3", {}, "Files that a job makes"),
     ofJob,
     state,
@@ -89,7 +107,11 @@ export function exporting(place, { current, designs, drawing, charts, position, 
 
   /** @type {(design: NamedDesign, rest: string) => string} */
   const called = ({ name }, rest) => fileOfDesign(name, rest);
-  const curves = () => inLight(() => stacked(charts.figures(), looks().panel));
+  /** @type {(live: NamedDesign) => SVGSVGElement} */
+  const curves = (live) =>
+    inLight(() => captioned(stacked(charts.figures(), looks().panel), saidOf(live), looks().panel));
+  /** @type {(live: NamedDesign) => SVGSVGElement} */
+  const pair = (live) => inLight(() => captioned(drawingOf(drawing.element), saidOf(live), looks().panel));
 
   /** @type {(work: (live: NamedDesign) => unknown) => Promise<void>} */
   async function run(work) {

@@ -2,13 +2,13 @@
 // The form of a submission, made from the schema: every field with its unit, bounds, default and words.
 
 import { button, h } from "../draw/dom.js";
-import { numeric, read, write } from "../draw/inputs.js";
+import { numeric, put, read, write } from "../draw/inputs.js";
 import { Beginnings } from "../state/beginnings.js";
 import { at, HELIX } from "../state/design.js";
 import { helix, intoPlane, intoSolid, isSolid, kindOfTeeth, needsThird, offers, teeth } from "../state/dimensions.js";
 import { number, unit } from "../state/numbers.js";
-import { help, insteadOf, kindOf, SUBMISSION, resolve, saidDefault, schemaAt } from "../state/schema.js";
-import { parsed, stepped, unreadable } from "../state/typed.js";
+import { help, insteadOf, kindOf, partOf, resolve, saidDefault, schemaAt, SUBMISSION } from "../state/schema.js";
+import { chooseReading, inOtherUnit, parsed, readingsOf, stepped, turned, unreadable } from "../state/typed.js";
 import { deviations } from "./deviations.js";
 
 /** @import { Properties } from "../draw/dom.js" */
@@ -197,14 +197,16 @@ export class Form {
   }
 
   /**
-   * What the field at a pointer is called, and of which gear it is.
+   * What the field at a pointer is called, and of which part and gear it is.
    *
    * @param {string} pointer
    */
   named(pointer) {
     const member = /^\/pair\/(driving|driven)\//.exec(pointer)?.[1];
     const place = /\/(\d+)\//.exec(pointer)?.[1];
-    const words = this.titleOf(pointer) + (place ? ` (${Number(place) + 1})` : "");
+    const title = this.titleOf(pointer);
+    const details = [partOf(this.api, pointer, title), place ? String(Number(place) + 1) : ""].filter(Boolean);
+    const words = title + details.map((each) => ` (${each})`).join("");
     return member && !this.#isAlike(pointer) ? `${words}, ${member} gear` : words;
   }
 
@@ -316,24 +318,30 @@ export class Form {
    * @param {FieldError} error
    */
   #mark({ element, pointer, schema, described }, error) {
-    const mend =
-      error.nearest === null || error.nearest === undefined
-        ? null
-        : button(
-            `Use ${number(error.nearest, 8)} ${unit(schema["x-unit"] ?? schema.items?.["x-unit"])}`.trim(),
-            () => this.design.set(error.pointer, error.nearest, "mend"),
-            { className: "mend" },
-          );
+    const typed = this.design.get(error.pointer);
+    const readings = typeof typed === "string" ? readingsOf(typed) : null;
+    const other = inOtherUnit(typed, schema);
+    const nearest = other?.value ?? error.nearest ?? null;
+    const printed = unit(schema["x-unit"] ?? schema.items?.["x-unit"]);
+    const meant = other ? `, which are ${number(typed, 8)} ${other.unit}` : "";
+    const mends = (readings ?? (nearest === null ? [] : [nearest])).map((value, i) =>
+      button(
+        `Use ${number(value, 8)} ${printed}`.trim() + meant,
+        () => {
+          if (readings) chooseReading(i === 0);
+          this.design.set(error.pointer, value, "mend");
+        },
+        { className: "mend" },
+      ),
+    );
     element.classList.add("wrong");
     const id = `error-${pointer}-${element.querySelectorAll(":scope > .field-error").length}`;
-    const typed = this.design.get(error.pointer);
     element.append(
       h(
         "p",
         { className: "field-error", id },
         error.code === "wrong_type" && typeof typed === "string" ? unreadable(typed) : this.inWords(error.detail),
-        " ",
-        mend,
+        ...mends.flatMap((mend) => [" ", mend]),
       ),
     );
     const input = element.querySelector(":scope > .row > input, :scope > .row > select, :scope > .row > textarea");
@@ -884,7 +892,7 @@ export class Form {
   }
 
   /**
-   * Arrow keys change a number by a step that suits its size.
+   * Arrow keys turn the last digit of a number, and with Shift the one before.
    *
    * @param {KeyboardEvent} event
    * @param {string} pointer
@@ -893,9 +901,13 @@ export class Form {
   #step(event, pointer, kind) {
     const sign = { ArrowUp: 1, ArrowDown: -1 }[event.key];
     const value = this.design.get(pointer) ?? kind.schema.default;
-    if (!sign || typeof value !== "number") return;
+    const input = event.target;
+    if (!sign || typeof value !== "number" || !(input instanceof HTMLInputElement)) return;
     event.preventDefault();
-    this.#turn(pointer, stepped(value, sign * (event.shiftKey ? 10 : 1), kind));
+    const text = turned(input.value, value, sign * (event.shiftKey ? 10 : 1), kind);
+    this.#turn(pointer, Number(text));
+    // A zero at its end is the digit that is turned next.
+    put(input, text);
   }
 
   /**

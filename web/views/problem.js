@@ -35,7 +35,7 @@ export class ProblemBox {
    * @param {Problem} problem
    * @param {{ behind: boolean, back: (() => void) | null }} shown
    */
-  show({ title = "", detail = "", errors = [] }, { behind, back }) {
+  show({ code, title = "", detail = "", errors = [] }, { behind, back }) {
     const form = this.form();
     form?.showErrors(errors);
     this.#place.hidden = false;
@@ -53,7 +53,8 @@ export class ProblemBox {
     this.#place.replaceChildren(
       h("p", {}, h("strong", {}, title), behind ? kept : null, behind && back ? button("Go back to it", back) : null),
       entries.length ? h("ul", {}, ...entries) : h("p", {}, detail),
-      ...this.#dimensions(new Set(errors.map(({ code }) => code))),
+      ...this.#dimensions(new Set(errors.map((error) => error.code))),
+      ...(code === "unauthorized" ? [button("Give a key", () => byId("key-button").click())] : []),
     );
   }
 

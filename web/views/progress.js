@@ -55,6 +55,7 @@ export class Progress {
     clearTimeout(this.#expecting);
     if (!expected || 1000 * expected.seconds < MOMENT) return;
     const whole = timeOf(1000 * expected.seconds);
+    const what = `Computing, ${expected.method.replace(/_/g, " ")}`;
     const past = () => performance.now() - expected.since;
     const tick = () => {
       if (!this.#bar.hidden) return;
@@ -63,8 +64,8 @@ export class Progress {
         expected.rests
           ? `It takes about ${whole}: computed when you rest, or at once with Enter.`
           : over > 0
-            ? `Computing, about ${timeOf(over)} more`
-            : `Computing, longer than the ${whole} that were expected`,
+            ? `${what}, about ${timeOf(over)} more`
+            : `${what}, longer than the ${whole} that were expected`,
       );
       this.#expecting = setTimeout(tick, 1000);
     };

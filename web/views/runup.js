@@ -19,7 +19,7 @@ import {
 } from "../draw/dom.js";
 import { figure, ticks } from "../draw/figure.js";
 import { Tones } from "../draw/sound.js";
-import { motionAt } from "../state/motion.js";
+import { largestNear, motionAt } from "../state/motion.js";
 import { fixed, number } from "../state/numbers.js";
 import { wordsOf } from "../state/orders.js";
 
@@ -49,6 +49,8 @@ const FRAME = { left: 74, right: 14, top: 44, bottom: 44 };
 /** The gears turn by so many mesh periods in a second at the highest speed. */
 const SLOW_MOTION = 1.5;
 const REST = 60;
+/** The warning that tells a better natural frequency than that of the run-up. */
+const BETTER_FREQUENCY = "rim_inertia_on_hub";
 
 /** @type {(value: number) => string} */
 const rpm = (value) => `${Math.round(value).toLocaleString("en")} rpm`;
@@ -58,12 +60,14 @@ const WAYS = /** @type {Way[]} */ (Object.keys(BRANCHES));
 /** @typedef {NamedOrder & { amplitude: number[] }} Ridge */
 
 /**
- * What a run-up needs of the page: `ask` puts one into the design, `asked` says whether it has one, `focus` shows its
- * fields, `designs` gives what is shown, the live one first, and `stage` turns the drawing.
+ * What a run-up needs of the page: `ask` puts one into the design, `asked` says whether it has one, `refused` why that
+ * is not computed, `focus` shows its fields, `designs` gives what is shown, the live one first, and `stage` turns the
+ * drawing.
  *
  * @typedef {object} Page
  * @property {() => void} ask
  * @property {() => boolean} asked
+ * @property {() => string | null} refused
  * @property {() => void} focus
  * @property {() => NamedDesign[]} designs
  * @property {{ turn: (by: number) => void, move: (factorAt: (position: number) => number) => void, rest: () => void }}
@@ -87,9 +91,10 @@ export class RunUp {
    * @param {HTMLElement} place
    * @param {Page} page
    */
-  constructor(place, { ask, asked, focus, designs, stage }) {
+  constructor(place, { ask, asked, refused, focus, designs, stage }) {
     this.place = place;
     this.asked = asked;
+    this.refused = refused;
     /**
      * The live design, once it has a run-up.
      *
@@ -170,6 +175,7 @@ export class RunUp {
         { id: "run-up-ask" },
       ),
     );
+    this.wrong = h("p", { hidden: true, role: "status", className: "field-error" });
     this.coming = h(
       "p",
       { hidden: true, role: "status" },
@@ -181,6 +187,7 @@ export class RunUp {
         h("a", { href: "guides/will-it-rattle-or-whine" }, "Will it rattle or whine?"),
       ),
       this.none,
+      this.wrong,
       this.coming,
       this.body,
     );
@@ -199,8 +206,11 @@ export class RunUp {
     const [live] = designs;
     const there = Boolean(live?.results.curves[0].dynamics);
     this.body.hidden = !there;
-    this.coming.hidden = !live || there || !this.asked();
-    this.none.hidden = !live || there || !this.coming.hidden;
+    const refused = this.asked() ? this.refused() : null;
+    this.wrong.hidden = there || refused === null;
+    this.wrong.textContent = `No run-up: ${refused ?? ""}`;
+    this.coming.hidden = !live || there || !this.asked() || refused !== null;
+    this.none.hidden = !live || there || this.asked();
     if (!there) return this.leave();
     if (this.place.hidden) return undefined;
     this.live = live;
@@ -264,6 +274,7 @@ export class RunUp {
   /** @param {number} speed */
   #index(speed) {
     const speeds = this.#dynamics.driving_speed_rpm;
+    if (speeds.length < 2) return 0;
     const step = (speeds[speeds.length - 1] - speeds[0]) / (speeds.length - 1);
     return Math.min(speeds.length - 1, Math.max(0, Math.round((speed - speeds[0]) / step)));
   }
@@ -320,7 +331,7 @@ export class RunUp {
     this.picture.replaceChildren(chart);
     this.waterfall.replaceChildren(fall);
     this.#cursors = [chart, fall].map((svg) => this.#cursor(svg));
-    this.resonances.replaceChildren(this.#tableOf());
+    this.resonances.replaceChildren(...this.#tableOf());
   }
 
   /** What a listener should know of the run-up. */
@@ -464,6 +475,7 @@ export class RunUp {
   }
 
   #tableOf() {
+    const speeds = this.#dynamics.driving_speed_rpm;
     const values = this.#run.dynamic_transmission_error_um.peak_to_peak;
     const rows = this.#named().map((each) =>
       tableRow(
@@ -471,13 +483,24 @@ export class RunUp {
         each.label,
         each.what,
         each.kind === "forced" ? "once: forced" : "twice: parametric",
-        fixed(values[this.#index(each.driving_speed_rpm)], 2),
+        fixed(largestNear(speeds, values, each.driving_speed_rpm), 2),
         button("Look", () => this.#look(each.driving_speed_rpm), { ariaLabel: `Look at ${each.words}` }),
       ),
     );
     const caption = `Resonances: the natural frequency is ${number(this.#dynamics.natural_frequency_hz)} Hz, of ${number(this.#dynamics.equivalent_mass_kg, 3)} kg on the line of action`;
-    const names = ["Speed rpm", "Order", "What meets", "the natural frequency", "STE p-p there µm", unseen("Actions")];
-    return table(names, rows.length ? rows : [h("tr", {}, h("td", { colSpan: 6 }, "None at these speeds."))], caption);
+    const names = [
+      "Speed rpm",
+      "Order",
+      "What meets",
+      "the natural frequency",
+      "Largest STE p-p near it µm",
+      unseen("Actions"),
+    ];
+    const none = h("tr", {}, h("td", { colSpan: 6 }, "None at these speeds."));
+    const found = table(names, rows.length ? rows : [none], caption);
+    // A better number than that of the caption stands beside it.
+    const better = this.live.results.warnings.filter(({ code }) => code === BETTER_FREQUENCY);
+    return [...better.map(({ detail }) => h("p", { className: "outdated" }, detail)), found];
   }
 
   /**

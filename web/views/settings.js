@@ -2,7 +2,7 @@
 // What belongs to the visitor and not to the design: light or dark, and the key of the service.
 
 import { byId } from "../draw/dom.js";
-import { hasKey, onKeyNeeded, setKey } from "../state/api.js";
+import { hasKey, onKeyNeeded, setKey, wordsOfRefusedKey } from "../state/api.js";
 
 const THEME = "meshwright-theme";
 
@@ -38,12 +38,18 @@ export function setUpKey(onKey) {
     byId("key-error").textContent = words;
     if (!dialog.open) dialog.showModal();
   };
-  byId("key-button").addEventListener("click", () => ask());
-  onKeyNeeded(({ detail }) => ask(hasKey() ? detail : ""));
+  byId("key-button").addEventListener("click", () => ask(byId("key-error").textContent ?? ""));
+  onKeyNeeded(({ detail }) => {
+    const words = hasKey() ? wordsOfRefusedKey(detail) : "";
+    // Who types goes on typing: what is wrong stands above the curves, with the way to this dialog.
+    if (!document.activeElement?.matches("input, select, textarea") || dialog.open) ask(words);
+    else byId("key-error").textContent = words;
+  });
   byId("key-form").addEventListener("submit", ({ submitter }) => {
     if (!(submitter instanceof HTMLButtonElement) || submitter.value !== "use") return;
     setKey(input.value);
     input.value = "";
+    byId("key-error").textContent = "";
     onKey();
   });
 }

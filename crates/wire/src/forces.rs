@@ -29,7 +29,7 @@ document! {
         /// The output torque of the largest load. Beyond it the table goes on straight; where a run-up goes there, a warning tells it.
         pub(super) largest_output_torque_n_m: Option<f64> = absent(
             number("Largest output torque", "N m", 1e-6, 1e8),
-            "twice the largest output torque",
+            "twice the largest output torque, or what the teeth bear where that is less",
         ),
     }
 }
@@ -43,10 +43,12 @@ impl ForceTableQuestion {
         }
     }
 
-    pub(super) fn data(&self) -> ForceTableRequest {
+    /// The table for curves up to the output torque `largest` in N m, of teeth that bear `bearable`.
+    pub(super) fn data(&self, largest: f64, bearable: f64) -> ForceTableRequest {
+        let usual = (2.0 * largest > bearable).then_some(bearable);
         ForceTableRequest {
             loads: self.loads,
-            largest_output_torque: self.largest_output_torque_n_m,
+            largest_output_torque: self.largest_output_torque_n_m.or(usual),
         }
     }
 }

@@ -3,12 +3,12 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { cellsOf, cured, faceOf, rampAt, wordsOfCure } from "../../../web/draw/face.js";
-import { forceAt } from "../../../web/state/motion.js";
+import { forceAt, largestNear } from "../../../web/state/motion.js";
 import { wordsOf } from "../../../web/state/orders.js";
 import { calledOf, inRow, inUnit, inWords, quantityOf, shown, worstInRow } from "../../../web/state/quantities.js";
 import { linesOf, namesOf, ordersOf, PANELS, partialSpectrum, placedNames, spanOf } from "../../../web/state/series.js";
 import { snippets } from "../../../web/state/snippets.js";
-import { csv, csvOf, fileOfDesign, ordersCsv } from "../../../web/state/tables.js";
+import { csv, csvOf, fileOfDesign, ordersCsv, withCommas } from "../../../web/state/tables.js";
 import { measured, tableOf } from "../../../web/views/deviations.js";
 import { ANSWERS, valueOf } from "../../../web/views/headline.js";
 import { seenByDeuteranopia } from "../colors.mjs";
@@ -79,6 +79,21 @@ test("the names of orders cross no mark, and the most that any design has there 
     orders: [[50, value]],
   }));
   assert.deepEqual(namesOf(spectra, 100), [{ order: 50, label: "H_Z2", value: 0.4 }]);
+  // Of two lines at 1 and 3 % of the largest the one is too short to be named.
+  const low = {
+    named: [
+      [60, 0.004],
+      [70, 0.012],
+    ].map(([order, value]) => ({ order, label: `H_${order}`, transmission_error_um: value })),
+    orders: [
+      [60, 0.004],
+      [70, 0.012],
+    ],
+  };
+  assert.deepEqual(
+    namesOf([...spectra, low], 100, 0.02).map(({ label }) => label),
+    ["H_Z2", "H_70"],
+  );
 });
 
 test("an order of one amplitude is found in a part of the true period", () => {
@@ -216,4 +231,24 @@ test("where a corner carries at any position there is no largest pressure to com
   });
   assert.equal(valueOf(answer, curve(undefined)), null);
   assert.equal(valueOf(answer, curve(81)), 81);
+});
+
+test("a table has decimal commas and semicolons where that is chosen, and its texts stay", () => {
+  const lines = [
+    ["name", "a, b", "a;b"],
+    ["10×r7.5@34", 0.25, -1.5e-7],
+    [115, null, 'say "1.5"'],
+  ];
+  assert.equal(withCommas(csvOf(lines)), 'name;"a, b";"a;b"\r\n10×r7.5@34;0,25;-1,5e-7\r\n115;;"say ""1.5"""\r\n');
+});
+
+test("near a resonance stands the largest motion there, however the speeds lie about it", () => {
+  // The motion of one degree of freedom with a damping of 0.05 is at most 1/(2 D sqrt(1 - D^2)) = 10.01 times the static.
+  const amplitude = (speed) => 1 / Math.hypot(1 - (speed / 3700) ** 2, (0.1 * speed) / 3700);
+  for (const step of [60, 70, 110]) {
+    const speeds = Array.from({ length: 100 }, (_, i) => 300 + i * step);
+    const found = largestNear(speeds, speeds.map(amplitude), 3700);
+    assert.ok(Math.abs(found / 10.01 - 1) < 0.03, `${found} with steps of ${step}`);
+  }
+  assert.equal(largestNear([3000], [7], 3700), 7, "one speed is the nearest that there is");
 });

@@ -8,6 +8,7 @@ import {
   help,
   insteadOf,
   kindOf,
+  partOf,
   resolve,
   saidDefault,
   schemaAt,
@@ -31,6 +32,34 @@ test("every field of a submission has a kind, and a title that the form can show
   };
   walk(SUBMISSION, "");
   assert.ok(seen.size >= 8, [...seen].join());
+});
+
+test("no two fields of a gear have one name, with the part that each is of", () => {
+  const names = new Map();
+  const walk = (given, pointer) => {
+    const { kind, schema, variants = [] } = kindOf(api, given);
+    for (const [name, each] of Object.entries(schema.properties ?? {})) walk(each, `${pointer}/${name}`);
+    for (const variant of variants) walk(variant, pointer);
+    if (["object", "variants", "list"].includes(kind)) return;
+    const { title } = schemaAt(api, pointer);
+    const part = partOf(api, pointer, title);
+    const name = part ? `${title} (${part})` : title;
+    names.set(name, new Set([...(names.get(name) ?? []), pointer]));
+  };
+  walk(schemaAt(api, "/pair/driven"), "/pair/driven");
+  assert.ok(names.size > 50, String(names.size));
+  assert.deepEqual(
+    [...names].filter(([, pointers]) => pointers.size > 1),
+    [],
+  );
+  const of = (pointer) => partOf(api, pointer, schemaAt(api, pointer).title);
+  assert.deepEqual(
+    ["span_measurement/teeth", "tip_relief/shape", "tip_relief/amount_um", "tooth_count", "material/density_kg_m3"].map(
+      (name) => of(`/pair/driving/${name}`),
+    ),
+    ["span measurement", "tip relief", "", "", "material"],
+  );
+  assert.equal(of("/force_table/loads"), "force table");
 });
 
 test("the kinds of fields are those of their schemas", () => {

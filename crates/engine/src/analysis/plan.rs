@@ -80,14 +80,6 @@ pub(super) struct Further {
 }
 
 impl Further {
-    /// Those beside so many positions of contacts that repeat after so many mesh periods.
-    fn of(positions: usize, repeats_after: u32) -> Self {
-        Self {
-            most: most_further(positions, repeats_after),
-            repeats_after,
-        }
-    }
-
     const NONE: Self = Self {
         most: 0,
         for_peaks: 0,
@@ -97,7 +89,7 @@ impl Further {
     /// Those of a curve of so many positions, whose contacts repeat after so many mesh periods.
     fn of(positions: usize, repeats_after: u32) -> Self {
         Self {
-            most: most_further(positions),
+            most: most_further(positions, repeats_after),
             for_peaks: MOST_FOR_PEAKS,
             repeats_after,
         }

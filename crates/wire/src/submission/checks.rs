@@ -99,7 +99,8 @@ impl SubmissionDocument {
                 );
                 errors.push(FieldError::new(pointer, Code::MissingField, detail));
             }
-            None => refuse_large_torque(pair, 2.0 * largest, pointer, errors),
+            // The usual table ends at what the teeth bear.
+            None => {}
             Some(given) if self.dynamics.is_some() && given < largest => {
                 let detail = format!(
                     "{pointer} is {} N m; a run-up at {} N m needs a table that goes at least as far.",
@@ -279,8 +280,8 @@ fn counted(count: u64, one: &str) -> String {
     format!("{count} {one}{}", if count == 1 { "" } else { "s" })
 }
 
-/// Refuses a `torque`, which stands at `pointer`, that would deflect the teeth of `pair` by more than about a quarter of a module.
-fn refuse_large_torque(pair: &GearPair, torque: f64, pointer: String, errors: &Errors) {
+/// The output torque in N m that deflects the teeth of `pair` by about a quarter of a module.
+pub(super) fn bearable_torque(pair: &GearPair) -> f64 {
     const LARGEST_DEFLECTION: f64 = 0.25;
     // The usual mesh stiffness of steel gears, 14 N/(mm um), in proportion to Young's modulus.
     const USUAL_STIFFNESS: f64 = 14e9 / 210e9;
@@ -289,7 +290,12 @@ fn refuse_large_torque(pair: &GearPair, torque: f64, pointer: String, errors: &E
     let module = pair.driving().data().rack.module;
     let largest_load =
         LARGEST_DEFLECTION * module * USUAL_STIFFNESS * softer * pair.common_face_width();
-    let largest = largest_load * pair.driven().base_radius();
+    largest_load * pair.driven().base_radius()
+}
+
+/// Refuses a `torque`, which stands at `pointer`, that would deflect the teeth of `pair` by more than about a quarter of a module.
+fn refuse_large_torque(pair: &GearPair, torque: f64, pointer: String, errors: &Errors) {
+    let largest = bearable_torque(pair);
     if torque > largest {
         let nearest = rounded_inward(largest, Side::AtMost, 0);
         let detail = format!(

@@ -15,6 +15,7 @@ pub(super) use document::MOST_TAGS;
 pub(super) use document::OUTPUT_TORQUE;
 pub use document::{MOST_TORQUES, TAGS};
 
+use checks::bearable_torque;
 use document::FaceRows;
 pub(super) use document::SubmissionDocument;
 
@@ -135,6 +136,8 @@ impl SubmissionDocument {
             (Method::ProjectedDecomposition, None) => Model::Section(SectionHoles::FirstOrder),
             (_, None) => Model::Section(SectionHoles::Whole),
         };
+        let largest = self.output_torques_n_m.iter().copied().fold(0.0, f64::max);
+        let bearable = bearable_torque(&pair);
         let case = Case {
             pair,
             model,
@@ -146,7 +149,7 @@ impl SubmissionDocument {
                 .map(|speed| RotationSpeed(speed / 60.0)),
         };
         let forces = self.force_table.as_ref().map(|table| ForcesRequest {
-            table: table.data(),
+            table: table.data(largest, bearable),
             dynamics: self.dynamics.as_ref().map(DynamicsQuestion::data),
         });
         Some(Submission {

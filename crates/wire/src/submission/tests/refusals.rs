@@ -248,6 +248,32 @@ fn a_run_up_brings_the_usual_table_and_both_count() {
 }
 
 #[test]
+fn the_usual_table_ends_at_what_the_teeth_bear() {
+    let of = |torque: f64| {
+        let speeds = json!({ "driving_speed_rpm": 3000 });
+        let changes = [
+            ("/output_torques_n_m", json!([torque])),
+            ("/dynamics", speeds),
+        ];
+        let submission = parse(&with(case_2(), &changes)).expect("valid");
+        submission
+            .forces()
+            .expect("asked for")
+            .table
+            .largest_output_torque
+    };
+    // A quarter of the module of 2 mm, 14 N/(mm um) in proportion to 200 GPa of 210, 20 mm of face, and a base radius of
+    // 50 mm cos 20 degrees.
+    let bearable = 0.25 * 2e-3 * 14e9 * (200.0 / 210.0) * 20e-3 * 50e-3 * 20_f64.to_radians().cos();
+    assert_eq!(of(0.4 * bearable), None);
+    let largest = of(0.6 * bearable).expect("less than twice the torque");
+    assert!(
+        (largest / bearable - 1.0).abs() < 1e-9,
+        "{largest} N m, not {bearable}"
+    );
+}
+
+#[test]
 fn stresses_are_refused_by_each_method_that_tells_none() {
     let asking = |method: &str| {
         with(
