@@ -84,6 +84,7 @@ fn contact(pair: &GearPair, eta: f64, shared: &Shared, load: f64) -> MeshContact
             // The pressure is Hertz's of unmodified flanks.
             half_width: 0.0,
         }),
+        smooth_pressure: shared.peak_pressure,
         equilibrium: shared.residual,
         ..MeshContact::default()
     }

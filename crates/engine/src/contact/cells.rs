@@ -22,10 +22,10 @@ use super::patch::Extent;
 use super::peak::Peak;
 use super::problem::first_of;
 use super::{
-    AugmentedLagrangian, ContactProblem, ContactSolution, PeakPlace, default_penalty,
-    solve_active_set, solve_augmented_lagrangian,
+    AugmentedLagrangian, ContactProblem, ContactSolution, default_penalty, solve_active_set,
+    solve_augmented_lagrangian,
 };
-use crate::gear::{Member, teeth_on};
+use crate::gear::{GearPair, Member, teeth_on};
 use crate::touch::meeting::Standing;
 use crate::wide::{Loops, wide};
 
@@ -134,29 +134,6 @@ impl PlacedCells {
         ]
     }
 
-    /// The largest pressure of the pair `n` under `forces`, of which that on one cell at least presses, on a face so wide.
-    fn peak(&self, n: i64, forces: &[f64], active: &[bool], width: f64) -> Peak {
-        let patch = &self.cells().patch;
-        let pressures = patch.cells.iter().zip(forces);
-        let pressures = pressures.map(|(cell, force)| force / (cell.width * width));
-        let (i, pressure) =
-            pressures.enumerate().fold(
-                (0, 0.0),
-                |most, next| {
-                    if next.1 > most.1 { next } else { most }
-                },
-            );
-        Peak {
-            pressure,
-            place: PeakPlace {
-                pair: n,
-                roll_lengths: patch.cells[i].roll_lengths,
-                z: None,
-                half_width: patch.half_width_about(i, active),
-            },
-        }
-    }
-
     /// Its cells.
     pub(super) fn cells(&self) -> &PairCells {
         // There is none without.
@@ -238,10 +215,18 @@ impl<'a> ContactCells<'a> {
         load: f64,
         warm: &WarmStart,
     ) -> Result<ContactSolution, PositionError> {
+        self.solved_from(problem, load, || self.touching(warm, load))
+    }
+
+    /// The solution by the model's solver of any `problem` under `load`; the active set starts from the cells that `touching` gives.
+    pub(super) fn solved_from(
+        &self,
+        problem: &ContactProblem,
+        load: f64,
+        touching: impl FnOnce() -> Option<Vec<bool>>,
+    ) -> Result<ContactSolution, PositionError> {
         Ok(match self.deviating.model.solver {
-            ContactSolver::ActiveSet => {
-                solve_active_set(problem, load, self.touching(warm, load).as_deref())?
-            }
+            ContactSolver::ActiveSet => solve_active_set(problem, load, touching().as_deref())?,
             ContactSolver::AugmentedLagrangian {
                 penalty,
                 gap_tolerance,
@@ -282,24 +267,36 @@ impl<'a> ContactCells<'a> {
         h
     }
 
+    /// The pair.
+    pub(super) fn pair(&self) -> &GearPair {
+        &self.deviating.model.pair
+    }
+
+    /// What the `solution` of their `problem` under `load` says of the mesh, and what penetrates under it.
+    ///
+    /// # Errors
+    ///
+    /// [`PositionError::Contact`] if the contact of a pair by itself has no solution.
     pub(super) fn mesh_contact(
         &self,
         load: f64,
-        solution: &ContactSolution,
+        (problem, solution): (&ContactProblem, &ContactSolution),
         penetration: &Penetration,
-    ) -> MeshContact {
-        let width = self.deviating.model.pair.common_face_width();
-        let (mut peak, mut at_corner) = (None, false);
+    ) -> Result<MeshContact, PositionError> {
+        let (mut peak, mut at_corner, mut smooth_pressure) = (None, false, 0.0_f64);
         let pairs = self.ranges().map(|(placed, range)| {
             let (pair, patch) = (self.at.period + placed.pair, &placed.cells().patch);
             let forces = &solution.forces[range.clone()];
             let active = &solution.active[range.clone()];
-            at_corner |= patch.corner_carries(active, [true; 2]);
             let carried = placed.arms.iter().zip(forces);
             let share = carried.map(|(arms, p)| arms[1] * p).sum::<f64>() / load;
-            if share > 0.0 {
-                let largest = placed.peak(pair, forces, active, width);
+            if patch.corner_carries(active, [true; 2]) {
+                at_corner = true;
+            } else if share > 0.0 {
+                let pressed = self.pressed(placed, &range, (problem, solution))?;
+                let largest = pressed.peak;
                 peak = Some(peak.map_or(largest, |peak: Peak| peak.larger(largest)));
+                smooth_pressure = smooth_pressure.max(pressed.smooth);
             }
             let clearance = placed.arms.iter().zip(&solution.gaps[range]);
             let clearance = clearance.map(|(arms, gap)| gap / arms[1]);
@@ -309,16 +306,16 @@ impl<'a> ContactCells<'a> {
                     .iter()
                     .find(|(pair, _)| *pair == placed.pair)
             };
-            PairContact {
+            Ok(PairContact {
                 clearance: (share <= 0.0).then(|| clearance.fold(f64::INFINITY, f64::min)),
                 tip_corner: (patch.off_path && share > 0.0).then_some(patch.seat),
                 fillet: patch
                     .reached_fillet(active)
                     .or_else(|| pressed().map(|(_, gear)| *gear)),
                 ..PairContact::of_share(pair, share)
-            }
+            })
         });
-        let pairs = pairs.collect();
+        let pairs = pairs.collect::<Result<_, PositionError>>()?;
         let arms = self.placed.iter().flat_map(|placed| &placed.arms);
         let spots = arms.zip(solution.forces.iter().zip(&solution.gaps));
         let spots = spots.map(|(arms, (&force, &gap))| Spot {
@@ -326,14 +323,15 @@ impl<'a> ContactCells<'a> {
             gap,
             moments: arms.map(|arm| arm * force),
         });
-        MeshContact {
+        Ok(MeshContact {
             transmission_error: solution.transmission_error,
             stiffness: solution.stiffness,
             pairs,
+            smooth_pressure,
             penetration: penetration.largest,
             iterations: solution.iterations,
             ..MeshContact::of_spots(load, spots, peak.filter(|_| !at_corner))
-        }
+        })
     }
 
     /// The contact cell by cell.

@@ -39,6 +39,9 @@ pub struct MeshContact {
     pub peak_pressure: Option<f64>,
     /// Where that is; `None` without one, and without load.
     pub peak_place: Option<PeakPlace>,
+    /// The largest pressure in Pa of pairs of which no sharp corner carries, at least half the width of the contact away from kinks of the flanks; 0 where there
+    /// is none.
+    pub smooth_pressure: f64,
     /// |Σ arm·p − F|/F, the arms by cross product about the driven axis.
     pub equilibrium: f64,
     /// The largest |p_j g_j| in N m.

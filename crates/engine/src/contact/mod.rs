@@ -10,7 +10,7 @@
 //!   them, and what their solution says of the mesh,
 //! - [`stage`]: one fraction of the mesh period, from placing the cells to a solution that nothing penetrates,
 //! - `light`: what is left of it as the load vanishes,
-//! - `peak`: where flanks press hardest; [`mesh_contact`]: the summary of a solved contact,
+//! - `pressures`: the contact of each pair in plane strain, and `peak`: where flanks press hardest; [`mesh_contact`]: the summary of a solved contact,
 //! - `checked` and `penetration`: the check of the whole flanks that proves that nothing penetrates,
 //! - [`positions`]: many positions of one load, in parallel,
 //! - [`face`]: the same along faces of helical, misaligned or uneven gears, slice by slice,
@@ -51,6 +51,7 @@ pub mod patch;
 mod peak;
 mod penetration;
 pub mod positions;
+mod pressures;
 mod problem;
 pub mod stage;
 

@@ -4,6 +4,8 @@
 //! theoretical normal; elsewhere, where a relief inclines a flank or a tip corner digs into the other one, the normal is tilted and its
 //! arms about the centers are not the base radii.
 
+use std::ops::Range;
+
 use crate::flank::half_plane::{NearField, logarithm_factor};
 use crate::gear::{GearPair, Member, Vector};
 use crate::root_finding::bisect;
@@ -61,7 +63,9 @@ pub struct Patch {
     pub(super) ends_along: Vec<[f64; 2]>,
     /// What ends the flanks where the first and the last cell reach so far.
     pub ends: [Option<RangeEnd>; 2],
-    /// Where a flank has the corner of its undercut, by arc length on the seat's involute.
+    /// Where a flank has a kink, by arc length on the seat's involute, rising.
+    kinks: Vec<f64>,
+    /// Those of them at which a flank ends in the corner of its undercut.
     corners: Vec<f64>,
     /// How each gear gives way near the contact.
     pub near_fields: [NearField; 2],
@@ -144,6 +148,7 @@ impl Patch {
                 (chains[chains.len() - 1].last() >= Some(&facing.range.to))
                     .then_some(facing.range.ends[1]),
             ],
+            kinks: facing.kinks.clone(),
             corners: facing.corners.clone(),
             near_fields: Member::BOTH.map(|member| {
                 let s = facing.minima[0].roll_lengths[member.index()];
@@ -264,6 +269,7 @@ impl Patch {
     pub(super) fn bytes(&self) -> usize {
         size_of_val(self.cells.as_slice())
             + size_of_val(self.ends_along.as_slice())
+            + size_of_val(self.kinks.as_slice())
             + size_of_val(self.corners.as_slice())
             + self.probes.bytes()
             + size_of_val(self.more.as_slice())
@@ -320,15 +326,61 @@ impl Patch {
         (off / (0.5 * all / CORE) / 0.5).round() as i32
     }
 
-    /// Half the width along the flank of the contact of `active` cells that cell `i`, one of them, belongs to.
-    pub(super) fn half_width_about(&self, i: usize, active: &[bool]) -> f64 {
-        let joins = |a: usize, b: usize| {
-            active[a] && active[b] && self.cells[a].stretch + 1 == self.cells[b].stretch
-        };
-        let low = (1..=i).rev().find(|&k| !joins(k - 1, k)).unwrap_or(0);
-        let high = (i + 1..active.len()).find(|&k| !joins(k - 1, k));
-        let cells = &self.cells[low..high.unwrap_or(active.len())];
+    /// The contacts of the `active` cells: those of each follow one another.
+    pub(super) fn contacts(&self, active: &[bool]) -> Vec<Range<usize>> {
+        let mut contacts: Vec<Range<usize>> = Vec::new();
+        for i in (0..active.len()).filter(|i| active[*i]) {
+            match contacts.last_mut() {
+                Some(last)
+                    if last.end == i && self.cells[i - 1].stretch + 1 == self.cells[i].stretch =>
+                {
+                    last.end = i + 1;
+                }
+                _ => contacts.push(i..i + 1),
+            }
+        }
+        contacts
+    }
+
+    /// Half the width along the flank of the `contact` of these cells.
+    pub(super) fn half_width(&self, contact: &Range<usize>) -> f64 {
+        let cells = &self.cells[contact.clone()];
         0.5 * cells.iter().map(|cell| cell.width).sum::<f64>()
+    }
+
+    /// Where the cells from the first to the last of `contact` begin and end, by arc length on the seat's involute.
+    fn reach(&self, contact: &Range<usize>) -> [f64; 2] {
+        let [first, last] = [contact.start, contact.end - 1].map(|i| self.cells[i].stretch);
+        [self.ends_along[first][0], self.ends_along[last + 1][0]]
+    }
+
+    /// Whether the flanks are smooth under the `contact` of these cells and up to one more cell beside it.
+    pub(super) fn is_smooth_under(&self, contact: &Range<usize>) -> bool {
+        let [from, to] = self.reach(contact);
+        let beside = (to - from) / contact.len() as f64;
+        let ends = (contact.start == 0 && self.ends[0].is_some())
+            || (contact.end == self.cells.len() && self.ends[1].is_some());
+        let mut kinks = self.kinks.iter();
+        !ends && kinks.all(|kink| *kink < from - beside || *kink > to + beside)
+    }
+
+    /// The largest of the `pressures` of `active` cells at least half a contact's width away from kinks, where contacts are so many times as wide
+    /// as these cells; 0 where there is none.
+    pub(super) fn smooth_pressure(&self, pressures: &[f64], active: &[bool], times: f64) -> f64 {
+        let kinks: Vec<f64> = self.kinks.iter().map(|kink| self.along(*kink)).collect();
+        let mut largest = 0.0_f64;
+        for contact in self.contacts(active) {
+            let half_width = times * self.half_width(&contact);
+            for i in contact {
+                let stretch = self.cells[i].stretch;
+                let [from, to] = [stretch, stretch + 1].map(|end| self.ends_along[end][1]);
+                let away = |kink: &f64| (kink - f64::midpoint(from, to)).abs() >= half_width;
+                if kinks.iter().all(away) {
+                    largest = largest.max(pressures[i]);
+                }
+            }
+        }
+        largest
     }
 
     /// Whether the contact of the `active` cells reaches a corner: the tip edge of a gear whose edge is `sharp`, or that of an undercut flank.

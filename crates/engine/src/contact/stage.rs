@@ -118,13 +118,10 @@ impl<'a> Stage<'a> {
         summary: impl FnOnce(MeshContact, &ContactCells<'_>, &ContactSolution) -> T,
     ) -> Result<T, PositionError> {
         let load = self.load;
-        self.solved(period, warm, |cells, _, solution, penetration| {
-            summary(
-                cells.mesh_contact(load, &solution, &penetration),
-                cells,
-                &solution,
-            )
-        })
+        self.solved(period, warm, |cells, problem, solution, penetration| {
+            let contact = cells.mesh_contact(load, (&problem, &solution), &penetration)?;
+            Ok(summary(contact, cells, &solution))
+        })?
     }
 
     /// The contact in mesh period `period`, cell by cell.

@@ -31,6 +31,8 @@ pub(super) struct LineContact {
     relative_radius: f64,
     face_width: f64,
     halves: [HalfPlane; 2],
+    /// The sum of 2/(π b E') in plane strain, in which a contact presses whatever the plane state of the bodies: it is far narrower than the face is wide.
+    in_plane_strain: f64,
 }
 
 /// A body as the law of the approach sees it.
@@ -51,6 +53,13 @@ impl LineContact {
         Self {
             relative_radius: one * other / (one + other),
             face_width,
+            in_plane_strain: bodies
+                .map(|body| {
+                    let modulus = body.material.plane_modulus(PlaneState::Strain);
+                    logarithm_factor(modulus, face_width)
+                })
+                .into_iter()
+                .sum(),
             halves: bodies.map(
                 |ContactBody {
                      material, depth, ..
@@ -63,9 +72,10 @@ impl LineContact {
         }
     }
 
-    /// The pressure p_0 in the middle of the contact under `force` (N, positive), in Pa.
+    /// The pressure p_0 in the middle of the contact under `force` (N, positive), in Pa: that of plane strain.
     pub(super) fn peak_pressure(&self, force: f64) -> f64 {
-        self.hertz(force).1
+        let (radius, width) = (self.relative_radius, self.face_width);
+        hertz(force, radius, self.in_plane_strain, width).1
     }
 
     /// The approach h of the two points at their depths under `force` (N, positive), in m.
@@ -210,6 +220,18 @@ mod tests {
             contact(8.9094e-3, 1.672e-3, PlaneState::Stress).hertz(2447.61);
         assert_printed(half_width * 1e6, 115.0, 1);
         assert!((peak_pressure * 1e-6 - 677.0).abs() < 1.0);
+    }
+
+    #[test]
+    fn a_contact_presses_as_in_plane_strain_whatever_the_state_of_the_bodies() {
+        // p_0² = F E'/(2 π b ρ) of two alike bodies (Hertz), with E' = E/(1 − ν²).
+        let (force, radius) = (2447.61, 8.9094e-3);
+        let modulus = 210e9 / (1.0 - 0.3 * 0.3);
+        let square = force * modulus / (2.0 * PI * FACE_WIDTH * radius);
+        for plane in [PlaneState::Stress, PlaneState::Strain] {
+            let pressure = contact(radius, 2e-3, plane).peak_pressure(force);
+            assert!((pressure / square.sqrt() - 1.0).abs() < 1e-12);
+        }
     }
 
     #[test]

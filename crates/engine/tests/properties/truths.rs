@@ -9,8 +9,8 @@ use meshwright_engine::analysis::{
 use meshwright_engine::contact::MeshContact;
 use meshwright_engine::flank::half_plane::{hertz, logarithm_factor};
 use meshwright_engine::gear::{
-    GearData, GearPair, HoleShape, Member, ModificationData, ReliefStart, SpurGear, TablePlaces,
-    TipEdge, ToothDeviations, Vector,
+    GearData, GearPair, HoleShape, Member, ModificationData, PlaneState, ReliefStart, SpurGear,
+    TablePlaces, TipEdge, ToothDeviations, Vector,
 };
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
@@ -595,8 +595,9 @@ fn beside_hertz(drawn: &DrawnPair) -> Result<Option<f64>, String> {
     let model = model(pair)?;
     let factors: f64 = Member::BOTH
         .map(|member| {
-            let e = pair.gear(member).material().youngs_modulus;
-            logarithm_factor(e, pair.common_face_width())
+            let material = pair.gear(member).material();
+            let modulus = material.plane_modulus(PlaneState::Strain);
+            logarithm_factor(modulus, pair.common_face_width())
         })
         .into_iter()
         .sum();

@@ -408,6 +408,7 @@ impl FaceModel {
         let mut pairs: Vec<PairContact> = Vec::new();
         let mut peak: Option<Peak> = None;
         let mut at_sharp_edge = false;
+        let mut smooth_pressure = 0.0_f64;
         let mut corner_shares = [0.0; 2];
         let mut loads = Vec::new();
         for (i, (slice, carried)) in slices.iter().zip(&balance.carried).enumerate() {
@@ -431,6 +432,7 @@ impl FaceModel {
                 corner_shares[member.index()] += carried.weighed / load;
             }
             at_sharp_edge |= pressed.at_sharp_edge;
+            smooth_pressure = smooth_pressure.max(pressed.smooth);
             let edge = &slice.ends[usize::from(middle > 0.0)].roll_lengths;
             let z = slice.z + 0.5 * middle * slice.length;
             let roll_lengths = [0, 1].map(|g| {
@@ -483,6 +485,7 @@ impl FaceModel {
                 transmission_error: balance.transmission_error,
                 stiffness: balance.stiffness,
                 pairs,
+                smooth_pressure,
                 penetration: balance.penetration(slices),
                 iterations: balance.iterations,
                 ..MeshContact::of_spots(load, spots, peak.filter(|_| !at_sharp_edge))

@@ -77,6 +77,8 @@ struct Cells {
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Pressed {
     pub(super) pressure: Option<f64>,
+    /// The largest at least half the width of the contact away from kinks; 0 where there is none, and at a sharp tip edge.
+    pub(super) smooth: f64,
     /// Whether it reaches a sharp tip edge, where pressure has no limit.
     pub(super) at_sharp_edge: bool,
     pub(super) half_width: f64,
@@ -244,6 +246,7 @@ impl Spring {
                 let (half_width, pressure) = hertz(q, self.line.radius, self.line.factor, 1.0);
                 Pressed {
                     pressure: Some(pressure),
+                    smooth: pressure,
                     half_width,
                     ..Pressed::default()
                 }
@@ -308,16 +311,17 @@ impl Cells {
         let patch = &self.patch;
         let at_corner = patch.corner_carries(&solution.active, self.sharp);
         let cells = patch.cells.iter().zip(&solution.forces);
-        let largest = cells
-            .clone()
-            .map(|(cell, p)| p / cell.width)
-            .fold(0.0, f64::max);
+        let pressures = cells.clone().map(|(cell, p)| p / cell.width);
+        let pressures: Vec<f64> = pressures.collect();
+        let largest = pressures.iter().copied().fold(0.0, f64::max);
+        let smooth = || patch.smooth_pressure(&pressures, &solution.active, 1.0);
         let width: f64 = cells
             .filter(|(_, p)| **p > 0.0)
             .map(|(cell, _)| cell.width)
             .sum();
         Pressed {
             pressure: (!at_corner).then_some(largest),
+            smooth: if at_corner { 0.0 } else { smooth() },
             at_sharp_edge: at_corner,
             half_width: 0.5 * width,
             tip_corner: patch.off_path.then_some(patch.seat),
