@@ -112,7 +112,10 @@ const ELSEWHERE = {
   hole_order_of_holes_um: (curve) => order(curve, /^H_N\d?$/, "transmission_error_of_holes_um"),
   mesh_order_um: (curve) => order(curve, /^H_Z2?$/),
   face_load_factor: (curve) => curve.face?.face_load_factor,
-  peak_contact_pressure_mpa: (curve) => extent(curve.peak_contact_pressure_mpa)?.[1],
+  peak_contact_pressure_mpa: (curve) => curve.statistics.peak_contact_pressure_mpa?.largest,
+  pressure_unbounded_share: (curve) => curve.pressure_unbounded_share,
+  pitch_point_pressure_mpa: (curve) => curve.pitch_point_pressure_mpa,
+  smooth_contact_pressure_mpa: (curve) => curve.smooth_contact_pressure_mpa,
   "dynamic_transmission_error_um.peak_to_peak": ({ dynamics }) =>
     dynamics &&
     extent(

@@ -3,7 +3,7 @@
 // with.
 
 import { button, h } from "../draw/dom.js";
-import { extent, fixed, number } from "../state/numbers.js";
+import { fixed, number } from "../state/numbers.js";
 import { inCurve, quantityOf } from "../state/quantities.js";
 
 /** @import { Curve, GearName } from "../state/documents.js" */
@@ -23,9 +23,6 @@ import { inCurve, quantityOf } from "../state/quantities.js";
  * @property {string} about
  */
 
-/** @type {(values: (number | null)[]) => number | null} */
-const largest = (values) => extent(values)?.[1] ?? null;
-
 /**
  * The part of its span in which one pair of teeth carries alone, in percent.
  *
@@ -38,21 +35,11 @@ function alone(curve) {
 }
 
 /**
- * The largest stress at a root or at a hole of either gear.
+ * The largest stress at a root or at a hole of either gear over the span, and where it stands.
  *
- * @type {(curve: Curve) => number | null}
+ * @type {(curve: Curve) => { value: number, where: Where | null | undefined }}
  */
-function largestStress({ stress }) {
-  if (!stress) return null;
-  return largest([stress.driving, stress.driven].flatMap((gear) => [...gear.root_mpa, ...(gear.hole_mpa ?? [])]));
-}
-
-/**
- * Where the largest stress at a root or at a hole of either gear stands.
- *
- * @type {(curve: Curve) => Where | null | undefined}
- */
-function largestStressWhere({ statistics: { stress } }) {
+function largestStress({ statistics: { stress } }) {
   const each = Object.values(stress ?? {}).flatMap((gear) =>
     /** @type {const} */ (["root_mpa", "hole_mpa"]).map((name) => ({
       value: gear[name] ?? 0,
@@ -60,7 +47,7 @@ function largestStressWhere({ statistics: { stress } }) {
     })),
   );
   const none = { value: 0, where: /** @type {Where | null | undefined} */ (undefined) };
-  return each.reduce((most, next) => (next.value > most.value ? next : most), none).where;
+  return each.reduce((most, next) => (next.value > most.value ? next : most), none);
 }
 
 /**
@@ -160,14 +147,14 @@ export const ANSWERS = [
     where: (curve) => curve.statistics.peak_contact_pressure_mpa?.largest_where,
     print: (value) => fixed(value, 0),
     about:
-      "The largest contact pressure where it has a limit. A sharp tip corner that touches has none, and is left out.",
+      "The largest contact pressure. Where a sharp corner touches at any position there is none, because pressure has no limit there.",
   },
   {
     id: "stress",
     name: "Max stress",
     unit: "MPa",
-    of: largestStress,
-    where: largestStressWhere,
+    of: (curve) => (curve.statistics.stress ? largestStress(curve).value : null),
+    where: (curve) => largestStress(curve).where,
     print: (value) => fixed(value, 1),
     about:
       "The largest von Mises stress at the roots and holes of both gears. Computed where Stress is on, under Load and method.",

@@ -3,7 +3,7 @@
 mod cases;
 
 use cases::{along_faces, case, gear, helical, pair};
-use meshwright_engine::analysis::stress::PeakStress;
+use meshwright_engine::analysis::stress::StressedPlace;
 use meshwright_engine::analysis::{Analysis, Case, Curve, Warning, analyze, warnings};
 use meshwright_engine::assembly::FaceResolution;
 use meshwright_engine::gear::{
@@ -42,6 +42,14 @@ fn largest(curve: &Curve) -> f64 {
     pressures.fold(0.0, f64::max)
 }
 
+/// The position of `curve` that is nearest to a mesh position.
+fn nearest(curve: &Curve, eta: f64) -> usize {
+    let away = |i: &usize| (curve.mesh_position[*i] - eta).abs();
+    let places = 0..curve.mesh_position.len();
+    let nearest = places.min_by(|a, b| away(a).total_cmp(&away(b)));
+    nearest.expect("a position")
+}
+
 fn kink(analysis: &Analysis) -> Option<(Member, f64)> {
     let mut warnings = analysis.warnings.iter();
     warnings.find_map(|warning| match warning {
@@ -56,14 +64,10 @@ fn kink(analysis: &Analysis) -> Option<(Member, f64)> {
 fn the_largest_pressure_of_a_linear_relief_stands_at_its_kink_and_is_warned_of() {
     let (case, analysis) = solved(case(relieved(ReliefShape::Linear), &[200.0]));
     let curve = &analysis.curves[0];
-    let found = curve.largest_pressure.expect("no sharp corner carries");
-    assert_eq!(found.pressure, largest(curve));
-    let place = curve
-        .mesh_position
-        .iter()
-        .position(|eta| *eta == found.mesh_position);
-    let at = curve.peak_contact_pressure[place.expect("a position")];
-    assert_eq!(at, Some(found.pressure));
+    let found = curve.pressures.largest.expect("no sharp corner carries");
+    // A kink of 15 µm within 1 mm passes the middle of a contact between two of 20 positions.
+    assert!(found.pressure > 1.005 * largest(curve));
+    let place = nearest(curve, found.mesh_position);
     let start = 2.0 * (case.pair.driving().tip_radius() - LENGTH);
     let (member, diameter) = kink(&analysis).expect("a warning");
     assert!((diameter - start).abs() < 1e-12);
@@ -75,7 +79,7 @@ fn the_largest_pressure_of_a_linear_relief_stands_at_its_kink_and_is_warned_of()
     let offset = stands.pair_offset.expect("on a tooth");
     let mut shares = curve.load_shares.iter();
     let share = shares.find(|share| share.pair_offset == offset);
-    assert!(share.is_some_and(|share| share.share[place.expect("a position")] > 0.0));
+    assert!(share.is_some_and(|share| share.share[place] > 0.0));
 }
 
 #[test]
@@ -83,7 +87,8 @@ fn the_largest_pressure_of_a_parabolic_relief_stands_on_the_line_of_contact_and_
     let (case, analysis) = solved(case(relieved(ReliefShape::Parabolic), &[200.0]));
     assert_eq!(kink(&analysis), None);
     let found = analysis.curves[0]
-        .largest_pressure
+        .pressures
+        .largest
         .expect("no sharp corner carries");
     let stands = found.stands(&case.pair);
     let offset = stands.pair_offset.expect("on a tooth");
@@ -110,25 +115,23 @@ fn the_largest_root_stress_stands_in_the_fillet_of_a_tooth_in_mesh() {
     let curve = &analysis.curves[0];
     let stresses = curve.stresses.as_ref().expect("asked for");
     for member in Member::BOTH {
-        let root = &stresses[member.index()].root;
-        let stands = PeakStress::largest_where(&case, member, root, true).expect("stressed");
+        let of = &stresses[member.index()];
+        let largest = of.largest(StressedPlace::Root, &case);
+        let (eta, peak) = largest.expect("stressed");
+        let stands = peak.stands((&case, member), eta, true);
         let gear = case.pair.gear(member);
         let diameter = stands.diameters[member.index()].expect("of its own gear");
         assert!(diameter > 2.0 * gear.root_radius() - 1e-9 && diameter < 2.0 * gear.form_radius());
         assert_eq!(stands.diameters[member.other().index()], None);
-        let places = &curve.mesh_position;
-        let place = places
-            .iter()
-            .position(|eta| *eta == stands.mesh_position)
-            .expect("a position");
-        let most = root.iter().map(|peak| peak.stress).fold(0.0, f64::max);
-        assert_eq!(root[place].stress, most);
+        let most = of.root.iter().map(|peak| peak.stress).fold(0.0, f64::max);
+        assert!(peak.stress >= most);
+        let place = nearest(curve, eta);
         // It is the tooth that carries most.
         let shares = curve.load_shares.iter();
         let heaviest = shares.max_by(|a, b| a.share[place].total_cmp(&b.share[place]));
         let heaviest = heaviest.map(|share| share.pair_offset);
         assert_eq!(stands.pair_offset, heaviest, "{member}");
-        assert_eq!(PeakStress::largest_where(&case, member, &[], false), None);
+        assert_eq!(of.largest(StressedPlace::Hole, &case), None);
     }
 }
 
@@ -156,9 +159,10 @@ fn along_a_misaligned_face_the_largest_pressure_stands_where_the_axes_close() {
         &[150.0],
     ));
     let found = analysis.curves[0]
-        .largest_pressure
+        .pressures
+        .largest
         .expect("no sharp corner carries");
-    assert_eq!(found.pressure, largest(&analysis.curves[0]));
+    assert!(found.pressure >= largest(&analysis.curves[0]));
     assert!(found.place.z.is_some_and(|z| z < -5e-3), "{found:?}");
 }
 

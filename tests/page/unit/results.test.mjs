@@ -206,3 +206,14 @@ test("answers are quantities of the service, in their printed unit, or the page'
     );
   assert.deepEqual(["p-p", "h-z", "h-n", "share", "stress"].map(value), [2, 0.5, null, 50, null]);
 });
+
+test("where a corner carries at any position there is no largest pressure to compare designs by", () => {
+  const answer = ANSWERS.find(({ id }) => id === "pressure");
+  const curve = (largest) => ({
+    ...curveOver(1),
+    peak_contact_pressure_mpa: [80, null, 75],
+    statistics: { peak_contact_pressure_mpa: { largest } },
+  });
+  assert.equal(valueOf(answer, curve(undefined)), null);
+  assert.equal(valueOf(answer, curve(81)), 81);
+});

@@ -1,6 +1,6 @@
 //! What comes out: curves over mesh position.
 
-use super::largest_where::LargestPressure;
+use super::pressures::CurvePressures;
 use super::single_flank::SingleFlank;
 use super::spectrum::Spectrum;
 use super::statistics::{SamplingError, Statistics};
@@ -123,8 +123,8 @@ pub struct Curve {
     pub pairs_in_contact: Vec<u32>,
     /// The largest contact pressure in Pa; `None` where a sharp tip corner carries, at which it has no limit.
     pub peak_contact_pressure: Vec<Option<f64>>,
-    /// The largest pressure and where it stands; `None` where one has no limit, and without load.
-    pub largest_pressure: Option<LargestPressure>,
+    /// What the pressures come to.
+    pub pressures: CurvePressures,
     /// The share of each pair that ever carries load, by rising offset.
     pub load_shares: Vec<LoadShare>,
     /// Of δ.

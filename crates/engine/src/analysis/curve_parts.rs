@@ -3,8 +3,8 @@
 use super::Case;
 use super::between::Sections;
 use super::curve::{Curve, DecompositionParts, FaceLoad, LoadShare};
-use super::found::Found;
-use super::largest_where::LargestPressure;
+use super::found::{Between, Found};
+use super::pressures::CurvePressures;
 use super::single_flank::SingleFlank;
 use super::spectrum::Spectrum;
 use super::stress::GearStresses;
@@ -20,7 +20,7 @@ pub(super) struct CurveParts {
     pub(super) driving_load: Vec<f64>,
     pub(super) pairs_in_contact: Vec<u32>,
     pub(super) peak_contact_pressure: Vec<Option<f64>>,
-    pub(super) largest_pressure: Option<LargestPressure>,
+    pub(super) pressures: CurvePressures,
     pub(super) load_shares: Vec<LoadShare>,
     pub(super) decomposition: Option<DecompositionParts>,
     pub(super) stresses: Option<[GearStresses; 2]>,
@@ -64,7 +64,7 @@ impl CurveParts {
             mesh_stiffness_tangent: self.stiffness,
             pairs_in_contact: self.pairs_in_contact,
             peak_contact_pressure: self.peak_contact_pressure,
-            largest_pressure: self.largest_pressure,
+            pressures: self.pressures,
             load_shares: self.load_shares,
             spectrum,
             decomposition: self.decomposition,
@@ -75,11 +75,20 @@ impl CurveParts {
 }
 
 impl CurveParts {
-    /// What is `found` at the first positions of `case`, after which it repeats; its curve is that of `sections`.
-    pub(super) fn of<K>(case: &Case, found: &Found<K>, sections: Sections) -> Self {
+    /// What is `found` under `load` at the first positions of `case`, after which it repeats, and `between` them; its curve is that of `sections`.
+    pub(super) fn of<K>(
+        (case, load): (&Case, f64),
+        found: &Found<K>,
+        between: &Between<K>,
+        sections: Sections,
+    ) -> Self {
         let contacts = &found.contacts;
         let mut positions = case.mesh_positions();
         positions.truncate(contacts.len());
+        let further = between.positions.iter().zip(&between.contacts);
+        let all = positions.iter().zip(contacts).chain(further);
+        let all = all.map(|(eta, contact)| (*eta, contact));
+        let repeats_after = positions.len() as u32 / case.resolution.positions_per_mesh_period;
         let shares = load_shares(&positions, contacts).into_iter();
         let each = contacts.iter();
         Self {
@@ -89,7 +98,7 @@ impl CurveParts {
             driving_load: case.repeated(each.clone().map(|contact| contact.driving_load)),
             pairs_in_contact: case.repeated(each.clone().map(MeshContact::loaded_pairs)),
             peak_contact_pressure: case.repeated(each.map(|contact| contact.peak_pressure)),
-            largest_pressure: largest_pressure(&positions, contacts),
+            pressures: CurvePressures::of((case, load), all, repeats_after),
             load_shares: shares
                 .map(|LoadShare { pair_offset, share }| LoadShare {
                     pair_offset,
@@ -101,14 +110,6 @@ impl CurveParts {
             face: None,
         }
     }
-}
-
-/// The largest pressure of `contacts` at these `positions`.
-fn largest_pressure(positions: &[f64], contacts: &[MeshContact]) -> Option<LargestPressure> {
-    let found = positions.iter().zip(contacts);
-    LargestPressure::of(
-        found.map(|(eta, contact)| (*eta, contact.peak_pressure, contact.peak_place)),
-    )
 }
 
 /// Shares of the load by pair offset n − floor(η), for the offsets that ever carry load.

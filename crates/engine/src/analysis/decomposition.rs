@@ -105,7 +105,7 @@ pub(super) fn solve(setup: Setup<'_>, pass: &Pass) -> Result<Analysis, AnalysisE
             })
         };
         let found = find(&pass.curve)?;
-        let parts = under.parts(&found, &[], |sweep, _| find(sweep))?;
+        let (parts, _) = under.parts(&found, &[], |sweep, _| find(sweep))?;
         let of_rigid = found.contacts.iter();
         let of_rigid = of_rigid.map(|contact| contact.transmission_error);
         Ok(CurveParts {

@@ -115,7 +115,7 @@ fn add_gears(estimate: &mut Estimate, plan: &Plan) {
 
 /// Contacts that gears answer to with their stresses in a `pass` of `plan`.
 fn answers(plan: &Plan, pass: &Pass) -> f64 {
-    (pass.curve.positions.len() * plan.case.loaded_torques().count()) as f64
+    (pass.curve.solved_positions() * plan.case.loaded_torques().count()) as f64
 }
 
 /// Seconds of one core for the yield of one gear with nine functions across the face, for its web besides, and for the contact of a slice at a

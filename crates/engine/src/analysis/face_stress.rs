@@ -7,9 +7,7 @@ use rayon::prelude::*;
 
 use super::AnalysisError;
 use super::case::Faces;
-use super::stress::{
-    GearPeaks, GearStresses, PeakStress, PositionPeaks, REACH, RootStress, largest, teeth_away,
-};
+use super::stress::{GearPeaks, PeakStress, PositionPeaks, REACH, RootStress, largest, teeth_away};
 use crate::assembly::{FaceHoles, FaceRoots, FaceYield, FaceYieldSpec, PartError, Parts};
 use crate::contact::face::FaceContact;
 use crate::fem::surface::SurfaceStress;
@@ -60,15 +58,12 @@ impl<'a> FaceStressModel<'a> {
         &self,
         contacts: &[FaceContact],
         run: &Run,
-    ) -> Result<[GearStresses; 2], AnalysisError> {
-        let peaks: Vec<PositionPeaks> = contacts
-            .par_iter()
-            .map(|contact| {
-                run.check()?;
-                Ok(Member::BOTH.map(|member| self.peaks(member, contact)))
-            })
-            .collect::<Result<_, AnalysisError>>()?;
-        Ok(GearStresses::of_positions(&peaks))
+    ) -> Result<Vec<PositionPeaks>, AnalysisError> {
+        let each = contacts.par_iter().map(|contact| {
+            run.check()?;
+            Ok(Member::BOTH.map(|member| self.peaks(member, contact)))
+        });
+        each.collect()
     }
 
     fn peaks(&self, member: Member, contact: &FaceContact) -> GearPeaks {

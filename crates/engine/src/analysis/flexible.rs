@@ -3,7 +3,7 @@
 use super::curve_parts::CurveParts;
 use super::found::Found;
 use super::pair_contacts::ModeledPair;
-use super::plan::Pass;
+use super::plan::{Pass, Sweep};
 use super::setup::Setup;
 use super::stress::{GearStresses, StressModel};
 use super::under_load::curves;
@@ -17,21 +17,26 @@ pub(super) fn solve(setup: Setup<'_>, pass: &Pass) -> Result<Analysis, AnalysisE
     let stress = pass.stress.then(|| StressModel::new(&setup)).transpose()?;
     let stress = stress.as_ref().map(|model| model.loaded(run));
     let stress = stress.transpose()?;
+    let find = |load: f64, sweep: &Sweep| match &stress {
+        None => Ok::<_, AnalysisError>(pair.found(load, sweep)?.keeping(Vec::new())),
+        Some(stress) => {
+            let peaks = |cells: &ContactCells<'_>, solution: &ContactSolution| {
+                stress.peaks(cells, solution)
+            };
+            let (contacts, peaks, stiffness) = setup.solved(&pair.model, load, sweep, peaks)?;
+            Ok(Found::of_contacts((case, sweep), contacts, &stiffness).keeping(peaks))
+        }
+    };
     curves((case, pass), pair.degrees_of_freedom, run, |under| {
         let load = under.load;
-        let found = match &stress {
-            None => pair.found(load, sweep)?.keeping(Vec::new()),
-            Some(stress) => {
-                let peaks = |cells: &ContactCells<'_>, solution: &ContactSolution| {
-                    stress.peaks(cells, solution)
-                };
-                let (contacts, peaks, stiffness) = setup.solved(&pair.model, load, sweep, peaks)?;
-                Found::of_contacts((case, sweep), contacts, &stiffness).keeping(peaks)
-            }
+        let found = find(load, sweep)?;
+        let (parts, between) = under.parts(&found, &[], |further, _| find(load, further))?;
+        let stresses = || {
+            let between = (between.positions.as_slice(), between.kept.as_slice());
+            GearStresses::of_positions(&found.kept, between)
         };
-        let parts = under.parts(&found, &[], |further, _| pair.found(load, further))?;
         Ok(CurveParts {
-            stresses: pass.stress.then(|| GearStresses::of_positions(&found.kept)),
+            stresses: pass.stress.then(stresses),
             ..parts
         })
     })

@@ -1,6 +1,6 @@
 //! What a method finds at some positions under one load.
 
-use super::between::Sample;
+use super::between::{Sample, Watched};
 use super::case::Case;
 use super::plan::Sweep;
 use crate::contact::MeshContact;
@@ -14,6 +14,60 @@ pub(super) struct Found<K = ()> {
     /// δ and k at all places in the curve at which these contacts are.
     pub(super) transmission_error: Vec<f64>,
     pub(super) stiffness: Vec<f64>,
+}
+
+/// What a method keeps of a contact, of which the extremes of a curve may be.
+pub(super) trait Kept: Clone {
+    /// Values of which the largest over the curve is told, each the larger the worse; as many of them at each position.
+    fn watched(&self) -> Vec<f64>;
+}
+
+impl Kept for () {
+    fn watched(&self) -> Vec<f64> {
+        Vec::new()
+    }
+}
+
+/// What is found at positions between those of a sweep.
+pub(super) struct Between<K> {
+    /// The mesh positions, in no order.
+    pub(super) positions: Vec<f64>,
+    /// The contact at each.
+    pub(super) contacts: Vec<MeshContact>,
+    /// What the method keeps of each; empty if it keeps nothing.
+    pub(super) kept: Vec<K>,
+}
+
+impl<K> Between<K> {
+    /// Nothing.
+    pub(super) const fn nothing() -> Self {
+        Self {
+            positions: Vec::new(),
+            contacts: Vec::new(),
+            kept: Vec::new(),
+        }
+    }
+
+    /// Adds what is `found` at `positions`.
+    pub(super) fn add(&mut self, positions: &[f64], found: Found<K>) {
+        self.positions.extend(positions);
+        self.contacts.extend(found.contacts);
+        self.kept.extend(found.kept);
+    }
+}
+
+impl<K: Kept> Found<K> {
+    /// At each of `positions`, at which its contacts stand, the largest pressures and what else is watched.
+    pub(super) fn watched(&self, positions: &[f64]) -> Vec<Watched> {
+        let each = positions.iter().zip(&self.contacts).enumerate();
+        each.map(|(i, (position, contact))| {
+            let beside = self.kept.get(i).map(K::watched).unwrap_or_default();
+            let pressures = [contact.peak_pressure, Some(contact.smooth_pressure)];
+            let values = pressures.into_iter().chain(beside.into_iter().map(Some));
+            (*position, values.collect())
+        })
+        .collect()
+    }
 }
 
 impl Found {

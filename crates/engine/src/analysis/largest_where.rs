@@ -100,32 +100,23 @@ impl LargestPressure {
 }
 
 impl PeakStress {
-    /// Where the largest of the `peaks` of `member`, one a position of `case`, stands: on a tooth, or at the edge of a hole.
-    pub fn largest_where(
-        case: &Case,
-        member: Member,
-        peaks: &[Self],
+    /// Where it stands as the largest of `member` at a `mesh_position` of `case`: on a tooth, or at the edge of a hole.
+    pub fn stands(
+        &self,
+        (case, member): (&Case, Member),
+        mesh_position: f64,
         on_tooth: bool,
-    ) -> Option<LargestWhere> {
-        let places = case.mesh_positions();
-        let each = places.into_iter().zip(peaks);
-        let (mesh_position, peak) = each.reduce(|one, other| {
-            if other.1.stress.abs() > one.1.stress.abs() {
-                other
-            } else {
-                one
-            }
-        })?;
+    ) -> LargestWhere {
         let teeth = case.pair.gear(member).tooth_count() as usize;
-        let tooth = (peak.angle / TAU * teeth as f64).round() as usize % teeth;
+        let tooth = (self.angle / TAU * teeth as f64).round() as usize % teeth;
         let mut diameters = [None; 2];
-        diameters[member.index()] = Some(2.0 * peak.radius);
-        Some(LargestWhere {
+        diameters[member.index()] = Some(2.0 * self.radius);
+        LargestWhere {
             mesh_position,
             pair_offset: on_tooth.then(|| nearest_offset(&case.pair, member, tooth, mesh_position)),
             diameters,
-            z: peak.z,
-        })
+            z: self.z,
+        }
     }
 }
 

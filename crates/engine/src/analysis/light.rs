@@ -49,6 +49,8 @@ pub(super) fn curve(case: &Case, sweep: &Sweep) -> Result<Curve, AnalysisError> 
         Ok(Found::of_contacts((case, sweep), contacts, &stiffness))
     };
     let (found, run) = (find(sweep)?, Run::unattended());
-    let parts = parts_of((case, sweep), &found, &kinks, &run, |sweep, _| find(sweep))?;
+    let (parts, _) = parts_of((case, sweep, 0.0), &found, &kinks, &run, |sweep, _| {
+        find(sweep)
+    })?;
     Ok(parts.into_curve(case, 0.0))
 }

@@ -23,7 +23,7 @@ pub(super) fn solve(
         let load = under.load;
         let find = |sweep: &Sweep, run: &Run| found((case, &formulas), sweep, load, run);
         let found = find(&pass.curve, run)?;
-        under.parts(&found, &ends, find)
+        Ok(under.parts(&found, &ends, find)?.0)
     })
 }
 

@@ -7,7 +7,7 @@
 //! - `flexible`, `decomposition`, `projected`, `three_dimensional` and `load_distribution` (the methods), `first_order` (what holes change, in the plane and
 //!   along faces) and `checks` (where that is compared with exact solutions), `light` (torque 0, alike for all);
 //! - [`stress`] (at roots and holes; along faces `face_stress`), [`fields`] (everywhere; along faces [`face_fields`]), [`contact_pattern`] (over the flanks);
-//! - `between` (a curve between its positions), `curve_parts` and [`curve`] with its `statistics`, [`largest_where`] (where its largest values stand),
+//! - `between` (a curve between its positions), `curve_parts` and [`curve`] with its `statistics`, [`largest_where`] (where its largest values stand), [`pressures`] (what they come to),
 //!   [`spectrum`] and [`single_flank`];
 //! - [`evidence`], [`warning`], [`error`] and `answer` (all that comes out); [`forces`] (tables of force), [`at_speed`] (motion).
 
@@ -37,6 +37,7 @@ mod load_distribution;
 mod orders;
 mod pair_contacts;
 mod plan;
+pub mod pressures;
 mod projected;
 mod setup;
 pub mod single_flank;

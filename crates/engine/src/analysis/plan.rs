@@ -2,7 +2,7 @@
 //! [`estimate`](super::estimate()) prices it.
 
 use super::AnalysisError;
-use super::between::{Refinement, Sample, Sections, most_further};
+use super::between::{MOST_FOR_PEAKS, Refinement, Sample, Sections, most_further};
 use super::case::{Case, Method, Place, StiffnessRule};
 use super::case::{FaceHoles, Model, SectionHoles};
 use super::checks::Checks;
@@ -73,15 +73,31 @@ pub(super) struct Sweep {
 pub(super) struct Further {
     /// How many at most.
     pub(super) most: usize,
+    /// How many more at most, where pressures and stresses may be largest.
+    pub(super) for_peaks: usize,
     /// The mesh periods after which the contacts at them repeat.
-    repeats_after: u32,
+    pub(super) repeats_after: u32,
 }
 
 impl Further {
     const NONE: Self = Self {
         most: 0,
+        for_peaks: 0,
         repeats_after: 1,
     };
+
+    /// Those of a curve of so many positions, whose contacts repeat after so many mesh periods.
+    fn of(positions: usize, repeats_after: u32) -> Self {
+        Self {
+            most: most_further(positions),
+            for_peaks: MOST_FOR_PEAKS,
+            repeats_after,
+        }
+    }
+
+    fn count(&self) -> usize {
+        self.most + self.for_peaks
+    }
 }
 
 impl Plan {
@@ -127,6 +143,8 @@ impl Plan {
 impl Pass {
     fn of(case: &Case, level: GridLevel) -> Self {
         let answers = level == case.resolution.grid;
+        // A pass beside that of the answer is asked for statistics of δ and k.
+        let for_peaks = if answers { MOST_FOR_PEAKS } else { 0 };
         let by_rule = match case.resolution.stiffness {
             StiffnessRule::Tangent => None,
             StiffnessRule::TorqueStep { fraction } => Some(fraction),
@@ -141,6 +159,13 @@ impl Pass {
             Model::Section(SectionHoles::FirstOrder)
             | Model::Faces(_, FaceHoles::FirstOrder)
             | Model::Formulas(_) => Sweep::repeating(case, Blanks::Flexible, by_rule),
+        };
+        let curve = Sweep {
+            further: Further {
+                for_peaks,
+                ..curve.further
+            },
+            ..curve
         };
         let is_cured = answers && case.faces().is_some_and(|faces| faces.cure);
         Self {
@@ -205,10 +230,7 @@ impl Sweep {
         let positions = case.mesh_positions();
         Self {
             blanks: Blanks::Flexible,
-            further: Further {
-                most: most_further(positions.len()),
-                repeats_after: case.curves_repeat_after(),
-            },
+            further: Further::of(positions.len(), case.curves_repeat_after()),
             positions,
             repeats_after: case.span(),
             step,
@@ -220,10 +242,7 @@ impl Sweep {
         let (positions, repeats_after) = (case.repeating_positions(), case.contacts_repeat_after());
         Self {
             blanks,
-            further: Further {
-                most: most_further(positions.len()),
-                repeats_after,
-            },
+            further: Further::of(positions.len(), repeats_after),
             positions,
             repeats_after,
             step,
@@ -240,12 +259,17 @@ impl Sweep {
         if self.step.is_some() { 3 } else { 1 }
     }
 
+    /// Its positions and the further ones, at most.
+    pub(super) fn solved_positions(&self) -> usize {
+        self.positions.len() + self.further.count()
+    }
+
     fn solutions(&self) -> u64 {
-        self.at_each() * (self.positions.len() + self.further.most) as u64
+        self.at_each() * self.solved_positions() as u64
     }
 
     fn first_solutions(&self) -> u64 {
-        self.at_each() * (stages(&self.positions).len() + self.further.most) as u64
+        self.at_each() * (stages(&self.positions).len() + self.further.count()) as u64
     }
 
     /// The same at `positions` between these.
@@ -276,6 +300,12 @@ impl Sweep {
         // What was not needed is done.
         run.reached(self.at_each() * left as u64)?;
         Ok(sections)
+    }
+
+    /// Counts as done what was not needed to find peaks, of which so many positions were `solved`.
+    pub(super) fn peaks_searched(&self, solved: usize, run: &Run) -> Result<(), AnalysisError> {
+        let left = self.further.for_peaks.saturating_sub(solved);
+        Ok(run.reached(self.at_each() * left as u64)?)
     }
 
     /// The stiffness under `load`: that of its `contacts`, or by a central difference of δ between those `at` a smaller and a larger one.

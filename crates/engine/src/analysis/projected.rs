@@ -35,17 +35,18 @@ pub(super) fn solve(setup: Setup<'_>, pass: &Pass) -> Result<Analysis, AnalysisE
                 cells.loads(&[&solution.forces, &solution.load_derivative])
             };
             let (contacts, loads, stiffness) = setup.solved(&round, load, sweep, keep)?;
-            Ok(with_holes(
+            let found = with_holes(
                 (case, sweep),
                 (contacts, &stiffness),
                 loads,
                 // It is the same under every tooth.
                 |pairs| yielded(&round, &holed, pairs, 0),
                 |pairs, place| yielded(&whole, &holed, pairs, place.position.floor() as i64),
-            ))
+            );
+            Ok(found.keeping(Vec::<()>::new()))
         };
         let found = find(&pass.curve)?;
-        let parts = under.parts(&found, &[], |sweep, _| find(sweep))?;
+        let (parts, _) = under.parts(&found, &[], |sweep, _| find(sweep))?;
         under.check(&found, |positions| {
             let exact =
                 contacts(whole.deviating(setup.deviations), load, positions, run)?.into_iter();

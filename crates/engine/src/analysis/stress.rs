@@ -4,8 +4,9 @@
 
 use std::f64::consts::TAU;
 
-use super::AnalysisError;
+use super::found::Kept;
 use super::setup::Setup;
+use super::{AnalysisError, Case};
 use crate::assembly::inside::{Answer, LoadedGear};
 use crate::assembly::{Blanks, Inside, PartError, Probes};
 use crate::contact::{ContactCells, ContactSolution, FlankLoad};
@@ -41,6 +42,21 @@ pub struct GearStresses {
     pub root_compression: Vec<PeakStress>,
     /// The largest stress along the edges of the holes; empty without holes.
     pub holes: Vec<PeakStress>,
+    /// The largest of all of them at further mesh positions between those.
+    pub between: Vec<(f64, GearPeaks)>,
+}
+
+/// The places of a gear of which the largest stress is told.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StressedPlace {
+    /// [`GearStresses::root`].
+    Root,
+    /// [`GearStresses::root_tension`].
+    RootTension,
+    /// [`GearStresses::root_compression`].
+    RootCompression,
+    /// [`GearStresses::holes`].
+    Hole,
 }
 
 /// Both gears, to be asked for the stresses under a contact.
@@ -62,14 +78,17 @@ struct StressedGear {
     edges: Vec<[f64; 2]>,
 }
 
-/// The peaks of one gear at one position.
-#[derive(Clone, Copy)]
-pub(super) struct GearPeaks {
-    pub(super) root: PeakStress,
-    pub(super) tension: PeakStress,
-    pub(super) compression: PeakStress,
-    /// `None` without holes.
-    pub(super) hole: Option<PeakStress>,
+/// The largest stresses of one gear at one position.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GearPeaks {
+    /// As [`GearStresses::root`].
+    pub root: PeakStress,
+    /// As [`GearStresses::root_tension`].
+    pub tension: PeakStress,
+    /// As [`GearStresses::root_compression`].
+    pub compression: PeakStress,
+    /// As [`GearStresses::holes`]; `None` without holes.
+    pub hole: Option<PeakStress>,
 }
 
 /// The peaks of both gears at one position.
@@ -227,14 +246,69 @@ impl StressedGear {
     }
 }
 
+impl Kept for PositionPeaks {
+    fn watched(&self) -> Vec<f64> {
+        let of = |peaks: &GearPeaks| {
+            let hole = peaks.hole.map_or(0.0, |peak| peak.stress);
+            let roots = [peaks.root.stress, peaks.tension.stress];
+            [roots[0], roots[1], -peaks.compression.stress, hole]
+        };
+        self.iter().flat_map(of).collect()
+    }
+}
+
+impl StressedPlace {
+    /// The largest of `peaks` there.
+    fn of(self, peaks: &GearPeaks) -> Option<PeakStress> {
+        match self {
+            Self::Root => Some(peaks.root),
+            Self::RootTension => Some(peaks.tension),
+            Self::RootCompression => Some(peaks.compression),
+            Self::Hole => peaks.hole,
+        }
+    }
+}
+
 impl GearStresses {
-    /// Those of both gears, of the peaks at each position.
-    pub(super) fn of_positions(peaks: &[PositionPeaks]) -> [Self; 2] {
+    /// The largest stress at `place` over a curve of `case`, between its positions too, and the mesh position at which it stands; `None` where there is no
+    /// such place.
+    pub fn largest(&self, place: StressedPlace, case: &Case) -> Option<(f64, PeakStress)> {
+        let at_positions = match place {
+            StressedPlace::Root => &self.root,
+            StressedPlace::RootTension => &self.root_tension,
+            StressedPlace::RootCompression => &self.root_compression,
+            StressedPlace::Hole => &self.holes,
+        };
+        let between = self.between.iter();
+        let between = between.filter_map(|(eta, peaks)| Some((*eta, place.of(peaks)?)));
+        let at_positions = case
+            .mesh_positions()
+            .into_iter()
+            .zip(at_positions.iter().copied());
+        at_positions.chain(between).reduce(|one, other| {
+            if other.1.stress.abs() > one.1.stress.abs() {
+                other
+            } else {
+                one
+            }
+        })
+    }
+
+    /// Those of both gears, of the peaks at each position, and at others `between` these.
+    pub(super) fn of_positions(
+        peaks: &[PositionPeaks],
+        (places, between): (&[f64], &[PositionPeaks]),
+    ) -> [Self; 2] {
+        let between = |gear: usize| {
+            let each = places.iter().zip(between);
+            each.map(move |(eta, both)| (*eta, both[gear]))
+        };
         [0, 1].map(|gear| Self {
             root: peaks.iter().map(|both| both[gear].root).collect(),
             root_tension: peaks.iter().map(|both| both[gear].tension).collect(),
             root_compression: peaks.iter().map(|both| both[gear].compression).collect(),
             holes: peaks.iter().filter_map(|both| both[gear].hole).collect(),
+            between: between(gear).collect(),
         })
     }
 }

@@ -9,9 +9,10 @@ use super::case::{Case, FaceHoles, Faces};
 use super::curve::{FaceLoad, LeadCure};
 use super::face_stress::FaceStressModel;
 use super::first_order::with_holes;
-use super::found::Found;
+use super::found::{Found, Kept};
 use super::plan::{Pass, Sweep};
 use super::setup::Solved;
+use super::stress::{GearStresses, PositionPeaks};
 use super::under_load::curves;
 use super::warning::warn_of_corner;
 use super::{Analysis, AnalysisError};
@@ -40,24 +41,32 @@ pub(super) fn solve(
         .then(|| FaceStressModel::new(faces, &yields, parts, run));
     let stress = stress.transpose()?;
     let pair = OfFaces::new((case, faces), &yields, run);
-    let find = |load: f64, sweep: &Sweep| match holes {
-        FaceHoles::FirstOrder => pair.projected(load, sweep),
-        FaceHoles::Whole => pair.whole(load, sweep),
+    let find = |load: f64, sweep: &Sweep| {
+        let found = match holes {
+            FaceHoles::FirstOrder => pair.projected(load, sweep),
+            FaceHoles::Whole => pair.whole(load, sweep),
+        };
+        with_stress(found?, stress.as_ref(), run)
     };
     curves((case, pass), unknowns, run, |under| {
         let load = under.load;
         let found = find(load, &pass.curve)?;
-        let mut parts = under.parts(&found, &[], |sweep, _| find(load, sweep))?;
+        let (mut parts, between) = under.parts(&found, &[], |sweep, _| find(load, sweep))?;
         for member in Member::BOTH {
             let shares = found.kept.iter();
-            let shares = shares.map(|contact| contact.corner_shares[member.index()]);
+            let shares = shares.map(|kept| kept.contact.corner_shares[member.index()]);
             let largest = shares.fold(0.0, f64::max);
             if largest > WARNED_OF {
                 warn_of_corner(under.warnings, member, largest);
             }
         }
-        let stresses = stress.as_ref().map(|model| model.under(&found.kept, run));
-        parts.stresses = stresses.transpose()?;
+        parts.stresses = stress.as_ref().map(|_| {
+            let peaks = |kept: &[FacePosition]| -> Vec<PositionPeaks> {
+                kept.iter().filter_map(|kept| kept.peaks).collect()
+            };
+            let between = (between.positions.as_slice(), &*peaks(&between.kept));
+            GearStresses::of_positions(&peaks(&found.kept), between)
+        });
         let solved = match holes {
             FaceHoles::FirstOrder => &pair.round,
             FaceHoles::Whole => &pair.whole,
@@ -77,6 +86,39 @@ pub(super) fn solve(
         parts.face = Some(face);
         Ok(parts)
     })
+}
+
+/// What is kept of a contact along faces.
+#[derive(Clone)]
+struct FacePosition {
+    contact: FaceContact,
+    /// The largest stresses under it, where they are asked for.
+    peaks: Option<PositionPeaks>,
+}
+
+impl Kept for FacePosition {
+    fn watched(&self) -> Vec<f64> {
+        let peaks = self.peaks.as_ref();
+        peaks.map(PositionPeaks::watched).unwrap_or_default()
+    }
+}
+
+/// What is `found`, with the largest stresses by the model of them.
+fn with_stress(
+    mut found: Found<FaceContact>,
+    stress: Option<&FaceStressModel<'_>>,
+    run: &Run,
+) -> Result<Found<FacePosition>, AnalysisError> {
+    let contacts = std::mem::take(&mut found.kept);
+    let peaks = stress
+        .map(|model| model.under(&contacts, run))
+        .transpose()?;
+    let each = contacts.into_iter().enumerate();
+    let kept = each.map(|(i, contact)| FacePosition {
+        contact,
+        peaks: peaks.as_ref().map(|peaks| peaks[i]),
+    });
+    Ok(found.keeping(kept.collect()))
 }
 
 /// The models of a pair along its faces.
@@ -196,18 +238,19 @@ impl FlankYield for FaceYield {
 }
 
 /// The load along the face in `contacts` at the positions of `case`, or at those after which it repeats.
-fn face_load(case: &Case, faces: &Faces, contacts: &[FaceContact]) -> FaceLoad {
+fn face_load(case: &Case, faces: &Faces, kept: &[FacePosition]) -> FaceLoad {
     let (width, count) = (faces.pair.common_face_width(), faces.slices);
     let strip = width / count as f64;
+    let contacts = kept.iter().map(|kept| &kept.contact);
     let rows: Vec<Vec<f64>> = contacts
-        .iter()
+        .clone()
         .map(|contact| {
             let loads = contact.strips(width, count).into_iter();
             loads.map(|load| load / strip).collect()
         })
         .collect();
     let strips: Vec<Vec<f64>> = contacts
-        .iter()
+        .clone()
         .map(|contact| contact.strips(width, STRIPS))
         .collect();
     FaceLoad {
@@ -221,7 +264,7 @@ fn face_load(case: &Case, faces: &Faces, contacts: &[FaceContact]) -> FaceLoad {
         },
         face_load_factor: face_load_factor(&mean_row(&strips)),
         cure: None,
-        load_centroid: case.repeated(contacts.iter().map(FaceContact::load_centroid)),
+        load_centroid: case.repeated(contacts.map(FaceContact::load_centroid)),
     }
 }
 

@@ -1,38 +1,64 @@
 //! What all methods do alike: torque by torque they solve the positions of their plan and some more between them, and say how good that is.
 
-use super::between::Sections;
+use super::between::{PeakSearch, Sections};
 use super::case::Case;
 use super::curve_parts::CurveParts;
 use super::evidence::Evidence;
-use super::found::Found;
+use super::found::{Between, Found, Kept};
 use super::plan::{Pass, Sweep};
 use super::warning::{Warning, warn_of_pressures, warn_of_projection, warn_of_tips, warnings};
 use super::{Analysis, AnalysisError};
 use crate::run::Run;
 
-/// The curve of `case` of what is `found` by `sweep`, and of what `solve` finds at further positions: at first at `kinks`, where the curve is known to
-/// have some.
-pub(super) fn parts_of<K, L>(
-    (case, sweep): (&Case, &Sweep),
+/// The curve of `case` of what is `found` by `sweep` under `load`, and of what `solve` finds at further positions: at first at `kinks`, where the curve is known to
+/// have some. With what is found there.
+pub(super) fn parts_of<K: Kept>(
+    (case, sweep, load): (&Case, &Sweep, f64),
     found: &Found<K>,
     kinks: &[f64],
     run: &Run,
-    mut solve: impl FnMut(&Sweep, &Run) -> Result<Found<L>, AnalysisError>,
-) -> Result<CurveParts, AnalysisError> {
+    mut solve: impl FnMut(&Sweep, &Run) -> Result<Found<K>, AnalysisError>,
+) -> Result<(CurveParts, Between<K>), AnalysisError> {
+    let mut between = Between::nothing();
     let mut samples = found.samples(case, sweep);
     if sweep.further.most == 0 {
-        return Ok(CurveParts::of(case, found, Sections::of(case, &samples)));
+        let sections = Sections::of(case, &samples);
+        return Ok((
+            CurveParts::of((case, load), found, &between, sections),
+            between,
+        ));
     }
+    let mut solve = |sweep: &Sweep, run: &Run| {
+        let further = solve(sweep, run)?;
+        let samples = further.samples(case, sweep);
+        let watched = further.watched(&sweep.positions);
+        between.add(&sweep.positions, further);
+        Ok::<_, AnalysisError>((samples, watched))
+    };
+    let mut watched = found.watched(&sweep.positions);
     if !kinks.is_empty() {
         // They belong to the curve as its positions do, and do not count as progress.
-        let at_kinks = sweep.at(kinks);
-        samples.extend(solve(&at_kinks, &run.unwatched())?.samples(case, &at_kinks));
+        let (more, at_kinks) = solve(&sweep.at(kinks), &run.unwatched())?;
+        samples.extend(more);
         samples.sort_by(|a, b| a.position.total_cmp(&b.position));
+        watched.extend(at_kinks);
     }
     let sections = sweep.sections(case, samples, run, |further| {
-        Ok(solve(further, run)?.samples(case, further))
+        let (samples, more) = solve(further, run)?;
+        watched.extend(more);
+        Ok(samples)
     })?;
-    Ok(CurveParts::of(case, found, sections))
+    if sweep.further.for_peaks > 0 {
+        let search = PeakSearch::of(case, sweep.further.repeats_after);
+        let solved = search.extend(watched, |positions| {
+            Ok::<_, AnalysisError>(solve(&sweep.at(positions), run)?.1)
+        })?;
+        sweep.peaks_searched(solved, run)?;
+    }
+    Ok((
+        CurveParts::of((case, load), found, &between, sections),
+        between,
+    ))
 }
 
 /// One load of a case, and what is learned under it beside the curve.
@@ -50,20 +76,26 @@ pub(super) struct UnderLoad<'a> {
 
 impl UnderLoad<'_> {
     /// As [`parts_of`], of what is `found` by the pass; what its contacts say of themselves is noted.
-    pub(super) fn parts<K, L>(
+    pub(super) fn parts<K: Kept>(
         &mut self,
         found: &Found<K>,
         kinks: &[f64],
-        solve: impl Fn(&Sweep, &Run) -> Result<Found<L>, AnalysisError>,
-    ) -> Result<CurveParts, AnalysisError> {
+        solve: impl Fn(&Sweep, &Run) -> Result<Found<K>, AnalysisError>,
+    ) -> Result<(CurveParts, Between<K>), AnalysisError> {
         self.evidence.gather(&found.contacts, self.load);
         warn_of_tips(self.warnings, &found.contacts);
         let sweep = &self.pass.curve;
-        parts_of((self.case, sweep), found, kinks, self.run, |sweep, run| {
-            let further = solve(sweep, run)?;
-            self.evidence.gather(&further.contacts, self.load);
-            Ok(further)
-        })
+        parts_of(
+            (self.case, sweep, self.load),
+            found,
+            kinks,
+            self.run,
+            |sweep, run| {
+                let further = solve(sweep, run)?;
+                self.evidence.gather(&further.contacts, self.load);
+                Ok(further)
+            },
+        )
     }
 
     /// Compares what is `found` by a projection with δ of `exact` solutions, at the positions at which it is least sure.

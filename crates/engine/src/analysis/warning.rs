@@ -328,7 +328,7 @@ pub(super) fn warn_of_pressures(warnings: &mut Vec<Warning>, case: &Case, curves
             youngs_modulus,
         });
     }
-    let largest = curves.iter().filter_map(|curve| curve.largest_pressure);
+    let largest = curves.iter().filter_map(|curve| curve.pressures.largest);
     let at_kinks = largest.filter_map(|largest| Some((largest, largest.kink(&case.pair)?)));
     let worst = at_kinks.max_by(|(one, _), (other, _)| one.pressure.total_cmp(&other.pressure));
     warnings.extend(

@@ -131,6 +131,15 @@ pub struct RowCurve {
     /// The largest contact pressure over the span, in MPa; absent where it has no limit somewhere.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub peak_contact_pressure_mpa: Option<f64>,
+    /// The share of the span, from 0 to 1, in which a sharp corner carries, at which pressure has no limit; absent in results of versions before 0.6.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pressure_unbounded_share: Option<f64>,
+    /// Hertz's pressure at the working pitch point under the whole load, in MPa; absent where the pitch point lies outside the path of contact.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pitch_point_pressure_mpa: Option<f64>,
+    /// The largest contact pressure away from kinks and sharp corners, in MPa; absent where there is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub smooth_contact_pressure_mpa: Option<f64>,
     /// What a run-up comes to; absent without one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dynamic_transmission_error_um: Option<RowDynamics>,
@@ -213,6 +222,9 @@ impl RowCurve {
             output_torque_n_m: curve.output_torque_n_m,
             face_load_factor: curve.face_load_factor,
             peak_contact_pressure_mpa: curve.peak_contact_pressure_mpa,
+            pressure_unbounded_share: curve.pressure_unbounded_share,
+            pitch_point_pressure_mpa: curve.pitch_point_pressure_mpa,
+            smooth_contact_pressure_mpa: curve.smooth_contact_pressure_mpa,
             dynamic_transmission_error_um: curve
                 .dynamic_peak_to_peak_um
                 .map(|peak_to_peak| RowDynamics { peak_to_peak }),

@@ -52,6 +52,15 @@ pub(crate) struct CurveSummary {
     /// The largest contact pressure over the span, in MPa; none where it has no limit somewhere.
     #[serde(default)]
     pub(super) peak_contact_pressure_mpa: Option<f64>,
+    /// The share of the span in which it has none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) pressure_unbounded_share: Option<f64>,
+    /// Hertz's pressure at the working pitch point, in MPa.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) pitch_point_pressure_mpa: Option<f64>,
+    /// The largest contact pressure away from kinks and sharp corners, in MPa.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) smooth_contact_pressure_mpa: Option<f64>,
     /// The largest peak-to-peak value of the dynamic transmission error over the speeds of a run-up, whichever way it is run through.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) dynamic_peak_to_peak_um: Option<f64>,
@@ -130,8 +139,7 @@ impl GearSummary {
 
 impl CurveSummary {
     fn of(curve: &CurveDocument) -> Self {
-        let pressures = curve.peak_contact_pressure_mpa.iter().copied();
-        let pressures: Option<Vec<f64>> = pressures.collect();
+        let pressures = curve.statistics.peak_contact_pressure_mpa.as_ref();
         let branches = curve.dynamics.iter();
         let branches = branches.flat_map(|dynamics| [&dynamics.up, &dynamics.down]);
         let ranges = branches
@@ -142,8 +150,10 @@ impl CurveSummary {
         Self {
             output_torque_n_m: curve.output_torque_n_m,
             statistics: Some(curve.statistics.clone()),
-            peak_contact_pressure_mpa: pressures
-                .and_then(|pressures| pressures.into_iter().reduce(f64::max)),
+            peak_contact_pressure_mpa: pressures.and_then(|pressures| pressures.largest),
+            pressure_unbounded_share: curve.pressure_unbounded_share,
+            pitch_point_pressure_mpa: curve.pitch_point_pressure_mpa,
+            smooth_contact_pressure_mpa: curve.smooth_contact_pressure_mpa,
             dynamic_peak_to_peak_um: ranges.copied().reduce(f64::max),
             face_load_factor: curve.face.as_ref().map(|face| face.face_load_factor),
             orders_of_holes: shown

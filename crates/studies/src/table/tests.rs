@@ -327,7 +327,7 @@ fn a_row_and_its_line_of_csv_have_every_quantity_under_one_name() {
             "output_torque_n_m": 115.0,
             "statistics": { "partial": false, "transmission_error_um": and(spread(40.0), &json!({ "tooth_to_tooth": 43.0, "long_wave": 44.0, "short_wave": 45.0, "mesh_harmonics_rms": 46.0 })), "mesh_stiffness_tangent_n_per_m": spread(50.0),
                 "stress": { "driving": stress(60.0), "driven": stress(70.0) } },
-            "peak_contact_pressure_mpa": 80.0, "dynamic_peak_to_peak_um": 81.0, "face_load_factor": 82.0,
+            "peak_contact_pressure_mpa": 80.0, "pressure_unbounded_share": 0.88, "pitch_point_pressure_mpa": 89.0, "smooth_contact_pressure_mpa": 90.0, "dynamic_peak_to_peak_um": 81.0, "face_load_factor": 82.0,
             "orders": { "H_N1": 83.0, "H_N2": 84.0, "H_Z2": 85.0 }, "orders_of_holes": { "H_N1": 86.0, "H_N2": 87.0 },
         }],
     });

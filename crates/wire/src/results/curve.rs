@@ -48,12 +48,27 @@ document! {
         driving_torque_n_m: Vec<f64> = curve.driving_torque.clone(),
         /// The number of tooth pairs that carry load.
         pairs_in_contact: Vec<u32> = curve.pairs_in_contact.clone(),
-        /// The largest contact pressure, in MPa; null where a sharp tip corner carries, at which it has no limit.
+        /// The largest contact pressure, in MPa, in plane strain as all pressures are; null where a sharp corner carries, at which it has no limit.
         #[serde(serialize_with = "or_null")]
         peak_contact_pressure_mpa: Vec<Option<f64>> =
             all(&curve.peak_contact_pressure, |pressure| {
                 pressure.map(to_mpa)
             }),
+        /// The share of the span, from 0 to 1, in which a sharp corner carries, at which pressure has no limit; null in results of versions before 0.6.
+        #[serde(default, serialize_with = "one_or_null")]
+        #[schema(required)]
+        pressure_unbounded_share: Option<f64> =
+            Some(significant(curve.pressures.unbounded_share, 6)),
+        /// Hertz's pressure at the working pitch point, in MPa: of the whole load on one line across the common face, by the curvature normal to it, without factors of
+        /// contact ratio and helix. Null where the pitch point lies outside the path of contact, and in results of versions before 0.6.
+        #[serde(default, serialize_with = "one_or_null")]
+        #[schema(required)]
+        pitch_point_pressure_mpa: Option<f64> = curve.pressures.at_pitch_point.map(to_mpa),
+        /// The largest contact pressure over the span, in MPa, at least half the width of the contact away from kinks of the flanks, and on pairs of which no
+        /// sharp corner carries. Null where there is none, and in results of versions before 0.6.
+        #[serde(default, serialize_with = "one_or_null")]
+        #[schema(required)]
+        smooth_contact_pressure_mpa: Option<f64> = curve.pressures.smooth.map(to_mpa),
         /// The share of the load on each pair that ever carries any, by rising offset.
         load_shares: Vec<LoadShareDocument> = all(&curve.load_shares, LoadShareDocument::of),
         /// The largest stresses; absent unless the submission asks for them, for other methods than `flexible` and `three_dimensional`, and

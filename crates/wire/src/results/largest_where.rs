@@ -33,14 +33,14 @@ document! {
     /// The largest contact pressure over the span.
     pub struct PressureStatistics as PressureStatistics, "Statistics of the contact pressure"
     answer of (pair: &GearPair, curve: &Curve) with {
-        let pressures: Option<Vec<f64>> = curve.peak_contact_pressure.iter().copied().collect();
-        let largest = pressures.and_then(|pressures| pressures.into_iter().reduce(f64::max));
+        let largest = curve.pressures.largest.map(|largest| to_mpa(largest.pressure));
     } {
-        /// The largest pressure, in MPa; absent where a sharp tip corner carries at some position, at which it has no limit.
-        largest?: f64 = largest.map(to_mpa),
+        /// The largest pressure, in MPa, between the positions too; absent where a sharp corner carries somewhere, at which it has no limit.
+        largest?: f64 = if curve.load == 0.0 { Some(0.0) } else { largest },
         /// Where it stands; absent without a largest pressure, and at the torque 0.
         largest_where?: WhereDocument = curve
-            .largest_pressure
+            .pressures
+            .largest
             .map(|largest| WhereDocument::of(&largest.stands(pair))),
     }
 }

@@ -1,7 +1,7 @@
 //! The largest stresses of both gears, position by position.
 
 use meshwright_engine::analysis::Case;
-use meshwright_engine::analysis::stress::{GearStresses, PeakStress};
+use meshwright_engine::analysis::stress::{GearStresses, PeakStress, StressedPlace};
 use meshwright_engine::gear::Member;
 
 use super::all;
@@ -83,21 +83,21 @@ document! {
 }
 
 document! {
-    /// The largest stresses of a gear over the span.
+    /// The largest stresses of a gear over the span, between its positions too.
     pub struct GearPeakStress as GearPeakStress, "Peak stress of a gear"
     answer of (of: (&Case, Member), gear: &GearStresses) with {
-        let extreme = |peaks: &[PeakStress], of: fn(f64, f64) -> f64| {
-            peaks.iter().map(|peak| to_mpa(peak.stress)).reduce(of)
+        let extreme = |place: StressedPlace| {
+            gear.largest(place, of.0).map(|(_, peak)| to_mpa(peak.stress))
         };
     } {
         /// The largest von Mises stress along the tensile root fillets, in MPa.
-        root_mpa: f64 = extreme(&gear.root, f64::max).unwrap_or(0.0),
+        root_mpa: f64 = extreme(StressedPlace::Root).unwrap_or(0.0),
         /// The largest first principal stress along all root fillets, in MPa.
-        root_tension_mpa?: f64 = extreme(&gear.root_tension, f64::max),
+        root_tension_mpa?: f64 = extreme(StressedPlace::RootTension),
         /// The smallest one, in MPa: the largest compression, which is negative.
-        root_compression_mpa?: f64 = extreme(&gear.root_compression, f64::min),
+        root_compression_mpa?: f64 = extreme(StressedPlace::RootCompression),
         /// The largest von Mises stress along the edges of the holes, in MPa; absent without holes.
-        hole_mpa?: f64 = extreme(&gear.holes, f64::max),
+        hole_mpa?: f64 = extreme(StressedPlace::Hole),
         /// Where each of them stands; absent in results of versions before 0.5.
         largest_where?: GearStressWhere = Some(GearStressWhere::of(of, gear)),
     }
@@ -107,17 +107,19 @@ document! {
     /// Where the largest stresses of a gear stand.
     pub struct GearStressWhere as GearStressWhere, "Places of the largest stresses of a gear"
     answer of ((case, member): (&Case, Member), gear: &GearStresses) with {
-        let stands = |peaks: &[PeakStress], on_tooth: bool| {
-            PeakStress::largest_where(case, member, peaks, on_tooth).as_ref().map(WhereDocument::of)
+        let stands = |place: StressedPlace| {
+            let (eta, peak) = gear.largest(place, case)?;
+            let on_tooth = place != StressedPlace::Hole;
+            Some(WhereDocument::of(&peak.stands((case, member), eta, on_tooth)))
         };
     } {
         /// Of `root_mpa`.
-        root_mpa?: WhereDocument = stands(&gear.root, true),
+        root_mpa?: WhereDocument = stands(StressedPlace::Root),
         /// Of `root_tension_mpa`.
-        root_tension_mpa?: WhereDocument = stands(&gear.root_tension, true),
+        root_tension_mpa?: WhereDocument = stands(StressedPlace::RootTension),
         /// Of `root_compression_mpa`.
-        root_compression_mpa?: WhereDocument = stands(&gear.root_compression, true),
+        root_compression_mpa?: WhereDocument = stands(StressedPlace::RootCompression),
         /// Of `hole_mpa`; absent without holes.
-        hole_mpa?: WhereDocument = stands(&gear.holes, false),
+        hole_mpa?: WhereDocument = stands(StressedPlace::Hole),
     }
 }

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use meshwright_engine::analysis::curve::{BlankFit, BlankSample, DecompositionParts, LoadShare};
 use meshwright_engine::analysis::largest_where::LargestPressure;
+use meshwright_engine::analysis::pressures::CurvePressures;
 use meshwright_engine::analysis::single_flank::SingleFlank;
 use meshwright_engine::analysis::spectrum::Spectrum;
 use meshwright_engine::analysis::stress::{GearStresses, PeakStress};
@@ -66,17 +67,22 @@ fn analysis(case: &Case) -> Analysis {
             driving_torque: wave(torque, 0.01 * torque),
             pairs_in_contact: vec![2; positions],
             peak_contact_pressure: wave(600e6, 50e6).into_iter().map(Some).collect(),
-            largest_pressure: Some(LargestPressure {
-                pressure: 650e6,
-                mesh_position: 2.75,
-                // On the reference circles: 50 sin 20 mm.
-                place: PeakPlace {
-                    pair: 3,
-                    roll_lengths: [50e-3 * 20_f64.to_radians().sin(); 2],
-                    z: Some(-1e-3),
-                    half_width: 0.1e-3,
-                },
-            }),
+            pressures: CurvePressures {
+                largest: Some(LargestPressure {
+                    pressure: 650e6,
+                    mesh_position: 2.75,
+                    // On the reference circles: 50 sin 20 mm.
+                    place: PeakPlace {
+                        pair: 3,
+                        roll_lengths: [50e-3 * 20_f64.to_radians().sin(); 2],
+                        z: Some(-1e-3),
+                        half_width: 0.1e-3,
+                    },
+                }),
+                smooth: Some(640e6),
+                unbounded_share: 0.125,
+                at_pitch_point: Some(600e6),
+            },
             load_shares: (-1..=2)
                 .map(|pair_offset| LoadShare {
                     pair_offset,
@@ -113,12 +119,14 @@ fn analysis(case: &Case) -> Analysis {
                     root_tension: peaks(&[100e6, 150e6]),
                     root_compression: peaks(&[-160e6, -120e6]),
                     holes: Vec::new(),
+                    between: Vec::new(),
                 },
                 GearStresses {
                     root: peaks(&[120e6, 110e6]),
                     root_tension: peaks(&[120e6, 110e6]),
                     root_compression: peaks(&[-130e6, -140e6]),
                     holes: peaks(&[30e6, 31e6]),
+                    between: Vec::new(),
                 },
             ]),
             mesh_position: eta.clone(),
@@ -202,14 +210,10 @@ fn the_document_speaks_the_units_of_its_names() {
     near("/curves/0/stress/driven/hole_z_mm/0", -2.0);
     near("/curves/0/statistics/stress/driving/root_mpa", 140.0);
     let pressure = "/curves/0/statistics/peak_contact_pressure_mpa";
-    let pressures = curve["peak_contact_pressure_mpa"]
-        .as_array()
-        .expect("a list");
-    let largest = pressures
-        .iter()
-        .filter_map(Value::as_f64)
-        .fold(0.0, f64::max);
-    near(&format!("{pressure}/largest"), largest);
+    near(&format!("{pressure}/largest"), 650.0);
+    near("/curves/0/smooth_contact_pressure_mpa", 640.0);
+    near("/curves/0/pitch_point_pressure_mpa", 600.0);
+    near("/curves/0/pressure_unbounded_share", 0.125);
     for (name, expected) in [
         ("mesh_position", 2.75),
         ("pair_offset", 1.0),

@@ -3,10 +3,11 @@
 //! δ and k are known at equal steps. Between them a pair takes up or leaves the load, contact reaches the start of a relief or a tip edge, and
 //! the extremes of a curve often stand there. So the curve is divided where the loaded pairs change ([`events`]), a polynomial stands between
 //! two neighboring positions or events ([`sections`]), and the contact is solved at some more positions, where
-//! the extremes, and then the rest, are least known. The arrays of a curve stay on the equal steps; its statistics and its spectrum are those of the sections.
+//! the extremes, and then the rest, are least known. At some more the largest pressures and stresses are looked for ([`peaks`]). The arrays of a curve stay on the equal steps; its statistics and its spectrum are those of the sections.
 
 mod cubic;
 mod events;
+mod peaks;
 mod refinement;
 mod sections;
 
@@ -14,6 +15,7 @@ use super::Case;
 use super::case::Place;
 use crate::contact::MeshContact;
 
+pub(super) use peaks::{MOST_FOR_PEAKS, PeakSearch, Watched};
 pub(super) use refinement::{Refinement, most_further};
 pub(super) use sections::Sections;
 
