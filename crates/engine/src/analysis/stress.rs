@@ -7,11 +7,12 @@ use std::f64::consts::TAU;
 use super::found::Kept;
 use super::setup::Setup;
 use super::{AnalysisError, Case};
+use crate::assembly::face_roots::UNDER_CONTACT;
 use crate::assembly::inside::{Answer, LoadedGear};
 use crate::assembly::{Blanks, Inside, PartError, Probes};
 use crate::contact::{ContactCells, ContactSolution, FlankLoad};
 use crate::fem::recovery::edge_stresses;
-use crate::gear::Member;
+use crate::gear::{Involute, Member, Vector, radial};
 use crate::grid::{BlankGrid, Grid};
 use crate::run::Run;
 
@@ -69,6 +70,9 @@ struct StressedGear {
     inside: Inside,
     sector_angles: Vec<f64>,
     tooth_count: usize,
+    /// The loaded flank, and how near to a contact on it a place is stressed by that rather than by the bending of the tooth.
+    flank: Involute,
+    under_contact: f64,
     /// Where the nodes along the fillet beside the loaded flank stand and those along the other one: polar angles from the centerline of their
     /// tooth, and radii.
     fillets: Vec<[f64; 2]>,
@@ -125,6 +129,8 @@ impl StressModel {
                 sector_angles: inside.sector_angles(),
                 inside,
                 tooth_count: gear.tooth_count() as usize,
+                flank: *gear.flank(),
+                under_contact: UNDER_CONTACT * gear.data().rack.module,
                 fillets: polar(tooth, &sides.map(Vec::as_slice).concat()),
                 beside_loaded: loaded.len(),
                 edges,
@@ -225,7 +231,7 @@ pub(super) fn teeth_away(
 }
 
 impl StressedGear {
-    /// The stresses at the roots of all teeth that `loads` reach, tooth by tooth.
+    /// The stresses at the roots of all teeth that `loads` reach, tooth by tooth, but for places under a contact.
     fn roots(&self, loads: &[FlankLoad], answer: &Answer<'_>) -> Vec<RootStress> {
         let z = self.tooth_count;
         let away = |tooth| teeth_away(tooth, loads.iter().map(|load| load.tooth), z);
@@ -233,8 +239,17 @@ impl StressedGear {
         let of_tooth = |tooth: usize| {
             let turn = TAU * tooth as f64 / z as f64;
             let along = answer.in_tooth(tooth).into_iter().zip(&self.fillets);
+            let own = loads.iter().find(|load| load.tooth == tooth);
+            let pressed = own.map_or(&[][..], |load| &load.roll_lengths).iter();
+            let pressed: Vec<Vector> = pressed.map(|s| self.flank.point(*s)).collect();
+            let is_free = move |[angle, radius]: [f64; 2]| {
+                let place = radius * radial(angle);
+                let mut pressed = pressed.iter();
+                pressed.all(|contact| (place - contact).norm() >= self.under_contact)
+            };
             along
                 .enumerate()
+                .filter(move |(_, (_, place))| is_free(**place))
                 .map(move |(i, (stress, place))| RootStress {
                     peak: in_plane(stress, turn, *place),
                     // Nothing presses on a free edge.

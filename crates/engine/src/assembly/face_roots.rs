@@ -26,7 +26,7 @@ const REACH: usize = 10;
 
 /// Places on a fillet that are nearer to a contact are stressed by that rather than by the bending of the tooth, and are left out: in the section, in
 /// modules; and along the face, as a part of its width over the degree of its functions, which blur what is nearer.
-const UNDER_CONTACT: f64 = 0.6;
+pub(crate) const UNDER_CONTACT: f64 = 0.6;
 const BLURRED: f64 = 1.0;
 
 /// The roots of the teeth of a gear, by the loads on its flanks.

@@ -424,9 +424,14 @@ impl<'a> ContactCells<'a> {
         self.ranges()
             .map(|(placed, range)| (placed, &forces[range]))
             .filter(|(_, forces)| forces.iter().any(|force| *force > 0.0))
-            .map(|(placed, forces)| FlankLoad {
-                tooth: pair.tooth(member, self.at.period + placed.pair),
-                forces: placed.cells().nodal_forces(flank, gear, forces),
+            .map(|(placed, forces)| {
+                let cells = placed.cells().patch.cells.iter().zip(forces);
+                let pressed = cells.filter(|(_, force)| **force > 0.0);
+                FlankLoad {
+                    tooth: pair.tooth(member, self.at.period + placed.pair),
+                    roll_lengths: pressed.map(|(cell, _)| cell.roll_lengths[gear]).collect(),
+                    forces: placed.cells().nodal_forces(flank, gear, forces),
+                }
             })
             .collect()
     }

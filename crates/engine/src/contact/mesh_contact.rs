@@ -92,6 +92,8 @@ pub struct PairLoads {
 pub struct FlankLoad {
     /// The tooth.
     pub tooth: usize,
+    /// The roll lengths in m at which its flank is pressed.
+    pub roll_lengths: Vec<f64>,
     /// The forces in N on the unknowns of its flank ([`crate::ring::tooth::ToothSubstructure`]).
     pub forces: Vec<f64>,
 }
