@@ -24,6 +24,7 @@ const STEEL: Material = Material {
     youngs_modulus: 210e9,
     poisson_ratio: 0.3,
     density: 7850.0,
+    yield_strength: None,
 };
 
 fn numbers(value: &Value) -> Vec<f64> {

@@ -420,6 +420,7 @@ fn large_holes_in_a_soft_gear() -> Case {
         youngs_modulus: 3e9,
         poisson_ratio: 0.38,
         density: 1400.0,
+        yield_strength: None,
     };
     let soft = GearData {
         rack,

@@ -6,7 +6,8 @@ use std::f64::consts::PI;
 
 use cases::{case, gear, pair, relieved};
 use meshwright_engine::analysis::{
-    BodyFormula, Case, Curve, Formulas, Model, PlaneState, SectionHoles, ToothFormula, analyze,
+    BodyFormula, Case, Curve, Formulas, Model, PlaneState, SectionHoles, ToothFormula, Warning,
+    analyze,
 };
 use meshwright_engine::gear::{
     GearData, GearPair, Material, ModificationData, Rack, ReliefData, ReliefShape, ReliefStart,
@@ -20,6 +21,7 @@ const POM: Material = Material {
     youngs_modulus: 2.8e9,
     poisson_ratio: 0.38,
     density: 1410.0,
+    yield_strength: None,
 };
 
 /// A gear of the FZG type C, 14 mm wide.
@@ -62,17 +64,17 @@ fn hertz(pair: &GearPair, output_torque: f64, s: f64) -> f64 {
 }
 
 /// The curve of one mesh period at so many positions, on the coarse grid.
-fn solved(case: Case, positions: u32) -> Curve {
+fn solved(case: Case, positions: u32) -> (Curve, Vec<Warning>) {
     solved_on(GridLevel::Coarse, case, positions)
 }
 
-fn solved_on(grid: GridLevel, mut case: Case, positions: u32) -> Curve {
+fn solved_on(grid: GridLevel, mut case: Case, positions: u32) -> (Curve, Vec<Warning>) {
     case.resolution.positions_per_mesh_period = positions;
     case.resolution.span_mesh_periods = Some(1);
     case.resolution.grid = grid;
     let mut analysis =
         analyze(&case, &Library::default(), &Run::unattended()).expect("the case solves");
-    analysis.curves.remove(0)
+    (analysis.curves.remove(0), analysis.warnings)
 }
 
 #[test]
@@ -91,7 +93,7 @@ fn every_plane_method_presses_the_fzg_pair_at_its_pitch_point_as_a_published_rep
     ] {
         let mut case = case(fzg_c(), &[300.0]);
         case.model = model;
-        let curve = solved(case, 8);
+        let (curve, _) = solved(case, 8);
         let at_pitch_point = curve.peak_contact_pressure[0].expect("no corner carries there");
         assert!(
             (at_pitch_point / 1347.3e6 - 1.0).abs() < 5e-3,
@@ -109,7 +111,7 @@ fn steel_presses_a_plastic_as_the_sum_of_what_both_yield_in_plane_strain() {
         ..gear(50, 15e-3)
     };
     let pair = pair(gear(50, 15e-3), plastic, 100.5e-3);
-    let curve = solved(case(pair.clone(), &[3.0]), 20);
+    let (curve, _) = solved(case(pair.clone(), &[3.0]), 20);
     let expected = hertz(&pair, 3.0, pair.pitch_roll_length());
     let alone = |share: &&f64| **share > 1.0 - 1e-9;
     let shares = curve.load_shares.iter().filter_map(|of| of.share.first());
@@ -140,7 +142,7 @@ fn a_contact_on_a_kink_presses_as_on_a_material_that_is_as_stiff_in_plane_stress
             })],
             ..gear(50, 15e-3)
         };
-        let curve = solved(case(pair(data.clone(), data, 100.2e-3), &[200.0]), 80);
+        let (curve, _) = solved(case(pair(data.clone(), data, 100.2e-3), &[200.0]), 80);
         let lone = curve.pairs_in_contact.iter().map(|pairs| *pairs == 1);
         let pressures = curve.peak_contact_pressure.into_iter();
         let pressures = pressures.map(|pressure| pressure.expect("no corner carries"));
@@ -167,7 +169,7 @@ fn a_contact_on_a_kink_presses_as_on_a_material_that_is_as_stiff_in_plane_stress
 #[test]
 fn a_pair_without_relief_has_no_largest_pressure_and_one_away_from_its_corners() {
     let plain = pair(gear(50, 15e-3), gear(50, 15e-3), 100.5e-3);
-    let curve = solved(case(plain.clone(), &[115.0]), 40);
+    let (curve, _) = solved(case(plain.clone(), &[115.0]), 40);
     let pressures = &curve.pressures;
     assert_eq!(pressures.largest, None);
     let nulls = curve.peak_contact_pressure.iter();
@@ -185,7 +187,7 @@ fn a_pair_without_relief_has_no_largest_pressure_and_one_away_from_its_corners()
         "{smooth} {at_ends:?}"
     );
     // Torque 0: nothing presses.
-    let curve = solved(case(plain, &[0.0]), 8);
+    let (curve, _) = solved(case(plain, &[0.0]), 8);
     assert_eq!(curve.pressures.smooth, Some(0.0));
     assert_eq!(curve.pressures.at_pitch_point, Some(0.0));
 }
@@ -200,7 +202,7 @@ fn a_relieved_pair_has_a_largest_pressure_and_the_smooth_one_is_below_it() {
         data
     };
     let pair = pair(amount(data.clone()), amount(data), 100.5e-3);
-    let curve = solved(case(pair.clone(), &[115.0]), 40);
+    let (curve, _) = solved(case(pair.clone(), &[115.0]), 40);
     let pressures = &curve.pressures;
     assert_eq!(pressures.unbounded_share, 0.0);
     let largest = pressures.largest.expect("no corner carries").pressure;
@@ -223,7 +225,7 @@ fn beside_the_path_of_contact_the_pitch_point_has_no_pressure() {
         data
     };
     let pair = pair(of(40, 1.1), of(80, -1.1), 120.2e-3);
-    let curve = solved(case(pair, &[100.0]), 8);
+    let (curve, _) = solved(case(pair, &[100.0]), 8);
     assert_eq!(curve.pressures.at_pitch_point, None);
 }
 
@@ -244,7 +246,7 @@ fn the_largest_pressure_on_a_rounded_tip_is_that_of_many_positions() {
             ..fzg(24, 0.1715)
         };
         let pair = pair(relieved, rounded, 91.500_01e-3);
-        let curve = solved(case(pair, &[300.0]), positions);
+        let (curve, _) = solved(case(pair, &[300.0]), positions);
         curve
             .pressures
             .largest
@@ -279,7 +281,7 @@ fn the_root_of_an_undercut_tooth_is_pressed_by_bending_and_not_by_its_corner() {
     let compression = |grid: GridLevel| {
         let mut asked = case(pair.clone(), &[8.0]);
         asked.stress = true;
-        let curve = solved_on(grid, asked, 10);
+        let (curve, _) = solved_on(grid, asked, 10);
         let [pinion, _] = curve.stresses.expect("asked for");
         let each = pinion.root_compression.iter().map(|peak| peak.stress);
         each.fold(0.0, f64::min)
@@ -289,4 +291,29 @@ fn the_root_of_an_undercut_tooth_is_pressed_by_bending_and_not_by_its_corner() {
         (coarse / standard - 1.0).abs() < 0.05,
         "{coarse} {standard}"
     );
+}
+
+#[test]
+fn the_elastic_limit_of_a_contact_is_that_of_the_yield_strength_where_it_is_known() {
+    let warned = |yield_strength: Option<f64>, output_torque: f64| {
+        let plastic = GearData {
+            material: Material {
+                yield_strength,
+                ..POM
+            },
+            ..gear(50, 15e-3)
+        };
+        let pair = pair(gear(50, 15e-3), plastic, 100.5e-3);
+        let (_, warnings) = solved(case(pair, &[output_torque]), 8);
+        warnings.into_iter().find_map(|warning| match warning {
+            Warning::ContactBeyondElasticity { limit, .. } => Some(limit),
+            _ => None,
+        })
+    };
+    // 4 % of E are 112 MPa, and 1.67 times 30 MPa are 50. Hertz at the pitch point has 61 MPa at 30 N m.
+    assert_eq!(warned(None, 30.0), None);
+    assert_eq!(warned(Some(30e6), 30.0), Some(1.67 * 30e6));
+    assert_eq!(warned(Some(30e6), 3.0), None);
+    assert!((POM.elastic_contact_pressure() / 112e6 - 1.0).abs() < 1e-12);
+    assert!((Material::STEEL.elastic_contact_pressure() / 4.2e9 - 1.0).abs() < 1e-12);
 }

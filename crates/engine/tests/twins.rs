@@ -153,6 +153,7 @@ fn narrow_and_wide_straight_faces_have_what_the_plane_has_of_every_departure_and
         youngs_modulus: 100e9,
         poisson_ratio: 0.35,
         density: 8800.0,
+        yield_strength: None,
     };
     let relief = || of_profiles().swap_remove(5);
     let every = || of_profiles().into_iter().chain(of_either_gear());

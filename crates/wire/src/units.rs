@@ -24,6 +24,11 @@ pub fn from_gpa(value: f64) -> f64 {
     value * 1e9
 }
 
+/// Megapascals to pascals.
+pub fn from_mpa(value: f64) -> f64 {
+    value * 1e6
+}
+
 /// Meters to millimeters.
 pub fn to_mm(value: f64) -> f64 {
     value * 1e3

@@ -260,16 +260,17 @@ impl WarningDocument {
                 ),
             ),
             Warning::ContactBeyondElasticity {
+                member,
                 pressure,
-                youngs_modulus,
+                limit,
             } => (
                 Code::ContactBeyondElasticity,
-                None,
+                Some(member),
                 Some((to_mpa(pressure), "MPa")),
                 format!(
-                    "The contact pressure comes to {} MPa, {} % of Young's modulus: no material stays elastic there.",
+                    "The contact pressure comes to {} MPa, and the material of the {member} gear stays elastic up to about {} MPa: 1.67 times its yield strength, or where that is not given a part of its Young's modulus.",
                     plain(to_mpa(pressure).round()),
-                    plain((1000.0 * pressure / youngs_modulus).round() / 10.0)
+                    plain(significant(to_mpa(limit), 3))
                 ),
             ),
             Warning::PressureAtKink {

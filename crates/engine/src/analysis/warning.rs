@@ -18,10 +18,6 @@ const LEAST_TIP_CLEARANCE: f64 = 0.1;
 /// a plane does not see.
 const LIKE_WIDTHS: f64 = 1.5;
 
-/// Pressures beyond this part of Young's modulus strain a material by about as much: hardened steel yields near one percent, plastics bend
-/// their curve at two.
-const ELASTIC_STRAIN: f64 = 0.02;
-
 /// Beyond these parts of the mean and of the peak-to-peak there is a warning of the error of the projected decomposition. Who asks for it asks what
 /// holes do to the fluctuation; at single positions case 1 of the paper is 4 % of it off, in its statistics 0.1 %.
 const DOUBTFUL_PROJECTION: [f64; 2] = [0.01, 0.05];
@@ -123,12 +119,14 @@ pub enum Warning {
         /// The larger over the smaller.
         ratio: f64,
     },
-    /// The contact presses so hard that materials do not stay linear.
+    /// The contact presses so hard that the material of a gear does not stay linear.
     ContactBeyondElasticity {
+        /// The gear that bears less.
+        member: Member,
         /// The largest contact pressure in Pa.
         pressure: f64,
-        /// The smaller Young's modulus in Pa.
-        youngs_modulus: f64,
+        /// Up to which it stays linear, in Pa.
+        limit: f64,
     },
     /// The largest contact pressure stands at a kink of a profile modification, which a run-in would round.
     PressureAtKink {
@@ -316,16 +314,29 @@ pub(super) fn warn_of_projection(warnings: &mut Vec<Warning>, error: f64, statis
     }
 }
 
-/// Warns of pressures that no material bears in proportion.
+/// Warns of pressures that a material does not bear in proportion, and of those at kinks.
 pub(super) fn warn_of_pressures(warnings: &mut Vec<Warning>, case: &Case, curves: &[Curve]) {
-    let moduli = Member::BOTH.map(|member| case.pair.gear(member).material().youngs_modulus);
-    let youngs_modulus = moduli[0].min(moduli[1]);
-    let pressures = curves.iter().flat_map(|curve| &curve.peak_contact_pressure);
-    let pressure = pressures.flatten().copied().fold(0.0, f64::max);
-    if pressure > ELASTIC_STRAIN * youngs_modulus {
+    let limits = Member::BOTH.map(|member| {
+        let material = case.pair.gear(member).material();
+        (member, material.elastic_contact_pressure())
+    });
+    let [driving, driven] = limits;
+    let (member, limit) = if driven.1 < driving.1 {
+        driven
+    } else {
+        driving
+    };
+    let pressures = curves.iter().flat_map(|curve| {
+        let largest = curve.pressures.largest.map(|largest| largest.pressure);
+        let at_positions = curve.peak_contact_pressure.iter().flatten().copied();
+        at_positions.chain(largest)
+    });
+    let pressure = pressures.fold(0.0, f64::max);
+    if pressure > limit {
         warnings.push(Warning::ContactBeyondElasticity {
+            member,
             pressure,
-            youngs_modulus,
+            limit,
         });
     }
     let largest = curves.iter().filter_map(|curve| curve.pressures.largest);

@@ -68,6 +68,7 @@ fn material(draw: &mut Draw) -> Material {
         },
         poisson_ratio,
         density,
+        yield_strength: None,
     }
 }
 

@@ -38,6 +38,7 @@ fn gear(
             youngs_modulus: youngs_modulus * 1e9,
             poisson_ratio,
             density,
+            yield_strength: None,
         },
         blank: BlankRegion::solid(bore_radius * 1e-3),
     }

@@ -34,7 +34,7 @@ pub const SOLVER_VERSION: &str = concat!("meshwright ", env!("CARGO_PKG_VERSION"
 
 /// The version of the document of a submission: one more with every field that it gains, in whichever part. A process that reads only
 /// earlier ones leaves the job to others instead of refusing what it does not know.
-pub const DOCUMENT_VERSION: i64 = 3;
+pub const DOCUMENT_VERSION: i64 = 4;
 
 /// What is asked: a gear pair, torques, and how to compute.
 ///

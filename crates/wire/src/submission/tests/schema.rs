@@ -139,8 +139,8 @@ fn a_submission_with_other_fields_or_words_has_another_version() {
     assert_eq!(
         (DOCUMENT_VERSION, sha256_hex(told.join("\n")).as_str()),
         (
-            3,
-            "b7a3ded6ccb9c153c65532e0550ab944c5337e021a4ef71f8f4c79ebeee80d6c"
+            4,
+            "5726d59c2d31cf4bf9927970f349e77c696dad14a11da61bca013cf66410e3d5"
         ),
         "{told:#?}"
     );
