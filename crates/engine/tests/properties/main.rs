@@ -12,6 +12,7 @@ mod seen;
 mod truths;
 
 use drawn::DrawnPair;
+use meshwright_engine::gear::{Member, SpurGear};
 use truths::{TRUTHS, Truth};
 
 /// Pairs of the short form; other seeds than those of the long one would do as well.
@@ -26,7 +27,7 @@ const LONG: std::ops::Range<u64> = 0..1000;
 /// Tries `truth` on `pairs` and tells of its worst; panics where it does not hold.
 fn hold(truth: &Truth, pairs: impl Iterator<Item = (String, DrawnPair)>) {
     let mut worst = (0.0_f64, String::new());
-    let (mut tried, mut broken) = (0, Vec::new());
+    let (mut tried, mut refused, mut broken) = (0, 0, Vec::new());
     for (name, pair) in pairs {
         match (truth.figure)(&pair) {
             Ok(None) => {}
@@ -39,6 +40,7 @@ fn hold(truth: &Truth, pairs: impl Iterator<Item = (String, DrawnPair)>) {
                     worst = (figure, name);
                 }
             }
+            Err(error) if is_in_fillet(&pair, &error) => refused += 1,
             Err(error) => broken.push(format!("{name}: {error}")),
         }
     }
@@ -54,6 +56,19 @@ fn hold(truth: &Truth, pairs: impl Iterator<Item = (String, DrawnPair)>) {
         broken.join("\n")
     );
     assert!(tried > 0, "{} was tried on no pair", truth.name);
+    assert!(
+        refused <= 2 + tried / 25,
+        "{}: {refused} pairs refused",
+        truth.name
+    );
+}
+
+/// Tells whether `error` is that of a tip pressed into the fillet of an undercut gear, where contact is not followed: such a pair has no result.
+fn is_in_fillet(drawn: &DrawnPair, error: &str) -> bool {
+    let mut gears = Member::BOTH
+        .map(|member| drawn.pair.gear(member))
+        .into_iter();
+    error.contains("flanks penetrate each other") && gears.any(SpurGear::is_undercut)
 }
 
 fn drawn(seeds: std::ops::Range<u64>) -> impl Iterator<Item = (String, DrawnPair)> {
