@@ -629,3 +629,23 @@ fn pairs_with_roundings_on_both_tips_are_like_those_beside_them() {
 fn a_hundred_pairs_with_roundings_on_both_tips_are_like_those_beside_them() {
     rounded_pairs_are_like_those_beside_them(100);
 }
+
+#[test]
+fn the_lag_of_the_driven_gear_turns_its_flank_off_the_line_of_action_in_proportion() {
+    // Gaps close by the arms of their own points, which differ along a flank: one that lags by δ is inclined by δ s_2/(2 r_b2 ρ), so that it touches by
+    // ρ times as much beside the line of action, though an involute that turns back stays on it. Alike gears halfway between two pairs: there the
+    // arms of both together are δ tan α_w/r_b from each other.
+    let pair = fifty(|_, _| {});
+    let model = model(&pair);
+    let slope = pair.working_pressure_angle().tan() / pair.driven().base_radius();
+    for torque in [115.0, 400.0] {
+        let load = pair.load(torque);
+        let contact = contact(&model, 0.5, load);
+        let missing = 1.0 - contact.driving_load / load;
+        let expected = slope * contact.transmission_error;
+        assert!(
+            (missing / expected - 1.0).abs() < 0.05,
+            "{missing} {expected}"
+        );
+    }
+}

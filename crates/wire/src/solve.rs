@@ -3,6 +3,7 @@
 use meshwright_engine::analysis::contact_pattern::ContactPattern;
 use meshwright_engine::analysis::fields::{Fields, fields};
 use meshwright_engine::analysis::{self, AnalysisError, face_fields};
+use meshwright_engine::contact::Contradiction;
 use meshwright_engine::fem::volume::Volume;
 use meshwright_engine::gear::data::LEAST_LIGAMENT;
 use meshwright_engine::library::Library;
@@ -141,6 +142,32 @@ fn problem_of(error: &AnalysisError) -> Problem {
                 plain(*mesh_position)
             ),
         ),
+        AnalysisError::Contradicted {
+            mesh_position,
+            error,
+        } => of_field(
+            TORQUES,
+            Code::NotConverged,
+            format!(
+                "The contact found at mesh position {} contradicts its own evidence: {}.",
+                plain(*mesh_position),
+                contradiction(error)
+            ),
+        ),
+        AnalysisError::WorkDiffers {
+            output_torque,
+            mean,
+            expected,
+        } => of_field(
+            TORQUES,
+            Code::NotConverged,
+            format!(
+                "Under {} N m the driving torque is {} N m in the mean over a whole period, and {} N m by the work of both torques. More positions may do.",
+                plain(*output_torque),
+                plain(*mean),
+                plain(*expected)
+            ),
+        ),
         AnalysisError::NoContact { mesh_position } => of_field(
             "/pair/center_distance_mm",
             Code::NotConverged,
@@ -194,6 +221,26 @@ fn problem_of(error: &AnalysisError) -> Problem {
         AnalysisError::Stopped(_) => {
             Problem::new(Code::Stopped, "The work was stopped before it was done.")
         }
+    }
+}
+
+/// How a contact contradicts its own evidence, in the units of results.
+fn contradiction(of: &Contradiction) -> String {
+    match of {
+        Contradiction::Penetration { depth, deflection } => format!(
+            "flanks penetrate each other by {} um, as where a tip is pressed into a fillet, and the load deflects the teeth by {} um",
+            plain(to_um(*depth)),
+            plain(to_um(*deflection))
+        ),
+        Contradiction::Deflection { deflection, most } => format!(
+            "the load deflects the teeth by {} um, and displacements are small up to a quarter of a module, {} um",
+            plain(to_um(*deflection)),
+            plain(to_um(*most))
+        ),
+        Contradiction::Residual { residual } => format!(
+            "the forces differ from the load by {} of it",
+            plain(*residual)
+        ),
     }
 }
 
@@ -276,5 +323,60 @@ document! {
         designs: usize = designs,
         /// The least material around a hole, in modules.
         least_ligament_modules: f64 = LEAST_LIGAMENT,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The code of `error` and the detail of its only field.
+    fn said(error: &AnalysisError) -> (Code, String) {
+        let problem = problem_of(error);
+        let [field] = &problem.errors[..] else {
+            panic!("{:?}", problem.errors);
+        };
+        (field.code, field.detail.clone())
+    }
+
+    #[test]
+    fn a_result_that_contradicts_itself_has_not_converged_with_its_position_and_number() {
+        for (error, number) in [
+            (
+                Contradiction::Penetration {
+                    depth: 1.5e-6,
+                    deflection: 12e-6,
+                },
+                "1.5 um",
+            ),
+            (
+                Contradiction::Deflection {
+                    deflection: -0.4,
+                    most: 5e-4,
+                },
+                "-400000 um",
+            ),
+            (Contradiction::Residual { residual: 2e-5 }, "2e-5"),
+        ] {
+            let (code, detail) = said(&AnalysisError::Contradicted {
+                mesh_position: 0.625,
+                error,
+            });
+            assert_eq!(code, Code::NotConverged);
+            assert!(
+                detail.contains("0.625") && detail.contains(number),
+                "{detail}"
+            );
+        }
+        let (code, detail) = said(&AnalysisError::WorkDiffers {
+            output_torque: 100.0,
+            mean: 52.5,
+            expected: 50.0,
+        });
+        assert_eq!(code, Code::NotConverged);
+        assert!(
+            detail.contains("52.5 N m") && detail.contains("50 N m"),
+            "{detail}"
+        );
     }
 }

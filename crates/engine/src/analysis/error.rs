@@ -2,7 +2,7 @@
 
 use crate::assembly::AssemblyError;
 use crate::contact::positions::PositionsError;
-use crate::contact::{ContactError, PositionError};
+use crate::contact::{ContactError, Contradiction, PositionError};
 use crate::dynamics::FallingRow;
 use crate::gear::Member;
 use crate::load_distribution::{Formula, FormulaError};
@@ -31,6 +31,27 @@ pub enum AnalysisError {
         /// Why.
         #[source]
         error: ContactError,
+    },
+    /// The contact that was found at a position contradicts its own evidence.
+    #[error("the contact at mesh position {mesh_position} contradicts its own evidence")]
+    Contradicted {
+        /// The mesh position η.
+        mesh_position: f64,
+        /// The contradiction.
+        #[source]
+        error: Contradiction,
+    },
+    /// The driver does another work over a whole period than the driven gear gives off. The gears are then as they were before and have stored nothing.
+    #[error(
+        "under {output_torque} N m the driving torque is {mean} N m in the mean, and {expected} N m by the work of both torques"
+    )]
+    WorkDiffers {
+        /// The output torque T_2, in N m.
+        output_torque: f64,
+        /// The mean driving torque, in N m.
+        mean: f64,
+        /// T_2 z_1/z_2, in N m.
+        expected: f64,
     },
     /// No flanks come near each other at a position.
     #[error("no flanks come near each other at mesh position {mesh_position}")]
@@ -136,6 +157,10 @@ impl AnalysisError {
                 iterations,
             },
             PositionError::Contact(error) => Self::ContactFailed {
+                mesh_position,
+                error,
+            },
+            PositionError::Contradicted(error) => Self::Contradicted {
                 mesh_position,
                 error,
             },

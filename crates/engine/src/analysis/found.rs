@@ -1,9 +1,10 @@
 //! What a method finds at some positions under one load.
 
+use super::AnalysisError;
 use super::between::{Sample, Watched};
 use super::case::Case;
 use super::plan::Sweep;
-use crate::contact::MeshContact;
+use crate::contact::{Contradiction, MeshContact};
 
 /// What is found at the positions of a sweep under one load.
 pub(super) struct Found<K = ()> {
@@ -95,6 +96,18 @@ impl Found {
 }
 
 impl<K> Found<K> {
+    /// Refuses what deflects too far with what a method adds to its contacts.
+    pub(super) fn check(&self, case: &Case, sweep: &Sweep) -> Result<(), AnalysisError> {
+        let module = case.pair.driving().data().rack.module;
+        let places = sweep.places(case).into_iter().zip(&self.transmission_error);
+        for (place, delta) in places {
+            let deflection = delta - self.contacts[place.contact].touch;
+            Contradiction::of_deflection(deflection, module)
+                .map_err(|error| AnalysisError::at_position(error.into(), place.position))?;
+        }
+        Ok(())
+    }
+
     /// What is known of the curve at these places.
     pub(super) fn samples(&self, case: &Case, sweep: &Sweep) -> Vec<Sample> {
         let places = sweep.places(case);

@@ -51,8 +51,15 @@ fn found(
     let pairs = positions.clone().map(|&eta| formulas.pairs_at(eta));
     let pairs = pairs.collect::<Result<Vec<_>, _>>()?;
     let mut contacts = Vec::with_capacity(pairs.len());
+    let module = case.pair.driving().data().rack.module;
     for (eta, pairs) in positions.zip(&pairs) {
-        contacts.push(contact(&case.pair, *eta, &share(pairs, load), load));
+        let contact = MeshContact {
+            touch: touch(pairs).0,
+            ..contact(&case.pair, *eta, &share(pairs, load), load)
+        };
+        let checked = contact.check(module);
+        checked.map_err(|error| AnalysisError::at_position(error.into(), *eta))?;
+        contacts.push(contact);
         run.reached(1)?;
     }
     let by_step = sweep.stiffness_by_step(load, |load| {

@@ -163,6 +163,7 @@ mod tests {
                     position,
                     transmission_error: curve(position),
                     stiffness: 1.0,
+                    driving_load: 1.0,
                     pairs: [position.floor(), position.floor() + 1.0]
                         .map(pair)
                         .to_vec(),

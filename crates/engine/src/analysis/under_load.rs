@@ -86,15 +86,17 @@ impl UnderLoad<'_> {
     ) -> Result<(CurveParts, Between<K>), AnalysisError> {
         self.evidence.gather(&found.contacts, self.load);
         warn_of_tips(self.warnings, &found.contacts);
-        let sweep = &self.pass.curve;
+        let (case, sweep) = (self.case, &self.pass.curve);
+        found.check(case, sweep)?;
         parts_of(
-            (self.case, sweep, self.load),
+            (case, sweep, self.load),
             found,
             kinks,
             self.run,
             |sweep, run| {
                 let further = solve(sweep, run)?;
                 self.evidence.gather(&further.contacts, self.load);
+                further.check(case, sweep)?;
                 Ok(further)
             },
         )
@@ -121,6 +123,28 @@ impl UnderLoad<'_> {
     }
 }
 
+/// Refuses a curve over a whole period on which the driver does another work than the driven gear gives off.
+fn check_work(case: &Case, output_torque: f64, sections: &Sections) -> Result<(), AnalysisError> {
+    /// The part by which the work may differ. Contacts that lag stand off the line of action by a little, which leaves some ten-thousandths of the work;
+    /// positions leave more.
+    const MOST: f64 = 0.01;
+    if !case.covers_whole_periods() {
+        return Ok(());
+    }
+    // Work of a period is torque times angle, and z_2 teeth pass while z_1 do.
+    let load = case.pair.load(output_torque);
+    let mean = sections.mean_driving_load();
+    if (mean - load).abs() <= MOST * load {
+        return Ok(());
+    }
+    let torque = |load: f64| load * case.pair.driving().base_radius();
+    Err(AnalysisError::WorkDiffers {
+        output_torque,
+        mean: torque(mean),
+        expected: torque(load),
+    })
+}
+
 /// The curves of `case` under its torques that are not 0: `solve` finds each. The model of the pair has so many unknowns.
 pub(super) fn curves(
     (case, pass): (&Case, &Pass),
@@ -142,6 +166,7 @@ pub(super) fn curves(
             projection_error: None,
         };
         let parts = solve(&mut under)?;
+        check_work(case, output_torque, &parts.sections)?;
         let error = under.projection_error;
         let curve = parts.into_curve(case, output_torque);
         warn_of_positions(under.warnings, case, &curve);
@@ -158,4 +183,86 @@ pub(super) fn curves(
         evidence,
         warnings,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analysis::between::Sample;
+    use crate::analysis::case::tests::plain;
+    use crate::analysis::{Model, SectionHoles, analyze};
+    use crate::contact::Contradiction;
+    use crate::gear::spur::tests::paper_gear;
+    use crate::gear::{GearPair, HolePattern, PlaneState, SpurGear};
+    use crate::library::Library;
+    use crate::load_distribution::{BodyFormula, Formulas, ToothFormula};
+
+    fn pair() -> GearPair {
+        let gear = |teeth| SpurGear::new(paper_gear(teeth)).expect("can be made");
+        GearPair::new(gear(30), gear(60), 90.2e-3).expect("meshes")
+    }
+
+    #[test]
+    fn a_driver_that_does_another_work_than_the_driven_gear_ends_the_computation() {
+        const TORQUE: f64 = 100.0;
+        let case = plain(pair(), Model::Section(SectionHoles::Whole), TORQUE, 10);
+        let load = case.pair.load(TORQUE);
+        // Lines between samples, in closed form: `part` more at one place of ten.
+        let sections = |part: f64| {
+            let samples: Vec<Sample> = (0..10)
+                .map(|i| Sample {
+                    position: f64::from(i) / 10.0,
+                    transmission_error: 1e-5,
+                    stiffness: 1e8,
+                    driving_load: if i == 3 { load * (1.0 + part) } else { load },
+                    pairs: Vec::new(),
+                })
+                .collect();
+            Sections::of(&case, &samples)
+        };
+        assert!((sections(0.5).mean_driving_load() / load - 1.05).abs() < 1e-12);
+        assert_eq!(check_work(&case, TORQUE, &sections(0.099)), Ok(()));
+        let found = check_work(&case, TORQUE, &sections(-0.101));
+        let Err(AnalysisError::WorkDiffers { mean, expected, .. }) = found else {
+            panic!("{found:?}");
+        };
+        // Of 60 teeth on 30.
+        assert!((expected - 50.0).abs() < 1e-9 && (mean - 50.0 * (1.0 - 0.0101)).abs() < 1e-9);
+        // A part of a period says nothing of the work over it.
+        let mut part = case.clone();
+        part.resolution.span_mesh_periods = Some(1);
+        let mut driven = paper_gear(60);
+        driven.blank.holes = HolePattern {
+            count: 7,
+            circle_radius: 40e-3,
+            radius: 4e-3,
+            phase: 0.0,
+        }
+        .holes();
+        let driven = SpurGear::new(driven).expect("can be made");
+        part.pair = GearPair::new(case.pair.driving().clone(), driven, 90.2e-3).expect("meshes");
+        assert_eq!(check_work(&part, TORQUE, &sections(0.5)), Ok(()));
+    }
+
+    #[test]
+    fn teeth_that_deflect_beyond_a_quarter_of_a_module_end_the_computation() {
+        let formulas = Model::Formulas(Formulas {
+            tooth: ToothFormula::WeberBanaschek,
+            body: BodyFormula::Sainsot,
+            plane_state: PlaneState::Stress,
+        });
+        for model in [Model::Section(SectionHoles::Whole), formulas] {
+            let case = plain(pair(), model, 40_000.0, 8);
+            let found = analyze(&case, &Library::default(), &Run::unattended());
+            let Err(AnalysisError::Contradicted {
+                mesh_position,
+                error: Contradiction::Deflection { deflection, most },
+            }) = found
+            else {
+                panic!("{:?}", found.map(|found| found.evidence));
+            };
+            assert!((0.0..1.0).contains(&mesh_position));
+            assert!(deflection > most && most == 5e-4, "{deflection} {most}");
+        }
+    }
 }

@@ -81,6 +81,7 @@ impl MeshContact {
         });
         Self {
             transmission_error,
+            touch: transmission_error,
             pairs: pairs.collect(),
             peak_pressure: Some(0.0),
             ..Self::default()

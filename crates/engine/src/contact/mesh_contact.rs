@@ -28,6 +28,8 @@ pub struct PairContact {
 pub struct MeshContact {
     /// δ in meters.
     pub transmission_error: f64,
+    /// The δ at which the first flanks touch, that under no load, in meters.
+    pub touch: f64,
     /// dF/dδ in N/m with the active set held.
     pub stiffness: f64,
     /// What the driver has to give: the torque on the driving gear over r_b1. It is F where all contact is on unmodified flanks on the line of

@@ -11,7 +11,7 @@
 //! - [`stage`]: one fraction of the mesh period, from placing the cells to a solution that nothing penetrates,
 //! - `light`: what is left of it as the load vanishes,
 //! - `pressures`: the contact of each pair in plane strain, and `peak`: where flanks press hardest; [`mesh_contact`]: the summary of a solved contact,
-//! - `checked` and `penetration`: the check of the whole flanks that proves that nothing penetrates,
+//! - `checked` and `penetration`: the check of the whole flanks that proves that nothing penetrates; `contradiction`: what of a solution is not believed,
 //! - [`positions`]: many positions of one load, in parallel,
 //! - [`face`]: the same along faces of helical, misaligned or uneven gears, slice by slice,
 //! - [`model`]: what all of this is asked of,
@@ -37,6 +37,7 @@ mod augmented_lagrangian;
 pub mod cells;
 mod checked;
 pub mod compliances;
+mod contradiction;
 mod coupled;
 pub mod drawn;
 pub mod face;
@@ -58,6 +59,7 @@ pub mod stage;
 pub use active_set::solve_active_set;
 pub use augmented_lagrangian::{AugmentedLagrangian, default_penalty, solve_augmented_lagrangian};
 pub use cells::ContactCells;
+pub use contradiction::Contradiction;
 pub(crate) use coupled::add_yielded;
 pub use light::light_contact;
 pub use mesh_contact::{FlankLoad, MeshCells, MeshContact, PairContact, PairInfluence, PairLoads};

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use faer::MatRef;
 
 use super::compliances::Compliances;
+use super::contradiction::Contradiction;
 use super::drawn::{DrawnFlanks, DrawnPair};
 use super::pair_cells::PairFlanks;
 use super::problem::ContactError;
@@ -112,6 +113,9 @@ pub enum PositionError {
     /// The contact solver failed.
     #[error(transparent)]
     Contact(#[from] ContactError),
+    /// It has found what contradicts its own evidence.
+    #[error(transparent)]
+    Contradicted(#[from] Contradiction),
 }
 
 /// One pair made to the drawings of a model: what its teeth deviate by beside what it shares with all others.

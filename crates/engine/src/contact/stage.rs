@@ -117,11 +117,9 @@ impl<'a> Stage<'a> {
         warm: &mut WarmStart,
         summary: impl FnOnce(MeshContact, &ContactCells<'_>, &ContactSolution) -> T,
     ) -> Result<T, PositionError> {
-        let load = self.load;
-        self.solved(period, warm, |cells, problem, solution, penetration| {
-            let contact = cells.mesh_contact(load, (&problem, &solution), &penetration)?;
-            Ok(summary(contact, cells, &solution))
-        })?
+        self.solved(period, warm, |cells, _, solution, contact| {
+            summary(contact, cells, &solution)
+        })
     }
 
     /// The contact in mesh period `period`, cell by cell.
@@ -135,7 +133,7 @@ impl<'a> Stage<'a> {
         })
     }
 
-    /// Solves mesh period `period` and lets `answer` see the cells, the problem stated on them, its solution, and what penetrates.
+    /// Solves mesh period `period` and lets `answer` see the cells, the problem stated on them, its solution, and its summary.
     ///
     /// Gaps are those of flanks that just touch. Cells are added on more pairs, about more minima and on more of each flank until no flanks penetrate
     /// beside them. They are halved where flanks penetrate between them.
@@ -143,7 +141,7 @@ impl<'a> Stage<'a> {
         &mut self,
         period: i64,
         warm: &mut WarmStart,
-        answer: impl FnOnce(&ContactCells<'_>, ContactProblem, ContactSolution, Penetration) -> T,
+        answer: impl FnOnce(&ContactCells<'_>, ContactProblem, ContactSolution, MeshContact) -> T,
     ) -> Result<T, PositionError> {
         let touch = self.facings.touch(period);
         let beyond = |delta: f64, factor: f64| touch + factor * (delta - touch).max(0.0);
@@ -169,7 +167,13 @@ impl<'a> Stage<'a> {
             let lacks = cells.lacks(&solution, &penetration, DEEP * (delta - touch));
             if lacks.is_empty() {
                 *warm = cells.warm_start(&problem, &solution, self.load, warm);
-                return Ok(answer(&cells, problem, solution, penetration));
+                let contact = MeshContact {
+                    touch,
+                    ..cells.mesh_contact(self.load, (&problem, &solution), &penetration)?
+                };
+                let module = self.deviating.model.pair.driving().data().rack.module;
+                contact.check(module)?;
+                return Ok(answer(&cells, problem, solution, contact));
             }
             for (pair, lack) in lacks {
                 let is_first = !extents.contains_key(&pair);

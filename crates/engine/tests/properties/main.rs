@@ -13,6 +13,7 @@ mod seen;
 mod truths;
 
 use drawn::DrawnPair;
+use meshwright_engine::gear::{Member, SpurGear};
 use meshwright_engine::library::Library;
 use truths::{TRUTHS, Truth};
 
@@ -33,13 +34,14 @@ const LIBRARY: usize = 512 << 20;
 #[derive(Default)]
 struct Tally {
     tried: u32,
+    refused: u32,
     worst: (f64, String),
     broken: Vec<String>,
 }
 
 impl Tally {
-    fn add(&mut self, truth: &Truth, name: &str, figure: Result<Option<f64>, String>) {
-        match figure {
+    fn add(&mut self, truth: &Truth, name: &str, pair: &DrawnPair, library: &Library) {
+        match (truth.figure)(pair, library) {
             Ok(None) => {}
             Ok(Some(figure)) => {
                 self.tried += 1;
@@ -50,6 +52,7 @@ impl Tally {
                     self.worst = (figure, name.to_owned());
                 }
             }
+            Err(error) if is_in_fillet(pair, &error) => self.refused += 1,
             Err(error) => self.broken.push(format!("{name}: {error}")),
         }
     }
@@ -61,13 +64,14 @@ fn hold(pairs: impl Iterator<Item = (String, DrawnPair)>) {
     for (name, pair) in pairs {
         let library = Library::with_capacity(LIBRARY);
         for (truth, tally) in TRUTHS.iter().zip(&mut tallies) {
-            tally.add(truth, &name, (truth.figure)(&pair, &library));
+            tally.add(truth, &name, &pair, &library);
         }
     }
     let mut faults = Vec::new();
     for (truth, tally) in TRUTHS.iter().zip(tallies) {
         let Tally {
             tried,
+            refused,
             worst,
             broken,
         } = tally;
@@ -85,8 +89,19 @@ fn hold(pairs: impl Iterator<Item = (String, DrawnPair)>) {
         if tried == 0 {
             faults.push(format!("{} was tried on no pair", truth.name));
         }
+        if refused > 2 + tried / 25 {
+            faults.push(format!("{}: {refused} pairs refused", truth.name));
+        }
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// Tells whether `error` is that of a tip pressed into the fillet of an undercut gear, where contact is not followed: such a pair has no result.
+fn is_in_fillet(drawn: &DrawnPair, error: &str) -> bool {
+    let mut gears = Member::BOTH
+        .map(|member| drawn.pair.gear(member))
+        .into_iter();
+    error.contains("flanks penetrate each other") && gears.any(SpurGear::is_undercut)
 }
 
 fn drawn(seeds: std::ops::Range<u64>) -> impl Iterator<Item = (String, DrawnPair)> {

@@ -25,6 +25,8 @@ pub(super) struct Sample {
     pub(super) position: f64,
     pub(super) transmission_error: f64,
     pub(super) stiffness: f64,
+    /// The torque of the driver over r_b1.
+    pub(super) driving_load: f64,
     /// The pairs that carry load or are near to it.
     pub(super) pairs: Vec<PairState>,
 }
@@ -61,6 +63,7 @@ impl Sample {
                 position: place.position,
                 transmission_error,
                 stiffness,
+                driving_load: contacts[place.contact].driving_load,
                 pairs: states.collect(),
             }
         })

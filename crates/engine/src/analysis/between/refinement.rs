@@ -274,6 +274,7 @@ mod tests {
             position,
             transmission_error: delta,
             stiffness: STIFFNESS * f64::from(touching),
+            driving_load: LOAD,
             pairs: states.collect(),
         }
     }
@@ -366,6 +367,7 @@ mod tests {
                 position,
                 transmission_error: curve(position),
                 stiffness: 1e8,
+                driving_load: 1e3,
                 pairs: vec![state(0, 1.0 - taken), state(1, taken)],
             }
         };
@@ -395,6 +397,7 @@ mod tests {
             } else {
                 2e8
             },
+            driving_load: 1e3,
             pairs: vec![
                 state(0, leaves - position),
                 state(1, 1.0),

@@ -46,6 +46,8 @@ pub(in crate::analysis) struct Sections {
     pub(super) span: Span,
     /// Rising, without gaps.
     pub(super) sections: Vec<Section>,
+    /// The mean torque of the driver over r_b1.
+    mean_driving_load: f64,
 }
 
 /// δ and k between two neighboring positions or events.
@@ -108,7 +110,16 @@ impl Sections {
             section.from = section.from.max(from);
             section.to = section.to.min(to);
         }
-        Self { span, sections }
+        Self {
+            span,
+            sections,
+            mean_driving_load: mean_driving_load(span, &samples),
+        }
+    }
+
+    /// The mean torque of the driver over r_b1, on straight lines from sample to sample.
+    pub(in crate::analysis) fn mean_driving_load(&self) -> f64 {
+        self.mean_driving_load
     }
 
     /// Those of the curve of `case` through `samples`.
@@ -239,6 +250,20 @@ impl Section {
         let known = places.map(|place| [(curve.at(place), place); 2]);
         known.fold(NONE, wider)
     }
+}
+
+/// The mean torque of the driver over r_b1, over that part of `span` which lies between `samples`, on straight lines from one to the next.
+fn mean_driving_load(span: Span, samples: &[Sample]) -> f64 {
+    let (mut sum, mut length) = (0.0, 0.0);
+    for pair in samples.windows(2) {
+        let nodes = [0, 1].map(|i| (pair[i].position, pair[i].driving_load));
+        let [from, to] = nodes.map(|(place, _)| place.clamp(span.first, span.end()));
+        if from < to {
+            sum += (to - from) * Cubic::through(&nodes).at(f64::midpoint(from, to));
+            length += to - from;
+        }
+    }
+    sum / length
 }
 
 /// `samples` of a curve over `span`, and where it closes some more on either side of it.

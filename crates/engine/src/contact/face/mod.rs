@@ -237,8 +237,14 @@ impl FaceModel {
             let farthest = solved.iter().map(|(delta, _)| *delta);
             let farthest = farthest.fold(reach, f64::max);
             if farthest == reach {
-                let contacts = solved.into_iter().filter_map(|(_, contact)| contact);
-                return Ok(contacts.collect());
+                let module = self.pair().section().driving().data().rack.module;
+                let contacts = positions.iter().zip(solved);
+                let contacts = contacts.filter_map(|(&eta, (_, contact))| {
+                    let contact = contact?;
+                    let checked = contact.mesh.check(module);
+                    Some(checked.map_or_else(|error| Err(at(error.into(), eta)), |()| Ok(contact)))
+                });
+                return contacts.collect();
             }
             reach = beyond(farthest, touch);
         }
@@ -480,9 +486,14 @@ impl FaceModel {
             gap,
             moments: [slice.middle.weights[0] * carried.force, carried.weighed],
         });
+        let touches = slices.iter().flat_map(|slice| {
+            let places = slice.ends.iter().chain([&slice.middle]);
+            places.map(|place| place.gap / place.weights[1])
+        });
         FaceContact {
             mesh: MeshContact {
                 transmission_error: balance.transmission_error,
+                touch: touches.fold(f64::INFINITY, f64::min),
                 stiffness: balance.stiffness,
                 pairs,
                 smooth_pressure,
