@@ -7,7 +7,7 @@ import { figure } from "../draw/figure.js";
 import { allGiven, given, numeric } from "../draw/inputs.js";
 import { offer, options } from "./offer.js";
 import { mostOften, Question } from "./question.js";
-import { json, post, ProblemError } from "../state/api.js";
+import { foreseen, json, ProblemError } from "../state/api.js";
 import { apart, at, nameOf } from "../state/design.js";
 import { fixed, number, timeOf } from "../state/numbers.js";
 import { inUnit, inWords, quantityOf, shown } from "../state/quantities.js";
@@ -166,17 +166,12 @@ export function population(place, design, form, limits, onOpen) {
   const foresee = debounced(REST, async () => {
     if (place.hidden) return;
     try {
-      const {
-        base,
-        population: { size: count, accuracy },
-      } = asked();
-      for (const member of MEMBERS.filter((each) => accuracy?.[each]))
-        base.pair[member].tooth_deviations = {
-          pitch_cumulative_um: Array.from({ length: base.pair[member].tooth_count }, (_, i) => Number(i === 1)),
-        };
-      const {
-        estimate: { seconds, positions },
-      } = await post("v1/validate", { ...base, output_torques_n_m: base.output_torques_n_m.slice(0, 1) });
+      const study = asked();
+      const { size: count } = study.population;
+      study.base.output_torques_n_m = study.base.output_torques_n_m.slice(0, 1);
+      const { estimate } = await foreseen(study);
+      if (!estimate) return;
+      const { seconds, positions } = estimate.design;
       const most = Math.floor(limits.positions / positions);
       suggestTorques(most);
       const { length } = asked().base.output_torques_n_m;
