@@ -98,20 +98,14 @@ async fn a_batch_that_takes_nothing_is_refused_with_every_place() {
 #[tokio::test]
 async fn a_batch_that_finds_no_room_is_refused_as_a_job_is() {
     // The queue has room for two, or the client's part of it.
+    let full = |config: &mut Config| {
+        config.queue_limit = 2;
+        config.admission.client_queue_limit = Some(10);
+    };
+    let has_its_part = |config: &mut Config| config.admission.client_queue_limit = Some(2);
     for (adjust, status, code) in [
-        (
-            (|config: &mut Config| {
-                config.queue_limit = 2;
-                config.admission.client_queue_limit = Some(10);
-            }) as fn(&mut Config),
-            503,
-            "queue_full",
-        ),
-        (
-            |config| config.admission.client_queue_limit = Some(2),
-            429,
-            "client_queue_full",
-        ),
+        (full as fn(&mut Config), 503, "queue_full"),
+        (has_its_part as fn(&mut Config), 429, "client_queue_full"),
     ] {
         let (bench, mut engine) = Bench::steered_with(adjust).await;
         let key = key_of(&bench, "portal").await;
