@@ -4,6 +4,7 @@
 
 mod client;
 mod machine;
+mod mark;
 #[cfg(test)]
 mod testing;
 pub mod times;

@@ -31,9 +31,28 @@ fn of(system: &str, limits: &[String]) -> u64 {
     limits.fold(total, u64::min)
 }
 
+/// The memory that the process occupies, in bytes, where the system tells.
+pub(crate) fn occupied_bytes() -> Option<u64> {
+    occupied(&fs::read_to_string("/proc/self/status").ok()?)
+}
+
+fn occupied(status: &str) -> Option<u64> {
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmRSS:"))?;
+    let kilobytes: u64 = line.split_whitespace().next()?.parse().ok()?;
+    Some(kilobytes << 10)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_memory_of_the_process_is_what_the_system_says() {
+        assert_eq!(occupied("Name:\tx\nVmRSS:\t    2048 kB\n"), Some(2 << 20));
+        assert_eq!(occupied("Name:\tx\n"), None);
+    }
 
     #[test]
     fn the_lower_of_what_the_machine_has_and_the_container_leaves_counts() {

@@ -8,6 +8,8 @@ use anyhow::Context;
 
 use meshwright_wire::Problem;
 
+use crate::mark::without_mark;
+
 /// The exit code for a submission that cannot be computed.
 pub(super) const EXIT_PROBLEM: u8 = 2;
 
@@ -28,10 +30,17 @@ pub(super) fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
         std::io::stdin()
             .read_to_end(&mut document)
             .context("standard input cannot be read")?;
-        Ok(document)
+        Ok(unmarked(document))
     } else {
-        fs::read(path).with_context(|| format!("{} cannot be read", path.display()))
+        let document = fs::read(path);
+        let document = document.with_context(|| format!("{} cannot be read", path.display()));
+        document.map(unmarked)
     }
+}
+
+/// A document without the byte-order mark that Windows puts before it.
+fn unmarked(document: Vec<u8>) -> Vec<u8> {
+    without_mark(&document).to_vec()
 }
 
 /// Whether a path stands for standard input or output.

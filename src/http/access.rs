@@ -10,7 +10,7 @@ use std::time::Duration;
 use axum::extract::{Request, State};
 use axum::http::header::{CONNECTION, FORWARDED, HOST, HeaderName, HeaderValue, VIA};
 use axum::http::uri::Authority;
-use axum::http::{HeaderMap, Uri};
+use axum::http::{HeaderMap, Uri, Version};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use meshwright_connections::{
@@ -157,7 +157,13 @@ impl Access {
     /// # Errors
     ///
     /// `invalid_parameter` without a host, `host_not_allowed` for a foreign one.
-    fn check_host(&self, uri: &Uri, headers: &HeaderMap, strict: bool) -> Result<(), Problem> {
+    fn check_host(&self, request: &Request, strict: bool) -> Result<(), Problem> {
+        let (uri, headers) = (request.uri(), request.headers());
+        // The usual check of a load balancer. Such a request is from no browser, and health tells nothing of anybody.
+        let has_no_host = !headers.contains_key(HOST) && uri.authority().is_none();
+        if has_no_host && request.version() < Version::HTTP_11 && is_health(uri) {
+            return Ok(());
+        }
         let mut given = headers.get_all(HOST).iter();
         let header = given.next().and_then(|host| host.to_str().ok());
         let authority = uri.authority().map(Authority::as_str).or(header);
@@ -231,6 +237,11 @@ impl Access {
     }
 }
 
+/// Whether a request asks for the health of the service.
+fn is_health(uri: &Uri) -> bool {
+    uri.path().starts_with("/health/")
+}
+
 /// Whether somebody has passed the request on: then who sent it is not on this machine, whatever the address says.
 fn came_through_a_proxy(headers: &HeaderMap) -> bool {
     let passed_on = |name: &HeaderName| {
@@ -248,7 +259,7 @@ pub(super) async fn limit_unauthenticated(
     next: Next,
 ) -> Response {
     let connection = request.extensions().get::<Arc<Connection>>();
-    let connection = connection.filter(|_| !request.uri().path().starts_with("/health/"));
+    let connection = connection.filter(|_| !is_health(request.uri()));
     let counted = connection.map_or(Ok(()), |connection| {
         access.count_unauthenticated(connection.address, request.headers())
     });
@@ -264,7 +275,7 @@ pub(super) async fn limit_unauthenticated(
 /// Refuses a request where its client has as many active as one may have, or all connections are busy. Health is answered always.
 pub(super) async fn limit_active(request: Request, next: Next) -> Response {
     let active = request.extensions().get::<Arc<ActiveRequest>>().cloned();
-    let Some(active) = active.filter(|_| !request.uri().path().starts_with("/health/")) else {
+    let Some(active) = active.filter(|_| !is_health(request.uri())) else {
         return next.run(request).await;
     };
     let refused = |error| Refusal::from(overloaded(error)).into_response();
@@ -298,7 +309,7 @@ pub(super) async fn check_host(
     next: Next,
 ) -> Response {
     let strict = access.rules.strict_hosts;
-    match access.check_host(request.uri(), request.headers(), strict) {
+    match access.check_host(&request, strict) {
         Ok(()) => next.run(request).await,
         Err(problem) => Refusal::from(problem).into_response(),
     }
@@ -310,7 +321,7 @@ pub(super) async fn check_known_host(
     request: Request,
     next: Next,
 ) -> Response {
-    match access.check_host(request.uri(), request.headers(), true) {
+    match access.check_host(&request, true) {
         Ok(()) => next.run(request).await,
         Err(problem) => Refusal::from(problem).into_response(),
     }
@@ -318,6 +329,8 @@ pub(super) async fn check_known_host(
 
 #[cfg(test)]
 mod tests {
+    use axum::body::Body;
+
     use super::*;
 
     fn access(adjust: impl FnOnce(&mut AccessRules)) -> Access {
@@ -336,15 +349,34 @@ mod tests {
     }
 
     fn check(access: &Access, hosts: &[&str]) -> Option<Code> {
-        let mut headers = HeaderMap::new();
+        check_of(access, Version::HTTP_11, "/v1/jobs", hosts)
+    }
+
+    fn check_of(access: &Access, version: Version, path: &str, hosts: &[&str]) -> Option<Code> {
+        let mut request = axum::http::Request::get(path).version(version);
         for host in hosts {
-            headers.append(HOST, host.parse().unwrap());
+            request = request.header(HOST, *host);
         }
-        let path = Uri::from_static("/v1/jobs");
-        access
-            .check_host(&path, &headers, access.rules.strict_hosts)
-            .err()
-            .map(|problem| problem.code)
+        let request = request.body(Body::empty()).unwrap();
+        let checked = access.check_host(&request, access.rules.strict_hosts);
+        checked.err().map(|problem| problem.code)
+    }
+
+    #[test]
+    fn only_health_is_told_to_the_oldest_protocol_without_a_host() {
+        let access = access(|_| {});
+        let (old, new) = (Version::HTTP_10, Version::HTTP_11);
+        let missing = Some(Code::InvalidParameter);
+        for path in ["/health/live", "/health/ready"] {
+            assert_eq!(check_of(&access, old, path, &[]), None);
+            assert_eq!(check_of(&access, new, path, &[]), missing);
+            assert_eq!(check_of(&access, old, path, &["localhost"; 2]), missing);
+            let foreign = check_of(&access, old, path, &["evil.example"]);
+            assert_eq!(foreign, Some(Code::HostNotAllowed));
+        }
+        for path in ["/v1/jobs", "/metrics", "/", "/healthy"] {
+            assert_eq!(check_of(&access, old, path, &[]), missing, "{path}");
+        }
     }
 
     #[test]

@@ -25,6 +25,7 @@ use super::blocking::blocking;
 use super::client::ClientName;
 use super::memory::{weight, weight_of_lines};
 use super::problem::Refusal;
+use crate::mark::without_mark;
 
 /// So many times the limit is read and thrown away, because a client that is still sending does not see the answer.
 const DRAINED: usize = 64;
@@ -42,7 +43,8 @@ impl<const MIB: usize> FromRequest<App> for JsonBody<MIB> {
 
     async fn from_request(request: Request, app: &App) -> Result<Self, Refusal> {
         let (body, memory) = taken(request, app, MIB, &["json"], weight).await?;
-        Ok(Self(body, memory))
+        let mark = body.len() - without_mark(&body).len();
+        Ok(Self(body.slice(mark..), memory))
     }
 }
 

@@ -18,6 +18,7 @@ use utoipa::openapi::{
 };
 
 use super::app::App;
+use super::contract;
 use super::events::ProgressView;
 use super::problem::Refusal;
 use super::static_files::{Folder, StaticFile, files};
@@ -292,6 +293,7 @@ pub(super) fn finished(openapi: &OpenApi) -> Value {
     let mut document = serde_json::to_value(openapi).expect("the document is plain data");
     put_declared(&mut document);
     name_lists(&mut document);
+    contract::finish(&mut document);
     document
 }
 

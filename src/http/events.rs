@@ -4,6 +4,7 @@ use std::convert::Infallible;
 use std::pin::pin;
 use std::time::Duration;
 
+use axum::http::header::{CACHE_CONTROL, HeaderValue};
 use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
 use futures_util::stream;
@@ -127,11 +128,12 @@ pub(super) fn answer(app: App, watch: impl Watching, pass: Pass, place: Part) ->
         },
     );
     // A proxy that collects the answer before it passes it on would spoil the stream.
-    (
-        [("x-accel-buffering", "no")],
-        Sse::new(events).keep_alive(KeepAlive::default()),
-    )
-        .into_response()
+    // Packed on the way, events would be held back until there are enough of them.
+    let events = Sse::new(events).keep_alive(KeepAlive::default());
+    let mut response = ([("x-accel-buffering", "no")], events).into_response();
+    let live = HeaderValue::from_static("no-cache, no-transform");
+    response.headers_mut().insert(CACHE_CONTROL, live);
+    response
 }
 
 /// The next event for one who may see it; none when his key is revoked meanwhile.

@@ -17,6 +17,8 @@ use super::app::App;
 use super::client::Operator;
 use super::problem::Refusal;
 use crate::jobs::JobError;
+use crate::machine;
+use crate::tokens::Tokens;
 
 /// Declares numbers: their names, and what they are.
 macro_rules! numbers {
@@ -58,6 +60,11 @@ const GAUGES: &[(&str, &str)] = numbers! {
     "meshwright_cache_bytes": "Memory of the substructures that jobs and previews share.",
     "meshwright_cache_capacity_bytes": "Memory that they may take.",
     "meshwright_cache_entries": "Substructures that are kept.",
+    "meshwright_build_info": "1; its label is the version of the program.",
+    "meshwright_process_memory_bytes": "Memory that the process occupies.",
+    "meshwright_disk_bytes": "Size of the disk of the database; absent on a server.",
+    "meshwright_disk_free_bytes": "Of these, bytes that are free for the service.",
+    "meshwright_identity_provider_answers": "0 if the identity provider gave no keys when it was last asked; 1 if it did, or there is none.",
 };
 
 /// These, and where their buckets end.
@@ -190,6 +197,7 @@ async fn render(app: &App) -> Result<Response, Refusal> {
     metrics::gauge!("meshwright_workers").set(workers as f64);
     metrics::gauge!("meshwright_previews_running").set(app.previews.count() as f64);
     set_cache(&app.library);
+    set_process(app);
     recorder().run_upkeep();
     Ok((
         [(CONTENT_TYPE, "text/plain; version=0.0.4")],
@@ -207,6 +215,20 @@ async fn set_storage(app: &App) -> Result<(), Problem> {
     let writable = if store.fault().is_none() { 1.0 } else { 0.0 };
     metrics::gauge!("meshwright_storage_writable").set(writable);
     Ok(())
+}
+
+/// What the process is, and what it stands on.
+fn set_process(app: &App) {
+    metrics::gauge!("meshwright_build_info", "version" => env!("CARGO_PKG_VERSION")).set(1.0);
+    if let Some(bytes) = machine::occupied_bytes() {
+        metrics::gauge!("meshwright_process_memory_bytes").set(bytes as f64);
+    }
+    if let Some((all, free)) = app.jobs.store().disk() {
+        metrics::gauge!("meshwright_disk_bytes").set(all as f64);
+        metrics::gauge!("meshwright_disk_free_bytes").set(free as f64);
+    }
+    let answers = app.tokens.as_ref().is_none_or(Tokens::has_provider);
+    metrics::gauge!("meshwright_identity_provider_answers").set(f64::from(u8::from(answers)));
 }
 
 /// The cache counts for itself; what it has counted is copied when somebody looks.

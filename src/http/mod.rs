@@ -11,6 +11,7 @@ mod blocking;
 mod body;
 mod client;
 mod contact_pattern;
+mod contract;
 mod credential;
 mod docs;
 mod draw;

@@ -1,9 +1,15 @@
 //! Previews: results in the answer to the request itself.
 
+use std::time::Duration;
+
 use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE, HeaderName};
 use axum::response::{IntoResponse, Response};
-use meshwright_wire::Preview;
+use meshwright_engine::analysis::{self, Case};
+use meshwright_engine::gear::{HoleShape, Member, SpurGear};
+use meshwright_engine::grid::GridLevel;
+use meshwright_wire::{Code, Preview, Problem};
 
+use super::blocking::blocking;
 use super::body::JsonBody;
 use super::client::Client;
 use super::problem::Refusal;
@@ -31,7 +37,7 @@ use crate::compute::Previewed;
         JsonBody,
         (status = 409, description = "A newer request with the same `preview_id` took the place of this one."),
         (status = 422, description = "The submission cannot be computed, or is too large or too long for a preview; `errors` says which field is why. `POST /v1/jobs` takes more."),
-        (status = 503, description = "As many previews are computed as the service takes at once, or it is shutting down. Try again after `Retry-After` seconds."),
+        (status = 503, description = "As many previews are computed as the service takes at once, it was not computed in time although its estimate is below the limit (`preview_time_limit`), or the service is shutting down. Try again after `Retry-After` seconds."),
     ),
 )]
 pub(super) async fn preview(
@@ -41,6 +47,7 @@ pub(super) async fn preview(
     let preview = Preview::parse(&document, client.app.previews.rules().most_positions)?;
     drop((document, memory));
     client.app.jobs.check_memory(&preview.submission)?;
+    let preview = refuse_long(&client, preview).await?;
     let previewed = client.app.previews.compute(client.name(), preview).await?;
     let headers = [
         (CONTENT_TYPE, "application/json".to_owned()),
@@ -48,6 +55,52 @@ pub(super) async fn preview(
         (HeaderName::from_static("server-timing"), timing(&previewed)),
     ];
     Ok((headers, previewed.document).into_response())
+}
+
+/// Plane pairs of at most so many teeth together on the standard grid are computed within a second or two, whatever their estimate: they need
+/// none.
+const QUICK_TEETH: u32 = 200;
+
+/// Previews of a shorter limit than this are all estimated.
+const USUAL_LIMIT: Duration = Duration::from_secs(5);
+
+/// Gives a preview back, unless it is estimated to take longer than one may.
+async fn refuse_long(client: &Client, preview: Preview) -> Result<Preview, Problem> {
+    let limit = client.app.previews.rules().time_limit;
+    if limit >= USUAL_LIMIT && is_quick(preview.submission.case()) {
+        return Ok(preview);
+    }
+    // The estimate divides both gears into elements.
+    let estimated = blocking(client.name(), move |_| {
+        let submission = &preview.submission;
+        let estimate = analysis::estimate(submission.case(), submission.forces());
+        (preview, estimate.seconds)
+    });
+    let (preview, seconds) = estimated.await?;
+    if seconds <= limit.as_secs_f64() {
+        return Ok(preview);
+    }
+    let detail = format!(
+        "The preview is estimated to take {seconds:.1} s of a core; one may take {} s here. Fewer positions or torques, a coarser grid or a projected method take less, and POST /v1/jobs takes more.",
+        limit.as_secs()
+    );
+    Err(Problem::new(Code::TooLarge, detail))
+}
+
+/// Whether a case is computed in a moment, as far as its kind and size say.
+fn is_quick(case: &Case) -> bool {
+    let gears = Member::BOTH.map(|member| case.pair.gear(member));
+    let has_contours = |gear: &SpurGear| {
+        let holes = &gear.data().blank.holes;
+        holes
+            .iter()
+            .any(|hole| matches!(hole.shape, HoleShape::Contour(_)))
+    };
+    case.faces().is_none()
+        && gears.map(SpurGear::tooth_count).iter().sum::<u32>() <= QUICK_TEETH
+        && !gears.into_iter().any(has_contours)
+        && case.resolution.grid != GridLevel::Fine
+        && !case.resolution.error_estimate
 }
 
 fn timing(previewed: &Previewed) -> String {

@@ -105,6 +105,7 @@ pub(super) fn retry_after(code: Code) -> Option<&'static str> {
         Code::PreviewsFull => Some("1"),
         Code::Overloaded | Code::RateLimited | Code::ServerTimeout => Some("1"),
         Code::QueueFull
+        | Code::PreviewTimeLimit
         | Code::ClientQueueFull
         | Code::Unavailable
         | Code::StorageUnavailable
@@ -213,7 +214,7 @@ impl From<PreviewError> for Problem {
                 "A newer request with the same preview_id took the place of this one.",
             ),
             PreviewError::TimeLimit(limit) => Problem::new(
-                Code::TimeLimit,
+                Code::PreviewTimeLimit,
                 format!(
                     "The preview was stopped after {} s, the limit for one. POST /v1/jobs has more time.",
                     limit.as_secs_f64()

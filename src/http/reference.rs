@@ -6,11 +6,14 @@ use axum::Json;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
-use meshwright_studies::MOST_DESIGNS;
+use meshwright_engine::run::Run;
 use meshwright_studies::table::{QuantityEntry, quantities as all_quantities};
+use meshwright_studies::{MOST_DESIGNS, Study};
 use meshwright_wire::declare::document;
-use meshwright_wire::{Limits, Submission, Validation};
-use serde::Serialize;
+use meshwright_wire::solve::EstimateDocument;
+use meshwright_wire::{Code, Limits, Problem, Submission, Validation};
+use serde::de::IgnoredAny;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use utoipa::ToSchema;
 
@@ -25,29 +28,123 @@ use crate::compute::PreviewRules;
 use crate::jobs::{LONGEST_LINK_DAYS, MOST_LINKS, Rules};
 use crate::webhooks::most_webhooks;
 
-/// Check a submission
+/// The answer to what can be computed.
+#[derive(Serialize, ToSchema)]
+#[serde(untagged)]
+#[schema(title = "Validated")]
+pub(super) enum Validated {
+    /// Of a submission.
+    Submission(Box<Validation>),
+    /// Of a study.
+    Study(StudyValidation),
+}
+
+/// The answer to a study that would be taken.
+#[derive(Serialize, ToSchema)]
+#[schema(title = "StudyValidation")]
+pub(super) struct StudyValidation {
+    /// True; a study that is not valid is answered with its problem.
+    valid: bool,
+    /// Designs in all; of a search, the most that it may come to.
+    total: usize,
+    /// What the computation will cost; null where none of the designs that were looked at can be built.
+    estimate: Option<StudyEstimate>,
+}
+
+/// What the computation of a study will cost, by a few of its designs.
+#[derive(Serialize, ToSchema)]
+#[schema(title = "StudyEstimate")]
+pub(super) struct StudyEstimate {
+    /// One design: of those that were looked at, the one that takes longest.
+    design: EstimateDocument,
+    /// Time of all designs on one core, in seconds: their number times the mean of those that were looked at. Designs that are equal, cannot be
+    /// built or have parts in common take less.
+    seconds: f64,
+    /// Positions times torques of all designs.
+    positions: u64,
+}
+
+impl StudyValidation {
+    fn of(study: &Study, run: &Run) -> Result<Self, Problem> {
+        let samples = study.samples(SAMPLES, run)?;
+        let mut estimates = Vec::with_capacity(samples.len());
+        for sample in &samples {
+            run.check().map_err(|_| stopped())?;
+            estimates.push(EstimateDocument::of(sample));
+        }
+        let (total, count) = (study.total(), estimates.len());
+        let scale = total as f64 / count.max(1) as f64;
+        let seconds: f64 = estimates.iter().map(|each| each.seconds).sum();
+        let positions: u64 = estimates.iter().map(|each| each.positions).sum();
+        let longest = estimates
+            .into_iter()
+            .max_by(|a, b| a.seconds.total_cmp(&b.seconds));
+        Ok(Self {
+            valid: true,
+            total,
+            estimate: longest.map(|design| StudyEstimate {
+                design,
+                seconds: scale * seconds,
+                positions: (scale * positions as f64) as u64,
+            }),
+        })
+    }
+}
+
+/// So many designs of a study are estimated: each estimate divides two gears into elements.
+const SAMPLES: usize = 3;
+
+fn stopped() -> Problem {
+    Problem::new(Code::Stopped, "The work was stopped before it was done.")
+}
+
+/// Whether a document is meant for a study: it has a field that no submission has.
+fn is_study(document: &[u8]) -> bool {
+    #[derive(Deserialize)]
+    struct OfStudies {
+        base: Option<IgnoredAny>,
+        axes: Option<IgnoredAny>,
+        designs: Option<IgnoredAny>,
+        population: Option<IgnoredAny>,
+        search: Option<IgnoredAny>,
+    }
+    let read = serde_json::from_slice::<OfStudies>(document);
+    read.is_ok_and(|it| {
+        let fields = [it.base, it.axes, it.designs, it.population, it.search];
+        fields.iter().any(Option::is_some)
+    })
+}
+
+/// Check a submission or a study
 ///
-/// Makes no job. Answers with the submission as it would be computed, the pair's derived geometry, warnings, and an
-/// estimate of size and time; or with the problem that a job would meet. Made to be called on every edit of a form.
+/// Makes no job. A submission is answered as it would be computed, with the pair's derived geometry, warnings, and an estimate of size and
+/// time; a study, population or search with the number of its designs and an estimate of what they take. What cannot be computed is answered
+/// with the problem that it would meet. Made to be called on every edit of a form.
 #[utoipa::path(
     post, path = "/v1/validate", tag = "Reference", operation_id = "validate",
-    request_body(content = Submission, content_type = "application/json", description = "The submission."),
+    request_body(content = Submission, content_type = "application/json", description = "The submission, or the study."),
     responses(
-        (status = 200, description = "The submission can be computed.", body = Validation),
-        JsonBody,
-        (status = 422, description = "The submission cannot be computed; `errors` says which field is why."),
+        (status = 200, description = "It can be computed.", body = Validated),
+        JsonBody<16>,
+        (status = 422, description = "It cannot be computed; `errors` says which field is why."),
         (status = 503, description = "Too many submissions are checked at once. Try again after `Retry-After` seconds."),
     ),
 )]
 pub(super) async fn validate(
     onlooker: Onlooker,
-    JsonBody(document, _memory): JsonBody,
-) -> Result<Json<Validation>, Refusal> {
+    JsonBody(document, _memory): JsonBody<16>,
+) -> Result<Json<Validated>, Refusal> {
     // The estimate divides both gears into elements.
-    let validation = blocking(onlooker.name(), move |_| {
-        Submission::parse(&document).map(|it| meshwright_wire::validate(&it))
+    let validated = blocking(onlooker.name(), move |run| {
+        if is_study(&document) {
+            let study = Study::submitted(&document, run)?;
+            return StudyValidation::of(&study, run).map(Validated::Study);
+        }
+        let submission = Submission::parse(&document)?;
+        let validation = meshwright_wire::validate(&submission);
+        Ok::<_, Problem>(Validated::Submission(Box::new(validation)))
     });
-    Ok(Json(validation.await??))
+    Ok(Json(validated.await??))
 }
 
 document! {

@@ -420,6 +420,27 @@ const FILES: [(&str, File); 22] = [
     ("force-table.fmu", File::Fmu),
 ];
 
+impl File {
+    /// Its media type, as the contract has it.
+    fn media_type(self) -> &'static str {
+        match self {
+            Self::Table(_, Form::Json) => "application/json",
+            Self::Table(_, Form::Csv)
+            | Self::LookUp(look_up::Form::Csv)
+            | Self::Forces(force_table::Form::Csv) => "text/csv",
+            Self::Picture(_) => "image/svg+xml",
+            Self::LookUp(look_up::Form::Text)
+            | Self::Forces(force_table::Form::Text | force_table::Form::Modelica) => "text/plain",
+            Self::Fmu => "application/octet-stream",
+        }
+    }
+}
+
+/// The names of the tables and pictures, and their media types.
+pub(super) fn files() -> impl Iterator<Item = (&'static str, &'static str)> {
+    FILES.iter().map(|(name, file)| (*name, file.media_type()))
+}
+
 fn find_file(file: &str) -> Result<File, Problem> {
     let found = FILES.iter().find(|(name, _)| *name == file);
     found.map(|(_, file)| *file).ok_or_else(|| {

@@ -111,6 +111,11 @@ impl Tokens {
         &self.rules.issuer.text
     }
 
+    /// Whether the provider gave its keys when it was last asked.
+    pub fn has_provider(&self) -> bool {
+        self.provider.answers()
+    }
+
     /// Who the bearer of a token is.
     ///
     /// # Errors

@@ -152,6 +152,11 @@ impl Provider {
         Some((fetch, true))
     }
 
+    /// Whether the last answer was one.
+    pub(super) fn answers(&self) -> bool {
+        !self.state().failed
+    }
+
     async fn ask(&self) {
         let fetched = self.documents().await;
         let mut state = self.state();

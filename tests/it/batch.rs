@@ -96,45 +96,43 @@ async fn a_batch_that_takes_nothing_is_refused_with_every_place() {
 }
 
 #[tokio::test]
-async fn a_batch_that_finds_no_room_is_refused_as_a_job_is() {
-    // The queue has room for two, or the client's part of it.
-    for (adjust, status, code) in [
-        (
-            (|config: &mut Config| {
-                config.queue_limit = 2;
-                config.admission.client_queue_limit = Some(10);
-            }) as fn(&mut Config),
-            503,
-            "queue_full",
-        ),
-        (
-            |config| config.admission.client_queue_limit = Some(2),
-            429,
-            "client_queue_full",
-        ),
-    ] {
-        let (bench, mut engine) = Bench::steered_with(adjust).await;
-        let key = key_of(&bench, "portal").await;
-        let send = async |torques: [f64; 3]| {
-            let batch = json!({ "submissions": torques.map(submission) });
-            let request = bench.post("/v1/jobs/batch", &batch).bearer_auth(&key);
-            request.answer().await
-        };
-        let first = bench.post("/v1/jobs", &submission(50.0)).bearer_auth(&key);
-        assert_eq!(first.answer().await.status(), StatusCode::ACCEPTED);
-        let _work = engine.next().await;
-        let some = send([1.0, 2.0, 3.0]).await;
-        assert_eq!(some.status(), StatusCode::ACCEPTED);
-        // The one that found no room may be sent again then.
-        assert_eq!(some.headers()["retry-after"], "5");
-        let some = some.document().await;
-        assert_eq!((&some["taken"], &some["refused"]), (&json!(2), &json!(1)));
-        assert_eq!(some["items"][2]["problem"]["code"], code);
-        // A field that is wrong does not hide that there is no room.
-        let none = send([-1.0, 4.0, 5.0]).await;
-        assert_eq!(none.headers()["retry-after"], "5");
-        problem(none, status, code).await;
-    }
+async fn a_batch_that_finds_no_room_in_the_queue_is_refused_as_a_job_is() {
+    let full = |config: &mut Config| {
+        config.queue_limit = 2;
+        config.admission.client_queue_limit = Some(10);
+    };
+    finds_no_room(full, 503, "queue_full").await;
+}
+
+#[tokio::test]
+async fn a_batch_that_finds_no_room_in_the_part_of_its_client_is_refused_as_a_job_is() {
+    let has_its_part = |config: &mut Config| config.admission.client_queue_limit = Some(2);
+    finds_no_room(has_its_part, 429, "client_queue_full").await;
+}
+
+/// Two jobs find room, and a third none.
+async fn finds_no_room(adjust: impl FnOnce(&mut Config), status: u16, code: &str) {
+    let (bench, mut engine) = Box::pin(Bench::steered_with(adjust)).await;
+    let key = key_of(&bench, "portal").await;
+    let send = async |torques: [f64; 3]| {
+        let batch = json!({ "submissions": torques.map(submission) });
+        let request = bench.post("/v1/jobs/batch", &batch).bearer_auth(&key);
+        request.answer().await
+    };
+    let first = bench.post("/v1/jobs", &submission(50.0)).bearer_auth(&key);
+    assert_eq!(first.answer().await.status(), StatusCode::ACCEPTED);
+    let _work = engine.next().await;
+    let some = send([1.0, 2.0, 3.0]).await;
+    assert_eq!(some.status(), StatusCode::ACCEPTED);
+    // The one that found no room may be sent again then.
+    assert_eq!(some.headers()["retry-after"], "5");
+    let some = some.document().await;
+    assert_eq!((&some["taken"], &some["refused"]), (&json!(2), &json!(1)));
+    assert_eq!(some["items"][2]["problem"]["code"], code);
+    // A field that is wrong does not hide that there is no room.
+    let none = send([-1.0, 4.0, 5.0]).await;
+    assert_eq!(none.headers()["retry-after"], "5");
+    problem(none, status, code).await;
 }
 
 #[tokio::test]

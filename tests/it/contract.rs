@@ -173,6 +173,69 @@ fn the_readme_shows_what_solve_prints_of_its_pair() {
 }
 
 #[test]
+fn the_contract_says_what_generators_of_clients_need() {
+    let document = meshwright::http::openapi();
+    let paths = document["paths"].as_object().unwrap();
+    // A path for each table, with the one media type that it has.
+    assert!(!paths.keys().any(|path| path.contains("{table}")));
+    for (file, media_type) in [
+        ("ste.json", "application/json"),
+        ("ste.csv", "text/csv"),
+        ("run-up.svg", "image/svg+xml"),
+        ("force-table.mo", "text/plain"),
+        ("force-table.fmu", "application/octet-stream"),
+    ] {
+        let operation = &paths[&format!("/v1/jobs/{{id}}/results/{file}")]["get"];
+        let word = file.replace(['-', '.'], "_");
+        assert_eq!(operation["operationId"], format!("get_{word}"));
+        let content = operation["responses"]["200"]["content"]
+            .as_object()
+            .unwrap();
+        assert_eq!(content.keys().collect::<Vec<_>>(), [media_type], "{file}");
+    }
+    let mut ids = std::collections::BTreeSet::new();
+    for (path, item) in paths {
+        for (method, operation) in item.as_object().unwrap() {
+            let here = format!("{method} {path}");
+            assert!(
+                ids.insert(operation["operationId"].as_str().unwrap()),
+                "{here}"
+            );
+            for parameter in operation["parameters"].as_array().into_iter().flatten() {
+                let is_header = parameter["in"] == "header";
+                assert!(
+                    !is_header || parameter["schema"]["type"].is_string(),
+                    "{here}: {parameter}"
+                );
+            }
+            for status in ["429", "503"] {
+                let answer = &operation["responses"][status];
+                let is_problem = answer["content"]["application/problem+json"].is_object();
+                assert!(
+                    !is_problem || answer["headers"]["Retry-After"].is_object(),
+                    "{here}: {status}"
+                );
+            }
+        }
+    }
+    let code = &document["components"]["schemas"]["Code"];
+    assert!(code["enum"].is_null() && code["x-known-values"].as_array().unwrap().len() > 50);
+    // Whatever a webhook may be told has a schema.
+    let told = document["webhooks"].as_object().unwrap();
+    let kinds = document["components"]["schemas"]["EventKind"]["enum"]
+        .as_array()
+        .unwrap();
+    for kind in kinds
+        .iter()
+        .map(|kind| kind.as_str().unwrap())
+        .chain(["webhook.ping"])
+    {
+        let schema = &told[kind]["post"]["requestBody"]["content"]["application/json"]["schema"];
+        assert_eq!(schema["properties"]["type"]["const"], kind);
+    }
+}
+
+#[test]
 fn every_parameter_of_an_operation_stands_once_and_is_described() {
     let document = meshwright::http::openapi();
     let mut seen = 0;

@@ -155,7 +155,7 @@ async fn the_documentation_needs_nothing_from_elsewhere() {
         "/v1/jobs",
         "/v1/jobs/{id}",
         "/v1/jobs/{id}/results",
-        "/v1/jobs/{id}/results/{table}",
+        "/v1/jobs/{id}/results/ste.csv",
         "/v1/jobs/{id}/events",
         "/v1/jobs/{id}/cancel",
         "/v1/validate",
@@ -344,4 +344,48 @@ async fn an_answer_that_is_packed_has_another_tag_than_the_same_as_it_is_and_eac
             assert_eq!((known.0, &known.1), (304, tag), "{path}");
         }
     }
+}
+
+#[tokio::test]
+async fn a_load_balancer_learns_of_the_health_by_a_bare_request() {
+    use tokio::io::{AsyncReadExt, AsyncWriteExt};
+    let bench = Bench::quick().await;
+    let ask = async |head: &str| {
+        let address = bench.base.strip_prefix("http://").unwrap();
+        let mut stream = tokio::net::TcpStream::connect(address).await.unwrap();
+        stream
+            .write_all(format!("{head}\r\n\r\n").as_bytes())
+            .await
+            .unwrap();
+        let mut answer = vec![0; 12];
+        stream.read_exact(&mut answer).await.unwrap();
+        String::from_utf8(answer).unwrap()[9..].to_owned()
+    };
+    // HAProxy asks so unless it is told otherwise.
+    assert_eq!(ask("OPTIONS /health/live HTTP/1.0").await, "405");
+    assert_eq!(ask("GET /health/live HTTP/1.0").await, "200");
+    assert_eq!(ask("GET /health/ready HTTP/1.0").await, "200");
+    assert_eq!(ask("GET /v1/jobs HTTP/1.0").await, "400");
+    assert_eq!(ask("GET /health/live HTTP/1.1").await, "400");
+    let doubled = "GET /health/live HTTP/1.1\r\nhost: localhost\r\nhost: localhost";
+    assert_eq!(ask(doubled).await, "400");
+}
+
+#[tokio::test]
+async fn a_document_may_begin_with_a_byte_order_mark() {
+    let bench = Bench::quick().await;
+    let sent = async |path: &str, body: String| {
+        let request = bench.send(path).header("content-type", "application/json");
+        request.body(body).answer().await.status()
+    };
+    let marked = format!("\u{feff}{}", submission(1.0));
+    assert_eq!(sent("/v1/jobs", marked.clone()).await, StatusCode::ACCEPTED);
+    assert_eq!(sent("/v1/validate", marked.clone()).await, StatusCode::OK);
+    let batch = format!("\u{feff}{}", json!({ "submissions": [submission(1.0)] }));
+    assert_eq!(sent("/v1/jobs/batch", batch).await, StatusCode::ACCEPTED);
+    // One, and at the beginning.
+    assert_eq!(
+        sent("/v1/jobs", format!("\u{feff}{marked}")).await,
+        StatusCode::BAD_REQUEST
+    );
 }

@@ -237,3 +237,46 @@ async fn a_population_that_cannot_be_drawn_is_refused_with_its_place() {
     assert_eq!(refused["errors"][0]["pointer"], "/population/vary/0/mean");
     assert_eq!(refused["errors"][0]["nearest"], 40.3);
 }
+
+#[tokio::test]
+async fn a_study_a_population_and_a_search_are_checked_and_answered_with_their_cost() {
+    let (bench, mut engine) = Bench::steered().await;
+    let check = async |document: &Value| bench.post("/v1/validate", document).document().await;
+    let of_base = check(&members(8, "sobol")["base"]).await;
+    let of_members = check(&members(300, "sobol")).await;
+    assert_eq!(
+        (&of_members["valid"], &of_members["total"]),
+        (&json!(true), &json!(300))
+    );
+    // 2 torques, 8 positions in a mesh period: as of the base, and of all members together.
+    let design = &of_members["estimate"]["design"];
+    assert_eq!(
+        (&design["positions"], &of_base["estimate"]["positions"]),
+        (&json!(16), &json!(16))
+    );
+    assert_eq!(of_members["estimate"]["positions"], 300 * 16);
+    let seconds = |estimate: &Value| estimate["seconds"].as_f64().unwrap();
+    let all = seconds(&of_members["estimate"]);
+    assert!(
+        all > 0.0 && all <= 300.0 * seconds(design) * (1.0 + 1e-12),
+        "{all}"
+    );
+
+    let base = &members(8, "sobol")["base"];
+    let axes = json!({ "base": base, "axes": [{ "path": "/output_torques_n_m/0", "values": [10, 20, 30] }] });
+    assert_eq!(check(&axes).await["total"], 3);
+    let search = json!({ "base": base, "search": {
+        "variables": [{ "path": "/pair/center_distance_mm", "low": 40.1, "high": 40.3 }],
+        "minimize": [{ "quantity": "transmission_error_um.peak_to_peak" }], "evaluations": 20, "seed": 1 } });
+    let checked = check(&search).await;
+    assert!(checked["total"].as_u64().unwrap() >= 20, "{checked}");
+    assert_eq!(checked["estimate"]["design"]["positions"], 16);
+    // What a study would be refused for it is refused for here, at the same place.
+    let mut wrong = members(40, "random");
+    wrong["population"]["vary"][0]["mean"] = json!(41);
+    let refused = problem(bench.post("/v1/validate", &wrong), 422, "out_of_range").await;
+    assert_eq!(refused["errors"][0]["pointer"], "/population/vary/0/mean");
+    assert!(engine.is_idle());
+    let list = bench.document("/v1/studies").await;
+    assert_eq!(list["items"], json!([]));
+}

@@ -60,6 +60,56 @@ async fn every_number_of_the_dashboard_and_of_the_alerts_is_told() {
     assert!(missing.is_empty(), "{missing:?} of {told:?}");
 }
 
+#[tokio::test]
+async fn the_process_its_disk_and_who_vouches_for_people_are_told() {
+    let bench = Bench::quick().await;
+    let told = bench.get("/metrics").whole_text().await;
+    let value = |name: &str| -> f64 {
+        let line = told.lines().find(|line| line.starts_with(name)).unwrap();
+        line.rsplit(' ').next().unwrap().parse().unwrap()
+    };
+    let version = format!(
+        "meshwright_build_info{{version=\"{}\"}}",
+        env!("CARGO_PKG_VERSION")
+    );
+    assert_eq!(value(&version), 1.0);
+    assert!(value("meshwright_process_memory_bytes ") > 1e6);
+    let (all, free) = (
+        value("meshwright_disk_bytes "),
+        value("meshwright_disk_free_bytes "),
+    );
+    assert!(0.0 < free && free <= all, "{free} of {all}");
+    assert_eq!(value("meshwright_identity_provider_answers "), 1.0);
+    for silence in ["up{job=~\".*meshwright.*\"} == 0", "absent(up{"] {
+        assert!(ALERTS.contains(silence), "{silence}");
+    }
+}
+
+#[test]
+fn what_is_deployed_is_of_this_version() {
+    let folder = crate::contract::root().join("deploy");
+    let version = concat!("meshwright:", env!("CARGO_PKG_VERSION"));
+    let mut named = 0;
+    for file in [
+        "kubernetes/meshwright.yaml",
+        "kubernetes/keda.yaml",
+        "compose.yaml",
+    ] {
+        let text = std::fs::read_to_string(folder.join(file)).unwrap();
+        for line in text
+            .lines()
+            .filter(|line| line.contains("meshwright:") && line.contains("image:"))
+        {
+            named += 1;
+            assert!(
+                line.trim_end().ends_with(version) || !line.contains(|c: char| c.is_ascii_digit()),
+                "{file}: {line}"
+            );
+        }
+    }
+    assert!(named >= 2, "{named}");
+}
+
 /// The name and value of each label in a text of numbers.
 fn labels(told: &str) -> BTreeSet<(&str, &str)> {
     let series = told.lines().filter(|line| !line.starts_with('#'));
@@ -110,6 +160,11 @@ async fn no_label_has_a_value_that_a_client_invents() {
         "/v1/studies/{id}/results.csv",
         "/shared/{secret}",
     ]);
+    // The document has an operation for each table.
+    routes.extend([
+        "/v1/jobs/{id}/results/{table}",
+        "/shared/{secret}/results/{table}",
+    ]);
     // What is no part of the document has one pattern for each of its folders.
     routes.extend(["/docs", "/docs/", "/docs/{name}", "/web/{*name}"]);
     routes.extend(["/guides", "/guides/{name}", "/guides/figures/{name}"]);
@@ -134,6 +189,7 @@ async fn no_label_has_a_value_that_a_client_invents() {
                     .any(|code| code.word() == value)
                     || value == "none"
             }
+            "version" => value == env!("CARGO_PKG_VERSION"),
             "le" => value == "+Inf" || value.parse::<f64>().is_ok(),
             "kind" => ["alone", "study"].contains(&value),
             "shelf" => shelves.contains(&value),

@@ -366,3 +366,37 @@ async fn as_many_previews_of_one_client_as_there_are_places_do_not_shut_another_
         hog.abort();
     }
 }
+
+#[tokio::test]
+async fn a_preview_that_is_estimated_above_the_limit_is_refused_before_it_starts() {
+    let (bench, mut engine) = Bench::steered_with(|config| {
+        config.preview_time_limit_seconds = 1;
+        config.memory_mb = Some(16_000);
+        config.job_memory_mb = 8000;
+    })
+    .await;
+    let mut long = submission(115.0);
+    long["method"] = json!("three_dimensional");
+    let foreseen = bench.post("/v1/validate", &long).document().await;
+    let seconds = foreseen["estimate"]["seconds"].as_f64().unwrap();
+    assert!(seconds > 1.0, "{seconds}");
+    let refused = problem(bench.post("/v1/preview", &long), 422, "too_large").await;
+    let detail = refused["detail"].as_str().unwrap();
+    assert!(
+        detail.contains(&format!("{seconds:.1} s")) && detail.contains("1 s here"),
+        "{detail}"
+    );
+    assert!(engine.is_idle());
+}
+
+#[tokio::test]
+async fn a_preview_that_is_not_computed_in_the_time_that_was_expected_may_be_sent_again() {
+    let (bench, mut engine) =
+        Bench::steered_with(|config| config.preview_time_limit_seconds = 1).await;
+    let asked = ask(&bench, &submission(115.0));
+    let work = engine.next().await;
+    let late = asked.await.unwrap();
+    assert_eq!(late.headers()["retry-after"], "5");
+    problem(late, 503, "preview_time_limit").await;
+    work.stopped().await;
+}

@@ -45,12 +45,8 @@ async fn an_administrator_sees_who_fills_the_queue_and_no_submission() {
     let of = |client: &str, user: Value| {
         let clients = usage["clients"].as_array().unwrap();
         let client = clients.iter().find(|it| it["client"] == client).unwrap();
-        let users = client["users"].as_array().unwrap().iter();
-        users
-            .into_iter()
-            .find(|it| it["user"] == user)
-            .unwrap()
-            .clone()
+        let mut users = client["users"].as_array().unwrap().iter();
+        users.find(|it| it["user"] == user).unwrap().clone()
     };
     let ada = of("portal", json!("ada"));
     assert_eq!(

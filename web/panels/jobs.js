@@ -4,7 +4,7 @@
 import { button, debounced, h, inLine, labelled, note, table } from "../draw/dom.js";
 import { filesOf, saveFile } from "../draw/files.js";
 import { read } from "../draw/inputs.js";
-import { follow, hasEnded, isAborted, json, post, ProblemError, request } from "../state/api.js";
+import { checked, follow, hasEnded, isAborted, json, post, ProblemError, request } from "../state/api.js";
 import { differences, nameOf, told } from "../state/design.js";
 import { number } from "../state/numbers.js";
 import { fileOfDesign } from "../state/tables.js";
@@ -113,7 +113,7 @@ export function jobs(place, design, form, onOpen, onStudy) {
   async function tell() {
     telling += 1;
     const turn = telling;
-    const filled = await post("v1/validate", design.submission).then(
+    const filled = await checked(design.submission).then(
       ({ submission }) => submission,
       () => null,
     );

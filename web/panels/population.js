@@ -7,7 +7,7 @@ import { figure } from "../draw/figure.js";
 import { allGiven, given, numeric, put } from "../draw/inputs.js";
 import { offer, options } from "./offer.js";
 import { mostOften, Question } from "./question.js";
-import { json, post, ProblemError } from "../state/api.js";
+import { foreseen, json, ProblemError } from "../state/api.js";
 import { apart, at, nameOf } from "../state/design.js";
 import { fixed, number, timeOf } from "../state/numbers.js";
 import { inUnit, inWords, quantityOf, shown } from "../state/quantities.js";
@@ -170,7 +170,9 @@ export function population(place, design, form, limits, onOpen) {
     try {
       const { size: count, accuracy } = asked().population;
       differing = MEMBERS.filter((each) => accuracy?.[each]);
-      const { seconds, positions } = await estimated(differing);
+      const member = await estimated(differing);
+      if (!member) return;
+      const { seconds, positions } = member;
       const most = Math.floor(limits.positions / positions);
       suggestTorques(most);
       const { length } = asked().base.output_torques_n_m;
@@ -196,13 +198,10 @@ export function population(place, design, form, limits, onOpen) {
    * @param {GearName[]} differing
    */
   async function estimated(differing) {
-    const { base } = asked();
-    for (const member of differing)
-      base.pair[member].tooth_deviations = {
-        pitch_cumulative_um: Array.from({ length: base.pair[member].tooth_count }, (_, i) => Number(i === 1)),
-      };
-    const asking = { ...base, output_torques_n_m: base.output_torques_n_m.slice(0, 1) };
-    return (await post("v1/validate", asking)).estimate;
+    const study = asked();
+    study.base.output_torques_n_m = study.base.output_torques_n_m.slice(0, 1);
+    for (const each of MEMBERS) if (!differing.includes(each) && study.population.accuracy) delete study.population.accuracy[each];
+    return (await foreseen(study)).estimate?.design;
   }
 
   /**
@@ -215,7 +214,7 @@ export function population(place, design, form, limits, onOpen) {
     const fits = await Promise.all(
       differing.map((left) =>
         estimated(differing.filter((each) => each !== left)).then(
-          () => true,
+          (member) => Boolean(member),
           (error) => {
             if (!(error instanceof ProblemError)) throw error;
             return false;

@@ -167,6 +167,28 @@ export async function post(path, body, options = {}) {
 }
 
 /**
+ * A submission as it would be computed, and what that costs.
+ *
+ * @param {unknown} submission
+ * @param {Options} [options]
+ */
+export async function checked(submission, options = {}) {
+  const answer = await post("v1/validate", submission, options);
+  return /** @type {import("./documents.js").Schemas["Validation"]} */ (answer);
+}
+
+/**
+ * What a study, a population or a search would cost.
+ *
+ * @param {unknown} study
+ * @param {Options} [options]
+ */
+export async function foreseen(study, options = {}) {
+  const answer = await post("v1/validate", study, options);
+  return /** @type {import("./documents.js").Schemas["StudyValidation"]} */ (answer);
+}
+
+/**
  * The pieces of an answer that end with `end`, as far as somebody reads them.
  *
  * @param {Response} response

@@ -1,7 +1,7 @@
 // @ts-check
 // Results while the design changes: one request at a time, always the newest design next.
 
-import { hasEnded, isAborted, isPassing, json, post, ProblemError, request, solved } from "./api.js";
+import { checked, hasEnded, isAborted, isPassing, json, post, ProblemError, request, solved } from "./api.js";
 import { isSolid } from "./dimensions.js";
 
 /** @import { Cause } from "./design.js" */
@@ -320,7 +320,7 @@ export class Follower {
    */
   async #plan({ submission, by }, signal) {
     /** @type {(asked: Submission) => Promise<number>} */
-    const secondsOf = async (asked) => (await post("v1/validate", asked, { signal })).estimate.seconds;
+    const secondsOf = async (asked) => (await checked(asked, { signal })).estimate.seconds;
     const seconds = await secondsOf(submission);
     // A design that comes whole, by a link or a file, is computed as it says where nobody has to wait for it.
     const most = ["start", "open"].includes(by) ? LONG : SHORT;

@@ -1,7 +1,7 @@
 // @ts-check
 // The schema of a submission, as the service describes it.
 
-import { json, post } from "./api.js";
+import { checked, json } from "./api.js";
 import { at } from "./design.js";
 
 /** @import { Submission } from "./documents.js" */
@@ -220,12 +220,10 @@ export function saidDefault(schema) {
  * @type {(api: Api, submission: Submission) => Promise<Submission>}
  */
 export async function bare(api, submission) {
-  /** @type {(asked: Submission) => Promise<import("./documents.js").Schemas["Validation"]>} */
-  const fill = (asked) => post("v1/validate", asked);
-  const filled = await fill(submission);
+  const filled = await checked(submission);
   const asked = withoutDefaults(api, submission, filled.pair.period_mesh_periods);
   // The service has the last word on what is the same.
-  return JSON.stringify((await fill(asked)).submission) === JSON.stringify(filled.submission) ? asked : submission;
+  return JSON.stringify((await checked(asked)).submission) === JSON.stringify(filled.submission) ? asked : submission;
 }
 
 /**

@@ -5,7 +5,7 @@
 import { button, h, note, s } from "../draw/dom.js";
 import { cssOf, scaleOf } from "../draw/face.js";
 import { figure } from "../draw/figure.js";
-import { hasEnded, isAborted, json, patiently, post, ProblemError, request, solved } from "../state/api.js";
+import { checked, hasEnded, isAborted, json, patiently, ProblemError, request, solved } from "../state/api.js";
 import { same } from "../state/design.js";
 import { fixed, number, timeOf } from "../state/numbers.js";
 
@@ -84,7 +84,7 @@ export class Pattern {
       this.#shown = live.submission;
       sessionStorage.setItem(AWAITED, JSON.stringify(live.submission));
       // Every position is solved again, by the whole method.
-      const { estimate } = await post("v1/validate", { ...live.asked, method: "three_dimensional" }, { signal });
+      const { estimate } = await checked({ ...live.asked, method: "three_dimensional" }, { signal });
       const begun = performance.now();
       const clock = () => {
         const left = 1000 * estimate.seconds - (performance.now() - begun);

@@ -6,6 +6,7 @@ import asyncio
 import os
 import urllib.request
 
+import httpx
 import meshio
 import numpy as np
 import pytest
@@ -471,3 +472,17 @@ def test_the_modelica_package_is_a_whole_model_whose_table_has_the_loads(service
         for load, deltas in zip(table["load_n"], table["transmission_error_um"]):
             # Straight lines between columns.
             assert np.interp(deltas[position] * 1e-6, approaches, row) == pytest.approx(load, abs=2e-3 * table["load_n"][-1])
+
+
+def test_who_finds_no_service_is_told_where_it_was_sought():
+    # Nobody listens at the first port.
+    address = "http://127.0.0.1:1"
+    with Client(address) as client, pytest.raises(httpx.ConnectError, match=address):
+        client.examples()
+
+    async def ask():
+        async with AsyncClient(address) as client:
+            await client.examples()
+
+    with pytest.raises(httpx.ConnectError, match=address):
+        asyncio.run(ask())

@@ -26,6 +26,8 @@ export interface Options {
   url?: string;
   /** The key, where the service asks for one. */
   key?: string;
+  /** The user of the key's client on whose behalf the calls come: users take turns, and jobs say who submitted them. */
+  user?: string;
 }
 
 /** What is told of a job or study while it is computed. */
@@ -37,9 +39,9 @@ export class Client {
   readonly #url: string;
   readonly #headers: Record<string, string>;
 
-  constructor({ url = globalThis.location?.origin ?? "http://127.0.0.1:8080", key }: Options = {}) {
+  constructor({ url = globalThis.location?.origin ?? "http://127.0.0.1:8080", key, user }: Options = {}) {
     this.#url = url.replace(/\/$/, "");
-    this.#headers = key ? { authorization: `Bearer ${key}` } : {};
+    this.#headers = { ...(key && { authorization: `Bearer ${key}` }), ...(user && { "meshwright-user": user }) };
   }
 
   /** Submits a job and gives its results when it has ended. */

@@ -51,6 +51,18 @@ impl DatabaseFiles {
         Ok(())
     }
 
+    /// The bytes of the disk, and those of them that are free for this process.
+    pub(super) fn disk(&self) -> Option<(u64, u64)> {
+        #[cfg(unix)]
+        {
+            let disk = rustix::fs::statvfs(&self.path).ok()?;
+            let bytes = |blocks: u64| blocks.saturating_mul(disk.f_frsize);
+            Some((bytes(disk.f_blocks), bytes(disk.f_bavail)))
+        }
+        #[cfg(not(unix))]
+        None
+    }
+
     /// That there is room for what comes.
     pub(super) fn check_room(&self) -> Result<()> {
         #[cfg(unix)]

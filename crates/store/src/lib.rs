@@ -122,6 +122,11 @@ impl Store {
         self.writer.is_closed()
     }
 
+    /// The bytes of the disk on which the file of the database is, and those of them that are free for this process; none of a server.
+    pub fn disk(&self) -> Option<(u64, u64)> {
+        self.files.as_ref()?.disk()
+    }
+
     /// Whether other processes may work on the same database.
     pub fn is_shared(&self) -> bool {
         matches!(self.place, DatabaseAddress::Postgres(_))

@@ -30,10 +30,18 @@ _TIMEOUT = 120.0
 _TRIES = 5
 
 
-def _settings(url: str | None, key: str | None) -> dict[str, Any]:
+def _settings(url: str | None, key: str | None, user: str | None) -> dict[str, Any]:
     key = key or os.environ.get("MESHWRIGHT_KEY")
     headers = {"authorization": f"Bearer {key}"} if key else {}
+    if user:
+        headers["meshwright-user"] = user
     return {"base_url": url or os.environ.get("MESHWRIGHT_URL", _USUAL_URL), "headers": headers, "timeout": _TIMEOUT}
+
+
+def _unreachable(base_url: httpx.URL, error: httpx.ConnectError) -> httpx.ConnectError:
+    """The same error, with the address that nobody answers at."""
+    detail = f"no service answers at {base_url} ({error}); url or MESHWRIGHT_URL says where it is"
+    return httpx.ConnectError(detail, request=error.request)
 
 
 def _answer(call: Call, response: httpx.Response) -> Any:
@@ -59,11 +67,12 @@ def _pause_before_another_try(response: httpx.Response, tried: int) -> float | N
 class Client:
     """Calls that wait for their answer.
 
-    `url` is `MESHWRIGHT_URL` or the service on this machine, `key` is `MESHWRIGHT_KEY` or none.
+    `url` is `MESHWRIGHT_URL` or the service on this machine, `key` is `MESHWRIGHT_KEY` or none. `user` is the user of the key's client on whose behalf
+    the calls come: users take turns, and jobs say who submitted them.
     """
 
-    def __init__(self, url: str | None = None, key: str | None = None) -> None:
-        self._http = httpx.Client(**_settings(url, key))
+    def __init__(self, url: str | None = None, key: str | None = None, user: str | None = None) -> None:
+        self._http = httpx.Client(**_settings(url, key, user))
 
     def __enter__(self) -> Client:
         return self
@@ -152,7 +161,10 @@ class Client:
     def _send(self, call: Call) -> Any:
         time.sleep(call.pause)
         for tried in range(_TRIES + 1):
-            response = self._http.request(call.method, call.path, json=call.body, headers=dict(call.headers))
+            try:
+                response = self._http.request(call.method, call.path, json=call.body, headers=dict(call.headers))
+            except httpx.ConnectError as error:
+                raise _unreachable(self._http.base_url, error) from error
             pause = _pause_before_another_try(response, tried)
             if pause is None:
                 break
@@ -163,8 +175,8 @@ class Client:
 class AsyncClient:
     """The calls of `Client`, to be awaited."""
 
-    def __init__(self, url: str | None = None, key: str | None = None) -> None:
-        self._http = httpx.AsyncClient(**_settings(url, key))
+    def __init__(self, url: str | None = None, key: str | None = None, user: str | None = None) -> None:
+        self._http = httpx.AsyncClient(**_settings(url, key, user))
 
     async def __aenter__(self) -> AsyncClient:
         return self
@@ -237,7 +249,10 @@ class AsyncClient:
     async def _send(self, call: Call) -> Any:
         await asyncio.sleep(call.pause)
         for tried in range(_TRIES + 1):
-            response = await self._http.request(call.method, call.path, json=call.body, headers=dict(call.headers))
+            try:
+                response = await self._http.request(call.method, call.path, json=call.body, headers=dict(call.headers))
+            except httpx.ConnectError as error:
+                raise _unreachable(self._http.base_url, error) from error
             pause = _pause_before_another_try(response, tried)
             if pause is None:
                 break

@@ -15,6 +15,9 @@ use crate::table::Quantity;
 /// So many members of a population are tried at most.
 const MEMBERS: usize = 256;
 
+/// So many designs are looked at for those by which the cost of a study is estimated.
+const LOOKED_AT: usize = 16;
+
 /// So many designs of a search are tried over its population at most, and so many members of each.
 const OF_SEARCH: (usize, u32) = (4, 16);
 
@@ -54,6 +57,49 @@ impl Study {
             Plan::Axes(_) | Plan::Designs(_) => {}
         }
         errors.settle(Some(study))
+    }
+
+    /// At most `most` designs that can be built, by which the cost of all is estimated: spread over the rows, or over what a search may try.
+    ///
+    /// # Errors
+    ///
+    /// `stopped`.
+    pub fn samples(&self, most: usize, run: &Run) -> Result<Vec<Submission>, Problem> {
+        let mut samples = Vec::with_capacity(most);
+        if let Plan::Search(search) = &self.plan {
+            // A design of a search over a population is computed as its members.
+            let role = match search.looks_at_members() {
+                true => Role::Member(1, 0),
+                false => Role::Design(1),
+            };
+            let trials = search.trials(self.base()).take(LOOKED_AT);
+            for (i, changes) in trials.enumerate() {
+                look_around(i, run)?;
+                samples.extend(self.searched(role, &changes).submission);
+                if samples.len() == most {
+                    break;
+                }
+            }
+            return Ok(samples);
+        }
+        let rows = self.total();
+        let looked_at = rows.min(LOOKED_AT);
+        for i in 0..looked_at {
+            look_around(i, run)?;
+            // The first row and the last one come first.
+            let step = if i % 2 == 0 {
+                i / 2
+            } else {
+                looked_at - 1 - i / 2
+            };
+            let row = step * (rows - 1) / (looked_at - 1).max(1);
+            let design = self.design(row);
+            samples.extend(design.and_then(|design| design.submission.ok()));
+            if samples.len() == most {
+                break;
+            }
+        }
+        Ok(samples)
     }
 
     /// Refuses gears of which hardly any would pass their inspection.
