@@ -22,8 +22,8 @@ use super::problem::{Refusal, internal};
 /// The media type of what a drawing comes to.
 const DRAWN: &str = "application/vnd.meshwright.outline+json";
 
-/// What a drawing leaves open.
-#[derive(Debug, Default, PartialEq, Deserialize, IntoParams)]
+/// What a drawing leaves open; a submission leaves nothing of it.
+#[derive(Debug, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 pub(super) struct DrawingParameters {
@@ -31,7 +31,7 @@ pub(super) struct DrawingParameters {
     #[param(example = "Holes")]
     layer: Option<String>,
     /// Of a drawing: the place of the axis of the gear, X,Y in the unit of the drawing; without it, its origin.
-    #[param(example = "150,105")]
+    #[param(example = "0,0")]
     center: Option<String>,
     /// Of a drawing: ends no farther apart than this are joined, in mm; 0.01 without it.
     #[param(example = 0.01, minimum = 0.0, maximum = 0.1)]
@@ -126,10 +126,6 @@ pub(super) async fn outline(
             return blocking(onlooker.name(), read).await?;
         }
     };
-    if parameters != DrawingParameters::default() {
-        let detail = "layer, center, tolerance and bore_radius_mm are of a drawing: send one as image/vnd.dxf.";
-        return Err(invalid(detail).into());
-    }
     let as_picture = wants_picture(&request);
     let made = blocking(onlooker.name(), move |_| {
         let submission = Submission::parse(&document)?;

@@ -195,11 +195,6 @@ async fn the_outline_of_a_drawing_is_that_of_a_submission() {
         let refused = post(office, "image/vnd.dxf", query).await.unwrap();
         problem(refused, 400, "invalid_parameter").await;
     }
-    let json = example("test-case-2").to_string();
-    let refused = post(&json, "application/json", "?center=0,0")
-        .await
-        .unwrap();
-    problem(refused, 400, "invalid_parameter").await;
     let refused = post(drawing, "text/plain", "").await.unwrap();
     problem(refused, 415, "unsupported_media_type").await;
     let long = drawing.replace("EOF", &" ".repeat(4 << 20));

@@ -9,6 +9,9 @@ use meshwright_engine::gear::{Moments, Side, Vector};
 /// Of more loops it is not looked at which turn onto each other.
 const MOST_TURNED: usize = 400;
 
+/// How far beside a point it is looked at whether a curve runs around it, as a part of the largest radius of the curve.
+const BESIDE: f64 = 1e-6;
+
 /// A contour is that of teeth if it has so many alike at least: a frame of a sheet has fewer.
 const LEAST_TEETH: usize = 5;
 
@@ -47,7 +50,17 @@ impl Closed {
     /// Whether it runs around `inner`, which does not cross it.
     pub(super) fn encloses(&self, inner: &Self) -> bool {
         let point = inner.sides[0].from;
-        self.whole.may_hold(point) && winding(&self.sides, point) != 0
+        self.whole.may_hold(point) && self.is_around(point)
+    }
+
+    /// Whether it runs around a point: around most of three places beside it. A point on the chord of an arc, as the center of a circle, is seen on either
+    /// side of it by a rounding.
+    pub(super) fn is_around(&self, point: Vector) -> bool {
+        let near = BESIDE * self.whole.reach[1];
+        let places =
+            [0.3_f64, 2.4, 4.5].map(|angle| point + near * Vector::new(angle.cos(), angle.sin()));
+        let inside = places.iter().filter(|at| winding(&self.sides, **at) != 0);
+        inside.count() >= 2
     }
 
     /// Whether `other` is the same curve, to within `near`, whichever way round.

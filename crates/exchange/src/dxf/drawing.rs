@@ -3,7 +3,6 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
-use meshwright_engine::gear::blank::contour::winding;
 use meshwright_engine::gear::{Moments, Side, Vector};
 use serde_json::{Value, json};
 
@@ -204,7 +203,7 @@ impl<'a> Drawing<'a> {
     ) -> Result<Outline, Refused> {
         let (around, openings): (Vec<&Closed>, Vec<&Closed>) = loops
             .iter()
-            .partition(|closed| winding(&closed.sides, Vector::zeros()) != 0);
+            .partition(|closed| closed.is_around(Vector::zeros()));
         let layers: BTreeSet<&str> = openings
             .iter()
             .flat_map(|closed| self.layers_of(closed))

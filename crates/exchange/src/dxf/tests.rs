@@ -1006,6 +1006,23 @@ fn a_drawing_that_turns_about_another_point_is_refused_with_that_point() {
                 .contains("about the chosen center: it seems to turn about (150, 105)")
         );
     }
+    // Wherever it is, a circle about the axis runs around it: its center is on the chord of both its halves.
+    for i in 0..50 {
+        let at = [7.3 * f64::from(i), 90.0 - 11.7 * f64::from(i)];
+        let drawn = [
+            around(at, 6, 34.0),
+            vec![circle(at, 47.0), circle(at, 16.0)],
+        ]
+        .concat();
+        let about = Choices {
+            center: Some(at),
+            ..Choices::default()
+        };
+        let read = taken(&file(Some(4), &drawn), &about);
+        assert_eq!(read.loops.len(), 8, "{at:?}: {:?}", read.remarks);
+        let bore = read.bore_radius_mm.expect("a bore");
+        assert!((bore - 16.0).abs() < 1e-8, "{bore}");
+    }
     // A little beside it, and in inches.
     let near = [0.05, -0.02];
     let drawn = [
