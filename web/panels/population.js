@@ -95,7 +95,7 @@ export function population(place, design, form, limits, onOpen) {
     inWords: (detail) => form.inWords(detail),
     ignored: NOT_ASKED,
   });
-  const ahead = h("p", { className: "note", id: "population-ahead", role: "status" });
+  const ahead = h("p", { className: "note", id: "population-ahead", aria: { live: "polite" } });
   const quantity = h("select", { id: "population-quantity", on: { change: () => last && draw() } }, ...options(SHOWN));
   const torque = h("select", { id: "population-torque", on: { change: () => last && draw() } });
   const picker = h(
