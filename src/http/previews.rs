@@ -2,8 +2,10 @@
 
 use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE, HeaderName};
 use axum::response::{IntoResponse, Response};
+use meshwright_engine::run::Run;
 use meshwright_wire::Preview;
 
+use super::blocking::blocking;
 use super::body::JsonBody;
 use super::client::Client;
 use super::problem::Refusal;
@@ -38,9 +40,19 @@ pub(super) async fn preview(
     client: Client,
     JsonBody(document, memory): JsonBody,
 ) -> Result<Response, Refusal> {
-    let preview = Preview::parse(&document, client.app.previews.rules().most_positions)?;
-    drop((document, memory));
-    client.app.jobs.check_memory(&preview.submission)?;
+    let most = client.app.previews.rules().most_positions;
+    let read = move |_: &Run| {
+        let preview = Preview::parse(&document, most);
+        drop((document, memory));
+        preview
+    };
+    let preview = blocking(client.name(), read).await??;
+    let submission = &preview.submission;
+    client
+        .app
+        .jobs
+        .check_memory(client.name(), submission)
+        .await?;
     let previewed = client.app.previews.compute(client.name(), preview).await?;
     let headers = [
         (CONTENT_TYPE, "application/json".to_owned()),

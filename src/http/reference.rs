@@ -43,7 +43,7 @@ pub(super) async fn validate(
     onlooker: Onlooker,
     JsonBody(document, _memory): JsonBody,
 ) -> Result<Json<Validation>, Refusal> {
-    // The estimate divides both gears into elements.
+    #[expect(clippy::disallowed_methods, reason = "in `blocking`")]
     let validation = blocking(onlooker.name(), move |_| {
         Submission::parse(&document).map(|it| meshwright_wire::validate(&it))
     });

@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 use tempfile::TempDir;
 use tokio::sync::mpsc;
 
-use crate::stores;
+use crate::{stores, threads};
 
 /// Nothing here takes long; what does not come in this time does not come.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(20);
@@ -115,6 +115,7 @@ impl Bench {
     }
 
     pub(crate) async fn start_with(adjust: impl FnOnce(&mut Config), compute: Compute) -> Self {
+        threads::watch();
         let folder = tempfile::tempdir().unwrap();
         let mut config = config(&stores::place(&folder).await);
         adjust(&mut config);

@@ -57,6 +57,7 @@ mod operators;
 mod readers;
 #[cfg(feature = "otlp")]
 mod spans;
+mod threads;
 mod tokens;
 mod upgrade;
 mod uploads;
