@@ -72,9 +72,12 @@ pub struct UnusableDatabase {
 }
 
 impl UnusableDatabase {
-    /// Whether it is worth starting again: a server that is not there may come.
+    /// Whether it is worth starting again: a disk may be emptied, another program may end, and a server that is not there may come.
     pub fn may_pass(&self) -> bool {
-        self.place.file().is_none() && self.cause.may_pass()
+        match self.cause {
+            OpenError::Full | OpenError::Locked => true,
+            _ => self.place.file().is_none() && self.cause.may_pass(),
+        }
     }
 }
 

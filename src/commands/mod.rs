@@ -19,7 +19,7 @@ use clap::{Parser, Subcommand};
 
 use crate::serve::UnusableDatabase;
 
-/// The exit code for a database that cannot be used: to start again does not help.
+/// The exit code for a database that cannot be used, where to start again does not help.
 const EXIT_DATABASE: u8 = 3;
 
 /// Static transmission error and mesh stiffness of gears with lightening holes.

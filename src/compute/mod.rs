@@ -3,6 +3,8 @@
 //! In reading order: the [`Cores`] of the machine and the threads on them; and [`Previews`], for each of
 //! which a request waits, and of which nothing is kept. Jobs are computed by their workers in the same way.
 
+#![warn(clippy::disallowed_methods)]
+
 mod previews;
 mod threads;
 

@@ -209,7 +209,10 @@ impl Previews {
     pub async fn compute(&self, client: &str, preview: Preview) -> Result<Previewed, PreviewError> {
         let Preview { submission, id } = preview;
         let solve = Arc::clone(&self.0.solve);
-        let memory = memory_of(&submission);
+        let submission = Arc::new(submission);
+        let asked = Arc::clone(&submission);
+        #[expect(clippy::disallowed_methods, reason = "on the engine's threads")]
+        let memory = move || memory_of(&asked);
         let work = move |run: &Run| solve(&submission, run)?.to_json();
         let Computed {
             answer,
@@ -226,8 +229,8 @@ impl Previews {
         })
     }
 
-    /// Does `work` for which a request of `client` waits, and which takes so many MB of memory and at most so long; and stops the older one of the
-    /// same `id`. Dropping the future stops the engine.
+    /// Does `work` for which a request of `client` waits, and which takes so many MB of memory, counted on the engine's threads, and at most so
+    /// long; and stops the older one of the same `id`. Dropping the future stops the engine.
     ///
     /// # Errors
     ///
@@ -236,7 +239,7 @@ impl Previews {
         &self,
         client: &str,
         id: Option<String>,
-        (memory, time_limit): (u64, Duration),
+        (memory, time_limit): (impl FnOnce() -> u64 + Send + 'static, Duration),
         work: impl FnOnce(&Run) -> Result<T, Problem> + Send + 'static,
     ) -> Result<Computed<T>, PreviewError> {
         let rules = self.rules();
@@ -378,7 +381,7 @@ impl Room {
     /// Starts the computation on the room's threads. A panic in it is the engine's fault and ends this preview only.
     fn launch<T: Send + 'static>(
         self,
-        memory: u64,
+        memory: impl FnOnce() -> u64 + Send + 'static,
         work: impl FnOnce(&Run) -> Result<T, Problem> + Send + 'static,
         run: Run,
     ) -> oneshot::Receiver<(Result<T, Problem>, Duration)> {
@@ -389,7 +392,7 @@ impl Room {
             let memory = self
                 .desk
                 .memory
-                .take_on_thread(&self.client, memory, is_wanted);
+                .take_on_thread(&self.client, memory(), is_wanted);
             let start = std::time::Instant::now();
             let work = || work(&run);
             let result = catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {

@@ -5,12 +5,13 @@ use axum::http::StatusCode;
 use axum::http::header::{HeaderValue, RETRY_AFTER};
 use axum::response::{IntoResponse, Response};
 use futures_util::future::join_all;
+use meshwright_engine::run::Run;
 use meshwright_wire::{Code, FieldError, Problem, Submission};
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 use utoipa::ToSchema;
 
-use super::blocking::blocking;
+use super::blocking::{blocking, goes_on};
 use super::body::JsonBody;
 use super::client::Client;
 use super::headers::Made;
@@ -84,7 +85,7 @@ pub(super) async fn submit(
     IdempotencyKey(key): IdempotencyKey,
     document: JsonBody<4>,
 ) -> Result<Response, Refusal> {
-    let read = blocking(client.name(), move |_| read(&document)).await??;
+    let read = blocking(client.name(), move |run| read(&document, run)).await??;
     let jobs = read.into_iter().enumerate().map(|(i, submission)| {
         let key = key.as_ref().map(|key| key_within(key, i));
         let client = &client;
@@ -170,6 +171,7 @@ fn key_within(key: &str, place: usize) -> String {
 
 fn read<const MIB: usize>(
     document: &JsonBody<MIB>,
+    run: &Run,
 ) -> Result<Vec<Result<Submission, Problem>>, Problem> {
     let batch: Batch<'_> = document.parse("batch of submissions")?;
     let count = batch.submissions.len();
@@ -186,8 +188,9 @@ fn read<const MIB: usize>(
         let error = FieldError::new("/submissions", code, detail).nearest(nearest);
         return Err(Problem::of_fields(vec![error]));
     }
-    let submissions = batch.submissions.iter();
-    Ok(submissions
-        .map(|submission| Submission::parse(submission.get().as_bytes()))
-        .collect())
+    let submissions = batch.submissions.iter().map(|submission| {
+        goes_on(run)?;
+        Ok(Submission::parse(submission.get().as_bytes()))
+    });
+    submissions.collect()
 }

@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use meshwright_connections::{Budget, Part};
 use meshwright_engine::run::Run;
-use meshwright_wire::Problem;
+use meshwright_wire::{Code, Problem};
 
 use super::problem::internal;
 
@@ -15,6 +15,16 @@ static READERS: LazyLock<Budget> = LazyLock::new(|| Budget::of(2));
 /// The turn of `client` to read some of a table.
 pub(super) async fn turn_to_read(client: &str) -> Part {
     READERS.take(client, 1).await
+}
+
+/// That somebody still waits for the work of `run`.
+///
+/// # Errors
+///
+/// `stopped`, which nobody reads.
+pub(super) fn goes_on(run: &Run) -> Result<(), Problem> {
+    let stopped = |_| Problem::new(Code::Stopped, "Nobody waits for this any more.");
+    run.check().map_err(stopped)
 }
 
 /// Does work for `client` where it holds nobody up. The work is stopped when nobody waits for it any more.

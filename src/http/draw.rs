@@ -27,8 +27,8 @@ pub(super) async fn draw(
     onlooker: Onlooker,
     JsonBody(document, _memory): JsonBody,
 ) -> Result<Json<DrawnDeviations>, Refusal> {
-    let made = blocking(onlooker.name(), move |_| {
-        Draw::parse(&document).and_then(|draw| draw.drawn())
+    let made = blocking(onlooker.name(), move |run| {
+        Draw::parse(&document, run).and_then(|draw| draw.drawn())
     });
     Ok(Json(made.await??))
 }

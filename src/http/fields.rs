@@ -25,6 +25,7 @@ use utoipa::{IntoParams, IntoResponses};
 use uuid::Uuid;
 
 use super::answer::{self, tag_of_parts};
+use super::blocking::blocking;
 use super::client::Client;
 use super::memory::Held;
 use super::parameters::{IfNoneMatch, JobId, Parameters, invalid};
@@ -221,8 +222,9 @@ impl Done {
             return Err(of_missing_results(job.status, job.problem.as_ref()));
         };
         let submission = jobs.readable_submission(id).await?;
+        let read = move |_: &Run| Submission::parse(submission.as_bytes());
         Ok(Self {
-            submission: Submission::parse(submission.as_bytes())?,
+            submission: blocking(client.name(), read).await??,
             job,
             hash,
         })
@@ -242,13 +244,13 @@ impl Done {
             submission,
         } = self;
         let app = &client.app;
-        app.jobs.check_memory(&submission)?;
+        app.jobs.check_memory(client.name(), &submission).await?;
         let File {
             name,
             media_type,
             has_grids,
         } = file;
-        let case = submission.case();
+        let case = submission.case().clone();
         // It is solved by the whole method of the plane or of faces, whichever the job had.
         let whole = Case {
             model: match &case.model {
@@ -257,12 +259,14 @@ impl Done {
             },
             ..case.clone()
         };
+        #[expect(clippy::disallowed_methods, reason = "in `blocking`")]
+        let estimated = blocking(client.name(), move |_| analysis::estimate(&whole, None));
         let Estimate {
             degrees_of_freedom,
             memory,
             seconds,
-        } = analysis::estimate(&whole, None);
-        let [made, sent] = field_bytes(case, degrees_of_freedom, has_grids);
+        } = estimated.await?;
+        let [made, sent] = field_bytes(&case, degrees_of_freedom, has_grids);
         let memory = (memory + made).div_ceil(1_000_000);
         let limit = app.jobs.rules().memory_mb;
         if memory > limit {
@@ -276,9 +280,9 @@ impl Done {
             let library = app.library.clone();
             let work = move |run: &Run| work(&submission, &library, run);
             let most = (app.previews.rules().time_limit * PREVIEWS_LONG).min(LONGEST);
-            let made = app
-                .previews
-                .work(client.name(), None, (memory, most.max(again)), work);
+            let made =
+                app.previews
+                    .work(client.name(), None, (move || memory, most.max(again)), work);
             let document = made.await.map_err(of_look)?.answer;
             let body = match has_grids {
                 true => packed_or_plain(held.hold(document), request),
@@ -432,6 +436,7 @@ mod tests {
                 + bytes(&gear.edges)
         };
         let field: u64 = found.gears.iter().map(of_gear).sum();
+        #[expect(clippy::disallowed_methods, reason = "in a test")]
         let unknowns = analysis::estimate(submission.case(), None).degrees_of_freedom;
         let [made, most] = field_bytes(submission.case(), unknowns, true);
         println!("{field} bytes, {sent} packed; {made} and {most} said");

@@ -3,6 +3,8 @@
 //! In reading order: what handlers work with; the router and its layers; who gets in; how errors become problem documents; what requests are made of (body, client,
 //! parameters, preferences); what answers are made of (bodies and headers, entity tags, packing, pages, the view of a job); the handlers.
 
+#![warn(clippy::disallowed_methods)]
+
 mod access;
 mod answer;
 mod app;

@@ -7,6 +7,7 @@ use axum::response::{IntoResponse, Response};
 use meshwright_engine::analysis::{self, Case};
 use meshwright_engine::gear::{HoleShape, Member, SpurGear};
 use meshwright_engine::grid::GridLevel;
+use meshwright_engine::run::Run;
 use meshwright_wire::{Code, Preview, Problem};
 
 use super::blocking::blocking;
@@ -44,9 +45,16 @@ pub(super) async fn preview(
     client: Client,
     JsonBody(document, memory): JsonBody,
 ) -> Result<Response, Refusal> {
-    let preview = Preview::parse(&document, client.app.previews.rules().most_positions)?;
-    drop((document, memory));
-    client.app.jobs.check_memory(&preview.submission)?;
+    let most = client.app.previews.rules().most_positions;
+    let read = move |_: &Run| {
+        let preview = Preview::parse(&document, most);
+        drop((document, memory));
+        preview
+    };
+    let preview = blocking(client.name(), read).await??;
+    let jobs = &client.app.jobs;
+    jobs.check_memory(client.name(), &preview.submission)
+        .await?;
     let preview = refuse_long(&client, preview).await?;
     let previewed = client.app.previews.compute(client.name(), preview).await?;
     let headers = [

@@ -134,7 +134,7 @@ pub(super) async fn validate(
     onlooker: Onlooker,
     JsonBody(document, _memory): JsonBody<16>,
 ) -> Result<Json<Validated>, Refusal> {
-    // The estimate divides both gears into elements.
+    #[expect(clippy::disallowed_methods, reason = "in `blocking`")]
     let validated = blocking(onlooker.name(), move |run| {
         if is_study(&document) {
             let study = Study::submitted(&document, run)?;

@@ -1,10 +1,12 @@
 //! Models of gearboxes in REXS: submissions out of them, and a job as one.
 
+use std::ops::ControlFlow;
+
 use axum::Json;
 use axum::response::Response;
 use meshwright_engine::run::Run;
 use meshwright_exchange::rexs::{
-    Choices, Fault, Import, LoadedFlank, NotRead, Refused, import, stages,
+    Choices, Fault, Import, LoadedFlank, NotRead, Refused, each_stage,
 };
 use meshwright_wire::declare::document;
 use meshwright_wire::{Code, FieldError, Problem, Submission, model_of};
@@ -64,7 +66,7 @@ impl FlankParameter {
 }
 
 /// What a model comes to.
-#[derive(Serialize, ToSchema)]
+#[derive(Default, Serialize, ToSchema)]
 #[schema(as = RexsModel, title = "Model")]
 pub(super) struct ModelView {
     /// A submission for each cylindrical stage that is a pair of external gears, every default filled in.
@@ -121,71 +123,58 @@ pub(super) async fn read(
     Parameters(parameters): Parameters<ModelParameters>,
     ModelBody(model, memory): ModelBody,
 ) -> Result<Json<ModelView>, Refusal> {
-    let read = move |_: &Run| {
-        let view = model_view(&model, &parameters);
+    let read = move |run: &Run| {
+        let view = model_view(&model, &parameters, run);
         drop(memory);
         view
     };
     Ok(Json(blocking(onlooker.name(), read).await??))
 }
 
-fn model_view(model: &[u8], parameters: &ModelParameters) -> Result<ModelView, Problem> {
-    let found = stages(model).map_err(|Refused(faults)| {
-        let errors = faults.into_iter().map(|fault| of_model(None, fault));
-        refusal(errors.collect())
-    })?;
-    let wanted: Vec<Option<i64>> = match parameters.stage {
-        None if found.len() > 1 => found.into_iter().take(MOST_STAGES).map(Some).collect(),
-        stage => vec![stage],
+fn model_view(model: &[u8], parameters: &ModelParameters, run: &Run) -> Result<ModelView, Problem> {
+    let choices = Choices {
+        stage: parameters.stage,
+        torques: parameters.torque.into_iter().collect(),
+        method: parameters.method.clone(),
+        bore_radii: parameters.bore_radius_mm.into_iter().collect(),
+        flank: parameters.flank.map(FlankParameter::flank),
     };
-    let mut view = ModelView {
-        submissions: Vec::new(),
-        not_read: Vec::new(),
-        assumed: Vec::new(),
-        refused: Vec::new(),
-    };
-    let mut not_read: Option<Vec<NotRead>> = None;
-    let mut errors = Vec::new();
-    for stage in wanted {
-        let choices = Choices {
-            stage,
-            torques: parameters.torque.into_iter().collect(),
-            method: parameters.method.clone(),
-            bore_radii: parameters.bore_radius_mm.into_iter().collect(),
-            flank: parameters.flank.map(FlankParameter::flank),
-        };
-        let taken = import(model, &choices).map_err(|Refused(faults)| {
+    let (mut view, mut errors) = (ModelView::default(), Vec::new());
+    let take = |stage: Option<i64>, import: Result<Import, Refused>| {
+        if run.check().is_err() {
+            return ControlFlow::Break(());
+        }
+        let taken = import.map_err(|Refused(faults)| {
             let faults = faults.into_iter();
             faults
                 .map(|fault| of_model(stage, fault))
                 .collect::<Vec<_>>()
         });
         let taken = taken.and_then(|import| Ok((checked(stage, &import)?, import)));
-        match taken {
+        ControlFlow::Continue(match taken {
             Ok((submission, import)) => {
                 view.submissions.push(submission);
-                // What one stage reads has been read.
-                not_read = Some(match not_read {
-                    None => import.not_read,
-                    Some(before) => before
-                        .into_iter()
-                        .filter(|each| import.not_read.contains(each))
-                        .collect(),
-                });
                 let remarks = import.remarks.into_iter();
                 let assumed = remarks.filter(|remark| !remark.starts_with("Not read"));
                 view.assumed.extend(assumed);
+                true
             }
-            Err(faults) => errors.extend(faults),
-        }
-    }
+            Err(faults) => {
+                errors.extend(faults);
+                false
+            }
+        })
+    };
+    let not_read = each_stage(model, &choices, MOST_STAGES, take).map_err(|Refused(faults)| {
+        let errors = faults.into_iter().map(|fault| of_model(None, fault));
+        refusal(errors.collect())
+    })?;
     if view.submissions.is_empty() {
         return Err(refusal(errors));
     }
     let refused = errors.into_iter().map(|(fault, _)| RefusedView::of(fault));
     view.refused = refused.collect();
-    let not_read = not_read.unwrap_or_default().into_iter();
-    view.not_read = not_read.map(NotReadView::of).collect();
+    view.not_read = not_read.into_iter().map(NotReadView::of).collect();
     Ok(view)
 }
 

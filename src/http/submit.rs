@@ -1,11 +1,13 @@
 //! Submitting a job.
 
 use axum::response::Response;
+use meshwright_engine::run::Run;
 use meshwright_wire::Submission;
 use serde_json::value::RawValue;
 
 use super::answer;
 use super::app::App;
+use super::blocking::blocking;
 use super::body::JsonBody;
 use super::client::Client;
 use super::headers::Made;
@@ -43,9 +45,13 @@ pub(super) async fn submit(
     wait: Wait,
     JsonBody(document, memory): JsonBody,
 ) -> Result<Response, Refusal> {
-    let submission = Submission::parse(&document)?;
-    // What was read is small now, and its client may wait for long.
-    drop((document, memory));
+    // What was read is small then, and its client may wait for long.
+    let read = move |_: &Run| {
+        let submission = Submission::parse(&document);
+        drop((document, memory));
+        submission
+    };
+    let submission = blocking(client.name(), read).await??;
     // Begun before the job is, so that its end is among them.
     let changes = client.app.jobs.changes();
     let submitted = client

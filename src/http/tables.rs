@@ -5,6 +5,7 @@ use axum::extract::Path;
 use axum::http::HeaderMap;
 use axum::response::{IntoResponse, Response};
 use meshwright_connections::{Keep, Tag};
+use meshwright_engine::run::Run;
 use meshwright_exchange::fmu::fmu;
 use meshwright_exchange::{force_table, look_up};
 use meshwright_wire::csv::CsvWriter;
@@ -18,7 +19,7 @@ use utoipa::{IntoParams, ToSchema};
 
 use super::answer::file;
 use super::app::App;
-use super::blocking::blocking;
+use super::blocking::{blocking, goes_on};
 use super::client::Client;
 use super::parameters::{IfNoneMatch, JobId, Parameters};
 use super::pictures::{self, Picture};
@@ -290,7 +291,9 @@ pub(super) async fn answer(
         let memory = app.bodies.for_answer(&job.client, most).await?;
         let document = app.jobs.document_of(job, &stored).await?;
         let name = format!("{}-{file}", job.id);
-        let made = blocking(&job.client, move |_| make(&document, wanted, torque, &name));
+        let made = blocking(&job.client, move |run| {
+            make(&document, (wanted, torque), &name, run)
+        });
         memory.hold_body(made.await??).await
     };
     Tag::of_hash(hash, &part)
@@ -298,20 +301,22 @@ pub(super) async fn answer(
         .await
 }
 
-/// The table or picture of a results document.
+/// The table or picture of a results document, unless nobody waits for it any more.
 fn make(
     document: &Document,
-    wanted: File,
-    torque: Option<f64>,
+    (wanted, torque): (File, Option<f64>),
     name: &str,
+    run: &Run,
 ) -> Result<Response, Refusal> {
     let text = document.text().map_err(JobError::from)?;
+    goes_on(run)?;
     let results = Results::read(&text).map_err(|error| {
         tracing::warn!(%error, "results are of a version that tables are not made of");
         let detail = "These results are of a version of which this one makes no tables; the whole document has them.";
         Problem::new(Code::NotFound, detail)
     })?;
     let curves = curves_of(&results, torque)?;
+    goes_on(run)?;
     match wanted {
         File::Table(table, form) => {
             let curves = select(table, &curves)?;

@@ -420,6 +420,7 @@ fn solved(
     run: &Run,
 ) -> Outcome {
     let submission = Submission::parse(submission.as_bytes())?;
+    #[expect(clippy::disallowed_methods, reason = "on the engine's threads")]
     let (needed, is_wanted) = (memory_of(&submission), || run.check().is_ok());
     let Some(_memory) = memory.take_on_thread(client, needed, is_wanted) else {
         let detail = "The work was stopped before it began.";

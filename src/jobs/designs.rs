@@ -1,9 +1,13 @@
 //! The designs of a study: the jobs that they become, and the rows in which they stand with what has come of them.
 
+use std::time::{Duration, Instant};
+
 use jiff::Timestamp;
 use meshwright_store::{Damaged, DocumentLine, Kept, NewJob, NewRow, Status, StoredRow};
 use meshwright_studies::{Design, RowState, Study};
 use meshwright_wire::{memory_above, too_much_memory};
+use tokio::task::JoinError;
+use tokio_util::sync::CancellationToken;
 use uuid::Uuid;
 
 use super::error::JobError;
@@ -12,6 +16,9 @@ use super::shown::{kept_by, shown_status};
 
 /// So many designs are expanded and written in one transaction. Others write in between.
 pub(super) const CHUNK: usize = 500;
+
+/// Designs are written after so long, however few: somebody may wait for the first of them.
+const LONGEST_CHUNK: Duration = Duration::from_secs(1);
 
 /// Whose jobs the designs become.
 pub(super) struct Owner {
@@ -32,7 +39,9 @@ impl Owner {
     pub(super) fn row(&self, design: Design) -> NewRow {
         let is_known_as_drawn = self.is_population || is_drawn_as_the_base(&design);
         let submission = design.submission.and_then(|submission| {
-            match memory_above(&submission, self.memory_mb) {
+            #[expect(clippy::disallowed_methods, reason = "in `blocking`")]
+            let above = memory_above(&submission, self.memory_mb);
+            match above {
                 None => Ok(submission),
                 Some(needed_mb) => Err(too_much_memory(needed_mb, self.memory_mb)),
             }
@@ -132,15 +141,33 @@ impl Jobs {
     }
 }
 
-/// The next chunk of rows behind the first `expanded` ones.
+/// A chunk of rows of `owner`, one for each of `designs` as long as it `goes_on`. It ends early where rows take long.
+pub(super) fn chunk(
+    designs: impl Iterator<Item = Design>,
+    owner: &Owner,
+    goes_on: impl Fn() -> bool,
+) -> Vec<NewRow> {
+    let begin = Instant::now();
+    let mut rows = Vec::new();
+    for design in designs.take(CHUNK) {
+        rows.push(owner.row(design));
+        if !goes_on() || begin.elapsed() >= LONGEST_CHUNK {
+            break;
+        }
+    }
+    rows
+}
+
+/// The next chunk of rows behind the first `expanded` ones, unless `stop` comes.
 pub(super) async fn expand(
     study: Study,
     expanded: usize,
     owner: Owner,
+    stop: CancellationToken,
 ) -> Result<(Study, Vec<NewRow>, Owner), JobError> {
     blocking(move || {
-        let designs = (expanded..expanded + CHUNK).map_while(|row| study.design(row));
-        let rows = designs.map(|design| owner.row(design)).collect();
+        let designs = (expanded..).map_while(|row| study.design(row));
+        let rows = chunk(designs, &owner, || !stop.is_cancelled());
         (study, rows, owner)
     })
     .await
@@ -150,13 +177,19 @@ pub(super) async fn expand(
 pub(super) async fn blocking<T: Send + 'static>(
     work: impl FnOnce() -> T + Send + 'static,
 ) -> Result<T, JobError> {
-    match tokio::task::spawn_blocking(work).await {
-        Ok(done) => Ok(done),
-        Err(error) => match error.try_into_panic() {
-            Ok(panic) => std::panic::resume_unwind(panic),
-            // Only a runtime that ends drops such work.
-            Err(_) => Err(JobError::ShuttingDown),
-        },
+    tokio::task::spawn_blocking(work).await.map_err(not_done)
+}
+
+/// Why work beside the requests came to nothing.
+///
+/// # Panics
+///
+/// Where the work did.
+pub(super) fn not_done(error: JoinError) -> JobError {
+    match error.try_into_panic() {
+        Ok(panic) => std::panic::resume_unwind(panic),
+        // Only a runtime that ends drops such work.
+        Err(_) => JobError::ShuttingDown,
     }
 }
 

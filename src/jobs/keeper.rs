@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use jiff::{SignedDuration, Timestamp};
+use meshwright_connections::spawn;
 use meshwright_store::{Removed, StoreError};
 use tokio::task::JoinHandle;
 use tokio::time::{Instant, interval_at, sleep};
@@ -38,7 +39,7 @@ pub struct Keeper(JoinHandle<()>);
 impl Keeper {
     /// Starts to look after what `jobs` keeps, until their stop comes.
     pub fn start(jobs: Jobs, keep: Keep) -> Self {
-        Self(tokio::spawn(async move {
+        Self(spawn(async move {
             let mut tick = interval_at(Instant::now() + keep.first, keep.every);
             loop {
                 tokio::select! {

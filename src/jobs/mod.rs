@@ -4,6 +4,8 @@
 //! only (`live`); the [`Jobs`] that handlers speak to (`queue`, `studies`, and in `resource` what both have in common); the [`Workers`] that
 //! compute; and the keeper that removes what is old. Jobs and studies are kept, and change their states, in [`meshwright_store`].
 
+#![warn(clippy::disallowed_methods)]
+
 mod attempt;
 mod clock;
 mod designs;

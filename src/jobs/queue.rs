@@ -4,18 +4,21 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use jiff::Timestamp;
-use meshwright_connections::Budget;
+use meshwright_connections::{Budget, blocking, spawn};
 use meshwright_engine::analysis::Method;
 use meshwright_store::{
     By, ClientUsage, Depth, Document, Filter, Job, Kept, NewJob, Outcome, QueueBounds, Status,
     Store, StoreError,
 };
-use meshwright_wire::{DOCUMENT_VERSION, SOLVER_VERSION, Submission};
+use meshwright_wire::{
+    DOCUMENT_VERSION, SOLVER_VERSION, Submission, memory_above, memory_is_within,
+};
 use tokio::sync::{Notify, mpsc, oneshot};
 use tokio_util::sync::CancellationToken;
 use uuid::Uuid;
 
 use super::clock::Clock;
+use super::designs::not_done;
 use super::error::JobError;
 use super::live::{Changes, Live, News};
 use super::others;
@@ -118,7 +121,7 @@ impl Jobs {
     pub fn new(store: Store, rules: Rules, clock: Clock, stop: CancellationToken) -> Self {
         let live = Arc::new(Live::new());
         let (submissions, pending) = mpsc::channel(BATCH);
-        tokio::spawn(write_submissions(
+        spawn(write_submissions(
             pending,
             store.clone(),
             Arc::clone(&live),
@@ -126,7 +129,7 @@ impl Jobs {
             clock.clone(),
         ));
         if store.is_shared() {
-            tokio::spawn(others::hear(store.clone(), Arc::clone(&live), stop.clone()));
+            spawn(others::hear(store.clone(), Arc::clone(&live), stop.clone()));
         }
         Self {
             store,
@@ -157,7 +160,7 @@ impl Jobs {
         idempotency_key: Option<String>,
     ) -> Result<Submitted<Job>, JobError> {
         self.refuse_if_failing()?;
-        self.check_memory(submission)?;
+        self.check_memory(&member.client, submission).await?;
         let client_limit = member.queue_limit.unwrap_or(self.rules.client_queue_limit);
         let user_limit = self.rules.user_limit(client_limit);
         let job = NewJob {
@@ -215,14 +218,24 @@ impl Jobs {
         }
     }
 
-    /// Refuses what would take more memory than a job may.
+    /// Refuses what would take more memory than a job may. What counting leaves open is computed for `client` where it holds nobody up.
     ///
     /// # Errors
     ///
     /// [`JobError::TooMuchMemory`].
-    pub fn check_memory(&self, submission: &Submission) -> Result<(), JobError> {
+    pub async fn check_memory(
+        &self,
+        client: &str,
+        submission: &Submission,
+    ) -> Result<(), JobError> {
         let limit_mb = self.rules.job_memory_mb;
-        match meshwright_wire::memory_above(submission, limit_mb) {
+        if memory_is_within(submission, limit_mb) {
+            return Ok(());
+        }
+        let submission = submission.clone();
+        #[expect(clippy::disallowed_methods, reason = "beside the requests")]
+        let above = blocking(client, move |_| memory_above(&submission, limit_mb));
+        match above.await.map_err(not_done)? {
             None => Ok(()),
             Some(needed_mb) => Err(JobError::TooMuchMemory {
                 needed_mb,

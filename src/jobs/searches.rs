@@ -9,7 +9,7 @@ use std::time::Duration;
 use meshwright_store::{NewRow, SearchStep, StudyRecord};
 use meshwright_studies::{Design, RowState, Searching, Study};
 
-use super::designs::{CHUNK, Owner, blocking};
+use super::designs::{CHUNK, Owner, blocking, chunk};
 use super::error::JobError;
 use super::queue::Jobs;
 
@@ -144,13 +144,19 @@ impl Jobs {
             if record.expanded < wanted.end {
                 let missing = (record.expanded - wanted.first) as usize;
                 let rows = match &wanted.confirmed {
-                    Some(design) => vec![owner.row(design.clone())],
+                    Some(design) => {
+                        let (design, owner) = (design.clone(), Arc::clone(owner));
+                        blocking(move || vec![owner.row(design)]).await?
+                    }
                     None => {
                         let last = (wanted.end - wanted.first) as usize;
-                        let chunk = missing..last.min(missing + CHUNK);
                         let (search, owner) = (Arc::clone(wanted.search), Arc::clone(owner));
-                        blocking(move || chunk.map(|row| owner.row(search.design(row))).collect())
-                            .await?
+                        let stop = self.stop().clone();
+                        blocking(move || {
+                            let designs = (missing..last).map(|row| search.design(row));
+                            chunk(designs, &owner, || !stop.is_cancelled())
+                        })
+                        .await?
                     }
                 };
                 // Whether it has been written shows the next look.
@@ -237,13 +243,17 @@ impl Jobs {
 }
 
 /// The first rows of a search, with which it is taken, and how it stands then.
-pub(super) fn begun(study: &Study, owner: &Owner) -> (Vec<NewRow>, Option<String>) {
+pub(super) fn begun(
+    study: &Study,
+    owner: &Owner,
+    goes_on: impl Fn() -> bool,
+) -> (Vec<NewRow>, Option<String>) {
     let Some(mut search) = Searching::new(study.clone()) else {
         return (Vec::new(), None);
     };
-    let count = search.ask().min(CHUNK);
-    let rows = (0..count).map(|row| owner.row(search.design(row)));
-    (rows.collect(), Some(step_of(&search, None).state))
+    let designs = (0..search.ask()).map(|row| search.design(row));
+    let rows = chunk(designs, owner, goes_on);
+    (rows, Some(step_of(&search, None).state))
 }
 
 fn step_of(search: &Searching, total: Option<u64>) -> SearchStep {

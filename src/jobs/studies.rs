@@ -1,8 +1,10 @@
 //! Studies as handlers see them: submit, look, cancel, delete. Their designs are expanded in chunks: the first one stands
 //! when the study is answered, the others follow, also when the process ends in between.
 
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
+use meshwright_connections::{blocking as beside_requests, spawn};
 use meshwright_engine::run::Run;
 use meshwright_store::{
     By, NewRow, NewStudy, Status, StoreError, StudyFilter, StudyOutcome, StudyRecord,
@@ -13,7 +15,7 @@ use meshwright_wire::hash::sha256_hex;
 use tracing::{error, info};
 use uuid::Uuid;
 
-use super::designs::{Owner, blocking, expand};
+use super::designs::{Owner, blocking, chunk, expand, not_done};
 use super::error::JobError;
 use super::queue::{Jobs, Member};
 use super::resource::{Listed, Resource, Submitted};
@@ -103,7 +105,12 @@ impl Jobs {
                 .await?
                 .and_then(Result::ok)
                 .unwrap_or_default();
-            match Study::parse(document.as_bytes(), &Run::unattended()) {
+            let read =
+                blocking(move || Study::parse(document.as_bytes(), &Run::unattended())).await;
+            let Ok(read) = read else {
+                return Ok(());
+            };
+            match read {
                 Ok(study) => {
                     info!(study = %id, expanded = record.expanded, designs = record.total, "study resumed");
                     let whose = (client, record.submitted_by.clone());
@@ -125,7 +132,7 @@ impl Jobs {
 
     fn continue_in_background(&self, study: Study, expanded: usize, owner: Owner) {
         let jobs = self.clone();
-        tokio::spawn(async move {
+        spawn(async move {
             let id = owner.study;
             // The next process goes on where this one stops.
             let expanded = if study.is_search() {
@@ -148,7 +155,7 @@ impl Jobs {
     ) -> Result<(), JobError> {
         while expanded < study.total() && !self.stop().is_cancelled() {
             let rows;
-            (study, rows, owner) = expand(study, expanded, owner).await?;
+            (study, rows, owner) = expand(study, expanded, owner, self.stop().clone()).await?;
             let stands = self
                 .store
                 .continue_study(
@@ -294,7 +301,7 @@ impl Resource for StudyRecord {
         }
         let own = jobs.clone();
         // A hundred thousand jobs take some seconds, and the client may go away meanwhile.
-        let dismissed = tokio::spawn(async move { own.dismiss_designs(id).await });
+        let dismissed = spawn(async move { own.dismiss_designs(id).await });
         dismissed.await.map_err(|_| JobError::ShuttingDown)??;
         Self::find(jobs, client, id).await
     }
@@ -324,25 +331,23 @@ struct Expanded {
     owner: Owner,
 }
 
-/// The first rows of a study.
+/// The first rows of a study. They are no longer made when its request has ended.
 async fn begun(study: Study, owner: Owner) -> Result<Expanded, JobError> {
-    if study.is_search() {
-        let made = blocking(move || {
-            let (rows, search) = searches::begun(&study, &owner);
-            Expanded {
-                study,
-                rows,
-                search,
-                owner,
-            }
-        });
-        return made.await;
-    }
-    let (study, rows, owner) = expand(study, 0, owner).await?;
-    Ok(Expanded {
-        study,
-        rows,
-        search: None,
-        owner,
-    })
+    let client = owner.client.clone();
+    let made = beside_requests(&client, move |stop| {
+        let goes_on = || !stop.load(Ordering::Relaxed);
+        let (rows, search) = if study.is_search() {
+            searches::begun(&study, &owner, goes_on)
+        } else {
+            let designs = (0..).map_while(|row| study.design(row));
+            (chunk(designs, &owner, goes_on), None)
+        };
+        Expanded {
+            study,
+            rows,
+            search,
+            owner,
+        }
+    });
+    made.await.map_err(not_done)
 }

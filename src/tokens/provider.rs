@@ -6,6 +6,7 @@ use std::time::Duration;
 use jiff::{SignedDuration, Timestamp};
 use jsonwebtoken::jwk::{Jwk, PublicKeyUse};
 use jsonwebtoken::{Algorithm, DecodingKey};
+use meshwright_connections::spawn;
 use reqwest::header::ACCEPT;
 use reqwest::{Client, StatusCode, Url};
 use serde::Deserialize;
@@ -145,7 +146,7 @@ impl Provider {
         });
         state.fetch = Some(Arc::clone(&fetch));
         let (this, ended) = (Arc::clone(self), fetch.ended.clone());
-        tokio::spawn(async move {
+        spawn(async move {
             this.ask().await;
             ended.cancel();
         });

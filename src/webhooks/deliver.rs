@@ -12,7 +12,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
 use hmac::{Hmac, KeyInit, Mac};
 use hyper::{Request, StatusCode};
-use meshwright_connections::{Budget, Part};
+use meshwright_connections::{Budget, Part, spawn};
 use meshwright_store::webhooks::{Attempt, Message, Refusal, Waiting};
 use reqwest::Body;
 use reqwest::Url;
@@ -53,13 +53,13 @@ impl Deliveries {
     /// When there is no encryption to be had.
     pub fn start(webhooks: Webhooks, time: Duration) -> Result<Self, rustls::Error> {
         if webhooks.rules.allowed.is_empty() {
-            return Ok(Self(tokio::spawn(async {})));
+            return Ok(Self(spawn(async {})));
         }
         let courier = Courier {
             sender: Sender::to(&webhooks.rules.reachable, time)?,
             webhooks,
         };
-        Ok(Self(tokio::spawn(Arc::new(courier).work())))
+        Ok(Self(spawn(Arc::new(courier).work())))
     }
 
     /// Comes back when the last attempt has ended.

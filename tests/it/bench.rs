@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 use tempfile::TempDir;
 use tokio::sync::mpsc;
 
-use crate::stores;
+use crate::{stores, threads};
 
 /// Time after which an answer is missing. No verdict depends on how fast an answer comes before that.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(60);
@@ -130,6 +130,7 @@ impl Bench {
     }
 
     pub(crate) async fn start_with(adjust: impl FnOnce(&mut Config), compute: Compute) -> Self {
+        threads::watch();
         let folder = tempfile::tempdir().unwrap();
         let mut config = config(&stores::place(&folder).await);
         adjust(&mut config);

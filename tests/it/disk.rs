@@ -142,6 +142,52 @@ async fn a_full_disk_stops_nothing_for_longer_than_it_is_full() {
     println!("{} jobs taken and successful", taken.len());
 }
 
+/// The exit code of `meshwright serve` on a database that it cannot use, and what it says.
+fn serve(database: &Path) -> (Option<i32>, String) {
+    let output = Command::new(env!("CARGO_BIN_EXE_meshwright"))
+        .args(["serve", "--listen", "127.0.0.1:0"])
+        .env("MESHWRIGHT_DATABASE", database)
+        .output()
+        .unwrap();
+    let told = String::from_utf8(output.stderr).unwrap();
+    (output.status.code(), told)
+}
+
+#[test]
+fn a_start_on_a_full_disk_says_so_and_is_worth_repeating() {
+    let Some(disk) = Small::mount(2) else {
+        println!("NOT SHOWN: this user may not mount a file system.");
+        return;
+    };
+    let path = disk.folder.join("meshwright.db");
+    let filler = fill(&disk.folder);
+    let (code, told) = serve(&path);
+    assert!(
+        code == Some(1) && told.contains("the disk is full"),
+        "{code:?} {told}"
+    );
+    fs::remove_file(filler).unwrap();
+    Process::start(&DatabaseAddress::File(path)).kill();
+}
+
+#[tokio::test]
+#[ignore = "./test all"]
+async fn a_start_on_a_file_that_another_program_holds_is_worth_repeating() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("meshwright.db");
+    Process::start(&DatabaseAddress::File(path.clone())).kill();
+    let options = SqliteConnectOptions::new().filename(&path);
+    let mut other = options.connect().await.unwrap();
+    let holds = "pragma locking_mode = exclusive; begin exclusive";
+    sqlx::raw_sql(holds).execute(&mut other).await.unwrap();
+    // It waits for the lock for 5 s.
+    let (code, told) = serve(&path);
+    assert!(
+        code == Some(1) && told.contains("another program has locked it"),
+        "{code:?} {told}"
+    );
+}
+
 #[tokio::test]
 async fn a_database_that_cannot_be_written_is_refused_with_a_reason_and_an_exit_code() {
     let folder = tempfile::tempdir().unwrap();
@@ -157,7 +203,6 @@ async fn a_database_that_cannot_be_written_is_refused_with_a_reason_and_an_exit_
             String::from_utf8(output.stderr).unwrap(),
         )
     };
-    let serve = |database: &Path| run(&["serve", "--listen", "127.0.0.1:0"], database);
     fs::write(&path, "this is no database, whatever its name says").unwrap();
     let pipe = folder.path().join("pipe");
     assert!(

@@ -60,6 +60,7 @@ mod operators;
 mod readers;
 #[cfg(feature = "otlp")]
 mod spans;
+mod threads;
 mod tokens;
 mod upgrade;
 mod uploads;

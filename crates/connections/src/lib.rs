@@ -3,8 +3,8 @@
 //!
 //! In reading order: the [`Budget`] of what clients share; what is known of a [`Connection`] and its requests; the [limit](Overloaded) of
 //! connections, the eviction of idle ones and the limit for one client; reads and writes that stall; the [`Rates`] of requests, and those
-//! [without a key](Unauthenticated); the [`Server`] that accepts connections and serves them. Then what answers are made with: work that holds
-//! no other request up ([`blocking`]), packing, and entity [tags](Tag).
+//! [without a key](Unauthenticated); the [`Server`] that accepts connections and serves them. Then what answers are made with: tasks that can be
+//! [measured](measure_polls), work that holds no other request up ([`blocking`]), packing, and entity [tags](Tag).
 
 mod accepts;
 mod blocking;
@@ -17,6 +17,7 @@ mod server;
 mod stalled_reads;
 mod stalled_writes;
 mod tag;
+mod tasks;
 mod unauthenticated;
 
 pub use accepts::takes_gzip;
@@ -29,4 +30,5 @@ pub use rates::Rates;
 pub use server::{Answer, AnswerBody, Bounds, Server};
 pub use stalled_reads::WatchedBody;
 pub use tag::{Keep, Tag};
+pub use tasks::{Gauge, measure_polls, spawn};
 pub use unauthenticated::Unauthenticated;

@@ -33,6 +33,7 @@ use super::connection::{ActiveRequest, Connection};
 use super::limit::{Admitted, Connections};
 use super::stalled_reads::WatchedBody;
 use super::stalled_writes::WatchedStream;
+use super::tasks::spawn;
 
 /// A head is no larger than this, in bytes.
 const LARGEST_HEAD: usize = 32 << 10;
@@ -107,7 +108,7 @@ impl Server {
             kill: kill.clone(),
         };
         Self {
-            task: tokio::spawn(accepting.receive::<B>(listener)),
+            task: spawn(accepting.receive::<B>(listener)),
             connections,
             kill,
         }
@@ -160,7 +161,7 @@ impl<S> Accepting<S> {
             let _ = stream.set_nodelay(true);
             let (service, bounds, stop) = (self.service.clone(), self.bounds, self.stop.clone());
             let kill = self.kill.clone();
-            self.connections.spawn(async move {
+            let tracked = self.connections.track_future(async move {
                 let serve = serve_connection::<_, S, B>(
                     stream,
                     service,
@@ -173,6 +174,7 @@ impl<S> Accepting<S> {
                     () = kill.cancelled() => {}
                 }
             });
+            spawn(tracked);
         }
     }
 }

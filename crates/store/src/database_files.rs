@@ -65,15 +65,31 @@ impl DatabaseFiles {
 
     /// That there is room for what comes.
     pub(super) fn check_room(&self) -> Result<()> {
-        #[cfg(unix)]
-        {
-            let disk = rustix::fs::statvfs(&self.path)?;
-            if disk.f_bavail.saturating_mul(disk.f_frsize) < LEAST_ROOM {
-                return Err(Error::new(ErrorKind::StorageFull, "the disk is full"));
-            }
-        }
-        Ok(())
+        check_room(&self.path)
     }
+}
+
+/// That there is room on the disk of `path`.
+fn check_room(path: &Path) -> Result<()> {
+    #[cfg(unix)]
+    {
+        let disk = rustix::fs::statvfs(path)?;
+        if disk.f_bavail.saturating_mul(disk.f_frsize) < LEAST_ROOM {
+            return Err(Error::new(ErrorKind::StorageFull, "the disk is full"));
+        }
+    }
+    #[cfg(not(unix))]
+    let _ = path;
+    Ok(())
+}
+
+/// Whether the disk of a file, or of the folder in which it would be made, is full.
+pub(super) fn is_on_a_full_disk(path: &Path) -> bool {
+    let place = match path.parent() {
+        Some(folder) if !path.exists() => folder,
+        _ => path,
+    };
+    check_room(place).is_err_and(|error| error.kind() == ErrorKind::StorageFull)
 }
 
 #[cfg(unix)]

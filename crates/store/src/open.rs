@@ -16,7 +16,7 @@ use tokio::time::timeout;
 use tracing::{info, warn};
 use uuid::Uuid;
 
-use super::database_files::DatabaseFiles;
+use super::database_files::{DatabaseFiles, is_on_a_full_disk};
 use super::error::{may_pass, primary_code};
 use super::health::Health;
 use super::lock::beside;
@@ -196,6 +196,15 @@ impl Store {
     ///
     /// [`OpenError`].
     pub async fn open_as(place: &DatabaseAddress, migrate: Migrate) -> Result<Self, OpenError> {
+        let opened = Self::try_to_open(place, migrate).await;
+        opened.map_err(|error| match (error, place.file()) {
+            // SQLite says of a full disk what failed: to map, to read or to write.
+            (OpenError::Connect(_), Some(path)) if is_on_a_full_disk(path) => OpenError::Full,
+            (error, _) => error,
+        })
+    }
+
+    async fn try_to_open(place: &DatabaseAddress, migrate: Migrate) -> Result<Self, OpenError> {
         let (writer, readers) = match place {
             DatabaseAddress::File(path) => open_file(path, migrate).await?,
             DatabaseAddress::Postgres(address) => open_server(address, migrate).await?,

@@ -1,6 +1,7 @@
 //! Teeth drawn at random within the tolerances of an accuracy class.
 
 use meshwright_engine::gear::{Helix, Inspection, Normals, Passed, Tolerances, ToothDeviations};
+use meshwright_engine::run::Run;
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -56,7 +57,7 @@ pub struct Draw {
 
 impl DrawDocument {
     /// What is asked, if its gear can be made and may pass; what prevents it is reported to `errors`.
-    fn made(self, errors: &Errors) -> Option<Draw> {
+    fn made(self, errors: &Errors, run: &Run) -> Option<Draw> {
         let made = self
             .gear
             .without_deviations()
@@ -67,7 +68,7 @@ impl DrawDocument {
             capability: self.capability,
             is_inspected: self.inspected,
         };
-        accuracy.refuse_hopeless(self.lead_slopes, "/capability", errors)?;
+        accuracy.refuse_hopeless(self.lead_slopes, "/capability", errors, run)?;
         Some(Draw {
             accuracy,
             seed: u64::from(self.seed),
@@ -123,7 +124,13 @@ impl Accuracy {
 
     /// Refuses a capability at which fewer than one gear in a hundred would pass, those with `lead_slopes` by them too, and names the least one at which
     /// so many do.
-    pub fn refuse_hopeless(&self, lead_slopes: bool, pointer: &str, errors: &Errors) -> Option<()> {
+    pub fn refuse_hopeless(
+        &self,
+        lead_slopes: bool,
+        pointer: &str,
+        errors: &Errors,
+        run: &Run,
+    ) -> Option<()> {
         const MADE: usize = 4000;
         if !self.is_inspected {
             return Some(());
@@ -142,6 +149,11 @@ impl Accuracy {
         let mut parts = Vec::new();
         let mut passed = 0;
         for gear in 0..MADE {
+            if run.check().is_err() {
+                let detail = "Nobody waits for this any more.";
+                errors.push(FieldError::new(pointer, Code::Stopped, detail));
+                return None;
+            }
             parts.push(part(gear));
             passed += usize::from(parts[gear] <= 1.0);
             if passed == needed {
@@ -214,13 +226,13 @@ impl Draw {
     ///
     /// # Errors
     ///
-    /// As for a submission.
-    pub fn parse(document: &[u8]) -> Result<Self, Problem> {
+    /// As for a submission, and `stopped`.
+    pub fn parse(document: &[u8], run: &Run) -> Result<Self, Problem> {
         refuse_many_values(document, MOST_VALUES)?;
         let node = Node::parse(document)?;
         let errors = Errors::default();
         let asked = DrawDocument::read(&node, &Location::root(&errors), &EACH);
-        let draw = asked.and_then(|asked| asked.made(&errors));
+        let draw = asked.and_then(|asked| asked.made(&errors, run));
         errors.settle(draw)
     }
 
@@ -273,7 +285,7 @@ mod tests {
     }
 
     fn drawn(document: &Value) -> Result<Value, Problem> {
-        let draw = Draw::parse(document.to_string().as_bytes())?;
+        let draw = Draw::parse(document.to_string().as_bytes(), &Run::unattended())?;
         Ok(serde_json::to_value(draw.drawn()?).expect("JSON"))
     }
 

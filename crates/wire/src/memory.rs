@@ -23,11 +23,18 @@ const USUAL_RIM: f64 = 2.0;
 /// Memory of a usual pair, in MB.
 const USUAL_MB: u64 = 400;
 
+/// Whether counting alone says that `submission` takes no more memory than `limit_mb`, in MB. It takes a fraction of a millisecond; what it
+/// leaves open [`memory_above`] answers.
+pub fn memory_is_within(submission: &Submission, limit_mb: u64) -> bool {
+    limit_mb >= USUAL_MB && is_usual(submission)
+}
+
 /// The memory that `submission` is estimated to take, in MB, if that is more than `limit_mb`.
 ///
-/// The estimate divides the gears into elements, which takes milliseconds; a usual pair is let through without.
+/// The estimate divides the gears into elements, which takes up to a second: no thread that answers requests makes it. A usual pair is let through
+/// without.
 pub fn memory_above(submission: &Submission, limit_mb: u64) -> Option<u64> {
-    if limit_mb >= USUAL_MB && is_usual(submission) {
+    if memory_is_within(submission, limit_mb) {
         return None;
     }
     let needed_mb = estimated_mb(submission);

@@ -337,9 +337,10 @@ pub(super) async fn over_rows<T: Send + 'static>(
         }
         let before = read;
         read += rows.len() as u64;
-        let added = blocking(client, move |_| {
+        let added = blocking(client, move |run| {
             (before..)
                 .zip(&rows)
+                .take_while(|_| run.check().is_ok())
                 .for_each(|(place, row)| add(&mut made, place, row));
             made
         });

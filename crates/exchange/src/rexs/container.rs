@@ -11,8 +11,8 @@ use zip::ZipArchive;
 
 use super::fault::{Fault, Refused};
 
-/// What an archive begins with.
-const ARCHIVE: &[u8] = b"PK\x03\x04";
+/// What an archive begins with: its first file, or its end where it has none.
+const ARCHIVES: [&[u8]; 2] = [b"PK\x03\x04", b"PK\x05\x06"];
 
 /// What the entry of a file in the list of an archive begins with.
 const LISTED: &[u8] = b"PK\x01\x02";
@@ -28,7 +28,7 @@ pub fn is_model(document: &[u8]) -> bool {
         #[serde(rename = "model")]
         _model: IgnoredAny,
     }
-    document.starts_with(ARCHIVE)
+    is_packed(document)
         || decoded(document).is_ok_and(|text| {
             text.trim_start().starts_with('<') || serde_json::from_str::<Known>(&text).is_ok()
         })
@@ -36,7 +36,7 @@ pub fn is_model(document: &[u8]) -> bool {
 
 /// Whether `document` is an archive, whose model is still to be unpacked.
 pub fn is_packed(document: &[u8]) -> bool {
-    document.starts_with(ARCHIVE)
+    ARCHIVES.iter().any(|begin| document.starts_with(begin))
 }
 
 /// The model of an archive, or `document` itself if it is none: `most` bytes at the most, of which no more are unpacked whatever the
@@ -191,6 +191,7 @@ mod tests {
             refused.to_string()
         };
         assert!(told(&[("a.txt", b"")]).contains("0 files end in .rexs"));
+        assert!(told(&[]).contains("an archive in which 0 files end in .rexs"));
         let two: [(&str, &[u8]); 2] = [("a.rexs", b""), ("b.rexs", b"")];
         assert!(told(&two).contains("2 files end in .rexs"));
         let cut = &packed[..packed.len() - 30];

@@ -5,6 +5,12 @@ use std::fmt;
 /// So many are told at most; nobody reads more before mending some.
 const MOST_TOLD: usize = 50;
 
+/// Faults beyond this number are not kept.
+const MOST_FAULTS: usize = 100;
+
+/// The most characters of a place, and of what is wrong there.
+const LONGEST: usize = 500;
+
 /// One thing that is wrong, or that is not there.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fault {
@@ -17,8 +23,8 @@ pub struct Fault {
 impl Fault {
     pub(super) fn new(place: impl Into<String>, detail: impl Into<String>) -> Self {
         Self {
-            place: place.into(),
-            detail: detail.into(),
+            place: cut(place.into(), LONGEST),
+            detail: cut(detail.into(), LONGEST),
         }
     }
 
@@ -26,6 +32,48 @@ impl Fault {
     pub(super) fn is_of(&self, place: &str) -> bool {
         let rest = self.place.strip_prefix(place);
         rest.is_some_and(|rest| rest.is_empty() || rest.starts_with(", "))
+    }
+}
+
+/// The first `most` characters of `text`, and a sign that there were more.
+pub(super) fn cut(mut text: String, most: usize) -> String {
+    if let Some((at, _)) = text.char_indices().nth(most) {
+        text.truncate(at);
+        text.push('…');
+    }
+    text
+}
+
+/// What was found to be wrong so far: a bounded number of faults, whatever a model is made of.
+#[derive(Debug, Default)]
+pub(super) struct Faults(Vec<Fault>);
+
+impl Faults {
+    /// Notes that `detail` is wrong at `place`, unless that is noted already or there is no room for more.
+    pub(super) fn push(&mut self, place: impl Into<String>, detail: impl Into<String>) {
+        if self.is_full() {
+            return;
+        }
+        let fault = Fault::new(place, detail);
+        if !self.0.contains(&fault) {
+            self.0.push(fault);
+        }
+    }
+
+    /// Whether no more are noted.
+    pub(super) fn is_full(&self) -> bool {
+        self.0.len() >= MOST_FAULTS
+    }
+
+    /// Whether nothing was found to be wrong.
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+}
+
+impl From<Faults> for Refused {
+    fn from(faults: Faults) -> Self {
+        Self(faults.0)
     }
 }
 

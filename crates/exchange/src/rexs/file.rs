@@ -8,7 +8,7 @@ use std::ops::RangeInclusive;
 use roxmltree::{Document, Node, ParsingOptions};
 
 use super::container::{decoded, of_file, unpacked};
-use super::fault::{Fault, Refused};
+use super::fault::{Faults, Refused, cut};
 use super::unit::Unit;
 use super::{json, markup};
 
@@ -22,8 +22,9 @@ const MOST_NODES: u32 = 300_000;
 /// The most load cases of a file, which is far more than a submission has torques.
 const MOST_LOAD_CASES: usize = 1000;
 
-/// Faults beyond this number are not looked for: each says its line, which is counted from the top.
-const MOST_FAULTS: usize = 100;
+/// The most characters of a type, an id, a unit, a role or a name. Those of the standard have half as many at most, and each is told several times: with what
+/// is wrong, and with what was not read.
+const LONGEST_NAME: usize = 120;
 
 /// The most characters of a file's name in a fault.
 const MOST_NAME: usize = 120;
@@ -91,7 +92,7 @@ pub(super) struct Content {
     pub(super) components: Vec<Component>,
     pub(super) relations: Vec<Relation>,
     pub(super) load_cases: Vec<(i64, LoadCase)>,
-    pub(super) faults: Vec<Fault>,
+    pub(super) faults: Faults,
 }
 
 impl Model {
@@ -121,13 +122,16 @@ impl Model {
             let cases = load_cases.len();
             let detail =
                 format!("There are {cases} load cases; at most {MOST_LOAD_CASES} are read.");
-            faults.push(Fault::new("the load spectrum", detail));
+            faults.push("the load spectrum", detail);
         }
         let mut index = HashMap::new();
         for (i, component) in components.iter().enumerate() {
             if index.insert(component.id, i).is_some() {
                 let detail = "Another component has the same id; relations could mean either.";
-                faults.push(Fault::new(component.place(), detail));
+                faults.push(component.place(), detail);
+            }
+            if faults.is_full() {
+                break;
             }
         }
         let in_cases = load_cases
@@ -140,10 +144,10 @@ impl Model {
         }
         for relation in &relations {
             for (role, id) in &relation.refs {
-                if !index.contains_key(id) && faults.len() < MOST_FAULTS {
+                if !index.contains_key(id) && !faults.is_full() {
                     let place = format!("relation of type {}, role {role}", relation.kind);
                     let detail = format!("There is no component {id}.");
-                    faults.push(Fault::new(place, detail));
+                    faults.push(place, detail);
                 }
             }
         }
@@ -156,7 +160,7 @@ impl Model {
                 index,
             })
         } else {
-            Err(Refused(faults))
+            Err(faults.into())
         }
     }
 
@@ -165,6 +169,31 @@ impl Model {
         self.components
             .iter()
             .filter(move |component| component.kind == kind)
+    }
+
+    /// What has been read so far: of each component whether it was met, and whether each of its attributes was read.
+    pub(super) fn read_marks(&self) -> Vec<bool> {
+        let of = |component: &Component| {
+            let attributes = component.attributes.iter().map(|it| it.read.get());
+            std::iter::once(component.met.get())
+                .chain(attributes)
+                .collect::<Vec<_>>()
+        };
+        self.components.iter().flat_map(of).collect()
+    }
+
+    /// The same; and nothing has been read afterwards.
+    pub(super) fn take_read_marks(&self) -> Vec<bool> {
+        let marks = self.read_marks();
+        let in_cases = self.load_cases.iter().flat_map(|(_, case)| case.values());
+        for component in self.components.iter().chain(in_cases) {
+            component.met.set(false);
+            component
+                .attributes
+                .iter()
+                .for_each(|it| it.read.set(false));
+        }
+        marks
     }
 
     /// What stands as `wanted` in the relations of a kind in which `known` has its role, in their order.
@@ -228,7 +257,7 @@ fn content(text: &str) -> Result<(String, Content), String> {
     let inner = |outer: &'static str, name: &'static str| {
         all(outer).flat_map(move |node| node.children().filter(move |node| is(*node, name)))
     };
-    let mut faults = Vec::new();
+    let mut faults = Faults::default();
     let mut read = |node: Node<'_, '_>| Component::of(node, &mut faults);
     let components = inner("components", "component")
         .filter_map(&mut read)
@@ -270,14 +299,14 @@ fn at_line(node: Node<'_, '_>) -> String {
 
 impl Component {
     /// Reads a component; what is wrong with it is added to `faults`.
-    fn of(node: Node<'_, '_>, faults: &mut Vec<Fault>) -> Option<Self> {
-        if faults.len() >= MOST_FAULTS {
+    fn of(node: Node<'_, '_>, faults: &mut Faults) -> Option<Self> {
+        if faults.is_full() {
             return None;
         }
         let id = whole_number(node, "id");
         let Some((id, kind)) = id.zip(node.attribute("type")) else {
             let detail = "A component needs a type, and a whole number as its id.";
-            faults.push(Fault::new(at_line(node), detail));
+            faults.push(at_line(node), detail);
             return None;
         };
         let name = node.attribute("name").unwrap_or_default();
@@ -292,15 +321,15 @@ impl Component {
         kind: String,
         name: String,
         attributes: Vec<Attribute>,
-        faults: &mut Vec<Fault>,
+        faults: &mut Faults,
     ) -> Option<Self> {
-        if faults.len() >= MOST_FAULTS {
+        if faults.is_full() {
             return None;
         }
         let mut component = Self {
             id,
-            kind,
-            name,
+            kind: cut(kind, LONGEST_NAME),
+            name: cut(name, LONGEST_NAME),
             attributes,
             met: Cell::new(false),
             wanting: Cell::new(false),
@@ -309,7 +338,10 @@ impl Component {
         for attribute in &component.attributes {
             if !seen.insert(&attribute.id) {
                 let place = component.place_of(&attribute.id);
-                faults.push(Fault::new(place, "It stands there twice."));
+                faults.push(place, "It stands there twice.");
+            }
+            if faults.is_full() {
+                return None;
             }
         }
         // An empty one says nothing.
@@ -403,8 +435,8 @@ impl Attribute {
         vector: Option<[f64; 3]>,
     ) -> Self {
         Self {
-            id,
-            unit,
+            id: cut(id, LONGEST_NAME),
+            unit: unit.map(|unit| cut(unit, LONGEST_NAME)),
             vector,
             text: text.map(|text| text.trim().to_owned()),
             read: Cell::new(false),
@@ -448,14 +480,21 @@ impl Attribute {
 impl Relation {
     fn of(node: Node<'_, '_>) -> Self {
         let refs = node.children().filter(|child| is(*child, "ref"));
+        let refs = refs.map(|child| {
+            let role = child.attribute("role").unwrap_or_default();
+            (role.to_owned(), whole_number(child, "id").unwrap_or(-1))
+        });
+        let kind = node.attribute("type").unwrap_or_default().to_owned();
+        Self::new(kind, whole_number(node, "order").unwrap_or_default(), refs)
+    }
+
+    /// A relation of components by their roles.
+    pub(super) fn new(kind: String, order: i64, refs: impl Iterator<Item = (String, i64)>) -> Self {
         Self {
-            kind: node.attribute("type").unwrap_or_default().to_owned(),
-            order: whole_number(node, "order").unwrap_or_default(),
+            kind: cut(kind, LONGEST_NAME),
+            order,
             refs: refs
-                .map(|child| {
-                    let role = child.attribute("role").unwrap_or_default();
-                    (role.to_owned(), whole_number(child, "id").unwrap_or(-1))
-                })
+                .map(|(role, id)| (cut(role, LONGEST_NAME), id))
                 .collect(),
         }
     }

@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::ops::ControlFlow;
 
 use serde_json::{Value, json};
 
@@ -9,8 +10,17 @@ use super::fault::{Fault, Refused};
 use super::file::{Component, Model};
 use super::gear::Gear;
 use super::own;
-use super::reading::{Choices, Reading};
+use super::reading::{Choices, MOST_REMARKS, Reading};
 use super::unit::{DEG, MM};
+
+/// A pair of gears on parallel axes.
+const STAGE: &str = "cylindrical_stage";
+
+/// So many names of a list are told.
+const MOST_LISTED: usize = 20;
+
+/// So much that was not read is told one by one.
+const MOST_NOT_READ: usize = 1000;
 
 /// A submission out of a model.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,13 +29,11 @@ pub struct Import {
     pub submission: Value,
     /// What the model does not say and was assumed, and what it says and was not read: one sentence each.
     pub remarks: Vec<String>,
-    /// What the model says and was not read.
-    pub not_read: Vec<NotRead>,
     origins: Vec<(String, String)>,
 }
 
 /// What a model says and was not read.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct NotRead {
     /// The component.
     pub component: String,
@@ -50,9 +58,51 @@ impl Import {
 ///
 /// Everything that is wrong, with its place: what is no model, several stages, and what the mechanics cannot compute.
 pub fn import(bytes: &[u8], choices: &Choices) -> Result<Import, Refused> {
+    import_of(&Model::read(bytes)?, choices)
+}
+
+/// Hands each of the first `most` cylindrical stages of a model to `take`, or the one that is chosen: its id, where there are several, and the pair or what is
+/// wrong with it. Answers with what was read for none of those that `take` says were taken; `take` may end it.
+///
+/// # Errors
+///
+/// If the bytes are no model.
+pub fn each_stage(
+    bytes: &[u8],
+    choices: &Choices,
+    most: usize,
+    mut take: impl FnMut(Option<i64>, Result<Import, Refused>) -> ControlFlow<(), bool>,
+) -> Result<Vec<NotRead>, Refused> {
     let model = Model::read(bytes)?;
+    let stages: Vec<i64> = model.of_kind(STAGE).map(|stage| stage.id).collect();
+    let wanted: Vec<Option<i64>> = match choices.stage {
+        None if stages.len() > 1 => stages.into_iter().take(most).map(Some).collect(),
+        stage => vec![stage],
+    };
+    let mut read = model.read_marks();
+    for stage in wanted {
+        let choices = Choices {
+            stage,
+            ..choices.clone()
+        };
+        let import = import_of(&model, &choices);
+        let marks = model.take_read_marks();
+        match take(stage, import) {
+            ControlFlow::Break(()) => break,
+            ControlFlow::Continue(false) => {}
+            ControlFlow::Continue(true) => {
+                read.iter_mut()
+                    .zip(marks)
+                    .for_each(|(all, own)| *all |= own);
+            }
+        }
+    }
+    Ok(not_read(&model, &read))
+}
+
+fn import_of(model: &Model, choices: &Choices) -> Result<Import, Refused> {
     let reading = Reading {
-        model: &model,
+        model,
         choices,
         faults: RefCell::default(),
         remarks: RefCell::default(),
@@ -63,15 +113,14 @@ pub fn import(bytes: &[u8], choices: &Choices) -> Result<Import, Refused> {
     match submission {
         Some(submission) if faults.is_empty() => {
             let mut remarks = reading.remarks.take();
-            remarks.extend(left_out(&model));
+            remarks.extend(left_out(model));
             Ok(Import {
                 submission,
                 remarks,
-                not_read: not_read(&model),
                 origins: reading.origins.take(),
             })
         }
-        _ => Err(Refused(faults)),
+        _ => Err(faults.into()),
     }
 }
 
@@ -266,10 +315,10 @@ impl<'a> Reading<'a> {
     }
 
     fn chosen_stage(&self) -> Option<&'a Component> {
-        let stages: Vec<&Component> = self.model.of_kind("cylindrical_stage").collect();
+        let stages: Vec<&Component> = self.model.of_kind(STAGE).collect();
         let names = || {
             let names: Vec<String> = stages.iter().map(|stage| stage.place()).collect();
-            names.join(", ")
+            listed(&names)
         };
         let file = "the file".to_owned();
         match (stages.as_slice(), self.choices.stage) {
@@ -342,36 +391,49 @@ fn needs_faces(pair: &Value) -> bool {
         })
 }
 
-/// The ids of the cylindrical stages of a model, each of which may have a pair.
-///
-/// # Errors
-///
-/// If the bytes are no model.
-pub fn stages(bytes: &[u8]) -> Result<Vec<i64>, Refused> {
-    let model = Model::read(bytes)?;
-    let stages = model.components.iter();
-    let stages = stages.filter(|component| component.kind == "cylindrical_stage");
-    Ok(stages.map(|stage| stage.id).collect())
-}
-
-/// What was not read: attributes of what was met, and what was not met.
-fn not_read(model: &Model) -> Vec<NotRead> {
-    let of = |component: &Component| {
-        let place = component.place();
-        let named = |attribute: Option<String>| NotRead {
-            component: place.clone(),
-            attribute,
-        };
-        if component.met.get() {
-            let unread = component.attributes.iter().filter(|a| !a.read.get());
-            unread
-                .map(|attribute| named(Some(attribute.id.clone())))
-                .collect()
+/// What was not read by the marks `read`: attributes of what was met, and what was not met. The first are told one by one, the others by their number.
+fn not_read(model: &Model, read: &[bool]) -> Vec<NotRead> {
+    let mut marks = read.iter();
+    let mut is_read = || marks.next().copied().unwrap_or_default();
+    let (mut told, mut more) = (Vec::new(), 0_usize);
+    let mut tell = |component: &Component, attribute: Option<&str>| {
+        if told.len() < MOST_NOT_READ {
+            told.push(NotRead {
+                component: component.place(),
+                attribute: attribute.map(str::to_owned),
+            });
         } else {
-            vec![named(None)]
+            more += 1;
         }
     };
-    model.components.iter().flat_map(of).collect()
+    for component in &model.components {
+        let is_met = is_read();
+        if !is_met {
+            tell(component, None);
+        }
+        for attribute in &component.attributes {
+            if !is_read() && is_met {
+                tell(component, Some(&attribute.id));
+            }
+        }
+    }
+    if more > 0 {
+        told.push(NotRead {
+            component: format!("and {more} more"),
+            attribute: None,
+        });
+    }
+    told
+}
+
+/// The first of `names` in a list, and how many more there are.
+fn listed(names: &[String]) -> String {
+    let first = names.iter().take(MOST_LISTED).map(String::as_str);
+    let first = first.collect::<Vec<_>>().join(", ");
+    match names.len().saturating_sub(MOST_LISTED) {
+        0 => first,
+        more => format!("{first} and {more} more"),
+    }
 }
 
 /// The same in sentences, those that go together in one.
@@ -386,7 +448,8 @@ fn left_out(model: &Model) -> Vec<String> {
         .filter(|component| component.met.get())
         .map(|component| (component.place(), unread(component)))
         .filter(|(_, ids)| !ids.is_empty())
-        .map(|(place, ids)| format!("Not read: of {place}: {}.", ids.join(", ")))
+        .take(MOST_REMARKS)
+        .map(|(place, ids)| format!("Not read: of {place}: {}.", listed(&ids)))
         .collect();
     let mut kinds: BTreeMap<&str, usize> = BTreeMap::new();
     for component in model.components.iter().filter(|other| !other.met.get()) {
@@ -397,7 +460,7 @@ fn left_out(model: &Model) -> Vec<String> {
             .iter()
             .map(|(kind, n)| format!("{n} {kind}"))
             .collect();
-        sentences.push(format!("Not read: {}.", kinds.join(", ")));
+        sentences.push(format!("Not read: {}.", listed(&kinds)));
     }
     let mut in_cases: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     let cases = model.load_cases.iter();
@@ -405,13 +468,186 @@ fn left_out(model: &Model) -> Vec<String> {
         let ids = in_cases.entry(&component.kind).or_default();
         ids.extend(unread(component));
     }
-    for (kind, mut ids) in in_cases.into_iter().filter(|(_, ids)| !ids.is_empty()) {
+    let in_cases = in_cases.into_iter().filter(|(_, ids)| !ids.is_empty());
+    for (kind, mut ids) in in_cases.take(MOST_REMARKS) {
         ids.sort();
         ids.dedup();
         sentences.push(format!(
             "Not read: in load cases, of {kind}: {}.",
-            ids.join(", ")
+            listed(&ids)
         ));
     }
     sentences
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A model of so many pairs, `beside` components of kinds that nobody reads, and what else is said of the first stage.
+    fn model(pairs: i64, beside: i64, more: &str) -> String {
+        let mut components = String::new();
+        let mut relations = String::new();
+        let number = |id: &str, unit: &str, value: f64| {
+            format!("<attribute id='{id}' unit='{unit}'>{value}</attribute>")
+        };
+        for pair in 0..pairs {
+            let [stage, first, second] = [1, 2, 3].map(|i| 10 * pair + i);
+            let distance = number("center_distance", "mm", 100.0);
+            let more = if pair == 0 { more } else { "" };
+            components += &format!(
+                "<component id='{stage}' type='cylindrical_stage'>{distance}{more}</component>"
+            );
+            for gear in [first, second] {
+                let said = number("number_of_teeth", "none", 50.0)
+                    + &number("normal_module", "mm", 2.0)
+                    + &number("face_width", "mm", 20.0);
+                components +=
+                    &format!("<component id='{gear}' type='cylindrical_gear'>{said}</component>");
+            }
+            relations += &format!(
+                "<relation id='{pair}' type='stage'><ref id='{stage}' role='stage'/><ref id='{first}' role='gear_1'/><ref id='{second}' role='gear_2'/></relation>"
+            );
+        }
+        for i in 0..beside {
+            components += &format!("<component id='{}' type='bearing'/>", 1_000_000 + i);
+        }
+        format!(
+            "<model version='1.4'><relations>{relations}</relations><components>{components}</components></model>"
+        )
+    }
+
+    fn choices() -> Choices {
+        Choices {
+            torques: vec![10.0],
+            bore_radii: vec![10.0],
+            ..Choices::default()
+        }
+    }
+
+    #[test]
+    fn what_one_pair_reads_has_been_read_and_what_none_reads_is_told_once() {
+        let said = "<attribute id='paint'>blue</attribute>";
+        let text = model(3, 2, said);
+        let mut taken = Vec::new();
+        let not_read = each_stage(text.as_bytes(), &choices(), 2, |stage, import| {
+            assert_eq!(import.map(|_| ()), Ok(()));
+            taken.extend(stage);
+            ControlFlow::Continue(true)
+        });
+        assert_eq!(taken, [1, 11]);
+        let told = not_read.expect("a model");
+        let told: Vec<String> = told
+            .iter()
+            .map(|it| {
+                format!(
+                    "{} {}",
+                    it.component,
+                    it.attribute.as_deref().unwrap_or("-")
+                )
+            })
+            .collect();
+        let expected = [
+            "component 1 (cylindrical_stage) paint",
+            // The third pair was not wanted.
+            "component 21 (cylindrical_stage) -",
+            "component 22 (cylindrical_gear) -",
+            "component 23 (cylindrical_gear) -",
+            "component 1000000 (bearing) -",
+            "component 1000001 (bearing) -",
+        ];
+        assert_eq!(told, expected);
+    }
+
+    #[test]
+    fn of_thousands_that_are_not_read_some_are_told_and_then_their_number() {
+        let text = model(1, 40_000, "");
+        let not_read = each_stage(text.as_bytes(), &choices(), 20, |_, _| {
+            ControlFlow::Continue(true)
+        });
+        let not_read = not_read.expect("a model");
+        assert_eq!(not_read.len(), MOST_NOT_READ + 1);
+        assert_eq!(not_read[MOST_NOT_READ].component, "and 39000 more");
+    }
+
+    #[test]
+    fn no_stage_is_looked_at_behind_the_one_that_ends_it() {
+        let text = model(5, 0, "");
+        let mut looked_at = 0;
+        let ended = each_stage(text.as_bytes(), &choices(), 20, |_, _| {
+            looked_at += 1;
+            if looked_at == 2 {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(true)
+            }
+        });
+        assert!(ended.is_ok());
+        assert_eq!(looked_at, 2);
+    }
+
+    /// What is told of a model that is refused has no more bytes than this, whatever it is made of.
+    const MOST_BYTES: usize = 200_000;
+
+    #[test]
+    fn what_is_wrong_with_a_model_is_told_in_bounded_length_whatever_repeats() {
+        let long = "x".repeat(500_000);
+        let twice: String = (0..5000)
+            .map(|i| format!("<attribute id='a{i}'/><attribute id='a{i}'/>"))
+            .collect();
+        let equal = "<component id='7' type='bearing' name='b'/>".repeat(100_000);
+        let unlike: String = (0..5000)
+            .map(|i| format!("<component id='{}' type='bearing'/>", i / 2))
+            .collect();
+        let of = |components: &str| {
+            format!("<model version='1.4'><components>{components}</components></model>")
+        };
+        let unknown: String = (0..5000)
+            .map(|i| format!("<ref id='{i}' role='{i}'/>"))
+            .collect();
+        let json: Vec<Value> = (0..5000)
+            .map(|i| json!({ "id": i, "name": &long[..1000] }))
+            .collect();
+        let models = [
+            of(&format!(
+                "<component id='1' type='{long}' name='{long}'>{twice}</component>"
+            )),
+            of(&format!(
+                "<component id='1' type='bearing'><attribute id='{long}'/><attribute id='{long}'/></component>"
+            )),
+            of(&equal),
+            of(&unlike),
+            format!(
+                "<model version='1.4'><relations><relation type='{long}'>{unknown}</relation></relations></model>"
+            ),
+            format!("<model version='{long}'/>"),
+            json!({ "model": { "version": "1.4", "components": json } }).to_string(),
+            json!({ "model": { "version": "1.4", "components": long } }).to_string(),
+        ];
+        for text in models {
+            let Refused(faults) = import(text.as_bytes(), &choices()).expect_err("wrong");
+            let bytes: usize = faults
+                .iter()
+                .map(|it| it.place.len() + it.detail.len())
+                .sum();
+            assert!(
+                !faults.is_empty() && bytes < MOST_BYTES,
+                "{bytes} bytes of {}",
+                &text[..100]
+            );
+        }
+    }
+
+    #[test]
+    fn load_cases_have_a_component_of_a_long_type_without_its_length() {
+        let long = "x".repeat(100_000);
+        let case = "<load_case id='1'><component id='1' type=''/></load_case>".repeat(900);
+        let text = format!(
+            "<model version='1.4'><components><component id='1' type='{long}'/></components><load_spectrum>{case}</load_spectrum></model>"
+        );
+        let model = Model::read(text.as_bytes()).expect("a model");
+        let kinds = model.load_cases.iter().flat_map(|(_, case)| case.values());
+        let bytes: usize = kinds.map(|component| component.kind.len()).sum();
+        assert!(bytes < MOST_BYTES, "{bytes}");
+    }
 }

@@ -5,7 +5,7 @@ use std::fmt;
 use serde::Deserialize;
 use serde::de::{Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
 
-use super::fault::Fault;
+use super::fault::Faults;
 use super::file::{Attribute, Component, Content, Relation};
 
 /// The file.
@@ -175,7 +175,7 @@ impl<'de> Deserialize<'de> for Said {
 }
 
 impl Part {
-    fn component(self, kind: String, name: String, faults: &mut Vec<Fault>) -> Option<Component> {
+    fn component(self, kind: String, name: String, faults: &mut Faults) -> Option<Component> {
         let attributes = self.attributes.into_iter().map(|said| {
             let vector = match &said.value {
                 Scalar::List(vector) => *vector,
@@ -195,7 +195,7 @@ impl Part {
 pub(super) fn content(text: &str) -> Result<(String, Content), String> {
     let File { model } = serde_json::from_str(text)
         .map_err(|error| format!("It cannot be read as a model in JSON: {error}."))?;
-    let mut faults = Vec::new();
+    let mut faults = Faults::default();
     let mut components = Vec::new();
     for mut part in model.components {
         match part.kind.take() {
@@ -205,7 +205,7 @@ pub(super) fn content(text: &str) -> Result<(String, Content), String> {
             }
             None => {
                 let place = format!("component {}", part.id);
-                faults.push(Fault::new(place, "A component needs a type."));
+                faults.push(place, "A component needs a type.");
             }
         }
     }
@@ -221,14 +221,10 @@ pub(super) fn content(text: &str) -> Result<(String, Content), String> {
         (case.id, parts)
     });
     let load_cases = load_cases.collect();
-    let relations = model.relations.into_iter().map(|related| Relation {
-        kind: related.kind,
-        order: related.order.unwrap_or_default(),
-        refs: related
-            .refs
-            .into_iter()
-            .map(|reference| (reference.role, reference.id))
-            .collect(),
+    let relations = model.relations.into_iter().map(|related| {
+        let refs = related.refs.into_iter();
+        let refs = refs.map(|reference| (reference.role, reference.id));
+        Relation::new(related.kind, related.order.unwrap_or_default(), refs)
     });
     let content = Content {
         components,

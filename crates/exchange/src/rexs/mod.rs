@@ -24,7 +24,7 @@ mod unit;
 pub use container::{is_model, is_packed, unpacked};
 pub use export::export;
 pub use fault::{Fault, Refused};
-pub use import::{Import, NotRead, import, stages};
+pub use import::{Import, NotRead, each_stage, import};
 pub use reading::{Choices, LoadedFlank};
 
 /// The attributes that only this program writes and reads, each named once for both directions.

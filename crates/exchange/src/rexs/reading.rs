@@ -4,9 +4,13 @@ use std::cell::RefCell;
 
 use serde_json::Value;
 
-use super::fault::Fault;
+use super::fault::{Faults, cut};
 use super::file::{Component, Model};
 use super::unit::Unit;
+
+/// The most remarks on a pair of one kind, and the most characters of each.
+pub(super) const MOST_REMARKS: usize = 100;
+const LONGEST_REMARK: usize = 1000;
 
 /// What a model leaves open, and the caller says.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -47,24 +51,21 @@ impl LoadedFlank {
 pub(super) struct Reading<'a> {
     pub(super) model: &'a Model,
     pub(super) choices: &'a Choices,
-    pub(super) faults: RefCell<Vec<Fault>>,
+    pub(super) faults: RefCell<Faults>,
     pub(super) remarks: RefCell<Vec<String>>,
     pub(super) origins: RefCell<Vec<(String, String)>>,
 }
 
 impl<'a> Reading<'a> {
     pub(super) fn wrong(&self, place: String, detail: impl Into<String>) {
-        let fault = Fault::new(place, detail);
-        let mut faults = self.faults.borrow_mut();
-        // What both flanks refer to is read for each.
-        if !faults.contains(&fault) {
-            faults.push(fault);
-        }
+        // What both flanks refer to is read for each, and noted once.
+        self.faults.borrow_mut().push(place, detail);
     }
 
     pub(super) fn remark(&self, sentence: String) {
+        let sentence = cut(sentence, LONGEST_REMARK);
         let mut remarks = self.remarks.borrow_mut();
-        if !remarks.contains(&sentence) {
+        if remarks.len() < MOST_REMARKS && !remarks.contains(&sentence) {
             remarks.push(sentence);
         }
     }

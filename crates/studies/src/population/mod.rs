@@ -10,6 +10,7 @@ mod tests;
 
 use meshwright_engine::analysis::Method;
 use meshwright_engine::gear::{Helix, Inspection, Member, Normals, Passed, SpurGear};
+use meshwright_engine::run::Run;
 use meshwright_wire::declare::{Choice as _, Errors, Node};
 use meshwright_wire::draw::Accuracy;
 use meshwright_wire::gear::{DeviationsDocument, GearDocument};
@@ -270,12 +271,12 @@ impl Population {
 
     /// Refuses gears of a base, which has the middle of each law, of which fewer than one in a hundred would pass the inspection, at the place `at` of the
     /// population.
-    pub(crate) fn refuse_hopeless(&self, base: &Node, at: &str, errors: &Errors) {
+    pub(crate) fn refuse_hopeless(&self, base: &Node, at: &str, errors: &Errors, run: &Run) {
         let sees_faces = base.at(&["method"]).is_some_and(sees_faces);
         for (gear, accuracy) in GEARS.into_iter().zip(self.accuracies(base)) {
             if let Some(accuracy) = accuracy {
                 let pointer = format!("{at}/accuracy/{gear}/capability");
-                accuracy.refuse_hopeless(sees_faces, &pointer, errors);
+                accuracy.refuse_hopeless(sees_faces, &pointer, errors, run);
             }
         }
     }

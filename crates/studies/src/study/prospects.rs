@@ -33,7 +33,7 @@ impl Study {
         let errors = Errors::default();
         match &study.plan {
             Plan::Population(population) => {
-                study.inspect(population, "/population", &errors);
+                study.inspect(population, "/population", &errors, run);
                 if errors.count() == 0 {
                     study.try_members(population, &errors, run)?;
                 }
@@ -48,7 +48,7 @@ impl Study {
                 if let Some(population) = search.population()
                     && !search.paths_of_variables().any(varies)
                 {
-                    study.inspect(population, "/search/population", &errors);
+                    study.inspect(population, "/search/population", &errors, run);
                 }
                 if errors.count() == 0 {
                     study.try_designs(search, &errors, run)?;
@@ -103,13 +103,13 @@ impl Study {
     }
 
     /// Refuses gears of which hardly any would pass their inspection.
-    fn inspect(&self, population: &Population, at: &str, errors: &Errors) {
+    fn inspect(&self, population: &Population, at: &str, errors: &Errors, run: &Run) {
         let mut base = self.base.clone();
         for varied in population.varied() {
             let value = varied.json_of(varied.median());
             base.put(varied.path.steps(), Node::of(&value));
         }
-        population.refuse_hopeless(&base, at, errors);
+        population.refuse_hopeless(&base, at, errors, run);
     }
 
     /// Refuses a population of which no member can be built; of a large one, whose first ones all fail for one reason.
