@@ -1162,14 +1162,18 @@ fn a_component_whose_values_stand_in_another_file_is_refused_by_its_name_and_nev
         .expect("a section");
     // Stage, gear, what is said of it there, flank, tool, settings, relief and material.
     let cases = [2, 10, 11, 12, 30, 31, 32, 33].map(|id| (CASE_2, id));
-    for (model, id) in cases.into_iter().chain([(&*sections, section)]) {
-        let model = elsewhere(model, id);
-        assert_refused(
-            &model,
-            &format!("component {id} ("),
-            &["another file", "./database.rexs, component 7"],
-        );
+    for (model, id) in cases {
+        let words = ["another file", "./database.rexs, component 7"];
+        assert_refused(&elsewhere(model, id), &format!("component {id} ("), &words);
     }
+    // Without its section the shaft says no bore either.
+    let Refused(faults) = refused(&elsewhere(&sections, section));
+    assert!(
+        faults[0]
+            .place
+            .starts_with(&format!("component {section} ("))
+    );
+    assert!(faults[0].detail.contains("./database.rexs"), "{faults:?}");
     let whole = attribute("density");
     let source = said("data_source", "none", "steels.rexs");
     // All that is asked of a material is said, and nothing is asked of the unit.
