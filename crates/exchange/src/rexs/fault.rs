@@ -65,6 +65,15 @@ impl Faults {
         self.0.len() >= MOST_FAULTS
     }
 
+    /// `first`, and then these faults without those of the same components.
+    pub(super) fn after(mut self, first: Vec<Fault>) -> Self {
+        self.0
+            .retain(|fault| !first.iter().any(|other| fault.is_of(&other.place)));
+        self.0.splice(0..0, first);
+        self.0.truncate(MOST_FAULTS);
+        self
+    }
+
     /// Whether nothing was found to be wrong.
     pub(super) fn is_empty(&self) -> bool {
         self.0.is_empty()

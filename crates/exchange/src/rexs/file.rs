@@ -8,7 +8,7 @@ use std::ops::RangeInclusive;
 use roxmltree::{Document, Node, ParsingOptions};
 
 use super::container::{decoded, of_file, unpacked};
-use super::fault::{Faults, Refused, cut};
+use super::fault::{Fault, Faults, Refused, cut};
 use super::unit::Unit;
 use super::{json, markup};
 
@@ -25,9 +25,6 @@ const MOST_LOAD_CASES: usize = 1000;
 /// The most characters of a type, an id, a unit, a role or a name. Those of the standard have half as many at most, and each is told several times: with what
 /// is wrong, and with what was not read.
 const LONGEST_NAME: usize = 120;
-
-/// The most characters of a file's name in a fault.
-const MOST_NAME: usize = 120;
 
 /// The attributes by which a component says, since version 1.5, that its values are those of a component in another file.
 const DATA_SOURCE: &str = "data_source";
@@ -359,6 +356,11 @@ impl Component {
         Some(found)
     }
 
+    /// Forgets what was asked of the component.
+    pub(super) fn begin(&self) {
+        self.wanting.set(false);
+    }
+
     /// The attribute, if there is one; else the component is wanting.
     fn find(&self, id: &str) -> Option<&Attribute> {
         let found = self.attributes.iter().find(|attribute| attribute.id == id);
@@ -378,7 +380,7 @@ impl Component {
         if !self.wanting.get() || source.or(component).is_none() {
             return None;
         }
-        let short = |text: &str| text.chars().take(MOST_NAME).collect::<String>();
+        let short = |text: &str| text.chars().take(LONGEST_NAME).collect::<String>();
         let mut file = source.map_or_else(|| "a file without a name".to_owned(), short);
         if let Some(component) = component {
             let _ = write!(file, ", component {}", short(component));

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 
 use serde_json::{Value, json};
 
-use super::fault::{Fault, Refused};
+use super::fault::{Faults, Refused};
 use super::file::{Component, Model};
 use super::gear::Gear;
 use super::own;
@@ -101,6 +101,8 @@ pub fn each_stage(
 }
 
 fn import_of(model: &Model, choices: &Choices) -> Result<Import, Refused> {
+    // Another stage may have asked for more.
+    model.components.iter().for_each(Component::begin);
     let reading = Reading {
         model,
         choices,
@@ -109,7 +111,7 @@ fn import_of(model: &Model, choices: &Choices) -> Result<Import, Refused> {
         origins: RefCell::default(),
     };
     let submission = reading.submission();
-    let faults = with_other_files(&model, reading.faults.take());
+    let faults = with_other_files(model, reading.faults.take());
     match submission {
         Some(submission) if faults.is_empty() => {
             let mut remarks = reading.remarks.take();
@@ -125,11 +127,9 @@ fn import_of(model: &Model, choices: &Choices) -> Result<Import, Refused> {
 }
 
 /// The faults, with one for each component that was asked for what stands in another file instead of those that follow from that.
-fn with_other_files(model: &Model, mut faults: Vec<Fault>) -> Vec<Fault> {
+fn with_other_files(model: &Model, faults: Faults) -> Faults {
     let elsewhere = model.components.iter().filter_map(Component::elsewhere);
-    let elsewhere: Vec<Fault> = elsewhere.collect();
-    faults.retain(|fault| !elsewhere.iter().any(|other| fault.is_of(&other.place)));
-    elsewhere.into_iter().chain(faults).collect()
+    faults.after(elsewhere.collect())
 }
 
 /// The stage with its gears.
