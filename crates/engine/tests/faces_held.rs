@@ -7,13 +7,15 @@ use std::time::Instant;
 
 use cases::{
     above_the_tenth_harmonic, along_faces, drawn, face_yields, gear, helical, helical_pair,
+    relieved,
 };
+use meshwright_engine::analysis::stress::PeakStress;
 use meshwright_engine::analysis::{Analysis, Case, analyze};
 use meshwright_engine::assembly::{FaceResolution, FaceYield};
 use meshwright_engine::contact::face::{FaceContact, FaceModel, FlankYield, SLICES, SliceLoad};
 use meshwright_engine::gear::{
-    Alignment, GearData, LeadModification, Member, ModificationData, ReliefData, ReliefShape,
-    ReliefStart, SolidGear, SolidPair, Web,
+    Alignment, BlankRegion, GearData, Hole, HolePattern, LeadModification, Member,
+    ModificationData, ReliefData, ReliefShape, ReliefStart, SolidGear, SolidPair, Web,
 };
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
@@ -251,6 +253,141 @@ fn a_few_slices_that_carry_all_of_the_load_press_as_one_line() {
         let carried: f64 = contact.slices.iter().map(|slice| slice.force).sum();
         assert!((carried / load - 1.0).abs() < 1e-9);
         assert!(contact.load_centroid() < 0.0);
+    }
+}
+
+/// 30/48 teeth of module 2 mm with a face of half a millimeter, which is in plane stress, the driven gear with this blank beside its bore:
+/// in the plane, and along its faces.
+fn narrow_pair(blank: impl Fn(&mut BlankRegion)) -> [Case; 2] {
+    let narrow = |data: GearData| GearData {
+        face_width: 0.5e-3,
+        ..relieved(data)
+    };
+    let driving = narrow(gear(30, 12e-3));
+    let mut driven = narrow(gear(48, 15e-3));
+    blank(&mut driven.blank);
+    let (a, torque) = (78.05e-3, 1.5);
+    let gears = [driving.clone(), driven.clone()].map(|data| helical(data, 0.0, 0.0));
+    let none = [Vec::new(), Vec::new()];
+    let solid = SolidPair::new(gears, none, a, Alignment::default()).expect("meshes");
+    let faces = along_faces(solid, (FaceResolution::STANDARD, 10), &[torque]);
+    let plane = cases::case(cases::pair(driving, driven, a), &[torque]);
+    [plane, faces].map(|mut case| {
+        case.resolution.positions_per_mesh_period = 8;
+        case.stress = true;
+        case
+    })
+}
+
+fn round_holes(count: u32, circle_radius: f64, radius: f64) -> Vec<Hole> {
+    HolePattern {
+        count,
+        circle_radius,
+        radius,
+        phase: 0.0,
+    }
+    .holes()
+}
+
+/// Eight holes in the rim, of this radius on a circle of this radius.
+fn in_rim(circle_radius: f64, radius: f64) -> impl Fn(&mut BlankRegion) {
+    move |blank| blank.holes = round_holes(8, circle_radius, radius)
+}
+
+/// A web from 20 to 42 mm with these holes.
+fn in_web(holes: Vec<Hole>) -> impl Fn(&mut BlankRegion) {
+    move |blank| {
+        blank.web = Some(Web {
+            inner_radius: 20e-3,
+            outer_radius: 42e-3,
+            thickness: 0.2e-3,
+        });
+        blank.holes.clone_from(&holes);
+    }
+}
+
+/// Of the driven gear of an analysis: mean and peak-to-peak of δ, the first order of its eight holes, the mean stiffness, and the largest stresses at its roots and
+/// at its holes.
+fn numbers(analysis: &Analysis) -> [f64; 6] {
+    let curve = &analysis.curves[0];
+    let of_holes = curve.transmission_error.iter().enumerate();
+    let count = curve.transmission_error.len() as f64;
+    let [cosine, sine] = of_holes.fold([0.0; 2], |[cosine, sine], (i, delta)| {
+        let (s, c) = (std::f64::consts::TAU * i as f64 / count).sin_cos();
+        [cosine + delta * c, sine + delta * s]
+    });
+    let stresses = curve.stresses.as_ref().expect("asked for");
+    let most = |of: &[PeakStress]| of.iter().map(|peak| peak.stress).fold(0.0, f64::max);
+    let delta = curve.transmission_error_statistics;
+    [
+        delta.mean,
+        delta.peak_to_peak,
+        2.0 / count * cosine.hypot(sine),
+        curve.mesh_stiffness_tangent_statistics.mean,
+        most(&stresses[1].root),
+        most(&stresses[1].holes),
+    ]
+}
+
+/// By what part each of [`numbers`] along the faces is off that of the plane, over so many mesh `periods` of so many `positions`.
+fn off_the_plane(pair: [Case; 2], periods: u32, positions: u32) -> [f64; 6] {
+    let [plane, faces] = pair.map(|mut case| {
+        case.resolution.span_mesh_periods = Some(periods);
+        case.resolution.positions_per_mesh_period = positions;
+        numbers(&solve(&case))
+    });
+    std::array::from_fn(|i| faces[i] / plane[i] - 1.0)
+}
+
+#[test]
+fn holes_near_the_roots_and_near_the_edge_of_a_web_yield_as_in_the_plane() {
+    let [solid, ..] = off_the_plane(narrow_pair(|_| {}), 1, 4);
+    for blank in [
+        narrow_pair(in_rim(34e-3, 9e-3)),
+        narrow_pair(in_web(round_holes(8, 33e-3, 8.5e-3))),
+    ] {
+        let [mean, _, _, stiffness, root, hole] = off_the_plane(blank, 1, 4);
+        println!("{mean:.4} ({solid:.4} solid), {stiffness:.4}, {root:.4}, {hole:.4}");
+        assert!((mean - solid).abs() < 3e-3);
+        assert!(stiffness.abs() < 5e-3 && root.abs() < 0.03 && hole.abs() < 0.03);
+    }
+}
+
+#[test]
+#[ignore = "./test all"]
+fn holes_near_roots_and_edges_of_webs_yield_as_in_the_plane_at_length() {
+    let [solid, ..] = off_the_plane(narrow_pair(|_| {}), 6, 8);
+    for (name, pair) in [
+        ("3.5 mm below the roots", narrow_pair(in_rim(33e-3, 9e-3))),
+        ("2.5 mm", narrow_pair(in_rim(34e-3, 9e-3))),
+        ("1.5 mm", narrow_pair(in_rim(35e-3, 9e-3))),
+        ("1 mm, small", narrow_pair(in_rim(42.5e-3, 2e-3))),
+        (
+            "the edge of the web",
+            narrow_pair(in_web(round_holes(8, 33e-3, 8.5e-3))),
+        ),
+        (
+            "its inner edge",
+            narrow_pair(in_web(round_holes(8, 27.5e-3, 7e-3))),
+        ),
+    ] {
+        let off = off_the_plane(pair, 6, 8);
+        println!("{name}: {off:.4?} ({solid:.4} solid)");
+        let [mean, peak_to_peak, of_holes, _, root, hole] = off;
+        assert!((mean - solid).abs() < 3e-3, "{name}");
+        assert!(peak_to_peak.abs() < 0.015, "{name}");
+        let rest = [of_holes, root, hole];
+        assert!(rest.iter().all(|off| off.abs() < 0.03), "{name}");
+    }
+}
+
+#[test]
+#[ignore = "./test all"]
+fn the_error_estimate_counts_the_orders_in_which_holes_are_seen() {
+    let [_, case] = narrow_pair(in_rim(35e-3, 9e-3));
+    let [standard, fine, estimate] = with_estimate(case);
+    for i in [0, 1, 2] {
+        assert!((fine[i] - standard[i]).abs() < estimate[i], "{i}");
     }
 }
 

@@ -10,7 +10,7 @@ use crate::assembly::blank::blank_grid;
 use crate::assembly::interface::{harmonics, interface_radius, orders_of_blank};
 use crate::assembly::pair_spec::cells_per_patch;
 use crate::contact::{ContactSolver, default_penalty};
-use crate::gear::{Member, gcd};
+use crate::gear::{Member, SpurGear, gcd};
 use crate::grid::{GridLevel, ToothGrid};
 use crate::ring::shaft::orders_of_edge;
 use crate::touch::facing::Facing;
@@ -170,7 +170,11 @@ fn add_faces(estimate: &mut Estimate, plan: &Plan, faces: &Faces) {
                 FACE_MEMORY[0] * growth.powi(2) * nodes * f64::sqrt(nodes) + webs * FACE_MEMORY[1];
             let condensed = spec.condensed_unknowns() as f64;
             estimate.seconds += HOLED_SECONDS * condensed.powi(3);
-            estimate.memory += (bytes + HOLED_MEMORY * condensed.powi(2)) as u64;
+            let coupled = spec.coupled_unknowns().map(|count| count as f64);
+            let flank = spec.basis_len() as f64 * repeated_teeth(gear);
+            estimate.seconds += SECONDS[4] * coupling(coupled, flank);
+            let coupling = 8.0 * (3.0 * coupled[0].powi(2) + 2.0 * coupled[1] * flank);
+            estimate.memory += (bytes + HOLED_MEMORY * condensed.powi(2) + coupling) as u64;
             if number == 0 {
                 let teeth = f64::from(gear.tooth_count());
                 estimate.degrees_of_freedom +=
@@ -187,6 +191,18 @@ fn add_faces(estimate: &mut Estimate, plan: &Plan, faces: &Faces) {
             estimate.memory += (2.0 * ROOT_MEMORY * growth.powi(2)) as u64;
         }
     }
+}
+
+/// The teeth of `gear` after which all repeats around it.
+fn repeated_teeth(gear: &SpurGear) -> f64 {
+    let teeth = gear.tooth_count();
+    f64::from(teeth / gcd(teeth, gear.hole_repeats().max(1)))
+}
+
+/// Multiplications and additions in which the `coupled` unknowns of holes answer to so many functions on flanks: of each set of orders that do not couple, a
+/// factorization, and a product and a solution for each function.
+fn coupling([set, all]: [f64; 2], functions: f64) -> f64 {
+    all / set.max(1.0) * set * set * (set / 3.0 + 2.0 * functions)
 }
 
 /// Seconds that the contacts of `plan` take along the faces.

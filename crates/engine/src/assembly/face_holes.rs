@@ -7,8 +7,9 @@ use std::f64::consts::TAU;
 
 use faer::c64;
 
+use super::amplitudes::block;
 use super::flank_forces::FlankForces;
-use super::holed::{HoledSection, block};
+use super::holed::HoledSection;
 use super::{FaceYield, FaceYieldSpec, PartError};
 use crate::fem::surface::{Surface, SurfaceStress};
 use crate::ring::solid::sector::SolidSector;

@@ -10,8 +10,9 @@ use std::sync::Arc;
 use faer::{Mat, c64};
 use rayon::prelude::*;
 
+use super::amplitudes::block;
 use super::flank_forces::{FlankForces, PressedFlank};
-use super::holed::{HoledSection, block};
+use super::holed::HoledSection;
 use super::stack::Stack;
 use super::{FaceYield, FaceYieldSpec, PartError, Parts, PlainFace};
 use crate::contact::face::NormalForce;
@@ -188,9 +189,11 @@ impl FaceInside {
             (on_flank, on_order),
             run,
         )?;
+        let carried = self.plain.stiffness_below().len();
+        let seen = self.stack.hole_orders.unwrap_or(0);
         let mut moved = MovedTeeth {
             interfaces: vec![Vec::new(); z],
-            circle: vec![Mat::zeros(sector.size, 1); self.plain.stiffness_below().len()],
+            circle: vec![Mat::zeros(sector.size, 1); carried.max(seen + 1)],
         };
         for class in &classes {
             let motion = &class.motion * faer::Scale(c64::new(1.0 / z as f64, 0.0));

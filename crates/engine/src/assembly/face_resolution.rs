@@ -13,7 +13,7 @@ pub struct FaceResolution {
     pub face_order: usize,
     /// The degree of those across a web or a hub.
     pub web_order: usize,
-    /// The orders of its outer circle in which holes of a web are seen.
+    /// The orders of its outer circle in which holes of a web are seen, at least: more where holes come near its edge or the roots.
     pub web_harmonics: usize,
     /// How fine the sections of teeth are.
     pub sections: GridLevel,
@@ -48,6 +48,17 @@ impl FaceResolution {
             web_order: finer(self.web_order, 1).max(2),
             web_harmonics: finer(self.web_harmonics, 4).max(6),
             sections: level,
+        }
+    }
+
+    /// The fields of teeth at the holes, and those of holes at the edges of the part with the holes, fall to e^−these in the first order that is left out.
+    ///
+    /// δ errs by the square of such a part. Stress errs by (1 + d) e^−d of the decay d, as its orders count with their number.
+    pub(super) fn hole_decays(&self) -> [f64; 2] {
+        match self.sections {
+            GridLevel::Coarse => [4.0, 2.5],
+            GridLevel::Standard => [5.5, 4.0],
+            GridLevel::Fine => [7.5, 6.0],
         }
     }
 

@@ -8,20 +8,29 @@ use std::f64::consts::TAU;
 use faer::linalg::solvers::Solve as _;
 use faer::{Mat, c64};
 
+use rayon::prelude::*;
+
 use super::PartError;
-use super::stack::{Stack, WebPorts};
+use super::amplitudes::{Amplitudes, RoundForm, block, put_rows, rows_of, sets_of_orders, turned};
+use super::stack::{Stack, WebPorts, repeats_of, unknowns_of_holes};
 use crate::fem::FemError;
 use crate::fem::axial::AxialBasis;
 use crate::fem::dense::entries;
 use crate::fem::prism::{COMPONENTS, Prism};
-use crate::gear::{BlankRegion, Core, Material, SpurGear, gcd};
+use crate::gear::{BlankRegion, Core, Hole, Ligament, Material, SpurGear};
 use crate::grid::{BlankGrid, GridLevel};
+use crate::ring::cyclic::Harmonics;
 use crate::ring::solid::gear::ClassAnswers;
+use crate::ring::solid::revolution::add_block;
 use crate::ring::solid::web::{HoledRing, condensed_blocks, conjugate_below_zero, of_order};
 use crate::run::Run;
 
-/// Elements around the web for each order in which holes are seen, at the standard level.
-const ELEMENTS_PER_ORDER: f64 = 10.0;
+/// Elements around the web for each order in which holes are seen, at most so many; and what high orders need of them, two for a wavelength.
+const ELEMENTS_PER_ORDER: f64 = 5.0;
+const USUAL_ELEMENTS: f64 = 70.0;
+const ELEMENTS_PER_HIGH_ORDER: f64 = 2.0;
+/// The thinnest ligament, in half widths of the narrowest hole, in which a coarse grid follows what bends: thinner ones are divided twice as finely.
+const THIN: f64 = 0.25;
 
 /// The outer circle of a web as the teeth see it, while the web has no holes.
 #[derive(Debug)]
@@ -34,7 +43,7 @@ pub(crate) struct SeenWeb {
     /// S: the stiffness of the web without holes, of the orders 0 ….
     plain: Vec<Mat<c64>>,
     /// C: the compliance of the whole gear on the circle.
-    compliance: Mat<f64>,
+    compliance: RoundForm,
     /// q: the answer of the circle to the functions on the flank of tooth 0.
     answers: Mat<f64>,
     /// How the circle follows the interface circle, of the orders 0 ….
@@ -45,6 +54,7 @@ pub(crate) struct SeenWeb {
 #[derive(Debug, Clone)]
 pub(crate) struct HoledChange {
     tooth_count: usize,
+    largest: usize,
     size: usize,
     answers: Mat<f64>,
     /// −(I + ΔS C)⁻¹ ΔS q_j, of the teeth after which all repeats.
@@ -62,48 +72,50 @@ impl SeenWeb {
     ) -> Self {
         let largest = web.largest;
         let size = web.of[0].plain.nrows();
-        let unknowns = (2 * largest + 1) * size;
-        let place = |order: i64| (order + largest as i64) as usize * size;
         // Of tooth 0, on the orders of both signs.
         let share = 1.0 / tooth_count as f64;
-        let mut compliance = Mat::<c64>::zeros(unknowns, unknowns);
-        for class in classes {
+        let of_class = |class: &ClassAnswers| {
+            let orders = Harmonics { largest }.orders_of_class(class.class, tooth_count);
+            let mut compliance = Mat::<c64>::zeros(orders.len() * size, orders.len() * size);
+            let place = |order: &i64| orders.iter().position(|own| own == order);
             let inner = class.circle.nrows() / class.orders.len().max(1);
             let follows = |order: &i64| {
                 conjugate_below_zero(&web.of[order.unsigned_abs() as usize].follows, *order)
             };
             let follows: Vec<Mat<c64>> = class.orders.iter().map(follows).collect();
-            for (a, &n) in class.orders.iter().enumerate() {
-                for (b, &m) in class.orders.iter().enumerate() {
+            for (a, n) in class.orders.iter().enumerate() {
+                for (b, m) in class.orders.iter().enumerate() {
+                    let (Some(row), Some(column)) = (place(n), place(m)) else {
+                        continue;
+                    };
                     let between = class
                         .compliance
                         .submatrix(a * inner, b * inner, inner, inner);
                     let block = &follows[a] * between * follows[b].adjoint();
-                    for j in 0..size {
-                        for i in 0..size {
-                            let value = block[(i, j)] * share;
-                            compliance[(place(n) + i, place(m) + j)] = value;
-                            compliance[(place(-n) + i, place(-m) + j)] = value.conj();
-                        }
-                    }
+                    let mut sum = compliance.submatrix_mut(row * size, column * size, size, size);
+                    sum += block * faer::Scale(c64::new(share, 0.0));
                 }
             }
-        }
-        for order in -(largest as i64)..=largest as i64 {
-            let held = conjugate_below_zero(&web.of[order.unsigned_abs() as usize].held, order);
-            for j in 0..size {
-                for i in 0..size {
-                    compliance[(place(order) + i, place(order) + j)] += held[(i, j)];
-                }
+            // Those that the interface circle does not carry see it held.
+            for (k, order) in orders.iter().enumerate() {
+                let held = &web.of[order.unsigned_abs() as usize].held;
+                add_block(
+                    &mut compliance,
+                    k * size,
+                    &conjugate_below_zero(held, *order),
+                );
             }
-        }
+            (orders, compliance)
+        };
+        let of_classes = classes.iter().map(of_class);
+        let compliance = RoundForm::new(of_classes, size, Amplitudes::Forces);
         let (plain, follows) = web
             .of
             .into_iter()
             .map(|port| (port.plain, port.follows))
             .unzip();
         let mut seen = Self {
-            compliance: form_on_real(&compliance, largest, size, 1.0),
+            compliance,
             answers: Mat::zeros(0, 0),
             plain,
             follows,
@@ -171,7 +183,7 @@ impl SeenWeb {
             .iter()
             .map(|of| 2 * of.nrows() * of.ncols())
             .sum();
-        plain + follows + entries(&self.compliance) + entries(&self.answers)
+        plain + follows + self.compliance.entries() + entries(&self.answers)
     }
 }
 
@@ -192,29 +204,46 @@ impl HoledChange {
         } = web;
         let holed = HoledSection::new(stack, section, largest)?;
         let mut change = holed.ring(&[])?.on_outer(holed.phase, run)?;
-        for order in -(largest as i64)..=largest as i64 {
-            let plain = of_order(&web.plain, order);
-            let first = (order + largest as i64) as usize * size;
-            for j in 0..size {
-                for i in 0..size {
-                    change[(first + i, first + j)] -= plain[(i, j)];
-                }
+        for class in &mut change {
+            for (k, order) in class.orders.iter().enumerate() {
+                let plain = -of_order(&web.plain, *order);
+                add_block(&mut class.stiffness, k * size, &plain);
             }
         }
-        let change = form_on_real(&change, largest, size, 0.5);
-        let unknowns = change.nrows();
-        let coupled = Mat::<f64>::identity(unknowns, unknowns) + &change * &web.compliance;
-        let factor = coupled.partial_piv_lu();
-        run.check()?;
-        let repeats = gcd(z as u32, section.hole_repeats().max(1)) as usize;
-        let of_tooth = |tooth: usize| {
-            let turned = turned(answers, size, TAU * tooth as f64 / z as f64);
-            -factor.solve(&change * turned)
+        let change = change.into_iter().map(|of| (of.orders, of.stiffness));
+        let change = RoundForm::new(change, size, Amplitudes::Motions);
+        let repeats = repeats_of(section);
+        let known = z / repeats;
+        let of_set = |orders: &Vec<usize>| {
+            run.check()?;
+            let change = change.on(orders);
+            let coupled = Mat::<f64>::identity(change.nrows(), change.nrows())
+                + web.compliance.after(&change, orders);
+            let factor = coupled.partial_piv_lu();
+            let own = rows_of(answers, orders, size);
+            let of_tooth = |tooth: usize| {
+                let angle = TAU * tooth as f64 / z as f64;
+                let turned = turned(&own, orders.iter().copied(), size, angle);
+                -factor.solve(&change * turned)
+            };
+            Ok((0..known).map(of_tooth).collect())
         };
+        let sets = sets_of_orders(largest, repeats);
+        let of_sets: Vec<Vec<Mat<f64>>> = sets
+            .par_iter()
+            .map(of_set)
+            .collect::<Result<_, PartError>>()?;
+        let mut changes = vec![Mat::zeros(answers.nrows(), answers.ncols()); known];
+        for (orders, of_set) in sets.iter().zip(&of_sets) {
+            for (change, rows) in changes.iter_mut().zip(of_set) {
+                put_rows(change, rows, orders, size);
+            }
+        }
         Ok(Self {
             tooth_count: z,
+            largest,
             size,
-            changes: (0..z / repeats).map(of_tooth).collect(),
+            changes,
             answers: answers.clone(),
         })
     }
@@ -230,7 +259,7 @@ impl HoledChange {
         let mut mean = Mat::zeros(self.answers.nrows(), self.answers.ncols());
         for (tooth, change) in self.changes.iter().enumerate() {
             let back = -TAU * tooth as f64 / self.tooth_count as f64;
-            mean += turned(change, self.size, back) * share;
+            mean += self.turned(change, back) * share;
         }
         Self {
             changes: vec![mean],
@@ -238,11 +267,16 @@ impl HoledChange {
         }
     }
 
+    /// `amplitudes` of all orders, turned by `angle`.
+    fn turned(&self, amplitudes: &Mat<f64>, angle: f64) -> Mat<f64> {
+        turned(amplitudes, 0..=self.largest, self.size, angle)
+    }
+
     /// What tooth `i` yields more to the functions of tooth `j`.
     pub(crate) fn between(&self, i: usize, j: usize) -> Mat<f64> {
         let (z, known) = (self.tooth_count, j % self.changes.len());
         let seen = (i + z - (j - known)) % z;
-        let turned = turned(&self.answers, self.size, TAU * seen as f64 / z as f64);
+        let turned = self.turned(&self.answers, TAU * seen as f64 / z as f64);
         turned.transpose() * &self.changes[known]
     }
 
@@ -254,7 +288,7 @@ impl HoledChange {
             let known = tooth % self.changes.len();
             let load = Mat::from_fn(load.len(), 1, |i, _| load[i]);
             let ahead = TAU * (tooth - known) as f64 / self.tooth_count as f64;
-            sum += turned(&(&self.changes[known] * load), self.size, ahead);
+            sum += self.turned(&(&self.changes[known] * load), ahead);
         }
         sum.col_as_slice(0).to_vec()
     }
@@ -264,11 +298,11 @@ impl HoledChange {
     pub(crate) fn circle(&self, web: &SeenWeb, loads: &[(usize, &[f64])]) -> Vec<f64> {
         let forces = self.forces(loads);
         let forces = Mat::from_fn(forces.len(), 1, |i, _| forces[i]);
-        let mut moved = &web.compliance * forces;
+        let mut moved = web.compliance.times(&forces);
         for (tooth, load) in loads {
             let load = Mat::from_fn(load.len(), 1, |i, _| load[i]);
             let angle = TAU * *tooth as f64 / self.tooth_count as f64;
-            moved += turned(&(&self.answers * load), self.size, angle);
+            moved += self.turned(&(&self.answers * load), angle);
         }
         moved.col_as_slice(0).to_vec()
     }
@@ -277,7 +311,7 @@ impl HoledChange {
     pub(crate) fn seen_from(&self, tooth: usize, forces: &[f64]) -> Vec<f64> {
         let forces = Mat::from_fn(forces.len(), 1, |i, _| forces[i]);
         let back = -TAU * tooth as f64 / self.tooth_count as f64;
-        turned(&forces, self.size, back).col_as_slice(0).to_vec()
+        self.turned(&forces, back).col_as_slice(0).to_vec()
     }
 
     /// The number of entries, for the books of a cache.
@@ -351,15 +385,40 @@ fn holed_grid(
         ..section.data().blank.clone()
     };
     let z = section.tooth_count();
+    let orders = largest as f64;
+    let around = (ELEMENTS_PER_ORDER * orders)
+        .min(USUAL_ELEMENTS)
+        .max(ELEMENTS_PER_HIGH_ORDER * orders);
+    let widths = region.holes.iter().map(Hole::half_width);
+    let narrowest = widths.fold(f64::INFINITY, f64::min);
+    let is_thin = |(_, least): (Ligament, f64)| least < THIN * narrowest;
+    let least = region.least_ligament(layer.outer_radius);
+    let (level, nodes) = match least.is_some_and(is_thin) {
+        true => (GridLevel::Standard, 1.0),
+        false => (GridLevel::Coarse, 2.0),
+    };
     let grid = BlankGrid::of_region(
         &region,
         section.face_width(),
         layer.outer_radius,
         z,
-        ELEMENTS_PER_ORDER * largest as f64 / f64::from(z),
-        GridLevel::Coarse,
+        nodes * around / f64::from(z),
+        level,
     )?;
     Ok((grid, region.phase()))
+}
+
+/// The unknowns that the holes of `section` couple, and all amplitudes that they move, of a gear that is otherwise that of `stack`; 0 without holes.
+pub(crate) fn coupled_unknowns(stack: &Stack, section: &SpurGear) -> [usize; 2] {
+    let Some(largest) = stack.hole_orders else {
+        return [0; 2];
+    };
+    let size = COMPONENTS * stack.across[1].len();
+    let carried = stack.layers.len() > 2;
+    [
+        unknowns_of_holes(section, (largest, size), carried),
+        size * (2 * largest + 1),
+    ]
 }
 
 /// The unknowns to which a sector of the web of `section` is condensed, whose gear is otherwise that of `stack`; 0 without holes.
@@ -372,51 +431,6 @@ pub(crate) fn condensed_unknowns(stack: &Stack, section: &SpurGear) -> usize {
     };
     let carried = stack.layers.len() > 2;
     COMPONENTS * stack.across[1].len() * condensed_blocks(&grid, carried, largest)
-}
-
-/// Where the cosine of an order stands, in blocks; the sine follows.
-pub(super) fn block(order: usize) -> usize {
-    if order == 0 { 0 } else { 2 * order - 1 }
-}
-
-/// A Hermitian form in the amplitudes of the orders −`largest` … `largest` as one in a_0, a_1, b_1, …
-///
-/// With `share` 1/2 one in displacements, c_n = (a_n − i b_n)/2; with `share` 1 one in the forces that work on them.
-fn form_on_real(form: &Mat<c64>, largest: usize, size: usize, share: f64) -> Mat<f64> {
-    let count = (2 * largest + 1) * size;
-    let mut real = Mat::zeros(count, count);
-    // (block, sign of the order, weight) of the real unknowns that an order of no sign has.
-    let parts = |n: usize| -> Vec<(usize, i64, c64)> {
-        if n == 0 {
-            return vec![(0, 1, c64::new(1.0, 0.0))];
-        }
-        let signs = [1, -1].into_iter();
-        signs
-            .flat_map(|sign| {
-                [
-                    (block(n), sign, c64::new(share, 0.0)),
-                    (block(n) + 1, sign, c64::new(0.0, -share * sign as f64)),
-                ]
-            })
-            .collect()
-    };
-    let place = |n: usize, sign: i64| (sign * n as i64 + largest as i64) as usize * size;
-    for n in 0..=largest {
-        for m in 0..=largest {
-            for (row, s, by) in parts(n) {
-                for (column, t, with) in parts(m) {
-                    let (weight, from, to) = (by.conj() * with, place(n, s), place(m, t));
-                    for j in 0..size {
-                        for i in 0..size {
-                            real[(row * size + i, column * size + j)] +=
-                                (weight * form[(from + i, to + j)]).re;
-                        }
-                    }
-                }
-            }
-        }
-    }
-    real
 }
 
 /// Amplitudes of the orders −`largest` … `largest` as a_0, a_1, b_1, …
@@ -436,21 +450,4 @@ fn rows_on_real(rows: &Mat<c64>, largest: usize, size: usize) -> Mat<f64> {
         }
     }
     real
-}
-
-/// The answer to the tooth at `angle`, of that to tooth 0.
-fn turned(answers: &Mat<f64>, size: usize, angle: f64) -> Mat<f64> {
-    let mut turned = answers.clone();
-    let orders = answers.nrows() / size / 2;
-    for n in 1..=orders {
-        let (sin, cos) = (n as f64 * angle).sin_cos();
-        for j in 0..answers.ncols() {
-            for i in 0..size {
-                let (a, b) = (block(n) * size + i, (block(n) + 1) * size + i);
-                turned[(a, j)] = cos * answers[(a, j)] - sin * answers[(b, j)];
-                turned[(b, j)] = cos * answers[(b, j)] + sin * answers[(a, j)];
-            }
-        }
-    }
-    turned
 }

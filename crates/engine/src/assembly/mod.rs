@@ -2,12 +2,13 @@
 //!
 //! In reading order: [`interface`] (the circle on which teeth and blank meet), [`teeth`] (all teeth of a gear down to it),
 //! [`blank`] (what they stand on), [`gear`] (both joined), [`pair_spec`] and `pair` (two gears and the rules of their contact);
-//! along faces [`face_yield`] (the parts under the teeth, and what holes change: `stack`, `holed`; how it becomes polynomials: `flank_fit`), [`face_roots`] and [`face_holes`] (how it is stressed at its roots and at its holes), [`face_inside`] (how all of it moves);
+//! along faces [`face_yield`] (the parts under the teeth, and what holes change: `stack`, `holed`, in the real amplitudes of a circle: `amplitudes`; how it becomes polynomials: `flank_fit`), [`face_roots`] and [`face_holes`] (how it is stressed at its roots and at its holes), [`face_inside`] (how all of it moves);
 //! beside them [`cut`] (a gear parted at that circle again) and [`inside`] (what goes on in a gear whose flanks are loaded).
 //!
 //! Each part is a pure function of its *spec*, a value that says all that the part depends on. Equal specs are equal parts;
 //! who makes them, and whether anyone keeps them, is asked of [`Parts`].
 
+mod amplitudes;
 pub mod blank;
 pub mod cut;
 mod error;
@@ -41,5 +42,5 @@ pub use gear::{BlankUnderTeeth, Gear, GearGrids, GearSpec, WantedGear};
 pub use inside::{Inside, Probes};
 pub use pair_spec::{Blanks, ContactsSpec, FlanksSpec, Modeling, PairSpec};
 pub use parts::{MakeAll, Parts, make_gears};
-pub use stack::Stack;
+pub use stack::{NearHoles, Stack};
 pub use teeth::{Teeth, TeethSpec};

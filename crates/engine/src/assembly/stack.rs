@@ -3,15 +3,18 @@
 use faer::{Mat, c64};
 use rayon::prelude::*;
 
+use super::amplitudes::{amplitudes, sets_of_orders};
 use super::{FaceResolution, PartError};
 use crate::fem::FemError;
 use crate::fem::axial::AxialBasis;
 use crate::fem::dense::Cholesky;
-use crate::gear::{FaceEnds, Layer, SolidGear};
+use crate::fem::prism::COMPONENTS;
+use crate::gear::{FaceEnds, Hole, Layer, SolidGear, SpurGear, gcd};
 use crate::grid::GridLevel;
 use crate::ring::solid::joint::{carried, trace};
 use crate::ring::solid::revolution::{Revolution, last_of};
 use crate::ring::solid::shaft::SolidShaft;
+use crate::root_finding::bisect;
 use crate::run::Run;
 
 /// The orders that the interface circle carries: fields of the teeth fall to e^−this on their way to it.
@@ -24,9 +27,12 @@ const FLUSH: f64 = 0.02;
 const SAME: f64 = 1e-6;
 /// How much of the way from holes that stand in the rim itself to the interface circle belongs to the holed part.
 const HOLED_PART: f64 = 0.75;
-/// Fields of such holes fall to e^−this on their way out, to the first order that is left out; at most so many orders are kept.
-const HOLE_DECAY: f64 = 3.25;
-const MOST_HOLE_ORDERS: usize = 24;
+/// Fields that fall by less from order to order, as a logarithm, are near ones: they make the stress at holes.
+const NEAR: f64 = 0.08;
+/// The most unknowns that holes couple: with them a gear takes some 1.2 GB and half a minute of a core.
+const MOST_UNKNOWNS: usize = 6000;
+/// How much more an unknown counts where all of a part is condensed at once.
+const CONDENSED: f64 = 1.5;
 
 /// The parts of a gear from its root circle to its bore or its axis, each with its functions along the axis: all that its yield depends on, but
 /// for the holes.
@@ -57,28 +63,22 @@ impl Stack {
         let mut layers = gear.layers();
         layers.extend(gear.shaft());
         let mut across = functions_across(gear, &layers, resolution);
-        let interface_above = |radius: f64| (root - module).max(f64::midpoint(root, radius));
-        let mut interface_radius = interface_above(layers[0].inner_radius);
-        let mut hole_orders = None;
-        if let Some(reach) = section.data().blank.outer_reach() {
-            hole_orders = Some(resolution.web_harmonics);
-            if reach > layers[0].inner_radius {
-                // Holes in the rim itself: its inner part is the holed one.
-                interface_radius = interface_above(reach);
-                let edge = reach + HOLED_PART * (interface_radius - reach);
-                let orders = (HOLE_DECAY * edge / (edge - reach)).ceil() as usize;
-                hole_orders = Some(orders.clamp(resolution.web_harmonics, MOST_HOLE_ORDERS));
-                let rim = Layer {
-                    inner_radius: edge,
-                    ..layers[0]
-                };
-                layers[0].outer_radius = edge;
-                layers.insert(0, rim);
-                // In pieces it would cost five times as much; over a narrower hub they change δ by less than a thousandth.
-                across[0] = AxialBasis::new(&layers[0].heights, resolution.face_order);
-                across.insert(0, across[0].clone());
-            }
+        let joints = Joints::of(&layers, (root, module), section.holes());
+        if joints.is_in_rim {
+            // Holes in the rim itself: its inner part is the holed one.
+            let [_, edge] = joints.holed;
+            let rim = Layer {
+                inner_radius: edge,
+                ..layers[0]
+            };
+            layers[0].outer_radius = edge;
+            layers.insert(0, rim);
+            // In pieces it would cost five times as much; over a narrower hub they change δ by less than a thousandth.
+            across[0] = AxialBasis::new(&layers[0].heights, resolution.face_order);
+            across.insert(0, across[0].clone());
         }
+        let is_holed = !section.holes().is_empty();
+        let hole_orders = is_holed.then(|| joints.orders(root, section.holes(), resolution));
         // A shaft that is as wide as what stands on it goes on inside as this does.
         if let [.., above, shaft] = layers.as_slice()
             && gear.shaft().is_some()
@@ -91,7 +91,7 @@ impl Stack {
         Self {
             gear: gear.with_plain_flanks().without_holes(),
             face,
-            interface_radius,
+            interface_radius: joints.interface_radius,
             layers,
             across,
             hole_orders,
@@ -100,7 +100,7 @@ impl Stack {
     }
 
     /// The orders that the interface circle carries.
-    fn orders(&self) -> usize {
+    pub(super) fn orders(&self) -> usize {
         let section = self.gear.section();
         let depth = section.root_radius() - self.interface_radius;
         let z = section.tooth_count() as usize;
@@ -184,6 +184,149 @@ impl Stack {
     }
 }
 
+/// The circles on which the parts of a gear meet.
+struct Joints {
+    interface_radius: f64,
+    /// The inner and the outer circle of the part in which holes stand.
+    holed: [f64; 2],
+    /// Whether that is an inner part of the rim.
+    is_in_rim: bool,
+    /// Whether something else carries it: else it is held there.
+    is_carried: bool,
+}
+
+impl Joints {
+    /// Those of a gear of the root radius and the module, with `layers` below its root circle and these `holes`.
+    fn of(layers: &[Layer], (root, module): (f64, f64), holes: &[Hole]) -> Self {
+        let interface_above = |radius: f64| (root - module).max(f64::midpoint(root, radius));
+        let rim = &layers[0];
+        let reach = holes.iter().map(Hole::outer_reach).reduce(f64::max);
+        if let Some(reach) = reach.filter(|reach| *reach > rim.inner_radius) {
+            let interface_radius = interface_above(reach);
+            let edge = reach + HOLED_PART * (interface_radius - reach);
+            return Self {
+                interface_radius,
+                holed: [rim.inner_radius, edge],
+                is_in_rim: true,
+                is_carried: layers.len() > 1,
+            };
+        }
+        let web = layers.get(1).unwrap_or(rim);
+        Self {
+            interface_radius: interface_above(rim.inner_radius),
+            holed: [web.inner_radius, web.outer_radius],
+            is_in_rim: false,
+            is_carried: layers.len() > 2,
+        }
+    }
+
+    /// The orders of these circles in which `holes` below the radius `root` are seen.
+    fn orders(&self, root: f64, holes: &[Hole], resolution: FaceResolution) -> usize {
+        let of_hole = |hole: &Hole| self.orders_of(root, hole, resolution);
+        let needed = holes.iter().map(of_hole).fold(0.0, f64::max);
+        ((needed - 1e-9).ceil() as usize).max(resolution.web_harmonics)
+    }
+
+    /// The first order in which fields have fallen to what the resolution leaves out: those of the teeth on their way to `hole`, those of the hole on theirs to the
+    /// circles. The farther they go, the less of the stress is theirs.
+    fn orders_of(&self, root: f64, hole: &Hole, resolution: FaceResolution) -> f64 {
+        let [of_teeth, of_holes] = resolution.hole_decays();
+        let within =
+            |decay: f64, decrement: f64| (decay - (decrement / NEAR).ln().max(0.0)) / decrement;
+        let [inner, outer] = self.holed;
+        let direct = within(of_teeth, (root / hole.outer_reach()).ln());
+        let above = within(of_holes, hole.decrement(outer));
+        let below = match self.is_carried {
+            true => within(of_holes, hole.decrement(inner)),
+            false => 0.0,
+        };
+        direct.max(above).max(below)
+    }
+}
+
+/// Holes that stand so near to the roots, or to an edge of the part that they stand in, that their fields cannot be followed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NearHoles {
+    /// The hole whose field has the most orders, by its place in the list.
+    pub hole: usize,
+    /// The orders that it needs, and those that can be had.
+    pub orders: [usize; 2],
+    /// By how much narrower to each side round holes and slots would do, in meters; `None` if one of them is drawn by its contour, or none
+    /// would do.
+    pub narrower: Option<f64>,
+}
+
+impl NearHoles {
+    /// Those of `gear`, if it has such.
+    pub fn of(gear: &SolidGear, resolution: FaceResolution) -> Option<Self> {
+        let section = gear.section();
+        let (root, module) = (section.root_radius(), gear.normal_rack().module);
+        let resolution = resolution.of_width(gear.face_width() / module);
+        let mut layers = gear.layers();
+        layers.extend(gear.shaft());
+        let across = functions_across(gear, &layers, resolution);
+        let joints = |holes: &[Hole]| Joints::of(&layers, (root, module), holes);
+        let orders = |holes: &[Hole]| joints(holes).orders(root, holes, resolution);
+        let holes = section.holes();
+        let drawn = joints(holes);
+        let functions = match drawn.is_in_rim {
+            true => resolution.face_order + 1,
+            false => across.get(1).map_or(0, AxialBasis::len),
+        };
+        let unknowns = |orders: usize| {
+            let size = COMPONENTS * functions;
+            unknowns_of_holes(section, (orders, size), drawn.is_carried)
+        };
+        let needed = orders(holes);
+        if holes.is_empty() || unknowns(needed) <= MOST_UNKNOWNS {
+            return None;
+        }
+        let most = (1..needed).rfind(|orders| unknowns(*orders) <= MOST_UNKNOWNS)?;
+        let of_hole = |hole: &Hole| drawn.orders_of(root, hole, resolution);
+        let nearest = holes
+            .iter()
+            .map(of_hole)
+            .enumerate()
+            .max_by(|(_, one), (_, other)| one.total_cmp(other));
+        let widths = holes.iter().map(Hole::half_width);
+        let narrowest = widths.fold(f64::INFINITY, f64::min);
+        let narrowed =
+            |by: f64| -> Option<Vec<Hole>> { holes.iter().map(|hole| hole.narrowed(by)).collect() };
+        let does = |by: f64| narrowed(by).is_some_and(|holes| orders(&holes) <= most);
+        // The width that is left in any case.
+        const LEFT: f64 = 0.01;
+        let widest = (1.0 - LEFT) * narrowest;
+        Some(Self {
+            hole: nearest.map_or(0, |(hole, _)| hole),
+            orders: [needed, most],
+            narrower: does(widest).then(|| bisect(widest, 0.0, does)),
+        })
+    }
+}
+
+/// The unknowns that holes of `section` couple in `orders` of so many unknowns an amplitude: all at once where they do not repeat as teeth do. Without a
+/// pattern all amplitudes of the circles of a holed part are condensed together.
+pub(super) fn unknowns_of_holes(
+    section: &SpurGear,
+    (orders, size): (usize, usize),
+    is_carried: bool,
+) -> usize {
+    let count = size * (2 * orders + 1);
+    let repeats = repeats_of(section);
+    let of_sets = sets_of_orders(orders, repeats);
+    let coupled = of_sets.iter().map(|set| amplitudes(set, size)).max();
+    let condensed = match section.data().blank.pattern() {
+        Some(_) => 0,
+        None => (CONDENSED * (count * (1 + usize::from(is_carried))) as f64) as usize,
+    };
+    coupled.unwrap_or(0).max(condensed)
+}
+
+/// How often teeth and holes of `section` repeat together around it.
+pub(super) fn repeats_of(section: &SpurGear) -> usize {
+    gcd(section.tooth_count(), section.hole_repeats().max(1)) as usize
+}
+
 /// The functions across each of `layers`, no two of which that meet are alike in width: one polynomial, or pieces that are broken at the faces of
 /// the parts above and below that end within it.
 fn functions_across(
@@ -246,7 +389,9 @@ pub(crate) struct WebPort {
 impl StackStiffness {
     pub(crate) fn new(stack: &Stack, run: &Run) -> Result<Self, PartError> {
         let seen = stack.hole_orders;
-        let orders = (0..=stack.orders()).into_par_iter();
+        // The interface circle does not carry all orders in which holes near a web's edge are seen.
+        let (carried, most) = (stack.orders(), stack.orders().max(seen.unwrap_or(0)));
+        let orders = (0..=most).into_par_iter();
         let of_orders = orders
             .map(|order| {
                 run.check()?;
@@ -270,7 +415,8 @@ impl StackStiffness {
                 Ok((rim.on_outer(order as i64, below.as_ref())?, None))
             })
             .collect::<Result<Vec<_>, PartError>>()?;
-        let (stiffness, ports): (Vec<_>, Vec<_>) = of_orders.into_iter().unzip();
+        let (mut stiffness, ports): (Vec<_>, Vec<_>) = of_orders.into_iter().unzip();
+        stiffness.truncate(carried + 1);
         let web = seen.map(|largest| WebPorts {
             largest,
             of: ports.into_iter().flatten().collect(),
@@ -317,7 +463,7 @@ mod tests {
     use super::*;
     use crate::fem::prism::Law3;
     use crate::gear::spur::tests::paper_gear;
-    use crate::gear::{Core, Helix, Material, Web};
+    use crate::gear::{Core, Helix, HolePattern, Material, Web};
     use crate::quadrature::gauss_legendre;
 
     /// A web of so much thickness from a radius of 16 to 33 mm, its middle at +4 mm under a face of 20 mm; under it a ring as wide as the face, or none, on
@@ -333,6 +479,62 @@ mod tests {
         });
         let gear = SolidGear::new(data, Helix::right(0.26), 4e-3, None).expect("can be made");
         Stack::new(&gear, FaceResolution::STANDARD)
+    }
+
+    /// 48 teeth 20 mm wide with round holes on a circle that reach so far; the root circle has 45.5 mm.
+    fn holed_on(circle_radius: f64, count: u32, reach: f64) -> SolidGear {
+        let (mut data, phase) = (paper_gear(48), 0.0);
+        data.blank.bore_radius = 15e-3;
+        data.blank.holes = HolePattern {
+            count,
+            circle_radius,
+            radius: reach - circle_radius,
+            phase,
+        }
+        .holes();
+        SolidGear::new(data, Helix::STRAIGHT, 0.0, None).expect("can be made")
+    }
+
+    /// The same on a circle of 38 mm.
+    fn holed(count: u32, reach: f64) -> SolidGear {
+        holed_on(38e-3, count, reach)
+    }
+
+    #[test]
+    fn holes_are_seen_in_the_orders_that_their_ligament_needs() {
+        let orders = |reach| {
+            let stack = Stack::new(&holed(7, reach), FaceResolution::STANDARD);
+            stack.hole_orders.expect("it has holes")
+        };
+        let far = Stack::new(&holed_on(25e-3, 5, 30e-3), FaceResolution::STANDARD);
+        assert_eq!(
+            far.hole_orders,
+            Some(FaceResolution::STANDARD.web_harmonics)
+        );
+        for reach in [42.5e-3, 44e-3] {
+            // (reach/root)^n falls to e^−5.5.
+            let ratio = (reach / 45.5e-3_f64).powi(orders(reach) as i32);
+            let before = (reach / 45.5e-3_f64).powi(orders(reach) as i32 - 1);
+            let left = (-5.5_f64).exp();
+            assert!(ratio <= 1.01 * left && before > left, "{reach}");
+        }
+        let coarse = FaceResolution::STANDARD.at(GridLevel::Coarse);
+        let seen = Stack::new(&holed(7, 44e-3), coarse).hole_orders;
+        assert!(seen.is_some_and(|seen| seen < orders(44e-3)));
+    }
+
+    #[test]
+    fn holes_that_need_too_many_orders_are_named_with_what_would_do() {
+        let near = |count, reach| NearHoles::of(&holed(count, reach), FaceResolution::STANDARD);
+        assert_eq!(near(7, 42e-3), None);
+        // Eight of them repeat with every sixth tooth, and couple a quarter of the unknowns.
+        assert_eq!(near(8, 44.6e-3), None);
+        let found = near(7, 44.6e-3).expect("too near");
+        let [needed, most] = found.orders;
+        assert!(27 * (2 * most + 1) <= MOST_UNKNOWNS && needed > 2 * most);
+        let by = found.narrower.expect("round holes");
+        assert_eq!(near(7, 44.6e-3 - by - 1e-9), None);
+        assert!(near(7, 44.6e-3 - by + 0.05e-3).is_some());
     }
 
     /// How far the web's outer circle moves in the mean under an even force of `order` in each of the three directions, for a unit of it.

@@ -16,7 +16,7 @@ const SHARPEST_MATERIAL: f64 = PI / 6.0;
 /// The sharpest corner that the opening may have, in radians: 10 degrees.
 const SHARPEST_OPENING: f64 = PI / 18.0;
 /// Sides that meet at a smaller angle, in radians, join smoothly: 5 degrees.
-const SMOOTH: f64 = PI / 36.0;
+pub(super) const SMOOTH: f64 = PI / 36.0;
 /// How near to their common corner two sides may cross once more, as a part of the reach of the curve.
 const JOINS: f64 = 1e-4;
 
@@ -653,7 +653,7 @@ pub(super) fn check(sides: &[Side]) -> Result<(), ContourFault> {
 }
 
 /// The angle by which the curve turns where side `i` begins.
-fn turn_at(sides: &[Side], i: usize) -> f64 {
+pub(super) fn turn_at(sides: &[Side], i: usize) -> f64 {
     let [_, before] = sides[(i + sides.len() - 1) % sides.len()].directions();
     let [after, _] = sides[i].directions();
     cross(before, after).atan2(before.dot(&after))

@@ -5,7 +5,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::contour::{Contour, Side, between};
+use super::contour::{Contour, SMOOTH, Side, between, turn_at};
 use super::moments::Moments;
 use crate::gear::{Vector, radial, turned};
 
@@ -171,6 +171,54 @@ impl Hole {
         chord(self.circle_radius, self.circle_radius, apart) - 2.0 * self.half_width()
     }
 
+    /// The decrement λ of the field of the hole on a circle of `radius` about the axis: from each order to the next it falls by e^−λ.
+    ///
+    /// The images of a source in two circles gather in the two points that are inverse in both, and there the field is singular. With the
+    /// hole a circle of radius a about a center at the distance e, cosh λ = (r² + e² − a²)/(2 r e). An arc counts as its circle, a corner as a
+    /// circle without extent. Where an arc around a part of the material or a straight side ends smoothly, the field goes on through it.
+    pub fn decrement(&self, radius: f64) -> f64 {
+        let of = |center: Vector, own: f64| {
+            let e = center.norm();
+            ((radius * radius + e * e - own * own) / (2.0 * radius * e)).acosh()
+        };
+        let sides = self.sides();
+        let of_side = |(i, side): (usize, &Side)| {
+            let arc = match side.bulge > 0.0 {
+                true => of(side.center, side.radius),
+                false => f64::INFINITY,
+            };
+            // A circle that crosses the other one is no image: then the ends of its arc count.
+            if arc.is_nan() {
+                return of(side.from, 0.0).min(of(side.to, 0.0));
+            }
+            match turn_at(&sides, i).abs() > SMOOTH {
+                true => arc.min(of(side.from, 0.0)),
+                false => arc,
+            }
+        };
+        let each = sides.iter().enumerate().map(of_side);
+        each.fold(f64::INFINITY, f64::min)
+    }
+
+    /// The same hole, narrower by `by` to each side; `None` of a contour, and of a hole that is no wider.
+    pub fn narrowed(&self, by: f64) -> Option<Self> {
+        let shape = match self.shape {
+            HoleShape::Round { radius } => HoleShape::Round {
+                radius: radius - by,
+            },
+            HoleShape::Slot { width, angle } => HoleShape::Slot {
+                width: width - 2.0 * by,
+                angle,
+            },
+            HoleShape::Contour(_) => return None,
+        };
+        let narrowed = Self {
+            shape,
+            ..self.clone()
+        };
+        (narrowed.half_width() > 0.0).then_some(narrowed)
+    }
+
     /// Area and moments of the hole, in closed form.
     pub fn moments(&self) -> Moments {
         self.moments_within(f64::INFINITY)
@@ -301,6 +349,34 @@ pub(super) mod tests {
                 assert!(sampled >= distance - 1e-15 && sampled - distance <= slack);
             }
         }
+    }
+
+    #[test]
+    fn the_field_of_a_hole_falls_from_order_to_order_by_where_its_images_gather() {
+        for hole in holes() {
+            // An end of a slot, or the hole itself.
+            let (e, own) = (hole.circle_radius, hole.half_width());
+            for radius in [hole.outer_reach() + 0.5e-3, hole.inner_reach() - 2e-3] {
+                // Inverse in the circle, and that again in the hole.
+                let mut place = e;
+                for _ in 0..200 {
+                    let image = radius * radius / place;
+                    place = e + own * own / (image - e);
+                }
+                let expected = (radius / place).ln().abs();
+                assert!(
+                    (hole.decrement(radius) / expected - 1.0).abs() < 1e-9,
+                    "{hole:?}"
+                );
+            }
+        }
+        // Of a square window the corners count, those that are nearest.
+        let corners = [[30e-3, -5e-3], [40e-3, -5e-3], [40e-3, 5e-3], [30e-3, 5e-3]];
+        let corners = corners.map(|[x, y]| Vector::new(x, y));
+        let sides = [0, 1, 2, 3].map(|i| Side::new(corners[i], corners[(i + 1) % 4], 0.0));
+        let window = Contour::opening(&sides).expect("an opening");
+        let expected = (45e-3 / 40e-3_f64.hypot(5e-3)).ln();
+        assert!((window.decrement(45e-3) / expected - 1.0).abs() < 1e-9);
     }
 
     #[test]

@@ -364,7 +364,7 @@ pub(crate) fn last_of(k: &Mat<c64>, kept: usize) -> Result<Mat<c64>, FemError> {
 }
 
 /// Adds `block` to `k` from the unknown `first` on.
-pub(super) fn add_block(k: &mut Mat<c64>, first: usize, block: &Mat<c64>) {
+pub(crate) fn add_block(k: &mut Mat<c64>, first: usize, block: &Mat<c64>) {
     for j in 0..block.ncols() {
         for i in 0..block.nrows() {
             k[(first + i, first + j)] += block[(i, j)];

@@ -29,6 +29,15 @@ pub struct HoledRing<'a> {
     hub: Option<&'a [Mat<c64>]>,
 }
 
+/// The stiffness of a ring on its outer circle, in one class.
+#[derive(Debug, Clone)]
+pub struct ClassStiffness {
+    /// Its orders.
+    pub orders: Vec<i64>,
+    /// The Hermitian stiffness, order by order.
+    pub stiffness: Mat<c64>,
+}
+
 /// How nodes of sector 0 of a ring move by its outer circle, in one class.
 #[derive(Debug, Clone)]
 pub struct ClassRows {
@@ -112,36 +121,26 @@ impl<'a> HoledRing<'a> {
         })
     }
 
-    /// Its Hermitian stiffness on the orders of the outer circle, from the lowest negative one on. Hole 0 of a pattern stands at the angle
+    /// Its stiffness on the orders of the outer circle, class by class. Hole 0 of a pattern stands at the angle
     /// `phase`.
     ///
     /// # Errors
     ///
     /// [`FemError`].
-    pub fn on_outer(&self, phase: f64, run: &Run) -> Result<Mat<c64>, FemError> {
-        let (size, largest) = (self.sector.size, self.largest);
-        let classes = self.each_class(run, |_, orders, stiffness| {
-            last_of(&stiffness, orders.len() * size).map(|outer| (orders, outer))
-        })?;
-        let count = size * (2 * largest + 1);
-        let mut ring = Mat::<c64>::zeros(count, count);
-        let place = |order: i64| (order + largest as i64) as usize * size;
-        for (orders, outer) in &classes {
-            for (a, &n) in orders.iter().enumerate() {
-                for (b, &m) in orders.iter().enumerate() {
-                    let turn = SolidSector::turn(m - n, phase);
-                    for j in 0..size {
-                        for i in 0..size {
-                            let value = outer[(a * size + i, b * size + j)] * turn;
-                            // The class of the opposite orders is the conjugate of this one.
-                            ring[(place(n) + i, place(m) + j)] = value;
-                            ring[(place(-n) + i, place(-m) + j)] = value.conj();
-                        }
-                    }
+    pub fn on_outer(&self, phase: f64, run: &Run) -> Result<Vec<ClassStiffness>, FemError> {
+        let size = self.sector.size;
+        self.each_class(run, |_, orders, stiffness| {
+            let mut outer = last_of(&stiffness, orders.len() * size)?;
+            for j in 0..outer.ncols() {
+                for i in 0..outer.nrows() {
+                    outer[(i, j)] *= SolidSector::turn(orders[j / size] - orders[i / size], phase);
                 }
             }
-        }
-        Ok(ring)
+            Ok(ClassStiffness {
+                orders,
+                stiffness: outer,
+            })
+        })
     }
 
     /// How the recovered nodes move by the orders of the outer circle, class by class.
@@ -286,6 +285,28 @@ mod tests {
     use crate::gear::{HolePattern, Material};
     use crate::grid::GridLevel;
 
+    /// The stiffness on all orders up to `largest`, from the lowest negative one on, of that of each class.
+    fn on_all(classes: &[ClassStiffness], size: usize, largest: usize) -> Mat<c64> {
+        let count = size * (2 * largest + 1);
+        let mut all = Mat::<c64>::zeros(count, count);
+        let place = |order: i64| (order + largest as i64) as usize * size;
+        for ClassStiffness {
+            orders,
+            stiffness: of,
+        } in classes
+        {
+            for j in 0..of.ncols() {
+                for i in 0..of.nrows() {
+                    let (n, m) = (orders[i / size], orders[j / size]);
+                    all[(place(n) + i % size, place(m) + j % size)] = of[(i, j)];
+                    // The class of the opposite orders is the conjugate of this one.
+                    all[(place(-n) + i % size, place(-m) + j % size)] = of[(i, j)].conj();
+                }
+            }
+        }
+        all
+    }
+
     #[test]
     fn a_ring_is_as_stiff_on_its_orders_by_sectors_and_as_a_whole_on_a_hub_and_on_a_bore() {
         let pattern = HolePattern {
@@ -326,7 +347,8 @@ mod tests {
                 HoledRing::new(grid, &prism, hub, (largest, &[])).expect("sound")
             });
             let [sectors, as_one] = rings.each_ref().map(|ring| ring.on_outer(phase, &run));
-            let (sectors, as_one) = (sectors.expect("sound"), as_one.expect("sound"));
+            let [sectors, as_one] =
+                [sectors, as_one].map(|of| on_all(&of.expect("sound"), size, largest));
             assert!((&sectors - &as_one).norm_max() < 1e-9 * sectors.norm_max());
 
             let amplitudes: Vec<Mat<c64>> = (0..=largest)
