@@ -5,6 +5,7 @@
 mod client;
 mod machine;
 mod mark;
+mod runtime;
 #[cfg(test)]
 mod testing;
 pub mod times;

@@ -33,7 +33,7 @@ impl Backup {
         if self.database.file().is_some_and(|file| !file.exists()) {
             bail!("there is no database {}", self.database);
         }
-        let runtime = tokio::runtime::Runtime::new().context("the runtime cannot be started")?;
+        let runtime = crate::runtime::runtime()?;
         runtime
             .block_on(Store::backup(&self.database, &self.target))
             .with_context(|| format!("cannot back up {}", self.database))?;

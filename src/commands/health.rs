@@ -20,7 +20,7 @@ impl Health {
     ///
     /// If there is no answer.
     pub(crate) fn run(&self) -> anyhow::Result<ExitCode> {
-        let runtime = tokio::runtime::Runtime::new().context("the runtime cannot be started")?;
+        let runtime = crate::runtime::runtime()?;
         let status = runtime.block_on(async {
             let client = crate::client().timeout(Duration::from_secs(3)).build()?;
             // A service that listens everywhere is asked on the loopback.

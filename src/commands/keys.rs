@@ -92,7 +92,7 @@ impl Keys {
     ///
     /// If the database cannot be used, or there is no such key.
     pub(crate) fn run(&self) -> anyhow::Result<ExitCode> {
-        let runtime = tokio::runtime::Runtime::new().context("the runtime cannot be started")?;
+        let runtime = crate::runtime::runtime()?;
         runtime.block_on(async {
             let store = open(&self.database, Migrate::Auto).await?;
             let done = self.act(&store).await;

@@ -2,8 +2,6 @@
 
 use std::process::ExitCode;
 
-use anyhow::Context;
-
 use crate::jobs::DatabaseAddress;
 use crate::serve::migrate;
 
@@ -28,7 +26,7 @@ impl Migrate {
     ///
     /// If the database is served, or its tables cannot be brought up to date; then nothing is changed.
     pub(crate) fn run(&self) -> anyhow::Result<ExitCode> {
-        let runtime = tokio::runtime::Runtime::new().context("the runtime cannot be started")?;
+        let runtime = crate::runtime::runtime()?;
         runtime.block_on(migrate(&self.database))?;
         println!("The tables of {} are up to date.", self.database);
         Ok(ExitCode::SUCCESS)

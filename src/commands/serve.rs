@@ -44,7 +44,7 @@ impl Serve {
     ///
     /// If the service cannot start, or the demo gets an answer that it cannot read.
     pub(crate) fn run(&self) -> anyhow::Result<ExitCode> {
-        let runtime = tokio::runtime::Runtime::new().context("the runtime cannot be started")?;
+        let runtime = crate::runtime::runtime()?;
         let ended = runtime.block_on(self.until_signal());
         // Work that nobody waits for any more does not hold the process up.
         runtime.shutdown_background();

@@ -325,7 +325,21 @@ fn web_errors(case: &WebCase) -> Vec<f64> {
         let largest = HOLE_ORDERS as usize;
         let ring = HoledRing::new(&grid, &prism, None, (largest, &[])).expect("definite");
         let web = ring.on_outer(0.0, &Run::unattended());
-        let web = web.expect("definite");
+        let classes = web.expect("definite");
+        // Orders of different classes do not meet.
+        let between = |one: i64, other: i64| {
+            classes.iter().find_map(|class| {
+                let place = |order| class.orders.iter().position(|each| *each == order);
+                let (row, column) = (place(one)?, place(other)?);
+                let block = class.stiffness.submatrix(
+                    row * web_size,
+                    column * web_size,
+                    web_size,
+                    web_size,
+                );
+                Some(block.to_owned())
+            })
+        };
         let low: Vec<usize> = (0..orders.len())
             .filter(|i| orders[*i].order.abs() <= seen)
             .collect();
@@ -333,8 +347,10 @@ fn web_errors(case: &WebCase) -> Vec<f64> {
         let mut loads = Mat::<c64>::zeros(low.len() * size, loads.len());
         for (a, &i) in low.iter().enumerate() {
             for (b, &j) in low.iter().enumerate() {
-                let block = web.submatrix(a * web_size, b * web_size, web_size, web_size);
-                let mut block = orders[i].trace.adjoint() * block * &orders[j].trace;
+                let (one, other) = (&orders[i], &orders[j]);
+                let zero = || Mat::zeros(web_size, web_size);
+                let block = between(one.order, other.order).unwrap_or_else(zero);
+                let mut block = one.trace.adjoint() * block * &other.trace;
                 if a == b {
                     block += &orders[i].inner;
                 }

@@ -42,7 +42,7 @@ pub(super) fn compute(
     study: &StudyDocument,
     folder: Option<&ResultFolder>,
 ) -> anyhow::Result<Computed> {
-    let runtime = tokio::runtime::Runtime::new().context("the runtime cannot be started")?;
+    let runtime = crate::runtime::runtime()?;
     let computed = runtime.block_on(compute_on_database(study, folder));
     runtime.shutdown_background();
     computed
