@@ -19,7 +19,10 @@ fn curve(pair: &GearPair, torque: f64, positions: u32) -> Curve {
     let mut case: Case = case(pair, &[torque]);
     case.resolution.positions_per_mesh_period = positions;
     case.resolution.span_mesh_periods = None;
-    solve(&case, &Library::default()).expect("a curve").curves.remove(0)
+    solve(&case, &Library::default())
+        .expect("a curve")
+        .curves
+        .remove(0)
 }
 
 /// A pair of the paper's module and rack whose driven gear has these holes.

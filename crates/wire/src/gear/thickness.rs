@@ -33,7 +33,8 @@ document! {
 words! {
     /// How teeth became thinner than the rack leaves them at the profile shift.
     pub enum ThinnedBy {
-        Hob = "hob": "a hob that stands deeper: x_E = x + A_sn/(2 m_n tan alpha_n), A_sn negative for thinner teeth. Root and form circle lie deeper with it",
+        Hob = "hob":
+            "a hob that stands deeper: x_E = x + A_sn/(2 m_n tan alpha_n), A_sn negative for thinner teeth. Root and form circle lie deeper with it",
         FlankGrinding = "flank_grinding":
             "a tool that stands at x_E = x, and grinding of the flanks alone; the fillets move with the flanks, the root circle stays",
     }

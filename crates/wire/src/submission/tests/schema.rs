@@ -142,7 +142,7 @@ fn a_submission_with_other_fields_or_words_has_another_version() {
         (DOCUMENT_VERSION, sha256_hex(told.join("\n")).as_str()),
         (
             4,
-            "28381ecc3340644f38652a1ceedbab0478bec0d659e23a306e6d96e3905371dc"
+            "0212399678f1d021a36861b11b8c77326e155bed94a3d505c4d00b411887410a"
         ),
         "{told:#?}"
     );
