@@ -451,3 +451,8 @@ pub(crate) async fn problem(asked: impl Asked, status: u16, code: &str) -> Value
     assert!(!problem["detail"].as_str().unwrap().is_empty());
     problem
 }
+
+#[test]
+fn the_results_of_the_stub_are_written_as_results_are() {
+    assert_eq!(results().to_json().unwrap(), RESULTS);
+}

@@ -150,6 +150,7 @@ async fn bear(addresses: u8) -> (usize, Vec<Duration>, Duration) {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+#[ignore = "./test all"]
 async fn a_flood_without_a_key_stops_nobody_who_has_one_and_holds_up_no_shutdown() {
     let _alone = stores::ALONE.lock().await;
     for addresses in [1, 20] {

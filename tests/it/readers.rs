@@ -132,6 +132,7 @@ async fn large_study(process: &Process, client: &Client, key: &str) -> (String, 
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+#[ignore = "./test all"]
 async fn large_answers_that_nobody_reads_take_no_more_than_their_part_of_the_memory() {
     let _alone = stores::ALONE.lock().await;
     let folder = tempfile::tempdir().unwrap();
@@ -252,6 +253,7 @@ async fn a_thousand_readers_of_a_large_table_leave_health_and_other_clients_thei
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+#[ignore = "./test all"]
 async fn designs_of_a_large_study_are_looked_at_in_a_bounded_memory() {
     let _alone = stores::ALONE.lock().await;
     let folder = tempfile::tempdir().unwrap();
@@ -282,6 +284,7 @@ async fn designs_of_a_large_study_are_looked_at_in_a_bounded_memory() {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+#[ignore = "./test all"]
 async fn fields_of_gears_are_refused_where_they_never_fit_and_others_stay_in_the_memory() {
     let _alone = stores::ALONE.lock().await;
     let folder = tempfile::tempdir().unwrap();

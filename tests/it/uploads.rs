@@ -106,6 +106,7 @@ impl Borne {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+#[ignore = "./test all"]
 async fn large_documents_are_read_in_turns_in_a_bounded_memory() {
     let _alone = stores::ALONE.lock().await;
     let borne = bear(12, large()).await;
@@ -113,6 +114,7 @@ async fn large_documents_are_read_in_turns_in_a_bounded_memory() {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+#[ignore = "./test all"]
 async fn studies_of_many_designs_are_weighed_by_what_is_made_of_them() {
     let _alone = stores::ALONE.lock().await;
     let borne = bear(6, rich()).await;

@@ -29,7 +29,8 @@ words! {
     pub(crate) enum MembersDepth {
         AsDrawn = "as_drawn":
             "as in the drawn gear, that with the middle of each law: root and form circle stay, and the flanks vary",
-        ByThickness = "by_thickness": "as the thickness of each member says: a hob that stands deeper or less deep",
+        ByThickness = "by_thickness":
+            "as the thickness of each member says: a hob that stands deeper or less deep",
     }
 }
 
