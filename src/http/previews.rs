@@ -79,6 +79,7 @@ async fn refuse_long(client: &Client, preview: Preview) -> Result<Preview, Probl
         return Ok(preview);
     }
     // The estimate divides both gears into elements.
+    #[expect(clippy::disallowed_methods, reason = "in `blocking`")]
     let estimated = blocking(client.name(), move |_| {
         let submission = &preview.submission;
         let estimate = analysis::estimate(submission.case(), submission.forces());
