@@ -93,7 +93,7 @@ export class ViewJob {
     // What is wrong with the design, the job tells.
     post("v1/validate", asked, { signal: asking.signal }).then(
       ({ estimate }) => {
-        expected = 1000 * estimate.seconds;
+        if (estimate && "seconds" in estimate) expected = 1000 * estimate.seconds;
       },
       () => {},
     );

@@ -200,7 +200,8 @@ export function population(place, design, form, limits, onOpen) {
   async function estimated(differing) {
     const study = asked();
     study.base.output_torques_n_m = study.base.output_torques_n_m.slice(0, 1);
-    for (const each of MEMBERS) if (!differing.includes(each) && study.population.accuracy) delete study.population.accuracy[each];
+    for (const each of MEMBERS)
+      if (!differing.includes(each) && study.population.accuracy) delete study.population.accuracy[each];
     return (await foreseen(study)).estimate?.design;
   }
 
