@@ -96,11 +96,13 @@ fn show_body(path: &str, operation: &mut Operation) {
     for (media_type, content) in &mut body.content {
         let RefOr::T(content) = content else { continue };
         // A model is shown as XML; its other containers hold the same.
-        let example = match media_type.as_str() {
-            "image/vnd.dxf" => Some(DRAWING.into()),
-            _ => example_of(path),
+        let is_drawing = path == "/v1/outline" && media_type == "application/octet-stream";
+        let example = if is_drawing {
+            Some(DRAWING.into())
+        } else {
+            example_of(path)
         };
-        let is_text = ["application/xml", "image/vnd.dxf"].contains(&media_type.as_str());
+        let is_text = is_drawing || media_type == "application/xml";
         content.example = example.filter(|one| one.is_string() == is_text);
         if !media_type.ends_with("json") {
             let bytes = ObjectBuilder::new()

@@ -100,7 +100,7 @@ pub(super) struct DrawnOutline {
 /// Takes a drawing in DXF as well, and answers with the openings that it comes to, for `blank.outline` of a submission.
 #[utoipa::path(
     post, path = "/v1/outline", tag = "Reference", operation_id = "outline",
-    request_body(content((Submission = "application/json"), (String = "image/vnd.dxf")), description = "The submission, or a drawing in DXF as text."),
+    request_body(content((Submission = "application/json"), (Value = "application/octet-stream")), description = "The submission, or a drawing in DXF: `application/octet-stream`, `image/vnd.dxf` or `application/dxf`."),
     params(DrawingParameters),
     responses(
         (status = 200, description = "The outline.", content((PairOutline = "application/json"), (String = "image/svg+xml"), (DrawnOutline = "application/vnd.meshwright.outline+json"))),
@@ -114,10 +114,10 @@ pub(super) async fn outline(
     request: HeaderMap,
     body: OutlineBody,
 ) -> Result<Response, Refusal> {
+    let choices = parameters.choices()?;
     let (document, _memory) = match body {
         OutlineBody::Submission(document, memory) => (document, memory),
         OutlineBody::Drawing(drawing, memory) => {
-            let choices = parameters.choices()?;
             let read = move |_: &Run| {
                 let read = drawn(&drawing, &choices);
                 drop(memory);
