@@ -202,7 +202,7 @@ pub struct AdmissionOptions {
     pub idle_time: Duration,
 
     /// Hosts to which clients may have webhooks sent, separated by commas: hooks.example.com, *.example.com. They are sent by https; http is
-    /// allowed for a host that is named with it: http://hooks.example.com:8080. A host named
+    /// allowed for a host that is named with it: http://HOST:PORT. A host named
     /// in full may have a private address, one of this machine or its link only if it is named by that address. Without any, webhooks are off.
     #[arg(long = "webhook-host", value_delimiter = ',', value_name = "HOST")]
     pub webhook_hosts: Vec<HookTarget>,

@@ -1,7 +1,7 @@
 //! Spans of requests and jobs: each request, and each job from its submission to its end.
 //!
 //! The trace of a job has the job's id, so that a request that submits one can point to it, whichever process computes it and when. The feature `otlp`
-//! exports spans to a collector of OpenTelemetry; without it there is none, and [`export`] drops every span.
+//! exports spans to a collector of OpenTelemetry; without it there is none, and every span is dropped.
 
 use std::borrow::Cow;
 use std::time::SystemTime;
