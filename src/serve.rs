@@ -25,7 +25,7 @@ use crate::tokens::Tokens;
 use crate::webhooks::{Deliveries, HookRules, Webhooks};
 
 /// Longest time of a shutdown with [`Times::USUAL`]. A container gives ten seconds for all of it.
-pub const END: Duration = Duration::from_secs(9);
+pub const END: Duration = Times::USUAL.shutdown.saturating_add(CLOSING);
 
 /// Time that the database has to close at the end.
 const CLOSING: Duration = Duration::from_secs(1);

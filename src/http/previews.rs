@@ -4,11 +4,9 @@ use std::time::Duration;
 
 use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE, HeaderName};
 use axum::response::{IntoResponse, Response};
-use meshwright_engine::analysis::{self, Case};
-use meshwright_engine::gear::{HoleShape, Member, SpurGear};
-use meshwright_engine::grid::GridLevel;
+use meshwright_engine::analysis;
 use meshwright_engine::run::Run;
-use meshwright_wire::{Code, Preview, Problem};
+use meshwright_wire::{Code, Preview, Problem, is_plain};
 
 use super::blocking::blocking;
 use super::body::JsonBody;
@@ -75,7 +73,7 @@ const USUAL_LIMIT: Duration = Duration::from_secs(5);
 /// Gives a preview back, unless it is estimated to take longer than one may.
 async fn refuse_long(client: &Client, preview: Preview) -> Result<Preview, Problem> {
     let limit = client.app.previews.rules().time_limit;
-    if limit >= USUAL_LIMIT && is_quick(preview.submission.case()) {
+    if limit >= USUAL_LIMIT && is_plain(preview.submission.case(), QUICK_TEETH) {
         return Ok(preview);
     }
     // The estimate divides both gears into elements.
@@ -94,22 +92,6 @@ async fn refuse_long(client: &Client, preview: Preview) -> Result<Preview, Probl
         limit.as_secs()
     );
     Err(Problem::new(Code::TooLarge, detail))
-}
-
-/// Whether a case is computed in a moment, as far as its kind and size say.
-fn is_quick(case: &Case) -> bool {
-    let gears = Member::BOTH.map(|member| case.pair.gear(member));
-    let has_contours = |gear: &SpurGear| {
-        let holes = &gear.data().blank.holes;
-        holes
-            .iter()
-            .any(|hole| matches!(hole.shape, HoleShape::Contour(_)))
-    };
-    case.faces().is_none()
-        && gears.map(SpurGear::tooth_count).iter().sum::<u32>() <= QUICK_TEETH
-        && !gears.into_iter().any(has_contours)
-        && case.resolution.grid != GridLevel::Fine
-        && !case.resolution.error_estimate
 }
 
 fn timing(previewed: &Previewed) -> String {

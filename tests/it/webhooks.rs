@@ -14,7 +14,7 @@ use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpListener;
 
 use crate::admission::{key_of, make_key};
-use crate::bench::{Asked, Bench, PATIENCE, problem, results, submission};
+use crate::bench::{Asked, Bench, PATIENCE, eventually, problem, results, submission};
 use crate::stores;
 
 /// A receiver that answers one request after the other with these statuses, and tells what it was sent.
@@ -224,13 +224,12 @@ async fn a_webhook_that_was_given_up_is_taken_up_again_with_what_waited() {
     bench.submit(&submission(1.0)).await;
     let first = next(&mut received).await;
     let becomes = async |path: &str, pointer: &str, value: &Value| {
-        let found = async {
-            while bench.job(path).await.pointer(pointer) != Some(value) {
-                tokio::time::sleep(Duration::from_millis(10)).await;
-            }
-        };
-        let found = tokio::time::timeout(PATIENCE, found).await;
-        assert!(found.is_ok(), "{path}{pointer} is never {value}");
+        eventually(async || {
+            let seen = bench.job(path).await;
+            let is_there = seen.pointer(pointer) == Some(value);
+            if is_there { Ok(()) } else { Err(seen) }
+        })
+        .await;
     };
     let list = format!("{path}/deliveries");
     becomes(&list, "/items/0/answered", &json!(410)).await;
@@ -307,16 +306,14 @@ async fn patience_goes_by_the_clock_that_all_processes_share() {
     bench.post("/v1/webhooks", &hook).answer().await;
     bench.submit(&submission(1.0)).await;
     next(&mut received).await;
-    let retry_at = async {
-        loop {
-            let list = bench.job("/v1/webhooks").await;
-            if let Some(at) = list["items"][0]["retry_at"].as_str() {
-                return at.parse::<Timestamp>().unwrap();
-            }
-            tokio::time::sleep(Duration::from_millis(10)).await;
-        }
-    };
-    let retry_at = tokio::time::timeout(PATIENCE, retry_at).await.unwrap();
+    let retry_at = eventually(async || {
+        let list = bench.job("/v1/webhooks").await;
+        let at = list["items"][0]["retry_at"]
+            .as_str()
+            .map(str::parse::<Timestamp>);
+        at.ok_or(list)
+    });
+    let retry_at = retry_at.await.unwrap();
     let late = retry_at.duration_until(Timestamp::now()) > SignedDuration::from_hours(24);
     assert_eq!(late, !stores::on_postgres(), "{retry_at}");
 }
@@ -342,16 +339,12 @@ async fn who_answers_that_it_is_gone_is_sent_nothing_more() {
     bench.post("/v1/webhooks", &hook).answer().await;
     bench.submit(&submission(1.0)).await;
     next(&mut received).await;
-    let disabled = async {
-        loop {
-            let list = bench.job("/v1/webhooks").await;
-            if list["items"][0]["disabled_at"].is_string() {
-                return list;
-            }
-            tokio::time::sleep(std::time::Duration::from_millis(10)).await;
-        }
-    };
-    let list = tokio::time::timeout(PATIENCE, disabled).await.unwrap();
+    let list = eventually(async || {
+        let list = bench.job("/v1/webhooks").await;
+        let is_disabled = list["items"][0]["disabled_at"].is_string();
+        if is_disabled { Ok(list) } else { Err(list) }
+    })
+    .await;
     assert!(
         list["items"][0]["problem"]
             .as_str()
@@ -376,16 +369,12 @@ async fn a_name_that_leads_to_this_machine_is_sent_nothing() {
     let hook = json!({ "url": format!("http://localhost:{port}/") });
     bench.post("/v1/webhooks", &hook).answer().await;
     bench.submit(&submission(1.0)).await;
-    let told = async {
-        loop {
-            let list = bench.job("/v1/webhooks").await;
-            if let Some(told) = list["items"][0]["problem"].as_str() {
-                return told.to_owned();
-            }
-            tokio::time::sleep(std::time::Duration::from_millis(10)).await;
-        }
-    };
-    let told = tokio::time::timeout(PATIENCE, told).await.unwrap();
+    let told = eventually(async || {
+        let list = bench.job("/v1/webhooks").await;
+        let told = list["items"][0]["problem"].as_str().map(str::to_owned);
+        told.ok_or(list)
+    })
+    .await;
     assert!(told.contains("no address that may be sent to"), "{told}");
     assert!(received.try_recv().is_err());
 }

@@ -48,7 +48,7 @@ pub use draw::{Draw, DrawnDeviations};
 pub use edges::LoadedEdges;
 pub use examples::{Example, examples};
 pub use kept::Kept;
-pub use memory::{memory_above, memory_is_within, memory_of, too_much_memory};
+pub use memory::{is_plain, memory_above, memory_is_within, memory_of, too_much_memory};
 pub use outline::PairOutline;
 pub use preview::Preview;
 pub use problem::{Code, FieldError, Problem};

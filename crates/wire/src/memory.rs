@@ -41,26 +41,37 @@ pub fn memory_above(submission: &Submission, limit_mb: u64) -> Option<u64> {
     (needed_mb > limit_mb).then_some(needed_mb)
 }
 
+/// Whether a case is of a plane pair of at most `most_teeth` together, on the standard grid or a coarser one, without an error estimate, with round
+/// holes or slots: the kind whose cost is known by counting.
+pub fn is_plain(case: &Case, most_teeth: u32) -> bool {
+    let gears = Member::BOTH.map(|member| case.pair.gear(member));
+    let has_contours = |gear: &SpurGear| {
+        let mut holes = gear.data().blank.holes.iter();
+        holes.any(|hole| matches!(hole.shape, HoleShape::Contour(_)))
+    };
+    case.faces().is_none()
+        && gears.map(SpurGear::tooth_count).iter().sum::<u32>() <= most_teeth
+        && !gears.into_iter().any(has_contours)
+        && case.resolution.grid != GridLevel::Fine
+        && !case.resolution.error_estimate
+}
+
 fn is_usual(submission: &Submission) -> bool {
     let case = submission.case();
     let gears = Member::BOTH.map(|member| case.pair.gear(member));
-    case.faces().is_none()
-        && gears.map(SpurGear::tooth_count).iter().sum::<u32>() <= USUAL_TEETH
-        && gears.iter().all(|gear| has_usual_blank(gear))
-        && case.resolution.grid != GridLevel::Fine
+    is_plain(case, USUAL_TEETH)
+        && gears.into_iter().all(has_usual_rim)
         && case.resolution.interface_radii == [None; 2]
-        && !case.resolution.error_estimate
         && submission.positions_total() <= USUAL_POSITIONS
 }
 
-fn has_usual_blank(gear: &SpurGear) -> bool {
+/// Whether the gear is no shaft, and its rim is not thin.
+fn has_usual_rim(gear: &SpurGear) -> bool {
     let blank = &gear.data().blank;
     let web = blank.web_in(gear.face_width());
     let reach = blank.outer_reach().unwrap_or(blank.bore_radius);
     let reach = reach.max(web.map_or(0.0, |web| web.outer_radius));
-    blank.shaft().is_none()
-        && (blank.holes.iter()).all(|hole| !matches!(hole.shape, HoleShape::Contour(_)))
-        && gear.root_radius() - reach >= USUAL_RIM * gear.data().rack.module
+    blank.shaft().is_none() && gear.root_radius() - reach >= USUAL_RIM * gear.data().rack.module
 }
 
 /// What an estimate of memory depends on: not on what flanks are modified and teeth deviate by, nor on how gears stand to each other, so that all
