@@ -31,13 +31,16 @@ pub(super) struct DrawingParameters {
     #[param(example = "Holes")]
     layer: Option<String>,
     /// Of a drawing: the place of the axis of the gear, X,Y in the unit of the drawing; without it, its origin.
-    #[param(example = "0,0")]
+    #[param(
+        example = "0,0",
+        pattern = r"^[+-]?[0-9]{1,9}([.][0-9]{0,12})?,[+-]?[0-9]{1,9}([.][0-9]{0,12})?$"
+    )]
     center: Option<String>,
     /// Of a drawing: ends no farther apart than this are joined, in mm; 0.01 without it.
     #[param(example = 0.01, minimum = 0.0, maximum = 0.1)]
     tolerance: Option<f64>,
     /// Of a drawing: the radius of the bore, in mm, where it is not drawn as a circle.
-    #[param(example = 16.0)]
+    #[param(example = 16.0, exclusive_minimum = 0.0)]
     bore_radius_mm: Option<f64>,
 }
 

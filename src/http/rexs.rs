@@ -34,13 +34,13 @@ pub(super) struct ModelParameters {
     #[param(example = 2)]
     stage: Option<i64>,
     /// The torque on the driven gear, in N m, instead of those of the model.
-    #[param(example = 115.0)]
+    #[param(example = 115.0, exclusive_minimum = 0.0)]
     torque: Option<f64>,
     /// The method, instead of the flexible one or that of the model.
     #[param(example = "flexible")]
     method: Option<String>,
     /// The bore radius of both gears, in mm, instead of those of the model.
-    #[param(example = 16.0)]
+    #[param(example = 16.0, exclusive_minimum = 0.0)]
     bore_radius_mm: Option<f64>,
     /// The flanks of both gears that are loaded, instead of those of the model.
     #[param(example = "left", inline)]

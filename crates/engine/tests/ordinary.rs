@@ -235,7 +235,7 @@ fn along_its_faces(seed: u64) -> Option<Case> {
     Some(case)
 }
 
-/// Computes so many cases of those that `of` draws, and names those that fail.
+/// Computes `count` cases drawn by `of`; panics with the seeds of those that fail.
 fn all_are_computed(of: fn(u64) -> Option<Case>, count: usize) {
     let drawn = (0..).filter_map(|seed| Some((seed, of(seed)?)));
     let failed: Vec<String> = drawn

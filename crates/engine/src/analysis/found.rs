@@ -17,9 +17,9 @@ pub(super) struct Found<K = ()> {
     pub(super) stiffness: Vec<f64>,
 }
 
-/// What a method keeps of a contact, of which the extremes of a curve may be.
+/// Part of a contact that a method keeps, for the extremes of a curve.
 pub(super) trait Kept: Clone {
-    /// Values of which the largest over the curve is told, each the larger the worse; as many of them at each position.
+    /// Values whose largest over the curve is in the results: pressures and stresses. Each position has the same number of them.
     fn watched(&self) -> Vec<f64>;
 }
 

@@ -42,9 +42,10 @@ impl CurvePressures {
     }
 }
 
-/// Hertz's pressure in Pa at the working pitch point of the pair of `case`, were one pair to carry the whole `load` across the common face: by the curvature of the
-/// flanks normal to the line of contact, and without the factors of contact ratio and helix by which ISO 6336-2 lowers it. `None` where the pitch point lies
-/// outside the path of contact from A to E.
+/// Hertz's pressure in Pa at the working pitch point of the pair of `case`.
+///
+/// One pair carries the whole `load` across the common face. The curvature is that of the flanks normal to the line of contact. The factors of contact
+/// ratio and helix of ISO 6336-2, which lower it, are 1. `None` where the pitch point lies outside the path of contact from A to E.
 pub fn at_pitch_point(case: &Case, load: f64) -> Option<f64> {
     let pair = &case.pair;
     let (s_a, s_e) = pair.path_of_contact();

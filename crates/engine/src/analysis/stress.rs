@@ -47,7 +47,7 @@ pub struct GearStresses {
     pub between: Vec<(f64, GearPeaks)>,
 }
 
-/// The places of a gear of which the largest stress is told.
+/// Places of a gear whose largest stress is in the results.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StressedPlace {
     /// [`GearStresses::root`].

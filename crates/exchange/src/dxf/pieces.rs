@@ -334,7 +334,7 @@ impl Pieces<'_> {
         ))
     }
 
-    /// Adds a fault; more than are told are not kept.
+    /// Adds a fault, up to the number that is reported.
     fn wrong(&mut self, sentence: String) {
         if self.faults.len() <= MOST_FAULTS {
             self.faults.push(sentence);

@@ -22,8 +22,8 @@ const MOST_NODES: u32 = 300_000;
 /// The most load cases of a file, which is far more than a submission has torques.
 const MOST_LOAD_CASES: usize = 1000;
 
-/// The most characters of a type, an id, a unit, a role or a name. Those of the standard have half as many at most, and each is told several times: with what
-/// is wrong, and with what was not read.
+/// Limit of the characters of a type, an id, a unit, a role or a name. Those of the standard have at most half as many. Faults and the list of what was not
+/// read repeat them.
 const LONGEST_NAME: usize = 120;
 
 /// The attributes by which a component says, since version 1.5, that its values are those of a component in another file.

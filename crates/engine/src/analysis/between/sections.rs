@@ -18,9 +18,6 @@ const LOWER_DEGREE: f64 = 0.3;
 /// A polynomial may go beyond both of its ends by so many times as much as another one through the nodes beside does: farther, it swings.
 const SWING: f64 = 2.0;
 
-/// The part of the range of its nodes by which the crest of a smooth curve may stand beyond both ends: that of a sine by 0.13 at ten positions in its period.
-const CREST: f64 = 0.15;
-
 /// The error of δ between two places of which nothing else is known, for their difference.
 const UNKNOWN: f64 = 0.1;
 
@@ -460,7 +457,7 @@ fn curve_of(nodes: &[(f64, f64)], i: usize) -> (Cubic, f64) {
             .chain(others)
             .map(move |start| Cubic::through(&nodes[start..start + count]))
     };
-    let mut found: Vec<Cubic> = windows(degree + 1).collect();
+    let found: Vec<Cubic> = windows(degree + 1).collect();
     let lower = (degree > 2).then(|| windows(degree)).into_iter().flatten();
     let least = found
         .iter()
@@ -469,21 +466,11 @@ fn curve_of(nodes: &[(f64, f64)], i: usize) -> (Cubic, f64) {
         .map(|curve| (curve, beyond(&curve, ends)));
     let least = least.reduce(|least, next| if next.1 < least.1 { next } else { least });
     let even = found[0];
-    let values = nodes[i.saturating_sub(1)..nodes.len().min(i + 3)]
-        .iter()
-        .map(|node| node.1);
-    let range =
-        values.clone().fold(f64::NEG_INFINITY, f64::max) - values.fold(f64::INFINITY, f64::min);
-    let crest = CREST * range;
     let curve = match least {
-        Some((curve, swing)) if beyond(&even, ends) > SWING * swing + crest + TOLERANCE.1 => {
-            // All cubics differ from it.
-            found.push(curve);
-            curve
-        }
+        Some((curve, swing)) if beyond(&even, ends) > SWING * swing + TOLERANCE.1 => curve,
         _ => even,
     };
-    let difference = |other: Cubic| (other.at(middle) - curve.at(middle)).abs();
+    let difference = |other: Cubic| (other.at(middle) - even.at(middle)).abs();
     let error = match (found.len(), degree) {
         (1, 0 | 1) => UNKNOWN * (ends[1].1 - ends[0].1).abs(),
         (1, _) => LOWER_DEGREE * windows(degree).map(difference).fold(0.0, f64::max),
