@@ -143,7 +143,7 @@ class Page {
     onEveryPosition: () => this.#design.set("/face_load", "positions", "mend"),
   });
   #pattern = new Pattern(byId("pattern"), { live: () => this.#current() });
-  #headline = new Headline(byId("headline"));
+  #headline = new Headline(byId("headline"), (detail) => this.#form?.inWords(detail) ?? detail);
   #geometry = new Geometry(byId("geometry"), {
     onPrint: () => void this.#print(),
     onPicture: (kind) => void this.#picture(kind),
@@ -189,7 +189,11 @@ class Page {
     setUpFiles(this.#design);
     setUpTheme(() => this.#restyle());
     setUpKey(() => this.#design.submission && this.#follower.follow(this.#design.submission, "open"));
-    const tabs = new Tabs({ panels: () => this.#panels, onLay: (large) => this.#form?.unfold(large) });
+    const tabs = new Tabs({
+      panels: () => this.#panels,
+      onLay: (large) => this.#form?.unfold(large),
+      onQuestion: (question) => this.#ask(question),
+    });
     this.tabs = tabs;
     /** @type {<T>(work: () => Promise<T>) => Promise<T>} */
     const fetched = (work) => patiently(work, (problem) => this.#onProblem(problem));
@@ -214,11 +218,23 @@ class Page {
     tabs.lay();
     this.#showProblem();
     this.#panels = this.#panelsOf(form, limits, tabs);
+    tabs.refresh();
     addEventListener("hashchange", async () => {
       const other = await fromFragment(location.hash);
       if (!other) return this.#unreadable();
       if (!same(other, this.#design.submission)) this.#design.replace(other, "open");
     });
+  }
+
+  /**
+   * Shows the numbers and the charts of a question.
+   *
+   * @param {string} question
+   */
+  #ask(question) {
+    this.#headline.ask(question);
+    this.#charts.ask(question);
+    byId("no-stress").hidden = question !== "strength" || this.#charts.answers || !this.#shown;
   }
 
   /**
@@ -424,7 +440,7 @@ class Page {
     const [problem, computed] = [this.#problem, this.#computed];
     if (!problem && !this.#problems.isShown) return;
     this.#drawing.refreshHoles((problem?.errors ?? []).map(({ pointer }) => pointer));
-    if (this.tabs?.current === "run-up") this.#panels["run-up"]?.refresh?.();
+    if (this.tabs?.shows("run-up")) this.#panels["run-up"]?.refresh?.();
     if (!problem) return this.#problems.hide();
     const isAnother = computed && !same(computed, this.#design.submission);
     const back = isAnother ? () => this.#design.replace(computed, "open") : null;
@@ -500,7 +516,7 @@ class Page {
     this.#charts.show(named, moving);
     const [curve] = shown.results.curves;
     const other = against && { name: against.name, curve: atTorqueOf(curve, against.results) };
-    this.#headline.show(curve, other, moving);
+    this.#headline.show({ curve, warnings: shown.results.warnings, other, draft: moving });
     // Numbers that change with every move cannot be read, and a new table lays the page out.
     if (moving) return;
     this.#brush.show(seen);
@@ -511,8 +527,10 @@ class Page {
       ...kept.map((each, i) => h("option", { value: i, selected: each === against }, nameBeside(curve, each))),
     );
     byId("against-label").hidden = kept.length === 0;
-    const tab = this.tabs?.current ?? "";
-    if (["export", "run-up", "population"].includes(tab)) this.#panels[tab]?.refresh?.();
+    const { tabs } = this;
+    if (!tabs) return;
+    this.#ask(tabs.question);
+    if (["export", "run-up", "population"].some((id) => tabs.shows(id))) tabs.refresh();
   }
 
   #restyle() {
@@ -683,6 +701,8 @@ class Page {
     const press = (id, work) => byId(id).addEventListener("click", () => void work());
     press("pin", () => this.#pin());
     press("share", () => this.#share());
+    press("to-study", () => byId("study").scrollIntoView());
+    press("ask-stress", () => this.#design.set("/stress", true, "mend"));
     press("whole", () => this.#follower.whole(this.#design.submission));
     press("undo", () => this.#design.undo());
     press("redo", () => this.#design.redo());

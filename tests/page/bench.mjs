@@ -481,7 +481,7 @@ export async function benchSteps(service) {
   });
 
   await daily.opened("a run-up is asked for, shown with both branches, and its resonances are named", async (page) => {
-    await tab(page, "run-up");
+    await tab(page, "speed");
     await page.evaluate(() => {
       window.said = [];
       new MutationObserver(() => window.said.push(document.querySelector("#run-up").innerText)).observe(
@@ -553,7 +553,7 @@ export async function benchSteps(service) {
       assert.ok(Math.abs(Number(hertz) / 5286 - 1) < 0.05, hertz);
       assert.match(await warning.locator("a").getAttribute("href"), /guides\/will-it-rattle/);
       // It stands beside the number that it betters, too.
-      await tab(page, "run-up");
+      await tab(page, "speed");
       const beside = page.locator("#run-up .outdated", { hasText: `it is about ${hertz} Hz` });
       await beside.waitFor();
       assert.match(
@@ -575,7 +575,7 @@ export async function benchSteps(service) {
         dynamics: { driving_speed_rpm: { from: 0, to: 8000, count: 161 } },
       });
       await settled(page);
-      await tab(page, "run-up");
+      await tab(page, "speed");
       await page.locator("#run-up .waterfall").waitFor();
       // 20 N m do not hold the teeth together: running up they part from 3,910 1/min (docs/will-it-rattle-or-whine.md),
       // running down they stay apart below.
@@ -635,7 +635,7 @@ export async function benchSteps(service) {
     async (page) => {
       await openDesign(page, service, PLASTIC);
       await settled(page);
-      await tab(page, "run-up");
+      await tab(page, "speed");
       await page.locator("#run-up-ask").click();
       // Twice the torque is more than these teeth bear, which nobody has asked for.
       await page.locator("#run-up .waterfall").waitFor();
@@ -648,7 +648,7 @@ export async function benchSteps(service) {
       await page.locator("#problem button", { hasText: "Show the field" }).waitFor();
       await page.reload();
       await page.locator("#problem").waitFor();
-      await tab(page, "run-up");
+      await tab(page, "speed");
       await page
         .locator("#run-up [role=status]", {
           hasText: /No run-up: “Largest output torque \(force table\)” is 17 N m, which would deflect these teeth/,
@@ -660,7 +660,7 @@ export async function benchSteps(service) {
   );
 
   await engine.opened("kept designs stand in one run-up", async (page) => {
-    await tab(page, "run-up");
+    await tab(page, "speed");
     await page.locator("#run-up-ask").click();
     await page.locator("#run-up .waterfall").waitFor();
     await settled(page);
@@ -676,9 +676,9 @@ export async function benchSteps(service) {
       .evaluateAll((paths) => new Set(paths.map((path) => getComputedStyle(path).stroke)).size);
     assert.equal(colors, 2);
     // A hidden one is not there.
-    await tab(page, "compare");
+    await tab(page, "designs");
     await page.locator("#table input[type=checkbox]").uncheck();
-    await tab(page, "run-up");
+    await tab(page, "speed");
     assert.doesNotMatch(await chart.textContent(), /10×r7\.5@34/);
   });
 
@@ -721,7 +721,7 @@ export async function benchSteps(service) {
       };
     });
     await open(page, service);
-    await tab(page, "run-up");
+    await tab(page, "speed");
     await page.locator("#run-up-ask").click();
     await page.locator("#run-up .waterfall").waitFor();
     assert.equal(await page.evaluate(() => window.audio.contexts), 0, "nothing until it is pressed");
@@ -739,7 +739,7 @@ export async function benchSteps(service) {
     assert.ok(part > 0.3 && part <= 1, String(part));
     await page.locator("#speed").fill("50");
     assert.notEqual((await loudest())[0], hz);
-    await tab(page, "curves");
+    await tab(page, "noise");
     assert.equal(await page.evaluate(() => window.audio.closed), 1, "silent when nobody looks");
   });
 
@@ -773,7 +773,7 @@ export async function benchSteps(service) {
 
   await daily.opened("designs are compared under names, field by field, and in the headline", async (page) => {
     await page.locator("#pin").click();
-    await tab(page, "compare");
+    await tab(page, "designs");
     const name = page.locator("#name-1");
     await name.fill("as built");
     await name.press("Enter");
@@ -782,13 +782,13 @@ export async function benchSteps(service) {
     assert.equal(await name.inputValue(), "as built");
     assert.match(await page.locator("#differences").innerText(), /Number of holes[\s\S]*8\s+10/i);
     assert.match(await page.locator("#answer-p-p .change").innerText(), /^[+−]\d/);
-    await tab(page, "curves");
+    await tab(page, "noise");
     assert.match(await page.locator("#charts .legend.shared").innerText(), /as built/);
-    await tab(page, "compare");
+    await tab(page, "designs");
     await page.locator("#table input[type=checkbox]").uncheck();
-    await tab(page, "curves");
+    await tab(page, "noise");
     assert.equal(await page.locator("#charts .legend.shared:not([hidden]) .entry").count(), 0);
-    await tab(page, "compare");
+    await tab(page, "designs");
     const { bytes } = await downloaded(page, () => page.locator("#table-csv").click());
     assert.match(bytes.toString(), /as built,flexible,115/);
   });
@@ -796,7 +796,7 @@ export async function benchSteps(service) {
   await opened(
     "four designs stand beside each other without scrolling, on a phone under names that stay, and the best of each line is marked",
     async (page) => {
-      await tab(page, "compare");
+      await tab(page, "designs");
       for (const count of ["8", "6", "5"]) {
         await page.locator("#pin").click();
         await changing(page, async () => (await field(page, `${HOLES}/count`)).fill(count));
@@ -899,7 +899,7 @@ export async function benchSteps(service) {
   );
 
   await daily.opened("the geometry report has what is checked first, on one page", async (page) => {
-    await tab(page, "geometry");
+    await tab(page, "data");
     const rows = await page.locator("#geometry").innerText();
     // By hand for z 50/50, m 2, a 100.5: ε 1.5116, j 0.3484, d_b 93.969; at A the driving root slides by 1 -
     // 22.2810/13.3564 = -0.668.
@@ -1106,7 +1106,7 @@ export async function benchSteps(service) {
     async (page) => {
       await (await field(page, "/stress")).check();
       await settled(page);
-      await tab(page, "compare");
+      await tab(page, "designs");
       const of = async (name) =>
         Number(
           await page
@@ -1117,7 +1117,7 @@ export async function benchSteps(service) {
         );
       const [tension, compression] = [await of("Root tension"), await of("Root compression")];
       assert.ok(tension > 10 && compression < -10, `${tension} ${compression}`);
-      await tab(page, "study");
+      await tab(page, "designs");
       await page.locator("#axis-0").selectOption("/pair/driven/blank/holes/count");
       await page.locator("#axis-0-values").fill("8, 10");
       await page.locator("#axis-1").selectOption("/pair/driving/blank/web/thickness_mm");
@@ -1137,7 +1137,7 @@ export async function benchSteps(service) {
   );
 
   await opened("a study varies any field, and shows two columns", async (page) => {
-    await tab(page, "study");
+    await tab(page, "designs");
     await page.locator("#axis-0").selectOption("/pair/driving/tip_relief/start/radial_length_mm");
     await page.locator("#axis-0-values").fill("1, 1.5");
     await page.locator("#axis-1").selectOption("/output_torques_n_m");
@@ -1166,7 +1166,7 @@ export async function benchSteps(service) {
         resolution: { positions_per_mesh_period: 10 },
       });
       await settled(page);
-      await tab(page, "study");
+      await tab(page, "designs");
       const offered = await page.locator("#axis-0 option").evaluateAll((options) => options.map(({ value }) => value));
       assert.deepEqual(
         [await page.locator("#axis-0").inputValue(), await page.locator("#axis-0-values").inputValue()],
@@ -1211,7 +1211,7 @@ export async function benchSteps(service) {
   );
 
   await opened("a search keeps a stress and a mass, and asks for the stress by itself", async (page) => {
-    await tab(page, "study");
+    await tab(page, "designs");
     await page.locator("#search summary").click();
     await page.locator("#variable-0").selectOption(`${HOLES}/radius_mm`);
     await page.locator("#variable-1").selectOption("");
@@ -1246,7 +1246,7 @@ export async function benchSteps(service) {
     async (page, context) => {
       const before = await answer(page, "p-p");
       await page.locator("#pin").click();
-      await tab(page, "compare");
+      await tab(page, "designs");
       await page.locator("#name-1").fill("as built");
       await page.locator("#name-1").press("Enter");
       await context.setOffline(true);
@@ -1260,7 +1260,7 @@ export async function benchSteps(service) {
       // What was asked for after a reload is what was asked for before.
       await page.reload();
       await named(page, "8×");
-      await tab(page, "compare");
+      await tab(page, "designs");
       await page.waitForFunction(() => document.querySelector("#name-1")?.value === "as built");
       assert.deepEqual(
         [await answer(page, "p-p"), (await page.locator("#answer-p-p .change").innerText()).slice(0, 1)],
@@ -1301,7 +1301,7 @@ export async function benchSteps(service) {
     async (page) => {
       await (await field(page, "/output_torques_n_m")).fill("150");
       await settled(page);
-      await tab(page, "sweep");
+      await tab(page, "noise");
       assert.deepEqual(await Promise.all(["from", "to"].map((end) => page.locator(`#sweep-${end}`).inputValue())), [
         "15",
         "300",
@@ -1318,12 +1318,12 @@ export async function benchSteps(service) {
       await changing(page, () => mark.locator("button").click());
       assert.ok(await mark.isHidden());
       assert.equal((await designOf(page)).pair.driven.blank.holes.radius_mm, 7.5);
-      await tab(page, "curves");
-      await tab(page, "sweep");
+      await tab(page, "noise");
+      await tab(page, "noise");
       assert.equal(await page.locator("#sweep-from").inputValue(), "25", "what was typed stays");
       // A study names what it varies, offers no field that a design cannot have by itself, and says the mass that best
       // is judged by.
-      await tab(page, "study");
+      await tab(page, "designs");
       const offered = await page.locator("#axis-0 option").allInnerTexts();
       assert.equal(new Set(offered).size, offered.length, "nothing is offered twice");
       assert.ok(
@@ -1350,8 +1350,8 @@ export async function benchSteps(service) {
       // Several patterns have fields of their own.
       await (await field(page, HOLES)).selectOption({ index: 2 });
       await settled(page);
-      await tab(page, "curves");
-      await tab(page, "study");
+      await tab(page, "noise");
+      await tab(page, "designs");
       assert.equal(await page.locator(`#axis-0 option[value="${HOLES}/radius_mm"]`).count(), 0);
       assert.equal(
         await page.locator(`#axis-0 option[value="${HOLES}/0/radius_mm"]`).innerText(),
@@ -1443,7 +1443,7 @@ export async function benchSteps(service) {
       await changing(page, () => page.locator("details.tool[open] button", { hasText: "Draw teeth" }).click());
       await (await field(page, "/output_torques_n_m")).fill("150");
       await settled(page);
-      await tab(page, "population");
+      await tab(page, "robustness");
       assert.equal(await page.locator("#population-torques").inputValue(), "60, 105, 150, 210");
       await page.locator("#population-torques").fill("150");
       await page.locator("#population-size").fill("8");
@@ -1460,7 +1460,7 @@ export async function benchSteps(service) {
         await page.locator("#population .influences tbody").innerText(),
         /Amount of tip relief, driving gear/,
       );
-      await tab(page, "study");
+      await tab(page, "designs");
       await page.locator("#search summary").click();
       await page.locator("#variable-0").selectOption("/pair/driving/tip_relief/amount_um");
       await page.locator("#variable-1").selectOption("");
@@ -1492,7 +1492,7 @@ export async function benchSteps(service) {
       const pair = { ...LONG.pair, driving: { ...LONG.pair.driving, tooth_count: 24 }, center_distance_mm: 107.25 };
       await openDesign(page, service, { ...LONG, pair, output_torques_n_m: [150], stress: true });
       await settled(page);
-      await tab(page, "sweep");
+      await tab(page, "noise");
       asked.length = 0;
       await page.locator("#sweep button[type=submit]").click();
       await page.waitForFunction(
@@ -1524,7 +1524,7 @@ export async function benchSteps(service) {
   );
 
   await opened("a population says how many of its members cannot be computed, and why most of these", async (page) => {
-    await tab(page, "population");
+    await tab(page, "robustness");
     await page.locator("#population-size").fill("24");
     await page.locator("#population-torques").fill("115");
     // Case 2 has 0.35 mm of backlash at 100.5 mm: half a millimeter less is too near.
@@ -1627,7 +1627,7 @@ export async function benchSteps(service) {
       // 23 and 61 teeth: every tooth has met every other after 1403 mesh periods, of 10 positions each.
       await openDesign(page, service, { ...LONG, output_torques_n_m: [150], stress: true });
       await settled(page);
-      await tab(page, "population");
+      await tab(page, "robustness");
       await page.waitForFunction(() =>
         /A member has 14030 positions/.test(document.querySelector("#population").innerText),
       );
@@ -1671,7 +1671,7 @@ export async function benchSteps(service) {
       };
       await openDesign(page, service, { ...LONG, pair, output_torques_n_m: [150] });
       await settled(page);
-      await tab(page, "population");
+      await tab(page, "robustness");
       // Each tooth meets each other after 27 times 79 mesh periods, of 10 positions each: more than 20,000.
       const told = page.locator("#population-ahead");
       await told

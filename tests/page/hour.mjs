@@ -156,7 +156,7 @@ export async function hourSteps(service) {
       (await field(page, "/pair/driving/profile_modifications/0")).selectOption({ label: "Crowning" }),
     );
     await headline();
-    await tab(page, "sweep");
+    await tab(page, "noise");
     await typed(page.locator("#sweep-from"), 25);
     await typed(page.locator("#sweep-to"), 300);
     await page.locator("#sweep button[type=submit]").click();
@@ -172,7 +172,7 @@ export async function hourSteps(service) {
 
     // Two designs under names.
     await page.locator("#pin").click();
-    await tab(page, "compare");
+    await tab(page, "designs");
     await page.locator("#name-1").fill("crowned by 5");
     await page.locator("#name-1").press("Enter");
     await type("/pair/driving/profile_modifications/0/amount_um", 8);
@@ -182,7 +182,7 @@ export async function hourSteps(service) {
     );
 
     // A study, and a search.
-    await tab(page, "study");
+    await tab(page, "designs");
     await page.locator("#axis-0").selectOption(`${blank}/web/thickness_mm`);
     await typed(page.locator("#axis-0-values"), "6, 8, 10");
     await page.locator("#study-run").click();
@@ -227,7 +227,7 @@ export async function hourSteps(service) {
     await headline();
     await answered(await page.locator("details.tool[open] [role=status]").last().innerText());
     await changing(page, () => page.locator("#undo").click());
-    await tab(page, "population");
+    await tab(page, "robustness");
     await typed(page.locator("#population-size"), 80);
     await typed(page.locator("#population-torques"), "150");
     await page.locator("#population button[type=submit]").click();
@@ -236,7 +236,7 @@ export async function hourSteps(service) {
     await answered((await page.locator("#population .out p").first().innerText()).split(";")[0]);
 
     // Over speed.
-    await tab(page, "run-up");
+    await tab(page, "speed");
     await page.locator("#run-up-ask").click();
     await page.locator("#run-up .waterfall").waitFor();
     await settled(page);
@@ -256,7 +256,7 @@ export async function hourSteps(service) {
       Object.values(sizes).every((bytes) => bytes > 300),
       JSON.stringify(sizes),
     );
-    await tab(page, "geometry");
+    await tab(page, "data");
     await page.evaluate(() => {
       window.print = () => {};
     });

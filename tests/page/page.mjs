@@ -173,7 +173,7 @@ await engine.step("lists of holes and slots are opened, changed and computed", a
 });
 
 await opened("several designs and methods stand in one plot", async (page) => {
-  await tab(page, "compare");
+  await tab(page, "designs");
   await page.locator("#methods").click();
   await page.waitForFunction(() => document.querySelectorAll("#table thead th").length === 5);
   assert.equal(await page.locator("#charts .legend.shared:not([hidden]) .entry").count(), 4);
@@ -182,14 +182,14 @@ await opened("several designs and methods stand in one plot", async (page) => {
 });
 
 await opened("a sweep marks the torque of the least peak-to-peak", async (page) => {
-  await tab(page, "sweep");
+  await tab(page, "noise");
   await page.locator("#sweep button[type=submit]").click();
   await page.locator("#sweep .scatter .strong").waitFor();
   assert.match(await page.locator("#sweep .out").innerText(), /Least peak-to-peak of these torques: \d/);
 });
 
 await daily.opened("a study runs and shows its table and its front", async (page) => {
-  await tab(page, "study");
+  await tab(page, "designs");
   await page.locator("#axis-0-values").fill("6, 10, 40");
   await page.locator("#study-run").click();
   await ends(page, "#study-state", /3 of 3 designs, successful/);
@@ -204,7 +204,7 @@ await daily.opened("a study runs and shows its table and its front", async (page
 });
 
 await opened("a search finds a design, shows how it came to it, and opens it", async (page) => {
-  await tab(page, "study");
+  await tab(page, "designs");
   await page.locator("#search summary").click();
   await page.locator("#variable-0").selectOption("/pair/driving/tip_relief/amount_um");
   await page.locator("#variable-1").selectOption("");
@@ -230,7 +230,7 @@ await opened("a search finds a design, shows how it came to it, and opens it", a
 await opened(
   "a search for two goals ends with a front, whose points open their designs by keys and by a click, beside the design it began with",
   async (page) => {
-    await tab(page, "study");
+    await tab(page, "designs");
     await page.locator("#search summary").click();
     await page.locator("#variable-0").selectOption(`${HOLES}/radius_mm`);
     await page.locator("#variable-1").selectOption("");
@@ -281,7 +281,7 @@ await opened(
 );
 
 await opened("a population shows how good the pairs will be that are made, and opens one of them", async (page) => {
-  await tab(page, "population");
+  await tab(page, "robustness");
   await page.locator("#population-size").fill("24");
   await page.locator("#population-torques").fill("60, 115");
   await page.locator("#law-0").selectOption("/pair/center_distance_mm");
@@ -491,7 +491,7 @@ for (const [width, height] of WIDTHS) {
             );
           assert.deepEqual(cut, [], await each.innerText());
         }
-        await tab(page, "curves");
+        await tab(page, "noise");
         if (process.argv.includes("--screenshots")) {
           const name = `${width}-${colorScheme}`;
           await page.locator("#position").fill("0.3");

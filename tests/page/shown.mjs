@@ -133,7 +133,7 @@ export async function shownSteps(service) {
       const reading = (words) => page.locator("#form .field-error button", { hasText: words });
       await page.locator("#form .field-error", { hasText: "two ways: 100.6 or 100600" }).waitFor();
       await settled(page);
-      await tab(page, "sweep");
+      await tab(page, "noise");
       await page.locator("#sweep-to").fill("1.500");
       await page.locator("#sweep-run").click();
       await page.locator("#sweep-state", { hasText: "two ways" }).waitFor();
@@ -150,7 +150,7 @@ export async function shownSteps(service) {
       await distance.press("ArrowDown");
       assert.equal(await distance.inputValue(), "100.500");
       await settled(page);
-      await tab(page, "sweep");
+      await tab(page, "noise");
       await page.locator("#sweep-from").fill("12,5");
       await page.locator("#sweep-to").fill("112,5");
       await page.locator("#sweep-run").click();
@@ -325,11 +325,11 @@ export async function shownSteps(service) {
     await (
       await marked({ ...curves, drawing: "#drawing .forces > *" }, typing("/output_torques_n_m", "130"))
     )();
-    await tab(page, "compare");
+    await tab(page, "designs");
     await (
       await marked({ compare: "#table .live" }, typing("/output_torques_n_m", "140"))
     )();
-    await tab(page, "geometry");
+    await tab(page, "data");
     await (
       await marked({ geometry: "#geometry td:not(.unit)" }, typing("/output_torques_n_m", "150"))
     )();
@@ -352,7 +352,7 @@ export async function shownSteps(service) {
     );
 
     await open(page, service);
-    await tab(page, "run-up");
+    await tab(page, "speed");
     await page.locator("#run-up-ask").click();
     await page.locator("#run-up .waterfall").waitFor();
     await settled(page);
@@ -497,7 +497,7 @@ export async function shownSteps(service) {
       assert.equal(asked.at(-1), "three_dimensional");
       const whole = await answer(page, "p-p");
       assert.ok(Math.abs(whole - projected) < 0.1 * whole, `${projected} and ${whole} µm`);
-      await tab(page, "compare");
+      await tab(page, "designs");
       assert.match(
         await page.locator("#table thead").innerText(),
         /three dimensional[\s\S]*three dimensional projected/,
@@ -526,18 +526,18 @@ export async function shownSteps(service) {
       await changing(page, async () => (await field(page, `${HOLES}/radius_mm`)).fill("6"));
       await changed(page, "p-p", from);
       await page.locator("#pin").click();
-      await tab(page, "sweep");
+      await tab(page, "noise");
       await page.locator("#sweep-from").fill("20");
       await page.locator("#sweep-run").click();
       await page.locator("#sweep .scatter .strong").waitFor();
       const found = await page.locator("#sweep .out p").first().innerText();
-      await tab(page, "population");
+      await tab(page, "robustness");
       await page.locator("#population-size").fill("24");
       await page.locator("#population-torques").fill("60 115");
       await page.locator("#population button[type=submit]").click();
       await ends(page, "#population-state", /24 of 24 members, successful/);
       const good = await page.locator("#population .out p").first().innerText();
-      await tab(page, "study");
+      await tab(page, "designs");
       await page.locator("#axis-0-values").fill("6 9");
       await page.locator("#study-run").click();
       await ends(page, "#study-state", /2 of 2 designs, successful/);
@@ -554,7 +554,7 @@ export async function shownSteps(service) {
       await page.waitForFunction(() => document.querySelector("#undo").disabled === false);
       assert.equal(await page.locator("#against option").count(), 0);
       await release();
-      await tab(page, "compare");
+      await tab(page, "designs");
       assert.equal(await page.locator("#table thead textarea").count(), 2);
       // A third one has a color of its own, as have a tenth and all between.
       for (let i = 0; i < 8; i += 1) await page.locator("#pin").click();
@@ -611,7 +611,7 @@ export async function shownSteps(service) {
     await tab(page, "export");
     const svg = (await downloaded(page, () => page.locator("[data-download=svg]").click())).bytes.toString();
     assert.match(svg, /Spectrum of the transmission error in dB re 0\.001 µm/);
-    await tab(page, "curves");
+    await tab(page, "noise");
     await axe(page);
     const heights = await page.evaluate((text) => {
       const document_ = new DOMParser().parseFromString(text, "image/svg+xml");
@@ -642,7 +642,7 @@ export async function shownSteps(service) {
       const table = await downloaded(page, () => page.locator("[data-download=csv]").click());
       assert.match(table.bytes.toString(), /^output_torque_n_m;mesh_position;[^\r]*\r\n115;0;-?\d+(,\d+)?;[^.]*\r\n/);
       await page.locator("#decimal-commas").uncheck();
-      await tab(page, "curves");
+      await tab(page, "noise");
       const pages = async () =>
         [...(await page.pdf({ preferCSSPageSize: true })).toString("latin1").matchAll(/\/Type\s*\/Page\b/g)].length;
       assert.equal(await pages(), 1);
@@ -708,7 +708,7 @@ export async function shownSteps(service) {
   await opened(
     "teeth are said to be drawn as a production makes them, where some are beyond their class",
     async (page) => {
-      await tab(page, "population");
+      await tab(page, "robustness");
       const words = await page.locator("#population").innerText();
       assert.doesNotMatch(words, /drawn within the class/);
       assert.match(words, /beyond the total pitch tolerance/);
@@ -803,7 +803,7 @@ export async function shownSteps(service) {
       const pressed = async (pointer) => changing(page, async () => (await field(page, pointer)).check());
       const computed = async () =>
         assert.ok(await page.locator("#problem").isHidden(), await page.locator("#problem").innerText());
-      await tab(page, "geometry");
+      await tab(page, "data");
       const backlash = () => page.locator("#geometry tr", { hasText: "Normal backlash" }).first().innerText();
       // Teeth 50 um thinner in the normal section; the same by a span over six teeth: 16.93700 mm a module, less 50 um
       // cos 20 degrees.

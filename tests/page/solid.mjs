@@ -197,7 +197,7 @@ export async function solidSteps(service) {
       return figure({ title: "", x: "", y: "", cells }).frame.x[1];
     });
     assert.equal(Math.round(right), 500);
-    await tab(page, "curves");
+    await tab(page, "noise");
     // The flanks, as the service tells them of a job of this design.
     await page.locator("#chart-pattern button").click();
     await page.locator("#chart-pattern svg").nth(1).waitFor();
@@ -265,7 +265,7 @@ export async function solidSteps(service) {
     await changing(page, () => page.locator("#undo").click());
     assert.match(await page.locator("#chart-pressure").innerText(), /at every position/);
     assert.ok(await page.locator("#chart-pressure .canvas").isHidden());
-    await tab(page, "geometry");
+    await tab(page, "data");
     assert.match(await page.locator("#geometry").innerText(), /Overlap ratio ε_β\s+0\.\d{4}/);
   });
 
@@ -278,7 +278,7 @@ export async function solidSteps(service) {
       };
       await openDesign(page, service, { ...HELICAL, pair });
       await settled(page);
-      await tab(page, "study");
+      await tab(page, "designs");
       await page.locator("#search summary").click();
       const [first, second, third] = await Promise.all(
         [0, 1, 2].map((i) =>
@@ -315,8 +315,8 @@ export async function solidSteps(service) {
       // Another design has other fields; what has been chosen stays where it can.
       await page.locator("#variable-1").selectOption("/pair/driven/blank/web/thickness_mm");
       await changing(page, async () => (await field(page, "/pair/driven/blank/holes")).selectOption({ index: 0 }));
-      await tab(page, "curves");
-      await tab(page, "study");
+      await tab(page, "noise");
+      await tab(page, "designs");
       assert.equal(await page.locator("#variable-1").inputValue(), "/pair/driven/blank/web/thickness_mm");
     },
   );

@@ -37,7 +37,7 @@ const Plot = /** @type {any} */ (uPlot);
 
 /**
  * A panel with its elements and what is drawn in it: `shape` is what its plot was made for, `seen` says whether it is
- * in sight, and `late` whether it has to be drawn once it is.
+ * in sight, and `late` whether it has to be drawn once it is. It is `absent` where no design has what it shows.
  *
  * @typedef {object} Own
  * @property {HTMLElement} canvas
@@ -52,6 +52,7 @@ const Plot = /** @type {any} */ (uPlot);
  * @property {number} span
  * @property {boolean} seen
  * @property {boolean} late
+ * @property {boolean} absent
  * @property {boolean} empty
  * @property {FaceLoad | null} face
  * @property {OrderName[]} names
@@ -74,7 +75,7 @@ const REFERENCE = 0.001;
 /** Lines below this part of the largest are too short to be named, unless levels are drawn. */
 const SEEN = 0.02;
 /** @type {Panel} */
-const SPECTRUM = { id: "spectrum", title: "Spectrum of the transmission error", unit: "µm" };
+const SPECTRUM = { id: "spectrum", question: "noise", title: "Spectrum of the transmission error", unit: "µm" };
 const X_TITLE = "mesh position in mesh periods";
 const ORDER_TITLE = "order per revolution of the driven gear";
 
@@ -127,6 +128,8 @@ export class Charts {
    * @type {NamedDesign[]}
    */
   shown = [];
+  /** The question whose charts are shown. */
+  #question = "noise";
   /** Whether the spectrum has levels in place of amplitudes. */
   decibels = false;
 
@@ -159,7 +162,7 @@ export class Charts {
         {
           className: "chart",
           id: `chart-${panel.id}`,
-          hidden: isRare(panel),
+          hidden: isRare(panel) || panel.question !== this.#question,
           aria: { label: panel.title, describedby: words.id },
         },
         h(
@@ -192,6 +195,7 @@ export class Charts {
         width: null,
         seen: true,
         late: false,
+        absent: isRare(panel),
       });
     }
     new ResizeObserver(() => this.#resize()).observe(place);
@@ -215,6 +219,33 @@ export class Charts {
       h("option", { value: "um" }, "µm"),
       h("option", { value: "db" }, `dB re ${REFERENCE} µm`),
     );
+  }
+
+  /**
+   * Shows the charts of a question, and hides the others.
+   *
+   * @param {string} question
+   */
+  ask(question) {
+    this.#question = question;
+    for (const panel of this.#panels.values()) this.#place(panel, panel.absent);
+    this.#resize();
+  }
+
+  /** True if a chart of the question is shown. */
+  get answers() {
+    return [...this.#panels.values()].some(({ question, absent }) => question === this.#question && !absent);
+  }
+
+  /**
+   * Shows a panel where it has something to show and answers the question.
+   *
+   * @param {Drawn} panel
+   * @param {boolean} absent
+   */
+  #place(panel, absent) {
+    panel.absent = absent;
+    panel.figure.hidden = absent || panel.question !== this.#question;
   }
 
   /** Draws everything anew, because the page looks different. */
@@ -247,7 +278,7 @@ export class Charts {
 
   /** @param {Drawn} panel */
   #wordsOf(panel) {
-    if (panel.figure.hidden) return "";
+    if (panel.absent) return "";
     if (panel.id === "spectrum") return wordsOfSpectrum(this.shown);
     const face = panel.along ? faceOf(this.shown[0].results.curves[0]) : null;
     return face ? wordsOfFace(face) : wordsOf(panel, this.shown);
@@ -290,7 +321,7 @@ export class Charts {
   figures({ width = 760, height = 300, ids = null } = {}) {
     const colors = looks();
     const shown = [...this.#panels.values()].filter(
-      (panel) => !panel.figure.hidden && !panel.empty && (!ids || ids.includes(panel.id)),
+      (panel) => !panel.absent && !panel.empty && (!ids || ids.includes(panel.id)),
     );
     return shown.map((panel) => {
       const common = { title: panel.title, y: `${panel.title} in ${panel.unit}`, colors, width, height, heading: true };
@@ -359,7 +390,7 @@ export class Charts {
     const all = linesOf(panel, this.shown);
     const crowded = all.length > 0 && this.#crowded(panel, all);
     const wanted = crowded && panel.whole ? linesOf(panel, this.shown, true) : all;
-    panel.figure.hidden = wanted.length === 0;
+    this.#place(panel, wanted.length === 0);
     if (!wanted.length) return;
     panel.empty = !wanted.some(({ values }) => values.some((value) => value !== null));
     panel.canvas.hidden = panel.empty;
@@ -520,7 +551,7 @@ export class Charts {
    */
   #face(panel, colors) {
     const face = faceOf(this.shown[0].results.curves[0]);
-    panel.figure.hidden = !face;
+    this.#place(panel, !face);
     if (!face) return;
     panel.below.hidden = face.every;
     panel.legend.replaceChildren(
@@ -654,7 +685,7 @@ export class Charts {
    */
   #spectrum(panel, colors) {
     const wanted = this.#spectra();
-    panel.figure.hidden = wanted.length === 0;
+    this.#place(panel, wanted.length === 0);
     if (!wanted.length) return;
     const last = this.#lastOrder();
     panel.names = this.#names(wanted);

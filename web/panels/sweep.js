@@ -65,6 +65,7 @@ export function sweep(place, design) {
     question.cancel,
   );
   place.replaceChildren(
+    h("h3", {}, "Transmission error over torque"),
     note("At which torque is the transmission error flattest? A tip relief suits one torque; this shows which."),
     form,
     question.state,

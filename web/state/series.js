@@ -20,6 +20,7 @@ import { fixed, number } from "./numbers.js";
  *
  * @typedef {object} Panel
  * @property {string} id
+ * @property {"noise" | "contact" | "strength"} question the question that it answers
  * @property {string} title
  * @property {string} unit
  * @property {(curve: Curve) => (number | null)[]} [of]
@@ -50,15 +51,17 @@ const micro = (values) => values.map((value) => value * 1e-6);
 
 /** @type {Panel[]} */
 export const PANELS = [
-  { id: "ste", title: "Transmission error", unit: "µm", of: (curve) => curve.transmission_error_um },
+  { id: "ste", question: "noise", title: "Transmission error", unit: "µm", of: (curve) => curve.transmission_error_um },
   {
     id: "stiffness",
+    question: "noise",
     title: "Mesh stiffness, tangent",
     unit: "N/µm",
     of: (curve) => micro(curve.mesh_stiffness_tangent_n_per_m),
   },
   {
     id: "share",
+    question: "contact",
     title: "Load share",
     unit: "%",
     ofLive: shares,
@@ -67,14 +70,15 @@ export const PANELS = [
   },
   {
     id: "pressure",
+    question: "contact",
     title: "Peak contact pressure",
     unit: "MPa",
     of: (curve) => curve.peak_contact_pressure_mpa,
     gaps: "No line where a sharp tip corner carries: the pressure has no limit there. More tip relief avoids it.",
     none: "No line: a sharp tip corner carries at every position, and the pressure has no limit there. A rounding of the tip edges or more tip relief gives it one.",
   },
-  { id: "face", title: "Load along the face", unit: "N/mm", along: "z", rare: true },
-  { id: "stress", title: "Largest stress", unit: "MPa", ofLive: stresses, rare: true },
+  { id: "face", question: "contact", title: "Load along the face", unit: "N/mm", along: "z", rare: true },
+  { id: "stress", question: "strength", title: "Largest stress", unit: "MPa", ofLive: stresses, rare: true },
 ];
 
 /** Pairs so far apart are never in contact together, and share a look. */

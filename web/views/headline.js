@@ -1,27 +1,47 @@
 // @ts-check
-// The answers in a line: what a designer looks at first, each with its change against the design that it is compared
-// with.
+// The answers in a line: four numbers for each question, each with its change against the design that it is compared
+// with, and with a mark where a warning limits what it says.
 
 import { button, h } from "../draw/dom.js";
 import { fixed, number } from "../state/numbers.js";
 import { inCurve, quantityOf } from "../state/quantities.js";
 
-/** @import { Curve, GearName } from "../state/documents.js" */
+/** @import { Curve, GearName, Warning } from "../state/documents.js" */
 
 /** @typedef {import("../state/documents.js").Schemas["LargestWhere"]} Where */
 
 /**
  * @typedef {object} HeadlineAnswer
  * @property {string} id
+ * @property {string[]} questions the tabs under which it stands
  * @property {string} name
  * @property {string} unit
- * @property {boolean} [some]
- * @property {string} [quantity] which of the service it is
- * @property {(curve: Curve) => number | null} [of] how it is read where it is none of the service: less is better then
+ * @property {boolean} [some] not every method computes it
+ * @property {string} [quantity] its name in the service
+ * @property {(curve: Curve) => number | null} [of] its value where the service has no name for it: less is better then
  * @property {(curve: Curve) => Where | null | undefined} [where]
  * @property {(value: number) => string} print
  * @property {string} about
  */
+
+/**
+ * Marks of numbers: the warning that sets each, and the answers that it concerns. A marked number is never called
+ * better or worse than another one.
+ *
+ * @type {{ code: string, mark: string, of: string[] }[]}
+ */
+const MARKS = [
+  { code: "few_positions", mark: "few positions", of: ["p-p", "h-n", "h-z", "k"] },
+  { code: "partial_span", mark: "part of the period", of: ["p-p", "mean", "h-n", "h-z"] },
+  { code: "projection_doubtful", mark: "estimate", of: ["p-p", "h-n"] },
+  { code: "holes_not_seen", mark: "without holes", of: ["p-p", "mean", "k", "h-n"] },
+  { code: "web_outside_plane_model", mark: "estimate", of: ["p-p", "mean", "k", "h-n"] },
+  { code: "tip_corner_contact", mark: "corner", of: ["pressure"] },
+  { code: "pressure_at_kink", mark: "kink", of: ["pressure"] },
+  { code: "contact_beyond_elasticity", mark: "beyond elasticity", of: ["pressure"] },
+  { code: "rim_inertia_on_hub", mark: "estimate", of: ["natural-frequency"] },
+  { code: "motion_unbounded", mark: "no damping", of: ["natural-frequency"] },
+];
 
 /**
  * The part of its span in which one pair of teeth carries alone, in percent.
@@ -71,14 +91,24 @@ function placed({ mesh_position, pair_offset, driving_diameter_mm, driven_diamet
 }
 
 /**
- * What each answer is: its name, unit, which quantity it is, how it is printed, and what a visitor asks of it.
- * `some` that not every method tells it, `where` the place at which it stands.
+ * The largest stress of one kind of place over the span, of the given gears; null where no stress is computed.
+ *
+ * @type {(curve: Curve, place: "root_mpa" | "hole_mpa", gears: GearName[]) => number | null}
+ */
+const stressAt = ({ statistics: { stress } }, place, gears) => {
+  const values = gears.flatMap((gear) => stress?.[gear][place] ?? []);
+  return values.length ? Math.max(...values) : null;
+};
+
+/**
+ * The answers: name, unit, quantity, print, and a sentence for who asks.
  *
  * @type {HeadlineAnswer[]}
  */
 export const ANSWERS = [
   {
     id: "p-p",
+    questions: ["noise", "robustness", "designs"],
     name: "STE p-p",
     unit: "µm",
     quantity: "transmission_error_um.peak_to_peak",
@@ -88,6 +118,7 @@ export const ANSWERS = [
   },
   {
     id: "mean",
+    questions: ["contact", "designs"],
     name: "STE mean",
     unit: "µm",
     quantity: "transmission_error_um.mean",
@@ -97,6 +128,7 @@ export const ANSWERS = [
   },
   {
     id: "k",
+    questions: ["noise", "speed", "designs"],
     name: "k mean",
     unit: "N/µm",
     quantity: "mesh_stiffness_tangent_n_per_m.mean",
@@ -105,6 +137,7 @@ export const ANSWERS = [
   },
   {
     id: "face",
+    questions: ["contact"],
     name: "K_Hβ",
     unit: "",
     some: true,
@@ -115,6 +148,7 @@ export const ANSWERS = [
   },
   {
     id: "h-n",
+    questions: ["noise", "robustness"],
     name: "H_N",
     unit: "µm",
     quantity: "hole_order_um",
@@ -124,6 +158,7 @@ export const ANSWERS = [
   },
   {
     id: "h-z",
+    questions: ["noise", "speed", "robustness"],
     name: "H_Z2",
     unit: "µm",
     quantity: "mesh_order_um",
@@ -132,6 +167,7 @@ export const ANSWERS = [
   },
   {
     id: "share",
+    questions: ["contact"],
     name: "One pair alone",
     unit: "%",
     some: true,
@@ -141,6 +177,7 @@ export const ANSWERS = [
   },
   {
     id: "pressure",
+    questions: ["contact", "strength", "designs"],
     name: "Max pressure",
     unit: "MPa",
     quantity: "peak_contact_pressure_mpa",
@@ -150,7 +187,18 @@ export const ANSWERS = [
       "The largest contact pressure. Where a sharp corner touches at any position there is none, because pressure has no limit there.",
   },
   {
+    id: "pitch-pressure",
+    questions: ["contact"],
+    name: "At the pitch point",
+    unit: "MPa",
+    quantity: "pitch_point_pressure_mpa",
+    print: (value) => fixed(value, 0),
+    about:
+      "Hertz's pressure at the working pitch point, the full load on the common face and on one pair of teeth. None where the pitch point lies outside the path of contact.",
+  },
+  {
     id: "stress",
+    questions: ["strength"],
     name: "Max stress",
     unit: "MPa",
     of: (curve) => (curve.statistics.stress ? largestStress(curve).value : null),
@@ -158,6 +206,49 @@ export const ANSWERS = [
     print: (value) => fixed(value, 1),
     about:
       "The largest von Mises stress at the roots and holes of both gears. Computed where Stress is on, under Load and method.",
+  },
+  ...[
+    {
+      id: "root-driving",
+      name: "Root, driving",
+      of: (/** @type {Curve} */ curve) => stressAt(curve, "root_mpa", ["driving"]),
+    },
+    {
+      id: "root-driven",
+      name: "Root, driven",
+      of: (/** @type {Curve} */ curve) => stressAt(curve, "root_mpa", ["driven"]),
+    },
+    {
+      id: "hole-edge",
+      name: "Edges of holes",
+      of: (/** @type {Curve} */ curve) => stressAt(curve, "hole_mpa", ["driving", "driven"]),
+      some: true,
+    },
+  ].map((each) => ({
+    ...each,
+    questions: ["strength"],
+    unit: "MPa",
+    print: (/** @type {number} */ value) => fixed(value, 1),
+    about: "The largest von Mises stress there over the span.",
+  })),
+  {
+    id: "natural-frequency",
+    questions: ["speed"],
+    name: "Natural frequency",
+    unit: "Hz",
+    of: ({ dynamics }) => dynamics?.natural_frequency_hz ?? null,
+    print: (value) => fixed(value, 0),
+    about: "The lowest natural frequency of the pair on its mesh. A run-up computes it.",
+  },
+  {
+    id: "motion",
+    questions: ["speed"],
+    name: "Largest motion",
+    unit: "µm",
+    some: true,
+    quantity: "dynamic_transmission_error_um.peak_to_peak",
+    print: (value) => fixed(value, 2),
+    about: "The largest peak-to-peak dynamic transmission error over the speeds of the run-up.",
   },
 ];
 
@@ -178,19 +269,27 @@ export function valueOf({ quantity, of }, curve) {
  *
  * @type {(answer: HeadlineAnswer) => boolean | null}
  */
-function isLessBetter({ quantity }) {
+function isLessBetter({ id, quantity }) {
+  if (id === "natural-frequency") return null;
   const better = quantity ? quantityOf(quantity).better : "smaller";
   return better ? better === "smaller" : null;
 }
 
 /**
- * @typedef {{ tile: HTMLElement, value: HTMLElement, change: HTMLElement, name: HTMLElement, about: HTMLElement }} Tile
+ * @typedef {{ tile: HTMLElement, value: HTMLElement, change: HTMLElement, mark: HTMLElement, name: HTMLElement, about:
+ *   HTMLElement }} Tile
  */
 
 /** The answers in `place`. */
 export class Headline {
-  /** @param {HTMLElement} place */
-  constructor(place) {
+  #question = "noise";
+
+  /**
+   * @param {HTMLElement} place
+   * @param {(detail: string) => string} inWords the sentence of a warning with the fields named as in the form
+   */
+  constructor(place, inWords) {
+    this.inWords = inWords;
     /** @type {Map<string, Tile>} */
     this.tiles = new Map();
     for (const answer of ANSWERS) {
@@ -202,36 +301,61 @@ export class Headline {
         aria: { expanded: "false", controls: about.id },
         title: answer.about,
       });
+      const mark = button("", () => this.#tell(answer.id), { className: "mark", aria: { controls: about.id } });
+      mark.hidden = true;
       const tile = h(
         "div",
-        { className: "tile", hidden: answer.some === true, id: `answer-${answer.id}` },
+        { className: "tile", hidden: true, id: `answer-${answer.id}` },
         name,
-        h("span", {}, value, h("small", {}, ` ${answer.unit}`)),
+        h("span", {}, value, h("small", {}, ` ${answer.unit}`), " ", mark),
         change,
       );
       place.append(tile);
-      this.tiles.set(answer.id, { tile, value, change, name, about });
+      this.tiles.set(answer.id, { tile, value, change, mark, name, about });
     }
     place.append(...[...this.tiles.values()].map(({ about }) => about));
+    this.ask(this.#question);
   }
 
   /**
-   * Shows the answers of `curve`, beside those of another design, if there is one: `{ name, curve }`.
+   * Shows the answers to a question; under the tabs of data, jobs and files those of the question before.
    *
-   * @param {Curve} curve
-   * @param {{ name: string, curve: Curve } | null} other
+   * @param {string} question
    */
-  show(curve, other = null, draft = false) {
+  ask(question) {
+    if (ANSWERS.some(({ questions }) => questions.includes(question))) this.#question = question;
     for (const answer of ANSWERS) {
       const parts = this.tiles.get(answer.id);
       if (!parts) continue;
-      const { tile, value, change, about } = parts;
+      const isIts = answer.questions.includes(this.#question);
+      parts.tile.hidden = !isIts || (answer.some === true && parts.value.textContent === "–");
+      if (!isIts) this.#close(parts);
+    }
+  }
+
+  /**
+   * Shows the answers of `curve`, beside those of another design, if there is one.
+   *
+   * @param {{ curve: Curve, warnings: Warning[], other: { name: string, curve: Curve } | null, draft: boolean }} design
+   */
+  show({ curve, warnings, other, draft }) {
+    for (const answer of ANSWERS) {
+      const parts = this.tiles.get(answer.id);
+      if (!parts) continue;
+      const { value, change, mark, about } = parts;
       const [now, before] = [valueOf(answer, curve), other && valueOf(answer, other.curve)];
-      if (answer.some) tile.hidden = now === null;
       value.textContent = now === null ? "–" : answer.print(now);
       const where = now === null ? undefined : answer.where?.(curve);
       value.title = where ? placed(where) : "";
-      about.textContent = where ? `${answer.about} It stands ${placed(where)}.` : answer.about;
+      const marked = MARKS.flatMap(({ code, mark: word, of }) => {
+        const warning = of.includes(answer.id) && warnings.find((each) => each.code === code);
+        return warning ? [{ word, sentence: this.inWords(warning.detail) }] : [];
+      })[0];
+      mark.hidden = draft || !marked;
+      mark.textContent = marked?.word ?? "";
+      mark.title = marked?.sentence ?? "";
+      const sentences = [marked?.sentence, answer.about, where && `It stands ${placed(where)}.`];
+      about.textContent = sentences.filter(Boolean).join(" ");
       value.classList.toggle("draft", draft);
       const known = other && now !== null && before !== null;
       change.textContent = known ? changeOf(now, before) : "";
@@ -240,6 +364,7 @@ export class Headline {
       // At another torque less is not better: it is another question.
       const better =
         known &&
+        !marked &&
         other.curve.output_torque_n_m === curve.output_torque_n_m &&
         less !== null &&
         Math.abs(now - before) > 1e-3 * Math.abs(before)
@@ -248,14 +373,24 @@ export class Headline {
       change.classList.toggle("better", better === true);
       change.classList.toggle("worse", better === false);
     }
+    this.ask(this.#question);
   }
 
   /** @param {string} id */
   #tell(id) {
-    for (const [each, { about, name }] of this.tiles) {
-      about.hidden = each !== id || !about.hidden;
-      name.setAttribute("aria-expanded", String(!about.hidden));
+    for (const [each, parts] of this.tiles) {
+      if (each !== id || !parts.about.hidden) this.#close(parts);
+      else {
+        parts.about.hidden = false;
+        parts.name.setAttribute("aria-expanded", "true");
+      }
     }
+  }
+
+  /** @param {Tile} tile */
+  #close({ about, name }) {
+    about.hidden = true;
+    name.setAttribute("aria-expanded", "false");
   }
 }
 
