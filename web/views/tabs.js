@@ -26,8 +26,11 @@ export class Tabs {
   #chosen = this.#tabs[0];
 
   /**
-   * @param {{ panels: () => Record<string, TabPanel>, onLay: (large: boolean) => void, onQuestion: (question: string) =>
-   *   void }} page
+   * @param {{
+   *   panels: () => Record<string, TabPanel>,
+   *   onLay: (large: boolean) => void,
+   *   onQuestion: (question: string) => void,
+   * }} page
    */
   constructor({ panels, onLay, onQuestion }) {
     this.panels = panels;
