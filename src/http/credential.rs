@@ -51,7 +51,7 @@ pub(super) fn bearer(headers: &HeaderMap) -> Result<Option<Credential>, Problem>
 
 pub(super) fn no_credential() -> Problem {
     unauthorized(
-        "What Authorization has is no key; it has the form Bearer mw_ID_SECRET, or is a token of the identity provider where there is one, and stands once.",
+        "Authorization has no key; a key has the form Bearer mw_ID_SECRET, or is a token of the identity provider where there is one, and stands once.",
     )
 }
 

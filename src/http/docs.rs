@@ -35,10 +35,10 @@ use super::studies::StudyProgressView;
     components(schemas(ProgressView, StudyProgressView)),
     tags(
         (name = "Jobs", description = "Computations, from submission to end."),
-        (name = "Results", description = "What was computed."),
+        (name = "Results", description = "Results of jobs."),
         (name = "Studies", description = "Many variants of a submission at once, and their table."),
         (name = "Webhooks", description = "Where a client is told that its jobs and studies have ended."),
-        (name = "Reference", description = "What can be known without a job."),
+        (name = "Reference", description = "Answers without a job."),
         (name = "Operation", description = "For those who run the service."),
     ),
 )]
@@ -129,7 +129,7 @@ pub(super) fn add_common_answers(openapi: &mut OpenApi) {
     const ALWAYS: [(&str, &str); 5] = [
         ("400", "The request is not understood."),
         ("408", "The body came too slowly."),
-        ("421", "The service is not called so."),
+        ("421", "The service has another name."),
         (
             "429",
             "More is asked by this client than one may ask, or by those without a key. Try again after `Retry-After` seconds.",

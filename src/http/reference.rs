@@ -124,9 +124,9 @@ fn is_study(document: &[u8]) -> bool {
     post, path = "/v1/validate", tag = "Reference", operation_id = "validate",
     request_body(content = Submission, content_type = "application/json", description = "The submission, or the study."),
     responses(
-        (status = 200, description = "It can be computed.", body = Validated),
+        (status = 200, description = "The document can be computed.", body = Validated),
         JsonBody<16>,
-        (status = 422, description = "It cannot be computed; `errors` says which field is why."),
+        (status = 422, description = "The document cannot be computed; `errors` names the fields."),
         (status = 503, description = "Too many submissions are checked at once. Try again after `Retry-After` seconds."),
     ),
 )]

@@ -115,7 +115,7 @@ document! {
         (status = 200, description = "The submissions.", body = ModelView),
         (status = 400, description = "A parameter is not understood."),
         ModelBody,
-        (status = 422, description = "It is no model, or none of its stages can be taken; the errors say why of each."),
+        (status = 422, description = "The file is no model, or none of its stages can be taken; each error gives the reason."),
     ),
 )]
 pub(super) async fn read(

@@ -34,7 +34,7 @@ pub enum WebhookError {
     #[error("{0}")]
     Refused(String),
     /// The webhook is disabled and gets no messages.
-    #[error("the webhook was given up")]
+    #[error("the webhook is disabled")]
     Disabled,
     /// Errors of jobs.
     #[error(transparent)]

@@ -169,7 +169,7 @@ export async function shownSteps(service) {
           body: JSON.stringify({
             code: "unauthorized",
             status: 401,
-            title: "Who asks is not known",
+            title: "The request has no valid key",
             detail: "The key is not known here, was revoked or has expired.",
           }),
         }),
@@ -180,7 +180,7 @@ export async function shownSteps(service) {
       const refused = page.waitForResponse((answer) => answer.status() === 401);
       await torque.press("1");
       await refused;
-      await page.locator("#problem", { hasText: "Who asks is not known" }).waitFor();
+      await page.locator("#problem", { hasText: "The request has no valid key" }).waitFor();
       await torque.pressSequentially("20");
       assert.equal(await torque.inputValue(), "120");
       const other = await context.newPage();

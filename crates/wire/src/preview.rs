@@ -29,7 +29,7 @@ pub struct Preview {
 
 impl utoipa::PartialSchema for Preview {
     fn schema() -> utoipa::openapi::RefOr<utoipa::openapi::Schema> {
-        let about = "What is asked, as for a job, and perhaps which older preview it replaces. Unknown fields are refused.";
+        let about = "A submission, as for a job, and perhaps the older preview that it replaces. Unknown fields are refused.";
         let mut properties = vec![PREVIEW_ID.property::<Option<String>>()];
         properties.extend(SubmissionDocument::properties());
         utoipa_schema(object("Preview", about, properties))

@@ -30,7 +30,7 @@ use crate::jobs::{Resource as _, StudyRecord, shown_status};
     get, path = "/v1/studies/{id}/results/population", tag = "Studies", operation_id = "get_study_population",
     params(IfNoneMatch),
     responses(
-        (status = 200, description = "What the members tell so far.", body = PopulationResults, headers(
+        (status = 200, description = "Statistics of the members so far.", body = PopulationResults, headers(
             ("Retry-After" = u32, description = "Until the study has ended: seconds after which it is worth looking again."),
         )),
         (status = 404, description = "There is no such study, or it is no population."),

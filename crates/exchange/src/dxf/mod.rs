@@ -3,7 +3,7 @@
 //! Read in this order: `file` (the entities of a file), `shape` with `curve` (the lines and arcs of an entity), `insert` (where a block stands), `pieces`
 //! (those of the whole drawing), `chain` (closed loops of these), `center` (where the drawing turns about), and `drawing` (which loops bound openings).
 //!
-//! Why no crate reads it stands in ARCHITECTURE.md.
+//! The reasons for an own reader stand in crates/README.md.
 
 mod center;
 mod chain;

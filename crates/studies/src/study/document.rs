@@ -31,7 +31,7 @@ pub(super) const LONGEST_LABEL: usize = 200;
 /// The client's name for the study.
 pub(super) const NAME: Declared<Optional<Text>> = Declared::new(
     "name",
-    "What the client calls the study.",
+    "The client's name for the study.",
     absent(text("Name", LONGEST_LABEL), "none"),
 );
 

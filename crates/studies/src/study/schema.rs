@@ -82,7 +82,7 @@ fn designs() -> Value {
     let label = json!({
         "type": "string",
         "title": "Label",
-        "description": "What the design is called; each label stands once.",
+        "description": "Label of the design; each label stands once.",
         "minLength": 1,
         "maxLength": LONGEST_LABEL,
         "examples": ["8R34"],

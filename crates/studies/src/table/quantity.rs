@@ -47,7 +47,7 @@ pub enum Better {
 /// Subject of a quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
-#[schema(title = "What a quantity is of")]
+#[schema(title = "Subject of a quantity")]
 pub enum QuantityOf {
     /// Of the pair, whatever the torque.
     Pair,

@@ -456,7 +456,7 @@ macro_rules! tagged {
                     let kind = serde_json::json!({
                         "type": "string",
                         "title": "Kind",
-                        "description": "What it is.",
+                        "description": "Kind.",
                         "enum": [$word],
                     });
                     let mut properties = vec![Property::new("kind", kind, true)];
