@@ -32,7 +32,7 @@ import { Pattern } from "./views/pattern.js";
 import { ProblemBox } from "./views/problem.js";
 import { Progress } from "./views/progress.js";
 import { RunUp } from "./views/runup.js";
-import { setUpKey, setUpTheme } from "./views/settings.js";
+import { setUpKey, setUpLayout, setUpTheme } from "./views/settings.js";
 import { sheetOf } from "./views/sheet.js";
 import { FIRST_EXAMPLE, setUpFiles, setUpStart } from "./views/start.js";
 import { Tabs } from "./views/tabs.js";
@@ -123,6 +123,7 @@ class Page {
    * @type {Pair | null}
    */
   #drawn = null;
+  #isSheet = false;
   /** @type {number | undefined} */
   #looking;
   /** @type {number | undefined} */
@@ -191,7 +192,7 @@ class Page {
     setUpKey(() => this.#design.submission && this.#follower.follow(this.#design.submission, "open"));
     const tabs = new Tabs({
       panels: () => this.#panels,
-      onLay: (large) => this.#form?.unfold(large),
+      onLay: () => this.#unfold(),
       onQuestion: (question) => this.#ask(question),
     });
     this.tabs = tabs;
@@ -216,6 +217,10 @@ class Page {
     });
     this.#form = form;
     tabs.lay();
+    setUpLayout((isSheet) => {
+      this.#isSheet = isSheet;
+      this.#unfold();
+    });
     this.#showProblem();
     this.#panels = this.#panelsOf(form, limits, tabs);
     tabs.refresh();
@@ -224,6 +229,11 @@ class Page {
       if (!other) return this.#unreadable();
       if (!same(other, this.#design.submission)) this.#design.replace(other, "open");
     });
+  }
+
+  /** Opens every section of the form where there is room for them: on a data sheet, and beside a large drawing. */
+  #unfold() {
+    this.#form?.unfold(this.#isSheet || (this.tabs?.isLarge ?? false));
   }
 
   /**

@@ -1,10 +1,11 @@
 // @ts-check
-// What belongs to the visitor and not to the design: light or dark, and the key of the service.
+// What belongs to the visitor and not to the design: layout, light or dark, and the key of the service.
 
 import { byId } from "../draw/dom.js";
 import { hasKey, onKeyNeeded, setKey, wordsOfRefusedKey } from "../state/api.js";
 
 const THEME = "meshwright-theme";
+const LAYOUT = "meshwright-layout";
 
 /**
  * The theme, chosen by the button or by the system; `onTheme` draws anew what has its colors in itself.
@@ -24,6 +25,30 @@ export function setUpTheme(onTheme) {
     apply(other);
   });
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => apply(null));
+}
+
+/** The layouts in which both gears of the design stand side by side, with every section open. */
+const SHEETS = ["sheet", "sheet-alone"];
+
+/**
+ * The layout of the page: the design as a form or as a data sheet, beside the answers or alone. `onSheet` hears whether
+ * it is a data sheet.
+ *
+ * @param {(isSheet: boolean) => void} onSheet
+ */
+export function setUpLayout(onSheet) {
+  const choice = byId("layout", HTMLSelectElement);
+  const apply = () => {
+    document.body.dataset.layout = choice.value;
+    onSheet(SHEETS.includes(choice.value));
+  };
+  const before = localStorage.getItem(LAYOUT);
+  if (before && [...choice.options].some(({ value }) => value === before)) choice.value = before;
+  choice.addEventListener("change", () => {
+    localStorage.setItem(LAYOUT, choice.value);
+    apply();
+  });
+  apply();
 }
 
 /**

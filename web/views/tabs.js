@@ -28,7 +28,7 @@ export class Tabs {
   /**
    * @param {{
    *   panels: () => Record<string, TabPanel>,
-   *   onLay: (large: boolean) => void,
+   *   onLay: () => void,
    *   onQuestion: (question: string) => void,
    * }} page
    */
@@ -42,6 +42,11 @@ export class Tabs {
       each.addEventListener("keydown", (event) => this.#press(event, each));
     }
     this.lay();
+  }
+
+  /** True if the geometry stands under the drawing. */
+  get isLarge() {
+    return this.#large.matches;
   }
 
   /** The name of the chosen tab. */
@@ -90,7 +95,7 @@ export class Tabs {
       sheet.setAttribute("role", "tabpanel");
       sheet.hidden = !this.shows("geometry");
     }
-    this.onLay(this.#large.matches);
+    this.onLay();
   }
 
   /**
