@@ -99,6 +99,43 @@ await daily.opened("a field that is wrong says so, keeps the curve, and is mende
   assert.ok(mended > 9 && mended < 12, `mended to ${mended}`);
 });
 
+await daily.opened("each question has four numbers, and a mark where a warning limits one of them", async (page) => {
+  const tiles = () => page.locator("#headline .tile:visible .name").allInnerTexts();
+  assert.deepEqual(await tiles(), ["STE p-p", "k mean", "H_N", "H_Z2"]);
+  await tab(page, "contact");
+  assert.deepEqual(await tiles(), ["STE mean", "One pair alone", "Max pressure", "At the pitch point"]);
+  assert.ok(await page.locator("#chart-pressure").isVisible());
+  assert.ok(await page.locator("#chart-ste").isHidden());
+  // A sharp tip corner carries in test case 2.
+  const mark = page.locator("#answer-pressure .mark");
+  assert.equal(await mark.innerText(), "corner");
+  await mark.click();
+  assert.match(await page.locator("#about-pressure").innerText(), /corner/);
+  await tab(page, "strength");
+  await page.locator("#ask-stress").click();
+  await page.locator("#chart-stress").waitFor();
+  assert.match(await page.locator("#answer-root-driven .value").innerText(), /^[0-9.]+$/);
+});
+
+await daily.opened("a data sheet has both gears side by side, over a reload too", async (page) => {
+  const gears = ["driving", "driven"].map((gear) => page.locator(`#form > [data-pointer="/pair/${gear}"]`));
+  const places = () =>
+    Promise.all(gears.map(async (gear) => [await gear.getAttribute("open"), await gear.boundingBox()]));
+  await page.locator("#layout").selectOption("sheet");
+  for (const again of [false, true]) {
+    if (again) {
+      await page.reload();
+      await page.locator("body:not(.empty)").waitFor();
+    }
+    const [[openOne, one], [openOther, other]] = await places();
+    assert.deepEqual([openOne, openOther], ["", ""]);
+    assert.equal(one.y, other.y);
+    assert.ok(other.x >= one.x + one.width);
+  }
+  await page.locator("#layout").selectOption("answers-alone");
+  assert.ok(await page.locator("#form").isHidden());
+});
+
 await daily.opened("a link opened again gives the same design", async (page, context) => {
   await (await field(page, `${HOLES}/count`)).fill("8");
   await named(page, "8×");
