@@ -42,7 +42,7 @@ impl From<IpAddr> for Address {
 enum Identity {
     /// Accepted at this time, without a request so far.
     New(Instant),
-    /// It has had requests, none of them with a known key.
+    /// Had requests, none of them with a known key.
     Unauthenticated,
     /// The last key on it that is known is this client's.
     Client(Arc<str>),

@@ -80,7 +80,7 @@ pub struct Chart {
     pub x: Axis,
     /// The axis upward.
     pub y: Axis,
-    /// What is drawn, in this order.
+    /// Curves, in the order of drawing.
     pub series: Vec<Series>,
     /// Vertical lines.
     pub marks: Vec<Mark>,
@@ -107,7 +107,7 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// The place of a point; what lies beyond an end of an axis is put there.
+    /// The place of a point; a value beyond an end of an axis is put there.
     pub(crate) fn at(&self, (x, y): (f64, f64)) -> Point {
         (self.across(x), self.up(y))
     }
