@@ -346,16 +346,28 @@ fn holes_near_the_roots_and_near_the_edge_of_a_web_yield_as_in_the_plane() {
         narrow_pair(in_rim(34e-3, 9e-3)),
         narrow_pair(in_web(round_holes(8, 33e-3, 8.5e-3))),
     ] {
-        let [mean, _, _, stiffness, root, hole] = off_the_plane(blank, 1, 4);
-        println!("{mean:.4} ({solid:.4} solid), {stiffness:.4}, {root:.4}, {hole:.4}");
-        assert!((mean - solid).abs() < 3e-3);
+        let [mean, peak_to_peak, _, stiffness, root, hole] = off_the_plane(blank, 1, 4);
+        println!(
+            "{mean:.4} ({solid:.4} solid), {peak_to_peak:.4}, {stiffness:.4}, {root:.4}, {hole:.4}"
+        );
+        assert!((mean - solid).abs() < 3e-3 && peak_to_peak.abs() < 0.015);
         assert!(stiffness.abs() < 5e-3 && root.abs() < 0.03 && hole.abs() < 0.03);
     }
 }
 
 #[test]
+fn necks_between_holes_near_the_bore_yield_as_in_the_plane() {
+    // Necks of 0.75 mm carry the rim on a ring of 0.5 mm: by far the most of δ is the turn of the rim, which the torque alone decides.
+    let off = off_the_plane(narrow_pair(in_rim(24.5e-3, 9e-3)), 1, 4);
+    println!("{off:.4?}");
+    let [mean, peak_to_peak, _, stiffness, root, hole] = off;
+    assert!(mean.abs() < 3e-3 && peak_to_peak.abs() < 0.015);
+    assert!(stiffness.abs() < 5e-3 && root.abs() < 0.03 && hole.abs() < 0.03);
+}
+
+#[test]
 #[ignore = "./test all"]
-fn holes_near_roots_and_edges_of_webs_yield_as_in_the_plane_at_length() {
+fn holes_near_roots_edges_of_webs_and_the_bore_yield_as_in_the_plane_at_length() {
     let [solid, ..] = off_the_plane(narrow_pair(|_| {}), 6, 8);
     for (name, pair) in [
         ("3.5 mm below the roots", narrow_pair(in_rim(33e-3, 9e-3))),
@@ -366,6 +378,9 @@ fn holes_near_roots_and_edges_of_webs_yield_as_in_the_plane_at_length() {
             "the edge of the web",
             narrow_pair(in_web(round_holes(8, 33e-3, 8.5e-3))),
         ),
+        ("0.5 mm above the bore", narrow_pair(in_rim(20e-3, 4.5e-3))),
+        ("1.5 mm, necks", narrow_pair(in_rim(25e-3, 8.5e-3))),
+        ("0.5 mm, thin necks", narrow_pair(in_rim(24.5e-3, 9e-3))),
         (
             "its inner edge",
             narrow_pair(in_web(round_holes(8, 27.5e-3, 7e-3))),

@@ -30,7 +30,7 @@ const ELEMENTS_PER_ORDER: f64 = 5.0;
 const USUAL_ELEMENTS: f64 = 70.0;
 const ELEMENTS_PER_HIGH_ORDER: f64 = 2.0;
 /// The thinnest ligament, in half widths of the narrowest hole, in which a coarse grid follows what bends: thinner ones are divided twice as finely.
-const THIN: f64 = 0.25;
+const THIN: f64 = 0.35;
 
 /// The outer circle of a web as the teeth see it, while the web has no holes.
 #[derive(Debug)]
@@ -393,9 +393,11 @@ fn holed_grid(
     let narrowest = widths.fold(f64::INFINITY, f64::min);
     let is_thin = |(_, least): (Ligament, f64)| least < THIN * narrowest;
     let least = region.least_ligament(layer.outer_radius);
-    let (level, nodes) = match least.is_some_and(is_thin) {
-        true => (GridLevel::Standard, 1.0),
-        false => (GridLevel::Coarse, 2.0),
+    // The nodes of its circles stay as many as their orders need.
+    let (level, nodes) = match (least.is_some_and(is_thin), stack.sections) {
+        (true, GridLevel::Fine) => (GridLevel::Fine, 0.5),
+        (true, _) | (false, GridLevel::Fine) => (GridLevel::Standard, 1.0),
+        (false, _) => (GridLevel::Coarse, 2.0),
     };
     let grid = BlankGrid::of_region(
         &region,

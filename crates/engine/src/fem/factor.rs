@@ -35,7 +35,11 @@ impl Factor {
         let order = matrix.fill_reducing_order(numbering.interior);
         order
             .and_then(|order| {
-                Self::in_order(&matrix.into_unknowns(), order, size * numbering.interior)
+                Self::in_order(
+                    &matrix.into_unknowns(numbering),
+                    order,
+                    size * numbering.interior,
+                )
             })
             .map_err(|failure| match failure {
                 Failure::Size => FemError::TooLarge { part, unknowns },

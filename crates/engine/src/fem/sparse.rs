@@ -1,5 +1,6 @@
 //! The sparse stiffness of a grid, its unknowns numbered for condensation.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use faer::Mat;
@@ -26,6 +27,8 @@ pub(super) struct BlockMatrix {
     rows: Vec<u32>,
     /// The unknowns' own columns one after the other; without the entries above the diagonal.
     values: Vec<f64>,
+    /// The blocks between nodes of which both follow other unknowns, by row and column: what becomes of them is a product of whole matrices.
+    followed: BTreeMap<(u32, u32), Vec<f64>>,
 }
 
 impl BlockMatrix {
@@ -70,6 +73,7 @@ impl BlockMatrix {
             starts,
             rows,
             values,
+            followed: BTreeMap::new(),
         }
     }
 
@@ -96,8 +100,8 @@ impl BlockMatrix {
     ) {
         let size = self.size;
         let mut between = vec![0.0; size * size];
-        for (b, node) in element.nodes().iter().enumerate() {
-            let columns = numbering.terms(*node);
+        for (b, column_node) in element.nodes().iter().enumerate() {
+            let columns = numbering.terms(*column_node);
             for (a, node) in element.nodes().iter().enumerate() {
                 let rows = numbering.terms(*node);
                 let lower = |(column, _): &&(usize, f64)| rows.iter().any(|(row, _)| row >= column);
@@ -109,11 +113,75 @@ impl BlockMatrix {
                         *value = k(size * a + r, size * b + c);
                     }
                 }
+                if rows.len() > 1 && columns.len() > 1 {
+                    let sum = self.followed.entry((*node, *column_node));
+                    let sum = sum.or_insert_with(|| vec![0.0; size * size]);
+                    for (sum, value) in sum.iter_mut().zip(&between) {
+                        *sum += value;
+                    }
+                    continue;
+                }
                 for (column, by) in columns {
                     for (row, share) in rows.iter().filter(|(row, _)| row >= column) {
                         self.add_block((*row, *column), by * share, &between);
                     }
                 }
+            }
+        }
+    }
+
+    /// Adds what the nodes that follow others are to each other, to those: Wᵀ K W for each two unknowns of a node.
+    fn add_followed(&mut self, numbering: &Numbering) {
+        let followed = std::mem::take(&mut self.followed);
+        let Some(first) = followed
+            .keys()
+            .flat_map(|(row, _)| numbering.terms(*row))
+            .map(|(place, _)| *place)
+            .min()
+        else {
+            return;
+        };
+        let mut nodes: Vec<u32> = followed.keys().map(|(row, _)| *row).collect();
+        nodes.dedup();
+        let mut weights = Mat::<f64>::zeros(nodes.len(), numbering.count - first);
+        for (i, node) in nodes.iter().enumerate() {
+            for (place, weight) in numbering.terms(*node) {
+                weights[(i, place - first)] = *weight;
+            }
+        }
+        let at = |node: &u32| nodes.partition_point(|known| known < node);
+        let between: Vec<_> = followed
+            .iter()
+            .map(|((row, column), block)| (at(row), at(column), block))
+            .collect();
+        let size = self.size;
+        let mut sum = Mat::<f64>::zeros(size * weights.ncols(), size * weights.ncols());
+        let mut moved = Mat::<f64>::zeros(nodes.len(), weights.ncols());
+        for (r, c) in (0..size).flat_map(|r| (0..size).map(move |c| (r, c))) {
+            moved.fill(0.0);
+            for j in 0..weights.ncols() {
+                for (row, column, block) in &between {
+                    moved[(*row, j)] += block[size * c + r] * weights[(*column, j)];
+                }
+            }
+            let of_both = weights.transpose() * &moved;
+            for j in 0..weights.ncols() {
+                for i in j..weights.ncols() {
+                    sum[(size * i + r, size * j + c)] = of_both[(i, j)];
+                }
+            }
+        }
+        let mut block = vec![0.0; size * size];
+        for column in first..numbering.count {
+            let rows = self.rows[self.starts[column]..self.starts[column + 1]].to_vec();
+            for row in rows.into_iter().map(|row| row as usize) {
+                let (i, j) = (size * (row - first), size * (column - first));
+                for (c, values) in block.chunks_exact_mut(size).enumerate() {
+                    for (r, value) in values.iter_mut().enumerate() {
+                        *value = sum[(i + r, j + c)];
+                    }
+                }
+                self.add_block((row, column), 1.0, &block);
             }
         }
     }
@@ -141,7 +209,8 @@ impl BlockMatrix {
     }
 
     /// The matrix on single unknowns.
-    pub(super) fn into_unknowns(self) -> SparseColMat<u32, f64> {
+    pub(super) fn into_unknowns(mut self, numbering: &Numbering) -> SparseColMat<u32, f64> {
+        self.add_followed(numbering);
         let (size, count) = (self.size, self.starts.len() - 1);
         let mut pointers = Vec::with_capacity(size * count + 1);
         let mut rows = Vec::with_capacity(self.values.len());
@@ -350,7 +419,7 @@ mod tests {
         let (forward, _) = order.as_ref().arrays();
         let (interior, count) = (size * numbering.interior, size * numbering.count);
         assert!((interior..count).all(|i| forward[i] as usize == i));
-        let found = matrix.into_unknowns().to_dense();
+        let found = matrix.into_unknowns(&numbering).to_dense();
         for j in 0..count {
             for i in j..count {
                 assert!(
@@ -402,7 +471,7 @@ mod tests {
             }
         }
         let (found, expected) = (
-            matrix.into_unknowns().to_dense(),
+            matrix.into_unknowns(&numbering).to_dense(),
             by.transpose() * &plain * &by,
         );
         for j in 0..7 {

@@ -14,6 +14,9 @@ use crate::root_finding::bisect;
 const SIZE_AT_HOLE: f64 = 0.25;
 /// The least number of elements along each of the four arcs of a hole, at the standard level: 11 degrees each.
 const ELEMENTS_PER_ARC: f64 = 8.0;
+/// The least number of elements along the side of a hole next to a neck as wide as half of the hole, at the standard level. The length over which a neck bends
+/// goes with the root of its width times that of the hole, and so does the size along it.
+const ELEMENTS_PER_NECK: f64 = 7.0;
 /// Where a hole's surroundings are narrower than this, in half widths of the hole, its box takes them in. Half of it would give
 /// the sharpest corner three degrees for a twentieth more elements; twice as much takes one.
 const NARROW: f64 = 0.7;
@@ -209,9 +212,12 @@ impl HoleBox {
         let inner_count = ring
             .level
             .count((outer_standard / 3.0).max(ELEMENTS_PER_ARC));
-        let side_count = ring
-            .level
-            .count(((outer - inner) / (2.0 * size)).max(ELEMENTS_PER_ARC));
+        let neck = self.half.1 / (2.0 * (self.half_pitch - self.half.1));
+        let side_count = ring.level.count(
+            ((outer - inner) / (2.0 * size))
+                .max(ELEMENTS_PER_ARC)
+                .max(ELEMENTS_PER_NECK * neck.sqrt()),
+        );
 
         // A line of the web needs no finer layers than the hole.
         let first_layer = if ceiling == 0.0 {

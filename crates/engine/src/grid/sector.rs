@@ -396,6 +396,33 @@ mod tests {
     }
 
     #[test]
+    fn elements_beside_a_neck_are_shorter_than_it_bends() {
+        // Few elements around a ring whose holes leave necks of 0.75 mm: these bend over some √(r t).
+        let (circle, radius) = (24.5e-3, 9e-3);
+        let holes = HolePattern {
+            count: 8,
+            circle_radius: circle,
+            radius,
+            phase: 0.0,
+        };
+        let grid = BlankGrid::new(15e-3, 40e-3, Some(&holes), 48, 1.5, GridLevel::Standard);
+        let grid = grid.expect("a usable grid");
+        let bends = (radius * holes.ligament_between()).sqrt();
+        let edge = &grid.hole_edges[0];
+        let corners: Vec<_> = edge.iter().step_by(2).collect();
+        let point = |i: usize| grid.grid.nodes[*corners[i % corners.len()] as usize];
+        let beside = |p: &Vector| p.y.abs() > 0.8 * radius;
+        let lengths = (0..corners.len()).map(|i| (point(i), point(i + 1)));
+        let mut lengths: Vec<f64> = lengths
+            .filter(|(from, to)| beside(from) && beside(to))
+            .map(|(from, to)| (to - from).norm())
+            .collect();
+        lengths.sort_by(f64::total_cmp);
+        let longest = lengths.last().expect("elements beside the neck");
+        assert!(*longest < 0.35 * bends, "{longest} {bends}");
+    }
+
+    #[test]
     fn a_sector_has_the_area_of_its_ring_less_its_hole() {
         for case in CASES {
             let (bore, count, _, radius, interface, _) = case;

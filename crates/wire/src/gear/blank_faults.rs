@@ -1,5 +1,6 @@
 //! Faults of a blank: holes too near to each other, to the rim or to the bore, and a web outside of it.
 
+use meshwright_engine::assembly::NearHoles;
 use meshwright_engine::gear::data::LEAST_LIGAMENT;
 
 use super::GearDocument;
@@ -9,7 +10,7 @@ use super::field::Field;
 use super::holes::{PatternDocument, SlotDocument};
 use super::proportions::check_between;
 use crate::declare::{Declared, Number};
-use crate::problem::Code;
+use crate::problem::{Code, FieldError};
 use crate::units::{Side, from_mm, plain, rounded_inward, to_mm};
 
 impl GearDocument {
@@ -125,6 +126,29 @@ impl GearDocument {
             (circle - to_mm(to - high), Side::AtMost)
         };
         Fault::new(self.hole_circle(pattern), code, detail, Some(bound))
+    }
+
+    /// Holes stand so near to the roots or to an edge of their part that the method along faces cannot follow their fields.
+    pub(crate) fn near_holes(&self, pointer: &str, near: &NearHoles) -> Vec<FieldError> {
+        let [needed, most] = near.orders;
+        let more = near.narrower.map(|by| {
+            let more = plain(rounded_inward(to_mm(by), Side::AtLeast, 0));
+            format!(" With {more} mm more material around each hole it is solved.")
+        });
+        let detail = format!(
+            "Holes come so near to the root circle, or to an edge of the web, that {needed} orders around the gear see them; in three dimensions {most} are solved at once.{}",
+            more.unwrap_or_default()
+        );
+        let (code, hole) = (Code::TooLarge, near.hole);
+        let fault = match (self.blank.drawn_by(hole), near.narrower) {
+            (Some(by), _) => Fault::new(by.field(), code, detail, None),
+            (None, by) => {
+                let pattern = self.blank.holes.pattern_of(hole);
+                by.and_then(|by| self.narrower(pattern, to_mm(by), code, &detail))
+                    .unwrap_or_else(|| Fault::new(self.hole_width(pattern), code, detail, None))
+            }
+        };
+        Self::field_errors(pointer, vec![Self::cured(fault)])
     }
 
     /// That the holes of a pattern are wider by `missing` mm to each side than would do, if holes so narrow can be made.

@@ -1,7 +1,8 @@
 //! Checks of fields against each other: torques, interface, span, forces and size.
 
-use meshwright_engine::analysis::Method;
-use meshwright_engine::gear::{GearPair, SpurGear};
+use meshwright_engine::analysis::{Faces, Method, Resolution};
+use meshwright_engine::assembly::NearHoles;
+use meshwright_engine::gear::{GearPair, Member, SpurGear};
 
 use super::Purpose;
 use super::document::{OUTPUT_TORQUE, SubmissionDocument};
@@ -58,6 +59,32 @@ impl SubmissionDocument {
             let pointer = format!("/resolution/{}", ResolutionDocument::contact_solver.name);
             let detail = format!("{pointer}: three dimensions are solved by the active set alone.");
             errors.push(FieldError::new(pointer, Code::NotInThreeDimensions, detail));
+        }
+    }
+
+    /// Refuses holes whose fields cannot be followed along faces, by the finest of the runs.
+    pub(super) fn check_holes(&self, faces: &Faces, errors: &Errors) {
+        let Resolution {
+            grid,
+            error_estimate,
+            ..
+        } = self.resolution.data();
+        let finest = match error_estimate {
+            true => grid.max(grid.neighbor()),
+            false => grid,
+        };
+        let resolution = faces.resolution.at(finest);
+        for member in Member::BOTH {
+            let Some(near) = NearHoles::of(faces.pair.gear(member), resolution) else {
+                continue;
+            };
+            let gear = match member {
+                Member::Driving => &self.pair.driving,
+                Member::Driven => &self.pair.driven,
+            };
+            for error in gear.near_holes(&format!("/pair/{member}"), &near) {
+                errors.push(error);
+            }
         }
     }
 

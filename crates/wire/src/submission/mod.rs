@@ -115,7 +115,7 @@ impl SubmissionDocument {
         self.check_forces(&pair, errors);
         self.check_size(purpose, &pair, errors);
         let faces = |pair| {
-            Box::new(Faces {
+            let faces = Faces {
                 pair,
                 resolution: FaceResolution {
                     face_order: self.resolution.face_order as usize,
@@ -124,7 +124,9 @@ impl SubmissionDocument {
                 slices: self.resolution.face_slices as usize,
                 at_each_position: self.face_load == FaceRows::Positions,
                 cure: true,
-            })
+            };
+            self.check_holes(&faces, errors);
+            Box::new(faces)
         };
         let model = match (self.method, solid) {
             (Method::ThreeDimensionalProjected, Some(solid)) => {

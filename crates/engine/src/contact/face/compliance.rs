@@ -21,19 +21,22 @@ pub(super) fn compliance(model: &FaceModel, slices: &[Slice]) -> Mat<f64> {
 }
 
 /// Adds Φ R Φᵀ of the gear `member`, below the diagonal blocks and on them.
+///
+/// R is that of forces normal to an involute. Forces at a corner or where a relief is cut away have another arm about the axis, and turn and bend the gear by as
+/// much more or less; the points at which they act move so too.
 fn add_smooth(model: &FaceModel, member: Member, slices: &[Slice], h: &mut Mat<f64>) {
     let (first, last) = (slices[0].pair, slices[slices.len() - 1].pair);
     let smooth = model.smooth(member, first, 1 + (last - first) as usize);
     let flank = &model.yields[member.index()];
+    let cosine = model.pair().base_helix_angle().cos();
     // One column a slice.
     let mut basis = Mat::<f64>::zeros(flank.basis_len(), slices.len());
     for (i, slice) in slices.iter().enumerate() {
         let z = model.pair().own_height(member, slice.z);
-        flank.basis(
-            slice.middle.roll_lengths[member.index()],
-            z,
-            basis.col_as_slice_mut(i),
-        );
+        let of_slice = basis.col_as_slice_mut(i);
+        flank.basis(slice.middle.roll_lengths[member.index()], z, of_slice);
+        let arm = slice.middle.weights[member.index()] / cosine;
+        of_slice.iter_mut().for_each(|value| *value *= arm);
     }
     let mut start = 0;
     let lines = slices.chunk_by(|one, next| one.pair == next.pair);

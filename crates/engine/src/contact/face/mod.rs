@@ -139,6 +139,8 @@ struct MiddleLoad {
     pair: i64,
     z: f64,
     roll_lengths: [f64; 2],
+    /// As those of [`Place`].
+    weights: [f64; 2],
     /// The force N normal to the flanks, and dN/dF.
     normal: [f64; 2],
 }
@@ -377,12 +379,15 @@ impl FaceModel {
 
     fn load_of_line(&self, member: Member, line: &[MiddleLoad]) -> Mat<f64> {
         let flank = &self.yields[member.index()];
+        let cosine = self.pair().base_helix_angle().cos();
         let mut row = vec![0.0; flank.basis_len()];
         let mut load = Mat::zeros(row.len(), 2);
         for slice in line {
             let z = self.pair().own_height(member, slice.z);
             flank.basis(slice.roll_lengths[member.index()], z, &mut row);
-            for (column, force) in slice.normal.into_iter().enumerate() {
+            let arm = slice.weights[member.index()] / cosine;
+            for (column, normal) in slice.normal.into_iter().enumerate() {
+                let force = arm * normal;
                 for (sum, value) in load.col_as_slice_mut(column).iter_mut().zip(&row) {
                     *sum += force * value;
                 }
@@ -478,6 +483,7 @@ impl FaceModel {
             pair: slice.pair,
             z: slice.z,
             roll_lengths: slice.middle.roll_lengths,
+            weights: slice.middle.weights,
             normal: [force, rise],
         });
         let spots = slices.iter().zip(balance.carried.iter().zip(&balance.gaps));

@@ -152,6 +152,7 @@ fn each_fault_along_the_axis_is_told_with_a_value_that_would_do() {
         ("/pair/center_distance_mm", json!(64.5)),
         ("/pair/driving/blank/bore_radius_mm", json!(4)),
     ];
+    let near_roots = json!({ "count": 7, "circle_radius_mm": 38.0, "radius_mm": 8.8 });
     let narrow_hub = vec![
         ("/pair/driven/blank/web", web(0.0)),
         ("/pair/driven/blank/hub", hub(5.0, 20.0)),
@@ -166,6 +167,7 @@ fn each_fault_along_the_axis_is_told_with_a_value_that_would_do() {
         holed(24.0, 5.0) => "/pair/driven/blank/holes/circle_radius_mm", HoleAcrossEdge;
         holed(39.0, 5.0) => "/pair/driven/blank/holes/circle_radius_mm", HoleAcrossEdge;
         holed(31.0, 12.0) => "/pair/driven/blank/holes/radius_mm", HoleAcrossEdge;
+        vec![("/pair/driven/blank/holes", near_roots)] => "/pair/driven/blank/holes/radius_mm", TooLarge;
         vec![("/pair/driven/lead_modifications", relief(11.0))]
             => "/pair/driven/lead_modifications/0/length_mm", OutOfRange;
         vec![("/pair/driven/lead_modifications", table)] => "/pair/driven/lead_modifications/0/z_mm", TableDoesNotRise;
