@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use crate::flank::half_plane::{NearField, logarithm_factor};
 use crate::gear::{GearPair, Member, Vector};
-use crate::root_finding::bisect;
+use crate::root_finding::crossing;
 use crate::touch::facing::{Facing, GapMinimum, RangeEnd, View};
 use crate::touch::meeting::{Probe, Probes};
 
@@ -521,17 +521,21 @@ fn core(view: &View<'_>, minimum: &GapMinimum, load: f64, facing: &Facing) -> [f
             .map_or(f64::INFINITY, |point| point.sight.gap)
     };
     let least = gap(minimum.arc);
-    let outside = |arc: f64| gap(arc) - least < MOST_RISE * indentation;
+    let room = |arc: f64| MOST_RISE * indentation - (gap(arc) - least);
     // Beyond a kink the gap may open faster than the parabola does.
     let bent = |from: f64, to: f64| kinks.iter().any(|kink| from < *kink && *kink < to);
     let convex = facing.minima.len() == 1;
     let to = |end: f64| {
         let (from, to) = (end.min(minimum.arc), end.max(minimum.arc));
         let end = end.clamp(range.from, range.to);
-        if convex && bent(from, to) && !outside(end) {
-            bisect(minimum.arc, end, outside)
-        } else {
+        if !convex || !bent(from, to) {
+            return end;
+        }
+        let beyond = (end, room(end));
+        if beyond.1 > 0.0 {
             end
+        } else {
+            crossing((minimum.arc, MOST_RISE * indentation), beyond, room)
         }
     };
     [to(low), to(high)]

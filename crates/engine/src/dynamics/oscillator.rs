@@ -73,6 +73,7 @@ impl Oscillator<'_> {
         for (index, step) in self.steps.iter().enumerate() {
             v += step.kick;
             place = self.laws.place(step.law, u, v > 0.0, place);
+            let mut whole = None;
             for looked in 1..=self.looks {
                 let mut moving = Moving {
                     oscillator: self,
@@ -82,7 +83,7 @@ impl Oscillator<'_> {
                     place,
                     lowest: place,
                 };
-                moving.advance(look, &mut derivative);
+                moving.advance(look, &mut whole, &mut derivative);
                 (u, v, place) = (moving.u, moving.v, moving.place);
                 see(Seen {
                     step: index,
@@ -110,22 +111,37 @@ struct Moving<'a> {
 }
 
 impl Moving<'_> {
-    /// Moves on for `left`.
-    fn advance(&mut self, mut left: f64, derivative: &mut Monodromy) {
+    /// Moves on for a `look`. Of the looks of a step most pass in one piece: `whole` is how that of a place answers after one of them.
+    fn advance(
+        &mut self,
+        look: f64,
+        whole: &mut Option<(usize, Response)>,
+        derivative: &mut Monodromy,
+    ) {
+        let mut left = look;
         for crossed in 0..=MOST_CROSSINGS {
             let piece = self.oscillator.laws.piece(self.step.law, self.place);
+            let response = match *whole {
+                Some((place, known)) if place == self.place && left == look => known,
+                _ => self.response(&piece, left),
+            };
+            if left == look {
+                *whole = Some((self.place, response));
+            }
+            let end = self.moved(&piece, response);
             let crossing = if crossed < MOST_CROSSINGS {
-                self.crossing(&piece, left)
+                self.crossing(&piece, left, end)
             } else {
                 None
             };
-            let time = crossing.map_or(left, |(time, _)| time);
-            let (u, v, response) = self.after(&piece, time);
-            self.carry(&piece, response, derivative);
-            (self.u, self.v) = (u, v);
-            let Some((_, up)) = crossing else {
+            let Some((time, up)) = crossing else {
+                self.carry(&piece, response, derivative);
+                (self.u, self.v) = end;
                 return;
             };
+            let response = self.response(&piece, time);
+            self.carry(&piece, response, derivative);
+            (_, self.v) = self.moved(&piece, response);
             self.u = if up { piece.high } else { piece.low };
             self.place = if up { self.place + 1 } else { self.place - 1 };
             self.lowest = self.lowest.min(self.place);
@@ -133,16 +149,24 @@ impl Moving<'_> {
         }
     }
 
-    /// State and response of the piece after `t`.
-    fn after(&self, piece: &Piece, t: f64) -> (f64, f64, Response) {
+    /// How `piece` answers after `t`.
+    fn response(&self, piece: &Piece, t: f64) -> Response {
         let Oscillator { mass, damping, .. } = self.oscillator;
-        let response = Response::new(damping / (2.0 * mass), piece.stiffness / mass, t);
-        let pull = (self.step.force - piece.force(self.u)) / mass;
+        Response::new(damping / (2.0 * mass), piece.stiffness / mass, t)
+    }
+
+    /// The state to which `piece` moves it with this `response`.
+    fn moved(&self, piece: &Piece, response: Response) -> (f64, f64) {
+        let pull = (self.step.force - piece.force(self.u)) / self.oscillator.mass;
         (
             self.u + self.v * response.g + pull * response.integral,
             self.v * response.rate + pull * response.g,
-            response,
         )
+    }
+
+    /// The state after `t` in `piece`.
+    fn after(&self, piece: &Piece, t: f64) -> (f64, f64) {
+        self.moved(piece, self.response(piece, t))
     }
 
     /// Carries the derivative on. Laws are continuous, so that the time of a crossing leaves no trace in it.
@@ -160,9 +184,8 @@ impl Moving<'_> {
         }
     }
 
-    /// When the motion leaves `piece` within `left`, and whether upwards.
-    fn crossing(&self, piece: &Piece, left: f64) -> Option<(f64, bool)> {
-        let (u, v, _) = self.after(piece, left);
+    /// When the motion leaves `piece` within `left`, after which it comes to the state (`u`, `v`) there, and whether upwards.
+    fn crossing(&self, piece: &Piece, left: f64, (u, v): (f64, f64)) -> Option<(f64, bool)> {
         let beyond = |u: f64| {
             if u > piece.high {
                 Some(true)
@@ -175,7 +198,7 @@ impl Moving<'_> {
         let mut from = 0.0;
         if self.v * v < 0.0 {
             let turn = self.root(piece, (0.0, left), |_, v| v, |acceleration, _| acceleration);
-            let (at_turn, _, _) = self.after(piece, turn);
+            let (at_turn, _) = self.after(piece, turn);
             if let Some(up) = beyond(at_turn) {
                 return Some((self.reaches(piece, up, (0.0, turn)), up));
             }
@@ -200,7 +223,7 @@ impl Moving<'_> {
     ) -> f64 {
         let Oscillator { mass, damping, .. } = self.oscillator;
         let at = |t: f64| {
-            let (u, v, _) = self.after(piece, t);
+            let (u, v) = self.after(piece, t);
             let acceleration = (self.step.force - damping * v - piece.force(u)) / mass;
             (value(u, v), rate(acceleration, v))
         };

@@ -3,7 +3,7 @@
 use super::meeting::{Meeting, Probe};
 use super::placement::{FlankPlace, Placement, Section, Sight};
 use crate::gear::{GearPair, Member, PairDeviations, SpurGear};
-use crate::root_finding::bisect;
+use crate::root_finding::crossing;
 
 /// Places besides kinks between which minima of the gap are searched on flanks that are not convex.
 const PLACES: u32 = 64;
@@ -291,27 +291,28 @@ impl<'a> View<'a> {
     /// a force between both drives the driven gear ([`LEAST_ARM`]).
     pub(crate) fn range(&self) -> Option<FlankRange> {
         let range = self.seen_range()?;
-        let drives = |arc: f64| {
+        let beyond_least = |arc: f64| {
             let arms = self.point(arc).map(|point| self.meeting(&point).arms);
-            arms.is_some_and(|arms| arms[0].min(arms[1]) >= LEAST_ARM)
+            arms.map_or(f64::NEG_INFINITY, |arms| arms[0].min(arms[1]) - LEAST_ARM)
         };
-        let ends_drive = [range.from, range.to].map(drives);
-        if ends_drive == [true; 2] {
+        let ends = [range.from, range.to].map(|arc| (arc, beyond_least(arc)));
+        let drives = |(_, beyond_least): (f64, f64)| beyond_least >= 0.0;
+        if ends.into_iter().all(drives) {
             return Some(range);
         }
         // Arms are longest about where the flanks are parallel, and shorter towards either tip.
-        let parallel = self.least_between(range.from, range.to);
+        let parallel = self.least_between(range.from, range.to, &[]);
+        let parallel = (parallel, beyond_least(parallel));
         if !drives(parallel) {
             return None;
         }
-        let [from, to] =
-            [(range.from, ends_drive[0]), (range.to, ends_drive[1])].map(|(end, drives_there)| {
-                if drives_there {
-                    end
-                } else {
-                    bisect(parallel, end, drives)
-                }
-            });
+        let [from, to] = ends.map(|end| {
+            if drives(end) {
+                end.0
+            } else {
+                crossing(parallel, end, beyond_least)
+            }
+        });
         (from < to).then_some(FlankRange { from, to, ..range })
     }
 
@@ -330,20 +331,19 @@ impl<'a> View<'a> {
         let form = mate.lowest_roll_length();
         let tip = mate.chamfer_edge().unwrap_or(mate.tip_roll_length());
         let (mut from, mut to) = ((low, RangeEnd::Fillet), (high, RangeEnd::Tip));
-        if self.seen_from(high) > tip || self.seen_from(low) < form {
+        let [seen_low, seen_high] = [low, high].map(|arc| self.seen_from(arc));
+        if seen_high > tip || seen_low < form {
             return None;
         }
-        if self.seen_from(low) > tip {
-            from = (
-                bisect(high, low, |arc| self.seen_from(arc) <= tip),
-                RangeEnd::MateTip,
-            );
+        if seen_low > tip {
+            let ends = [(high, tip - seen_high), (low, tip - seen_low)];
+            let sought = |arc: f64| tip - self.seen_from(arc);
+            from = (crossing(ends[0], ends[1], sought), RangeEnd::MateTip);
         }
-        if self.seen_from(high) < form {
-            to = (
-                bisect(low, high, |arc| self.seen_from(arc) >= form),
-                RangeEnd::MateFillet,
-            );
+        if seen_high < form {
+            let ends = [(low, seen_low - form), (high, seen_high - form)];
+            let sought = |arc: f64| self.seen_from(arc) - form;
+            to = (crossing(ends[0], ends[1], sought), RangeEnd::MateFillet);
         }
         (from.0 < to.0).then_some(FlankRange {
             from: from.0,
@@ -390,9 +390,10 @@ impl<'a> View<'a> {
         );
         // The corner of an undercut flank touches far off the line of action, and beside it the mate passes the base circle.
         if mate.is_undercut() {
-            let sees = |arc: f64| self.seen_from(arc) >= sought;
-            let within = sees(range.from) && !sees(range.to);
-            return within.then(|| bisect(range.from, range.to, sees));
+            let beyond = |arc: f64| self.seen_from(arc) - sought;
+            let [from, to] = [range.from, range.to].map(|arc| (arc, beyond(arc)));
+            let within = from.1 >= 0.0 && to.1 < 0.0;
+            return within.then(|| crossing(from, to, beyond));
         }
         // Flanks that touch share the line of action.
         let opposite = self.gears().line_of_action() - sought;
@@ -416,9 +417,8 @@ impl<'a> View<'a> {
     fn least_places(&self, range: &FlankRange, kinks: &[f64]) -> Vec<f64> {
         let FlankRange { from, to, .. } = *range;
         if self.gears().driving().is_convex() && self.gears().driven().is_convex() {
-            return vec![self.least_between(from, to)];
+            return vec![self.least_between(from, to, kinks)];
         }
-        let falls = |arc: f64| self.falls(arc);
         let evenly = (0..=PLACES).map(|i| from + (to - from) * f64::from(i) / f64::from(PLACES));
         let mut places: Vec<f64> = evenly.chain(kinks.iter().copied()).collect();
         places.sort_by(f64::total_cmp);
@@ -430,14 +430,14 @@ impl<'a> View<'a> {
         let mut falling = true;
         for pair in places.windows(2) {
             let (low, high) = (pair[0] + beside, pair[1] - beside);
-            let (begins, ends) = (falls(low), falls(high));
-            if falling && !begins {
+            let [begins, ends] = [low, high].map(|arc| (arc, self.fall(arc)));
+            if falling && begins.1 <= 0.0 {
                 found.push(pair[0]);
             }
-            if begins && !ends {
-                found.push(bisect(low, high, falls));
+            if begins.1 > 0.0 && ends.1 <= 0.0 {
+                found.push(crossing(begins, ends, |arc| self.fall(arc)));
             }
-            falling = ends;
+            falling = ends.1 > 0.0;
         }
         if falling {
             found.push(to);
@@ -445,18 +445,35 @@ impl<'a> View<'a> {
         found
     }
 
-    /// Where the gap is least between the arcs `low` and `high`, between which it falls and then rises.
-    fn least_between(&self, low: f64, high: f64) -> f64 {
-        match (self.falls(low), self.falls(high)) {
-            (_, true) => high,
-            (true, false) => bisect(low, high, |arc| self.falls(arc)),
-            (false, false) => low,
+    /// Where the gap is least between the arcs `low` and `high`, between which it falls and then rises, with these `kinks` in between.
+    fn least_between(&self, low: f64, high: f64, kinks: &[f64]) -> f64 {
+        // Just beside a kink the slope is that of its own side.
+        let beside = 1e-9 * (high - low);
+        let mut from = (low, self.fall(low));
+        if from.1 <= 0.0 {
+            return low;
         }
+        for kink in kinks {
+            let before = (kink - beside, self.fall(kink - beside));
+            if before.1 <= 0.0 {
+                return crossing(from, before, |arc| self.fall(arc));
+            }
+            let behind = (kink + beside, self.fall(kink + beside));
+            if behind.1 <= 0.0 {
+                return *kink;
+            }
+            from = behind;
+        }
+        let to = (high, self.fall(high));
+        if to.1 > 0.0 {
+            return high;
+        }
+        crossing(from, to, |arc| self.fall(arc))
     }
 
-    /// Whether the gap falls along the seat's flank, towards its tip.
-    fn falls(&self, arc: f64) -> bool {
-        self.slope(arc) < 0.0
+    /// How fast the gap falls along the seat's flank, towards its tip.
+    fn fall(&self, arc: f64) -> f64 {
+        -self.slope(arc)
     }
 
     fn minimum(&self, arc: f64, range: &FlankRange) -> Option<GapMinimum> {

@@ -84,6 +84,16 @@ pub(super) struct Balance {
     lower: Mat<f64>,
 }
 
+/// Where a balance is looked for first.
+#[derive(Clone)]
+pub(super) struct Start {
+    /// The forces in the middles of the slices.
+    pub(super) forces: Vec<f64>,
+    /// By how much these open them.
+    pub(super) opened: Vec<f64>,
+    pub(super) transmission_error: f64,
+}
+
 /// An iterate.
 #[derive(Clone)]
 struct State {
@@ -112,13 +122,19 @@ struct Problem<'a> {
     load: f64,
 }
 
-/// The balance of `slices` under `load` with the linear compliance `h`.
+/// The balance of `slices` under `load` with the linear compliance `h`, looked for from `start`, or from a load that is even along all lines: these change
+/// no more of it than its last digits.
 ///
 /// # Errors
 ///
 /// [`ContactError::NotPositiveDefinite`] where slices are so short beside the width of their contact that the compliance is not positive definite.
-pub(super) fn balance(h: &Mat<f64>, slices: &[Slice], load: f64) -> Result<Balance, PositionError> {
-    balance_with(h, slices, load, &[0.0])
+pub(super) fn balance(
+    h: &Mat<f64>,
+    slices: &[Slice],
+    load: f64,
+    start: Option<&Start>,
+) -> Result<Balance, PositionError> {
+    balance_with(h, slices, load, &[0.0], start)
 }
 
 /// The same for slices that cannot be made longer: they yield more until the compliance is positive definite ([`SOFTER`]).
@@ -127,7 +143,7 @@ pub(super) fn softened_balance(
     slices: &[Slice],
     load: f64,
 ) -> Result<Balance, PositionError> {
-    balance_with(h, slices, load, &SOFTER)
+    balance_with(h, slices, load, &SOFTER, None)
 }
 
 fn balance_with(
@@ -135,6 +151,7 @@ fn balance_with(
     slices: &[Slice],
     load: f64,
     softer: &[f64],
+    start: Option<&Start>,
 ) -> Result<Balance, PositionError> {
     let factor = |softer: f64| {
         let mut whole = h.clone();
@@ -152,18 +169,23 @@ fn balance_with(
         softer,
         load,
     };
-    problem.solved(h)
+    problem.solved(h, start)
 }
 
 impl Problem<'_> {
-    fn solved(self, h: &Mat<f64>) -> Result<Balance, PositionError> {
+    fn solved(self, h: &Mat<f64>, start: Option<&Start>) -> Result<Balance, PositionError> {
         let touches = self
             .slices
             .iter()
             .map(|slice| slice.middle.gap / slice.middle.weights[1]);
         let touch = touches.fold(f64::INFINITY, f64::min);
-        let mut state = self.even(h);
-        let mut points = self.points(&state);
+        let near = start.map(|start| self.near(start));
+        let near = near.map(|state| (self.points(&state), state));
+        let near = near.filter(|(points, _)| !points.is_empty());
+        let (mut points, mut state) = near.unwrap_or_else(|| {
+            let state = self.even(h);
+            (self.points(&state), state)
+        });
         let mut iterations = 0;
         for _ in 0..MOST_STEPS {
             iterations += 1;
@@ -242,18 +264,32 @@ impl Problem<'_> {
             .iter()
             .map(|slice| density * slice.along)
             .collect();
-        let y = column(&forces);
-        let y = self.lower.transpose() * y;
-        let y = y.col_as_slice(0).to_vec();
-        let opened = product(self.lower.as_ref(), &y);
         let deltas = self.slices.iter().zip(product(h.as_ref(), &forces));
         let deltas = deltas.map(|(slice, opened)| {
             let closed = slice.middle.spring.closing_at_end(density * slice.along) * 2.0;
             (slice.middle.gap + opened + closed) / slice.middle.weights[1]
         });
+        let delta = deltas.sum::<f64>() / self.slices.len() as f64;
+        self.under(&forces, delta)
+    }
+
+    /// The forces of another balance. To first order δ changes by Nᵀ ΔH N/F.
+    fn near(&self, start: &Start) -> State {
+        let mut state = self.under(&start.forces, start.transmission_error);
+        let more = state.opened.iter().zip(&start.opened);
+        let work = more.zip(&start.forces);
+        let work = work.map(|((now, before), force)| (now - before) * force);
+        state.delta += work.sum::<f64>() / self.load;
+        state
+    }
+
+    /// These `forces` in the middles of the slices, at this δ.
+    fn under(&self, forces: &[f64], delta: f64) -> State {
+        let y = self.lower.transpose() * column(forces);
+        let y = y.col_as_slice(0).to_vec();
         State {
-            delta: deltas.sum::<f64>() / self.slices.len() as f64,
-            opened,
+            opened: product(self.lower.as_ref(), &y),
+            delta,
             y,
         }
     }
@@ -459,6 +495,15 @@ impl Point {
 }
 
 impl Balance {
+    /// From where a balance is looked for that is about this one.
+    pub(super) fn start(&self) -> Start {
+        Start {
+            forces: self.forces.clone(),
+            opened: self.opened.clone(),
+            transmission_error: self.transmission_error,
+        }
+    }
+
     /// How far flanks are pressed together at a place of slice `i`.
     pub(super) fn depth(&self, slices: &[Slice], i: usize, within: &Within) -> f64 {
         let beside = beside(slices, i, usize::from(within.at > 0.0));

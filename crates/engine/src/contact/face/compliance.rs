@@ -7,29 +7,64 @@ use super::slice::Slice;
 use crate::contact::coupled::{Touching, add_coupled, mirror};
 use crate::gear::Member;
 
-/// H between `slices` without their own springs, in m/N.
-pub(super) fn compliance(model: &FaceModel, slices: &[Slice]) -> Mat<f64> {
-    let count = slices.len();
-    let mut h = Mat::zeros(count, count);
-    for member in Member::BOTH {
-        add_smooth(model, member, slices, &mut h);
-    }
-    add_half_space(slices, &mut h);
-    add_ends(model, slices, &mut h);
-    mirror(&mut h);
-    h
+/// What H between slices has in all mesh periods, and what its smooth part is made of.
+pub(super) struct SliceCompliance {
+    /// The half space and the ends of the flanks, in m/N; the lower triangle.
+    held: Mat<f64>,
+    /// The functions over the flank of each gear in the middles of the slices, a column each.
+    bases: [Mat<f64>; 2],
+    /// The pair of each line, and how many slices it has.
+    lines: Vec<(i64, usize)>,
 }
 
-/// Adds Φ R Φᵀ of the gear `member`, below the diagonal blocks and on them.
+impl SliceCompliance {
+    /// That of `slices` of `model`.
+    pub(super) fn new(model: &FaceModel, slices: &[Slice]) -> Self {
+        let mut held = Mat::zeros(slices.len(), slices.len());
+        add_half_space(slices, &mut held);
+        add_ends(model, slices, &mut held);
+        let lines = slices.chunk_by(|one, next| one.pair == next.pair);
+        Self {
+            held,
+            bases: Member::BOTH.map(|member| basis(model, member, slices)),
+            lines: lines.map(|line| (line[0].pair, line.len())).collect(),
+        }
+    }
+
+    /// H without the springs of the slices in m/N, so many mesh `period`s on: Φ R Φᵀ of both gears beside what is known.
+    pub(super) fn of_teeth(&self, model: &FaceModel, period: i64) -> Mat<f64> {
+        let mut h = self.held.clone();
+        let (Some((first, _)), Some((last, _))) = (self.lines.first(), self.lines.last()) else {
+            return h;
+        };
+        for member in Member::BOTH {
+            let smooth = model.smooth(member, first + period, 1 + (last - first) as usize);
+            let basis = &self.bases[member.index()];
+            let mut start = 0;
+            let lines = self.lines.iter().map(|&(pair, count)| {
+                let from = start;
+                start += count;
+                Touching {
+                    pair: pair + period,
+                    start: from,
+                    shapes: basis.as_ref().subcols(from, count).transpose(),
+                }
+            });
+            let lines: Vec<Touching<'_>> = lines.collect();
+            add_coupled(&mut h, &lines, |a, b| smooth.block(a, b));
+        }
+        mirror(&mut h);
+        h
+    }
+}
+
+/// Functions over the flank of `member` in the middles of `slices`, a column each, times the arms of the forces there.
 ///
-/// R is that of forces normal to an involute. Forces at a corner or where a relief is cut away have another arm about the axis, and turn and bend the gear by as
-/// much more or less; the points at which they act move so too.
-fn add_smooth(model: &FaceModel, member: Member, slices: &[Slice], h: &mut Mat<f64>) {
-    let (first, last) = (slices[0].pair, slices[slices.len() - 1].pair);
-    let smooth = model.smooth(member, first, 1 + (last - first) as usize);
+/// The compliance on them is that of forces normal to an involute. Forces at a corner or where a relief is cut away have another arm about the axis, and turn and
+/// bend the gear by as much more or less; the points at which they act move so too.
+fn basis(model: &FaceModel, member: Member, slices: &[Slice]) -> Mat<f64> {
     let flank = &model.yields[member.index()];
     let cosine = model.pair().base_helix_angle().cos();
-    // One column a slice.
     let mut basis = Mat::<f64>::zeros(flank.basis_len(), slices.len());
     for (i, slice) in slices.iter().enumerate() {
         let z = model.pair().own_height(member, slice.z);
@@ -38,19 +73,7 @@ fn add_smooth(model: &FaceModel, member: Member, slices: &[Slice], h: &mut Mat<f
         let arm = slice.middle.weights[member.index()] / cosine;
         of_slice.iter_mut().for_each(|value| *value *= arm);
     }
-    let mut start = 0;
-    let lines = slices.chunk_by(|one, next| one.pair == next.pair);
-    let lines = lines.map(|line| {
-        let from = start;
-        start += line.len();
-        Touching {
-            pair: line[0].pair,
-            start: from,
-            shapes: basis.as_ref().subcols(from, line.len()).transpose(),
-        }
-    });
-    let lines: Vec<Touching<'_>> = lines.collect();
-    add_coupled(h, &lines, |a, b| smooth.block(a, b));
+    basis
 }
 
 /// Adds how slices move under others of their line.

@@ -7,9 +7,10 @@
 use faer::Mat;
 use rayon::prelude::*;
 
-use super::balance::balance;
-use super::slice::{Slice, Stretches};
-use super::{Balanced, FaceModel, add_to_strips, beyond};
+use super::balance::{Start, balance};
+use super::slice::Slice;
+use super::stage::{Balanced, Stage};
+use super::{FaceModel, add_to_strips, beyond};
 use crate::gear::{LeadModification, Member};
 use crate::run::{Run, Stopped};
 
@@ -50,6 +51,8 @@ struct Stand {
     gaps: Vec<[f64; 3]>,
     openings: [Vec<[f64; 3]>; 2],
     h: Mat<f64>,
+    /// The balance that was found last.
+    last: Option<Start>,
 }
 
 /// The strips of the face, each over the mean of all, and how they change with a lead.
@@ -145,12 +148,12 @@ impl FaceModel {
 
     fn stand(&self, eta: f64, load: f64, phases: [f64; 2]) -> Option<Stand> {
         let Balanced {
-            slices,
+            sliced,
             compliance: h,
+            balance,
             ..
-        } = self
-            .balanced(eta, load, &Stretches::whole(self, eta, phases))
-            .ok()?;
+        } = Stage::new(self, eta, load, phases).whole(0).ok()?;
+        let slices = sliced.slices.clone();
         let width = self.pair().gear(Member::Driving).face_width();
         let opened = |lead: &LeadModification| -> Vec<[f64; 3]> {
             let removed = slices.iter().map(|slice| {
@@ -176,6 +179,7 @@ impl FaceModel {
             openings,
             h,
             slices,
+            last: Some(balance.start()),
         })
     }
 
@@ -210,7 +214,8 @@ impl Stand {
             slice.middle.gap = middle;
             (slice.ends[0].gap, slice.ends[1].gap) = (begin, end);
         }
-        let balance = balance(&self.h, &self.slices, load).ok()?;
+        let balance = balance(&self.h, &self.slices, load, self.last.as_ref()).ok()?;
+        self.last = Some(balance.start());
         let spread = |forces: &[f64]| -> [f64; STRIPS] {
             let mut strips = [0.0; STRIPS];
             for ((slice, carried), force) in self.slices.iter().zip(&balance.carried).zip(forces) {

@@ -1,11 +1,13 @@
 //! The flanks of a pair along their faces before they yield: where they touch first, and how far they stand apart.
 
 use std::cell::Cell;
+use std::sync::OnceLock;
 
 use crate::contact::light::{FirstTouch, TOGETHER, first, on_path, touching_near};
+use crate::contact::memo::Memo;
 use crate::contact::{MeshContact, PositionError};
 use crate::gear::{GearPair, Member, PairDeviations, SolidPair};
-use crate::root_finding::{bisect, least_places};
+use crate::root_finding::{crossing, least_places};
 use crate::touch::facing::{Facing, Touching, nearer_tip};
 use crate::touch::placement::Section;
 
@@ -17,7 +19,14 @@ pub struct FaceFlanks {
     pub(super) plane_strain: GearPair,
     /// Slices of the whole face.
     pub(super) slices: usize,
+    /// The phases on the path of contact at which sections are nearest, once they are asked for.
+    nearest: OnceLock<Vec<f64>>,
+    /// [`FaceFlanks::phases_within`] of the last few, by the bits of δ.
+    within: Memo<u64, [f64; 2]>,
 }
+
+/// How many ranges of phases are known, in bytes.
+const MOST_BYTES: usize = 64 * size_of::<[f64; 2]>();
 
 impl FaceFlanks {
     /// Those of `pair`, its face cut into so many `slices`.
@@ -27,6 +36,8 @@ impl FaceFlanks {
             plane_strain: pair.section().plane_strain(),
             pair,
             slices,
+            nearest: OnceLock::new(),
+            within: Memo::new(MOST_BYTES, size_of_val),
         }
     }
 
@@ -154,12 +165,19 @@ impl FaceFlanks {
 
     /// The phases between which sections may touch before δ is `reach`.
     pub(super) fn phases_within(&self, reach: f64) -> [f64; 2] {
+        *self
+            .within
+            .get(reach.to_bits(), |_| self.phases_that_touch(reach))
+    }
+
+    fn phases_that_touch(&self, reach: f64) -> [f64; 2] {
         const STEP: f64 = 1.0 / 32.0;
         let limit = reach + self.nearer();
-        let touches = |phase: f64| self.drawn_touch(phase) <= limit;
+        let closed = |phase: f64| limit - self.drawn_touch(phase);
+        let touches = |phase: f64| closed(phase) >= 0.0;
         let (s_a, s_e) = self.pair.section().path_of_contact();
         let ends = [s_a, s_e].map(|s| self.pair.phase_at(s));
-        let nearest = self.nearest_phases(ends, STEP);
+        let nearest = self.nearest.get_or_init(|| self.nearest_phases(ends, STEP));
         let outermost = |end: f64, way: f64, other: f64| {
             let mut out = end + way;
             while touches(out) {
@@ -176,7 +194,11 @@ impl FaceFlanks {
                     .filter(|phase| (outside - **phase) * way > 0.0);
                 inside = ahead.copied().fold(inside, first);
             }
-            bisect(inside, outside, touches)
+            let [good, bad] = [inside, outside].map(|phase| (phase, closed(phase)));
+            if good.1 < 0.0 {
+                return inside;
+            }
+            crossing(good, bad, closed)
         };
         [
             outermost(ends[0], -1.0, ends[1]),

@@ -20,6 +20,7 @@ mod flanks;
 mod model;
 mod slice;
 pub mod spring;
+mod stage;
 
 use faer::Mat;
 use rayon::prelude::*;
@@ -28,14 +29,14 @@ use super::coupled::add_yielded;
 use super::mesh_contact::Spot;
 use super::peak::Peak;
 use super::positions::PositionsError;
-use super::{ContactError, MeshContact, PairContact, PairLoads, PeakPlace, PositionError};
+use super::{MeshContact, PairContact, PairLoads, PeakPlace, PositionError};
 use crate::gear::{Member, SolidPair};
 use crate::run::Run;
-use balance::{Balance, balance, softened_balance};
-use compliance::compliance;
 pub use flanks::FaceFlanks;
+use model::FirstReach;
 pub use model::{FaceModel, FlankYield};
-use slice::{Loading, Place, Slice, Slicer, Stretches};
+use slice::Place;
+use stage::{Balanced, Sliced, Stage};
 
 /// How many slices the whole face is cut into, unless a case says otherwise.
 pub const SLICES: usize = 40;
@@ -43,29 +44,17 @@ pub const SLICES: usize = 40;
 /// How far beyond δ pairs are looked for, as a part of how far the flanks are pressed.
 const BEYOND: f64 = 0.3;
 
-/// Slices are first made for a line load of so many times its mean, and for so many times at most.
-const HEAVIER: f64 = 2.5;
-const HEAVIEST: f64 = 200.0;
-
-/// How many times the loaded parts of lines are cut finer, at most.
-const FINEST: usize = 4;
-
-/// Slices in balance.
-struct Balanced<'a> {
-    slicer: Slicer<'a>,
-    slices: Vec<Slice>,
-    /// Their compliance without springs.
-    compliance: Mat<f64>,
-    balance: Balance,
-}
+/// The position at which contact is looked for first.
+const LOOKED_FROM: f64 = 0.0;
 
 impl Balanced<'_> {
     /// The largest pressure on slice `i`: that `in_middle` of its loaded part, or one where a kink stands in the middle of the contact.
     fn peak_of(&self, i: usize, in_middle: Peak) -> Peak {
         let (part, half_width) = (self.balance.carried[i].part, in_middle.place.half_width);
-        let kinks = self.slicer.at_kinks(&self.slices[i], part, half_width);
+        let Sliced { slicer, slices, .. } = &*self.sliced;
+        let kinks = slicer.at_kinks(&slices[i], part, half_width);
         let at_kinks = kinks.iter().filter_map(|within| {
-            let depth = self.balance.depth(&self.slices, i, within);
+            let depth = self.balance.depth(slices, i, within);
             if depth <= 0.0 {
                 return None;
             }
@@ -86,16 +75,6 @@ impl Balanced<'_> {
             })
         });
         at_kinks.fold(in_middle, Peak::larger)
-    }
-
-    /// The loaded part of each line of `of`, whose slices these are, if together they are less than half a face: they are cut finer then.
-    fn loaded(&self, model: &FaceModel, of: &Stretches) -> Option<Stretches> {
-        let carried = self.balance.carried.iter();
-        let gaps = carried.zip(&self.balance.gaps);
-        let gaps: Vec<f64> = gaps
-            .map(|(carried, gap)| if carried.force > 0.0 { 0.0 } else { *gap })
-            .collect();
-        of.loaded(model, &self.slices, &gaps)
     }
 }
 
@@ -215,33 +194,38 @@ impl FaceModel {
         if positions.is_empty() {
             return Ok(Vec::new());
         }
-        // Slices lie where lines end, and lines end where flanks touch before δ is as large as `reach`. That starts from one position, whichever
-        // are asked for, so that a position which is solved by itself has the same slices as among all.
-        const LOOKED_FROM: f64 = 0.0;
-        let touch = self.flanks.least_touch(LOOKED_FROM);
-        let touch = touch.ok_or_else(|| at(PositionError::NoContact, LOOKED_FROM))?;
-        let mut reach = self
-            .first_reach(LOOKED_FROM, load, touch)
-            .map_err(|error| at(error, LOOKED_FROM))?;
+        let first = self.reaches.get(load.to_bits(), |_| self.first_reach(load));
+        let FirstReach { touch, delta } =
+            Result::clone(&first).map_err(|error| at(error, LOOKED_FROM))?;
+        let mut reach = delta;
+        let stages = self.stages_of(positions);
         let mut is_counted = false;
         loop {
             let phases = self.flanks.phases_within(reach);
-            let solved: Result<Vec<_>, PositionsError> = positions
+            let solved: Result<Vec<_>, PositionsError> = stages
                 .par_iter()
-                .map(|&eta| {
-                    let reached = self.reached(eta, load, phases, reach);
-                    run.reached(u64::from(!is_counted))?;
-                    reached.map_err(|error| at(error, eta))
+                .map(|(fraction, places)| {
+                    let mut stage = Stage::new(self, *fraction, load, phases);
+                    let solved = places.iter().map(|&place| {
+                        let eta = positions[place];
+                        let period = (eta - fraction).round() as i64;
+                        let reached = self.reached(&mut stage, (eta, period), load, reach);
+                        run.reached(u64::from(!is_counted))?;
+                        let reached = reached.map_err(|error| at(error, eta))?;
+                        Ok((place, reached))
+                    });
+                    solved.collect::<Result<Vec<_>, PositionsError>>()
                 })
                 .collect();
-            let solved = solved?;
+            let mut solved: Vec<_> = solved?.into_iter().flatten().collect();
             is_counted = true;
-            let farthest = solved.iter().map(|(delta, _)| *delta);
+            let farthest = solved.iter().map(|(_, (delta, _))| *delta);
             let farthest = farthest.fold(reach, f64::max);
             if farthest == reach {
+                solved.sort_unstable_by_key(|(place, _)| *place);
                 let module = self.pair().section().driving().data().rack.module;
-                let contacts = positions.iter().zip(solved);
-                let contacts = contacts.filter_map(|(&eta, (_, contact))| {
+                let contacts = solved.into_iter().filter_map(|(place, (_, contact))| {
+                    let eta = positions[place];
                     let contact = contact?;
                     let checked = contact.mesh.check(module);
                     Some(checked.map_or_else(|error| Err(at(error.into(), eta)), |()| Ok(contact)))
@@ -252,16 +236,17 @@ impl FaceModel {
         }
     }
 
-    /// δ at the position `eta` under `load`, and the contact among the flanks that touch before δ is `reach`. If there is none, δ is where the first of them
-    /// touch.
+    /// δ at the position `eta` under `load`, which is that of `stage` so many mesh `period`s on, and the contact among the flanks that touch before δ is
+    /// `reach`. If there is none, δ is where the first of them touch.
     fn reached(
         &self,
-        eta: f64,
+        stage: &mut Stage<'_>,
+        (eta, period): (f64, i64),
         load: f64,
-        phases: [f64; 2],
         reach: f64,
     ) -> Result<(f64, Option<FaceContact>), PositionError> {
-        match self.contact_within(eta, load, phases) {
+        let contact = stage.contact(period);
+        match contact.map(|balanced| self.summary(&balanced, load)) {
             Err(PositionError::NoContact) => match self.flanks.least_touch(eta) {
                 Some(touch) if touch > reach => Ok((touch, None)),
                 _ => Err(PositionError::NoContact),
@@ -270,100 +255,37 @@ impl FaceModel {
         }
     }
 
-    /// The δ up to which flanks are looked at under `load`: a little more than δ is at the position `eta`, where the first of them `touch`.
-    fn first_reach(&self, eta: f64, load: f64, touch: f64) -> Result<f64, PositionError> {
+    /// The δ up to which flanks are looked at under `load`: a little more than δ is at one position, whichever are asked for. Slices lie where lines end,
+    /// and lines end where flanks touch before δ is as large as that, so that a position which is solved by itself has the same slices as among all.
+    fn first_reach(&self, load: f64) -> Result<FirstReach, PositionError> {
+        let touch = self.flanks.least_touch(LOOKED_FROM);
+        let touch = touch.ok_or(PositionError::NoContact)?;
         let moduli = self.flanks.moduli();
         // Solid gears yield by about half of this.
         let stiffness = 0.05 * moduli[0].min(moduli[1]) * self.pair().common_face_width();
         let mut reach = touch + load / stiffness;
         loop {
-            let contact = self.contact_within(eta, load, self.flanks.phases_within(reach))?;
-            let delta = contact.mesh.transmission_error;
+            let phases = self.flanks.phases_within(reach);
+            let found = Stage::new(self, LOOKED_FROM, load, phases).contact(0)?;
+            let delta = found.balance.transmission_error;
             if delta <= reach {
-                return Ok(beyond(delta, touch));
+                let delta = beyond(delta, touch);
+                return Ok(FirstReach { touch, delta });
             }
             reach = beyond(delta, touch);
         }
     }
 
     /// The contact at the position `eta` under `load` of sections in `phases`.
-    ///
-    /// Where few slices carry load, the loaded part of each line is cut into finer ones.
+    #[cfg(test)]
     fn contact_within(
         &self,
         eta: f64,
         load: f64,
         phases: [f64; 2],
     ) -> Result<FaceContact, PositionError> {
-        let whole = Stretches::whole(self, eta, phases);
-        let mut balanced = self.balanced(eta, load, &whole)?;
-        let mut loaded = balanced.loaded(self, &whole);
-        for _ in 0..FINEST {
-            let Some(stretches) = loaded else { break };
-            // Where a line is too short for finer slices, the longer ones are kept.
-            let Ok(finer) = self.balanced(eta, load, &stretches) else {
-                break;
-            };
-            if stretches.end_under_load(&finer.slices, &finer.balance.carried, &whole) {
-                break;
-            }
-            balanced = finer;
-            loaded = balanced.loaded(self, &stretches);
-        }
+        let balanced = Stage::new(self, eta, load, phases).contact(0)?;
         Ok(self.summary(&balanced, load))
-    }
-
-    /// The balance at the position `eta` under `load` of the slices of `stretches`.
-    ///
-    /// No slice is shorter than its contact is wide. Where few of many slices carry, their contact is wider than that of the load for which they were
-    /// made: then longer ones are made.
-    fn balanced(
-        &self,
-        eta: f64,
-        load: f64,
-        stretches: &Stretches,
-    ) -> Result<Balanced<'_>, PositionError> {
-        let mut heavier = HEAVIER;
-        let mut shorter = None;
-        let (slicer, slices, compliance) = loop {
-            let slicer = Slicer::new(self, eta, stretches, Loading { load, heavier });
-            let slices = slicer.slices(stretches);
-            let (Some(first), Some(last)) = (slices.first(), slices.last()) else {
-                break shorter.ok_or(PositionError::NoContact)?;
-            };
-            let apart = first.pair.abs_diff(last.pair) as usize;
-            if apart > self.coupled {
-                return Err(PositionError::TooFarApart {
-                    apart,
-                    coupled: self.coupled,
-                });
-            }
-            let compliance = compliance(self, &slices);
-            if heavier >= HEAVIEST {
-                break (slicer, slices, compliance);
-            }
-            match balance(&compliance, &slices, load) {
-                Ok(balance) if !balance.is_strained => {
-                    return Ok(Balanced {
-                        balance,
-                        slicer,
-                        slices,
-                        compliance,
-                    });
-                }
-                Ok(_) | Err(PositionError::Contact(ContactError::NotPositiveDefinite { .. })) => {
-                    heavier *= HEAVIER;
-                    shorter = Some((slicer, slices, compliance));
-                }
-                Err(error) => return Err(error),
-            }
-        };
-        Ok(Balanced {
-            balance: softened_balance(&compliance, &slices, load)?,
-            slicer,
-            slices,
-            compliance,
-        })
     }
 
     /// The loads of `contact` on the functions over the flanks, pair by pair: a column for the forces, and one for their derivative to the load.
@@ -414,8 +336,12 @@ impl FaceModel {
     /// The contact of the mesh by what is `balanced`.
     fn summary(&self, balanced: &Balanced<'_>, load: f64) -> FaceContact {
         let Balanced {
-            slices, balance, ..
+            sliced,
+            period,
+            balance,
+            ..
         } = balanced;
+        let slices = &sliced.slices;
         let mut pairs: Vec<PairContact> = Vec::new();
         let mut peak: Option<Peak> = None;
         let mut at_sharp_edge = false;
@@ -423,8 +349,9 @@ impl FaceModel {
         let mut corner_shares = [0.0; 2];
         let mut loads = Vec::new();
         for (i, (slice, carried)) in slices.iter().zip(&balance.carried).enumerate() {
-            if pairs.last().is_none_or(|pair| pair.pair != slice.pair) {
-                pairs.push(PairContact::of_share(slice.pair, 0.0));
+            let pair = slice.pair + period;
+            if pairs.last().is_none_or(|last| last.pair != pair) {
+                pairs.push(PairContact::of_share(pair, 0.0));
             }
             if carried.force <= 0.0 {
                 continue;
@@ -435,9 +362,9 @@ impl FaceModel {
                 .middle
                 .spring
                 .pressed(carried.force / (part * slice.along));
-            if let Some(pair) = pairs.last_mut() {
-                pair.share += carried.weighed / load;
-                pair.fillet = pair.fillet.or(pressed.fillet);
+            if let Some(last) = pairs.last_mut() {
+                last.share += carried.weighed / load;
+                last.fillet = last.fillet.or(pressed.fillet);
             }
             if let Some(member) = pressed.tip_corner {
                 corner_shares[member.index()] += carried.weighed / load;
@@ -451,7 +378,7 @@ impl FaceModel {
                 at + (edge[g] - at) * middle.abs()
             });
             let place = PeakPlace {
-                pair: slice.pair,
+                pair,
                 roll_lengths,
                 z: Some(z),
                 half_width: pressed.half_width,
@@ -463,7 +390,7 @@ impl FaceModel {
                 (one, other) => one.or(other),
             };
             loads.push(SliceLoad {
-                pair: slice.pair,
+                pair,
                 z,
                 length: part * slice.length,
                 force: carried.weighed,
@@ -480,7 +407,7 @@ impl FaceModel {
             .zip(forces)
             .filter(|(_, (force, _))| **force > 0.0);
         let middles = middles.map(|(slice, (&force, &rise))| MiddleLoad {
-            pair: slice.pair,
+            pair: slice.pair + period,
             z: slice.z,
             roll_lengths: slice.middle.roll_lengths,
             weights: slice.middle.weights,
@@ -539,6 +466,9 @@ fn beyond(delta: f64, touch: f64) -> f64 {
 mod tests {
     use std::sync::Arc;
 
+    use super::balance::balance;
+    use super::slice::{Loading, Slicer, Stretches};
+    use super::stage::HEAVIER;
     use super::*;
     use crate::assembly::{FaceResolution, FaceYield, FaceYieldSpec, MakeAll, Parts};
     use crate::gear::spur::tests::paper_gear;
@@ -581,12 +511,13 @@ mod tests {
                     let lines = Stretches::whole(&model, eta, phases);
                     let heavier = HEAVIER;
                     let slicer = Slicer::new(&model, eta, &lines, Loading { load, heavier });
-                    let slices = slicer.slices(&lines);
-                    let compliance = compliance(&model, &slices);
+                    let sliced = Sliced::new(&model, slicer, &lines).expect("slices");
+                    let compliance = sliced.compliance(&model, 0);
+                    let balance = balance(&compliance, &sliced.slices, load, None);
                     let balanced = Balanced {
-                        balance: balance(&compliance, &slices, load).expect("a balance"),
-                        slicer,
-                        slices,
+                        balance: balance.expect("a balance"),
+                        sliced: Arc::new(sliced),
+                        period: 0,
                         compliance,
                     };
                     model.summary(&balanced, load)
@@ -771,6 +702,24 @@ mod tests {
             let later = at(&round, 3.0);
             let delta = |of: &FaceContact| of.mesh.transmission_error;
             assert!((delta(&found) / delta(&later) - 1.0).abs() < 1e-9);
+            // Positions whole mesh periods apart are solved one after the other on the same slices, and are what each of them is alone.
+            let positions = [0.0, 3.0, 7.0].map(|period| eta + period);
+            let contacts = |positions: &[f64]| {
+                let contacts = whole.contacts(load, positions, &run);
+                contacts.expect("contacts")
+            };
+            let together = contacts(&positions);
+            assert!((delta(&together[1]) / delta(&together[0]) - 1.0).abs() > 1e-6);
+            for (together, eta) in together.iter().zip(positions) {
+                let alone = &contacts(&[eta])[0];
+                assert!((delta(together) / delta(alone) - 1.0).abs() < 1e-10);
+                let slices = together.slices.iter().zip(&alone.slices);
+                for (one, other) in slices {
+                    assert_eq!(one.pair, other.pair, "{eta}");
+                    assert!((one.force - other.force).abs() < 1e-7 * load);
+                }
+                assert_eq!(together.slices.len(), alone.slices.len());
+            }
             let loads = round.loads(&found);
             for period in [0, 3] {
                 let term = |model: &FaceModel| {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use faer::{Mat, MatRef};
 
 use super::flanks::FaceFlanks;
+use crate::contact::PositionError;
 use crate::contact::memo::Memo;
 use crate::fem::dense::entries;
 use crate::gear::{Member, SolidPair};
@@ -47,6 +48,20 @@ pub struct FaceModel {
     /// The kinks of both profiles at which flanks press harder than beside them.
     pub(super) kinks: Vec<Kink>,
     smooth: Memo<Teeth, Mat<f64>>,
+    /// [`FaceModel::first_reach`] of the last few loads, by their bits.
+    pub(super) reaches: Memo<u64, Result<FirstReach, PositionError>>,
+}
+
+/// How many first reaches are known, in bytes.
+const MOST_REACHES: usize = 64 * size_of::<Result<FirstReach, PositionError>>();
+
+/// How far contact is looked for at first under a load.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct FirstReach {
+    /// The δ at which the first flanks touch where it was looked for.
+    pub(super) touch: f64,
+    /// The δ up to which flanks are looked at.
+    pub(super) delta: f64,
 }
 
 /// A kink of a profile.
@@ -110,6 +125,7 @@ impl FaceModel {
             yields,
             coupled,
             smooth: Memo::new(MOST_BYTES, |smooth| size_of::<f64>() * entries(smooth)),
+            reaches: Memo::new(MOST_REACHES, size_of_val),
         }
     }
 

@@ -13,6 +13,7 @@ use crate::touch::placement::Section;
 const SHORTEST: f64 = 2.0;
 
 /// One slice.
+#[derive(Clone)]
 pub(super) struct Slice {
     /// The pair n.
     pub(super) pair: i64,
@@ -70,6 +71,7 @@ pub(super) struct Loading {
 }
 
 /// Lines that are cut into slices.
+#[derive(Clone, PartialEq)]
 pub(super) struct Stretches {
     lines: Vec<ContactLine>,
     /// No slice is longer along the axis.

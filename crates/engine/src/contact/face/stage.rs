@@ -1,0 +1,228 @@
+//! The mesh at one fraction of its period along faces: all that positions whole mesh periods apart have in common.
+//!
+//! As in the plane ([`crate::contact::Stage`]) the same flanks face each other in every mesh period. Slices, their springs, the half space along their
+//! lines and what flanks yield at their ends are found once, and each period adds what its teeth yield together. Where teeth deviate, every position is
+//! a stage by itself.
+
+use std::sync::Arc;
+
+use faer::Mat;
+
+use super::FaceModel;
+use super::balance::{Balance, Start, balance, softened_balance};
+use super::compliance::SliceCompliance;
+use super::slice::{Loading, Slice, Slicer, Stretches};
+use crate::contact::positions::stages;
+use crate::contact::{ContactError, PositionError};
+
+/// Slices are first made for a line load of so many times its mean, and for so many times at most.
+pub(super) const HEAVIER: f64 = 2.5;
+const HEAVIEST: f64 = 200.0;
+
+/// How many times the loaded parts of lines are cut finer, at most.
+const FINEST: usize = 4;
+
+/// Slices, and what of their compliance does not depend on the mesh period.
+pub(super) struct Sliced<'a> {
+    pub(super) slicer: Slicer<'a>,
+    /// Of pairs counted from the mesh period.
+    pub(super) slices: Vec<Slice>,
+    compliance: SliceCompliance,
+}
+
+/// Slices in balance.
+pub(super) struct Balanced<'a> {
+    pub(super) sliced: Arc<Sliced<'a>>,
+    /// The mesh period in which they stand.
+    pub(super) period: i64,
+    /// Their compliance without springs.
+    pub(super) compliance: Mat<f64>,
+    pub(super) balance: Balance,
+}
+
+/// Slices that were made, and the balance that was found on them last.
+struct Made<'a> {
+    stretches: Stretches,
+    heavier: f64,
+    /// `None` where nothing is to be sliced.
+    sliced: Option<Arc<Sliced<'a>>>,
+    last: Option<Start>,
+}
+
+/// The mesh at one fraction of its period, under one load.
+pub(super) struct Stage<'a> {
+    model: &'a FaceModel,
+    eta: f64,
+    load: f64,
+    /// Those of sections that may touch.
+    phases: [f64; 2],
+    made: Vec<Made<'a>>,
+}
+
+impl FaceModel {
+    /// `positions` by the stage to which they belong, with their places.
+    pub(super) fn stages_of(&self, positions: &[f64]) -> Vec<(f64, Vec<usize>)> {
+        if self.flanks.deviations.are_none() {
+            return stages(positions);
+        }
+        let each = positions.iter().enumerate();
+        each.map(|(place, eta)| (*eta, vec![place])).collect()
+    }
+}
+
+impl<'a> Stage<'a> {
+    /// The mesh of `model` at the position `eta`, and where teeth do not deviate whole mesh periods from there, under `load`, of sections in `phases`.
+    pub(super) fn new(model: &'a FaceModel, eta: f64, load: f64, phases: [f64; 2]) -> Self {
+        Self {
+            model,
+            eta,
+            load,
+            phases,
+            made: Vec::new(),
+        }
+    }
+
+    /// The slices in balance, so many mesh periods on.
+    ///
+    /// Where few slices carry load, the loaded part of each line is cut into finer ones.
+    pub(super) fn contact(&mut self, period: i64) -> Result<Balanced<'a>, PositionError> {
+        let whole = Stretches::whole(self.model, self.eta, self.phases);
+        let mut balanced = self.balanced(&whole, period)?;
+        let mut loaded = balanced.loaded(self.model, &whole);
+        for _ in 0..FINEST {
+            let Some(stretches) = loaded else { break };
+            // Where a line is too short for finer slices, the longer ones are kept.
+            let Ok(finer) = self.balanced(&stretches, period) else {
+                break;
+            };
+            if stretches.end_under_load(&finer.sliced.slices, &finer.balance.carried, &whole) {
+                break;
+            }
+            balanced = finer;
+            loaded = balanced.loaded(self.model, &stretches);
+        }
+        Ok(balanced)
+    }
+
+    /// The balance of the slices of whole lines, not cut finer.
+    pub(super) fn whole(&mut self, period: i64) -> Result<Balanced<'a>, PositionError> {
+        let whole = Stretches::whole(self.model, self.eta, self.phases);
+        self.balanced(&whole, period)
+    }
+
+    /// The balance of the slices of `stretches`.
+    ///
+    /// No slice is shorter than its contact is wide. Where few of many slices carry, their contact is wider than that of the load for which they were
+    /// made: then longer ones are made.
+    fn balanced(
+        &mut self,
+        stretches: &Stretches,
+        period: i64,
+    ) -> Result<Balanced<'a>, PositionError> {
+        let model = self.model;
+        let mut heavier = HEAVIER;
+        let mut shorter = None;
+        let (sliced, compliance) = loop {
+            let made = self.made(stretches, heavier);
+            let Some(sliced) = made.sliced.clone() else {
+                break shorter.ok_or(PositionError::NoContact)?;
+            };
+            let apart = sliced.pairs_apart();
+            if apart > model.coupled {
+                return Err(PositionError::TooFarApart {
+                    apart,
+                    coupled: model.coupled,
+                });
+            }
+            let compliance = sliced.compliance.of_teeth(model, period);
+            if heavier >= HEAVIEST {
+                break (sliced, compliance);
+            }
+            let start = made.last.clone();
+            match balance(&compliance, &sliced.slices, self.load, start.as_ref()) {
+                Ok(balance) if !balance.is_strained => {
+                    self.made(stretches, heavier).last = Some(balance.start());
+                    return Ok(Balanced {
+                        sliced,
+                        period,
+                        compliance,
+                        balance,
+                    });
+                }
+                Ok(_) | Err(PositionError::Contact(ContactError::NotPositiveDefinite { .. })) => {
+                    heavier *= HEAVIER;
+                    shorter = Some((sliced, compliance));
+                }
+                Err(error) => return Err(error),
+            }
+        };
+        Ok(Balanced {
+            balance: softened_balance(&compliance, &sliced.slices, self.load)?,
+            sliced,
+            period,
+            compliance,
+        })
+    }
+
+    /// The slices of `stretches` with springs for a line load so many times `heavier` than the mean.
+    fn made(&mut self, stretches: &Stretches, heavier: f64) -> &mut Made<'a> {
+        let known = |made: &Made<'_>| made.heavier == heavier && made.stretches == *stretches;
+        let known = self.made.iter().position(known);
+        let place = known.unwrap_or_else(|| {
+            let loading = Loading {
+                load: self.load,
+                heavier,
+            };
+            let slicer = Slicer::new(self.model, self.eta, stretches, loading);
+            self.made.push(Made {
+                stretches: stretches.clone(),
+                heavier,
+                sliced: Sliced::new(self.model, slicer, stretches).map(Arc::new),
+                last: None,
+            });
+            self.made.len() - 1
+        });
+        &mut self.made[place]
+    }
+}
+
+impl<'a> Sliced<'a> {
+    /// The slices of `stretches` of `model`; `None` if there is none.
+    pub(super) fn new(
+        model: &FaceModel,
+        slicer: Slicer<'a>,
+        stretches: &Stretches,
+    ) -> Option<Self> {
+        let slices = slicer.slices(stretches);
+        (!slices.is_empty()).then(|| Self {
+            compliance: SliceCompliance::new(model, &slices),
+            slicer,
+            slices,
+        })
+    }
+
+    /// The compliance of the slices without springs, so many mesh `period`s on.
+    #[cfg(test)]
+    pub(super) fn compliance(&self, model: &FaceModel, period: i64) -> Mat<f64> {
+        self.compliance.of_teeth(model, period)
+    }
+
+    /// How far the pairs of its slices are apart.
+    fn pairs_apart(&self) -> usize {
+        let pairs = [self.slices.first(), self.slices.last()];
+        let [first, last] = pairs.map(|slice| slice.map_or(0, |slice| slice.pair));
+        first.abs_diff(last) as usize
+    }
+}
+
+impl Balanced<'_> {
+    /// The loaded part of each line of `of`, whose slices these are, if together they are less than half a face: they are cut finer then.
+    fn loaded(&self, model: &FaceModel, of: &Stretches) -> Option<Stretches> {
+        let carried = self.balance.carried.iter();
+        let gaps = carried.zip(&self.balance.gaps);
+        let gaps: Vec<f64> = gaps
+            .map(|(carried, gap)| if carried.force > 0.0 { 0.0 } else { *gap })
+            .collect();
+        of.loaded(model, &self.sliced.slices, &gaps)
+    }
+}
