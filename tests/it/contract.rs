@@ -351,7 +351,8 @@ fn each_part_knows_only_the_parts_below_it() {
     }
 }
 
-/// Inside the engine: analysis -> assembly -> contact, load_distribution -> touch, flank -> ring -> fem -> grid -> gear.
+/// Inside the engine: analysis -> assembly -> contact, load_distribution -> touch, flank -> ring -> fem -> grid -> gear;
+/// vibration stands on fem.
 #[test]
 fn the_mechanics_build_on_each_other_in_one_direction() {
     let layers = [
@@ -359,6 +360,7 @@ fn the_mechanics_build_on_each_other_in_one_direction() {
         "grid",
         "fem",
         "ring",
+        "vibration",
         "flank",
         "touch",
         "load_distribution",

@@ -87,4 +87,5 @@ pub mod ring;
 pub mod root_finding;
 pub mod run;
 pub mod touch;
+pub mod vibration;
 mod wide;

@@ -7,6 +7,7 @@
 pub mod axial;
 pub mod condensation;
 pub mod dense;
+pub mod eigen;
 pub mod element;
 mod factor;
 pub mod law;

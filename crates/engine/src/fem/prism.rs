@@ -36,7 +36,7 @@ const AXIAL: usize = 2;
 /// The unknowns of an element for one function along the axis.
 const UNKNOWNS: usize = COMPONENTS * MOST_NODES;
 
-type SectionMatrix = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
+pub(crate) type SectionMatrix = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 type Strains = SMatrix<f64, 6, UNKNOWNS>;
 
 /// A body whose every section is `grid`, turned.
@@ -90,10 +90,11 @@ pub(super) type TakeElement<'a> = dyn FnMut(&Element, &dyn Fn(usize, usize) -> f
 const ROWS_AT_ONCE: usize = 64;
 
 /// The matrices of one element: K_00, K_01 and K_11 on polar components at its nodes.
-struct SectionMatrices {
-    plain: SectionMatrix,
-    mixed: SectionMatrix,
-    axial: SectionMatrix,
+#[derive(Debug)]
+pub(crate) struct SectionMatrices {
+    pub(crate) plain: SectionMatrix,
+    pub(crate) mixed: SectionMatrix,
+    pub(crate) axial: SectionMatrix,
 }
 
 impl Prism<'_> {
@@ -415,7 +416,12 @@ impl Law3 {
     }
 }
 
-fn section_matrices(element: &Element, grid: &Grid, law: &Law3, twist: f64) -> SectionMatrices {
+pub(crate) fn section_matrices(
+    element: &Element,
+    grid: &Grid,
+    law: &Law3,
+    twist: f64,
+) -> SectionMatrices {
     let kind = element.kind();
     let places = element.places(&grid.nodes);
     let count = element.nodes().len();
@@ -465,18 +471,7 @@ fn section_matrices(element: &Element, grid: &Grid, law: &Law3, twist: f64) -> S
         matrices.mixed += b_0.transpose() * s_1;
         matrices.axial += b_1.transpose() * s_1;
     }
-    let mut turn = SectionMatrix::identity();
-    for (i, place) in places.iter().enumerate().take(count) {
-        let (sin, cos) = {
-            let radius = place.norm();
-            (place.y / radius, place.x / radius)
-        };
-        // (x, y) by (r, t).
-        turn[(3 * i, 3 * i)] = cos;
-        turn[(3 * i, 3 * i + 1)] = -sin;
-        turn[(3 * i + 1, 3 * i)] = sin;
-        turn[(3 * i + 1, 3 * i + 1)] = cos;
-    }
+    let turn = cartesian_by_polar(&places[..count]);
     for matrix in [
         &mut matrices.plain,
         &mut matrices.mixed,
@@ -485,6 +480,41 @@ fn section_matrices(element: &Element, grid: &Grid, law: &Law3, twist: f64) -> S
         *matrix = turn.transpose() * *matrix * turn;
     }
     matrices
+}
+
+/// The consistent mass of an element for a density of 1 and one function along the axis, ∫ N_iᵀ N_j dA, on polar components at its nodes.
+pub(crate) fn section_mass(element: &Element, grid: &Grid) -> SectionMatrix {
+    let kind = element.kind();
+    let places = element.places(&grid.nodes);
+    let count = element.nodes().len();
+    let mut mass = SectionMatrix::zeros();
+    for &(xi, eta, weight) in kind.rule() {
+        let (_, det) = gradients(kind, &places, xi, eta);
+        let values = kind.values(xi, eta);
+        for i in 0..count {
+            for j in 0..count {
+                for c in 0..COMPONENTS {
+                    mass[(3 * i + c, 3 * j + c)] += weight * det * values[i] * values[j];
+                }
+            }
+        }
+    }
+    let turn = cartesian_by_polar(&places[..count]);
+    turn.transpose() * mass * turn
+}
+
+/// The components along x, y and the axis at `places` by those along e_r, e_t and the axis.
+fn cartesian_by_polar(places: &[Vector]) -> SectionMatrix {
+    let mut turn = SectionMatrix::identity();
+    for (i, place) in places.iter().enumerate() {
+        let radius = place.norm();
+        let (sin, cos) = (place.y / radius, place.x / radius);
+        turn[(3 * i, 3 * i)] = cos;
+        turn[(3 * i, 3 * i + 1)] = -sin;
+        turn[(3 * i + 1, 3 * i)] = sin;
+        turn[(3 * i + 1, 3 * i + 1)] = cos;
+    }
+    turn
 }
 
 #[cfg(test)]

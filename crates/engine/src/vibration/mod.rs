@@ -1,0 +1,346 @@
+//! Natural frequencies and shapes of a gear: blank and teeth in three dimensions, by classes of its symmetry.
+//!
+//! K x = ω² M x with consistent masses. The blank from the bore to a circle below the roots is divided in its plane ([`section`]) and carries
+//! quadratic functions along the axis that all parts share ([`heights`]), so that rim, web and hub move alike where they meet. The teeth stand on
+//! that circle, order by order ([`teeth`]). In class k of S equal sectors all turns by e^{i2πk/S} from one to the next; each class is one sparse
+//! Hermitian problem ([`system`]) for Lanczos's method ([`crate::fem::eigen`]). Classes between 0 and S/2 stand for two modes, a cosine and a sine.
+//!
+//! Helical teeth stand as straight ones of the same transverse section. A gear of one piece with its shaft is held where the shaft begins. Nothing
+//! rotates: frequencies are those at rest in the frame of the gear ([`campbell`] says where they are met at speed).
+
+pub mod campbell;
+pub mod heights;
+mod mode;
+mod section;
+mod system;
+mod teeth;
+#[cfg(test)]
+mod tests;
+
+use faer::{Mat, c64};
+use rayon::prelude::*;
+
+use self::heights::{Heights, Parity};
+use self::section::Blank;
+use self::system::{Numbering, System};
+use self::teeth::{TeethOrder, ToothCell};
+use crate::fem::FemError;
+use crate::fem::eigen::{Entry, Lanczos, Pencil, inner};
+use crate::gear::{Layer, Material, SolidGear};
+use crate::grid::GridError;
+use crate::run::Run;
+
+pub use self::mode::{Direction, Mode, OrderShape};
+pub use self::system::BoreSupport;
+
+/// The largest order of the circle on which the teeth stand.
+const MOST_ORDERS: usize = 40;
+/// Modes that each class is asked for at first.
+const AT_FIRST: usize = 3;
+/// Modes more that a class is asked for where those found are all among the lowest.
+const MORE: usize = 4;
+/// The shift, as a part of (c_s/r_a)², c_s the speed of shear waves.
+const SHIFT: f64 = 1e-2;
+/// The value of a rigid turn, as a part of the shift, is smaller.
+const RIGID: f64 = 1e-6;
+
+/// The modes that are asked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ModesAsked {
+    /// How many of the lowest, at most.
+    pub count: usize,
+    /// The highest frequency in hertz, if there is a limit.
+    pub highest: Option<f64>,
+    /// How the bore carries the gear.
+    pub bore: BoreSupport,
+}
+
+/// The parts by which the frequencies of a cosine and a sine of one wave differ at most where holes tell them apart, and where the grid alone does.
+const NEAR: f64 = 0.05;
+const ALIKE: f64 = 0.01;
+
+/// Why modes could not be found.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ModesError {
+    /// The blank or its teeth cannot be divided.
+    #[error(transparent)]
+    Grid(#[from] GridError),
+    /// A matrix could not be factorized, or the caller stopped the work.
+    #[error(transparent)]
+    Fem(#[from] FemError),
+}
+
+/// The lowest modes of `gear`, the lowest first.
+///
+/// A double mode stands once. The result is the same to the last bit on any number of threads.
+///
+/// # Errors
+///
+/// [`ModesError`].
+pub fn modes(gear: &SolidGear, asked: ModesAsked, run: &Run) -> Result<Vec<Mode>, ModesError> {
+    let blank = Blank::new(gear)?;
+    let section = gear.section();
+    let cell = ToothCell::new(section, blank.parts[0].outer_radius)?;
+    let body = Body {
+        blank: &blank,
+        teeth: Some((gear, &cell)),
+        material: section.material(),
+    };
+    Ok(body.modes(asked, run)?)
+}
+
+/// The most modes that the grid of `gear` can tell: as many as its circle below the teeth has nodes around it.
+///
+/// # Errors
+///
+/// [`GridError`] if the blank cannot be divided.
+pub fn most_modes(gear: &SolidGear) -> Result<usize, GridError> {
+    Ok(Blank::new(gear)?.section.around)
+}
+
+/// A blank with or without teeth.
+struct Body<'a> {
+    blank: &'a Blank,
+    teeth: Option<(&'a SolidGear, &'a ToothCell)>,
+    material: &'a Material,
+}
+
+/// One class of motions on its way to its modes.
+struct Class<'a> {
+    system: &'a System<'a>,
+    parity: Parity,
+    class: usize,
+    numbering: Numbering,
+    lanczos: Lanczos,
+    /// The largest value that counts as a rigid turn.
+    rigid_below: f64,
+}
+
+impl Class<'_> {
+    /// The values found, without a rigid turn.
+    fn values(&self) -> impl Iterator<Item = (usize, f64)> {
+        let found = self.lanczos.found().iter().enumerate();
+        let values = found.map(|(index, pair)| (index, pair.value));
+        values.filter(|(_, value)| *value > self.rigid_below)
+    }
+
+    /// Whether a mode below `limit` may be missing.
+    fn may_miss(&self, limit: f64) -> bool {
+        let last = self.lanczos.found().last();
+        !self.lanczos.is_exhausted() && last.is_none_or(|pair| pair.value < limit)
+    }
+}
+
+impl Body<'_> {
+    fn modes(&self, asked: ModesAsked, run: &Run) -> Result<Vec<Mode>, FemError> {
+        let parts = &self.blank.parts;
+        let faces: Vec<[f64; 2]> = parts.iter().map(|part| part.heights).collect();
+        let depth = |part: &Layer| part.outer_radius - part.inner_radius;
+        let narrowest = parts.iter().map(depth).fold(f64::INFINITY, f64::min);
+        let heights = &Heights::new(&faces, narrowest);
+        let system = &System::new(
+            &self.blank.section,
+            heights,
+            &faces,
+            self.material,
+            asked.bore,
+        );
+        let largest = (self.blank.section.around / 2).min(MOST_ORDERS);
+        let teeth = self.teeth_orders(heights, largest, run)?;
+        let sectors = self.blank.section.sectors;
+        let keys: Vec<(Parity, usize)> = heights
+            .parities()
+            .iter()
+            .flat_map(|parity| (0..=(sectors / 2).min(largest)).map(|class| (*parity, class)))
+            .collect();
+        let mut classes: Vec<Class<'_>> = keys
+            .into_par_iter()
+            .map(|(parity, class)| {
+                let of_parity = teeth.iter().find(|(of, _)| *of == parity);
+                let orders = of_parity.map(|(_, orders)| orders.as_slice());
+                self.class(system, (parity, class), (largest, orders), run)
+            })
+            .collect::<Result<_, _>>()?;
+        // Where no symmetry is used, a double mode is found twice.
+        let copies = if sectors == 1 && self.repeats() > 2 {
+            2
+        } else {
+            1
+        };
+        let count = copies * asked.count;
+        let highest = asked.highest.map_or(f64::INFINITY, |hertz| {
+            (std::f64::consts::TAU * hertz).powi(2)
+        });
+        loop {
+            let mut values: Vec<f64> = classes
+                .iter()
+                .flat_map(|class| class.values().map(|(_, value)| value))
+                .collect();
+            values.sort_by(f64::total_cmp);
+            let enough = values.get(count.saturating_sub(1)).copied();
+            let limit = enough.unwrap_or(f64::INFINITY).min(highest);
+            let is_open = |class: &Class<'_>| class.may_miss(limit);
+            if !classes.iter().any(is_open) {
+                break;
+            }
+            classes.par_iter_mut().try_for_each(|class| {
+                if !class.may_miss(limit) {
+                    return Ok(());
+                }
+                let wanted = class.lanczos.found().len() + MORE;
+                class.lanczos.find(wanted, run)
+            })?;
+        }
+        let mut lowest: Vec<(f64, usize, usize)> = Vec::new();
+        for (place, class) in classes.iter().enumerate() {
+            let below = class.values().filter(|(_, value)| *value <= highest);
+            lowest.extend(below.map(|(index, value)| (value, place, index)));
+        }
+        lowest.sort_by(|one, other| one.0.total_cmp(&other.0));
+        lowest.truncate(count);
+        let weights = system.node_weights();
+        let made = lowest.par_iter().map(|(value, place, index)| {
+            let class = &classes[*place];
+            let of_parity = teeth.iter().find(|(of, _)| *of == class.parity);
+            let teeth = of_parity.and_then(|(_, orders)| {
+                self.teeth
+                    .map(|(gear, cell)| mode::Teeth { gear, cell, orders })
+            });
+            let pair = &class.lanczos.found()[*index];
+            mode::Found {
+                system: class.system,
+                numbering: &class.numbering,
+                parity: class.parity,
+                class: class.class,
+                weights: &weights,
+                phase: self.blank.phase,
+                teeth,
+            }
+            .mode(*value, pair, &class.lanczos)
+        });
+        let made: Vec<(Mode, Mat<c64>)> = made.collect();
+        if sectors > 1 {
+            return Ok(made.into_iter().map(|(mode, _)| mode).collect());
+        }
+        let coupled = |(one, other): (usize, usize)| {
+            let class = &classes[lowest[one].1];
+            let [turned, _] = class.numbering.turned(&made[other].1);
+            inner(&made[one].1, &class.lanczos.pencil().mass_times(&turned)).re * heights.copies
+        };
+        let same_class = |one: usize, other: usize| lowest[one].1 == lowest[other].1;
+        let mut modes: Vec<Mode> = made.iter().map(|(mode, _)| mode.clone()).collect();
+        self.pair_up(&mut modes, same_class, coupled);
+        modes.truncate(asked.count);
+        Ok(modes)
+    }
+
+    /// How often the holes repeat around the gear.
+    fn repeats(&self) -> u32 {
+        self.teeth
+            .map_or(1, |(gear, _)| gear.section().hole_repeats())
+    }
+
+    /// Finds the cosine and the sine of each wave among single `modes`. Those that differ by their grid alone stand once.
+    fn pair_up(
+        &self,
+        modes: &mut Vec<Mode>,
+        same_class: impl Fn(usize, usize) -> bool,
+        coupled: impl Fn((usize, usize)) -> f64,
+    ) {
+        let repeats = self.repeats();
+        let mut is_taken = vec![false; modes.len()];
+        let mut is_left = vec![true; modes.len()];
+        for one in 0..modes.len() {
+            let (n, direction) = (modes[one].nodal_diameters, modes[one].direction);
+            if is_taken[one] || n == 0 {
+                continue;
+            }
+            let apart = |other: &usize| modes[*other].frequency / modes[one].frequency - 1.0;
+            let Some(other) = (one + 1..modes.len()).find(|other| {
+                let alike =
+                    modes[*other].nodal_diameters == n && modes[*other].direction == direction;
+                alike && !is_taken[*other] && same_class(one, *other) && apart(other) < NEAR
+            }) else {
+                continue;
+            };
+            let are_alike =
+                repeats > 2 && !(2 * n).is_multiple_of(repeats) && apart(&other) < ALIKE;
+            (is_taken[one], is_taken[other]) = (true, true);
+            is_left[other] = !are_alike;
+            let (head, tail) = modes.split_at_mut(other);
+            head[one].pair_with(&mut tail[0], coupled((one, other)), are_alike);
+        }
+        let mut is_left = is_left.into_iter();
+        modes.retain(|_| is_left.next().unwrap_or(true));
+    }
+
+    /// The teeth on the orders 0 to `largest` of their circle, for each parity; the circle's system is made for it.
+    fn teeth_orders(
+        &self,
+        heights: &Heights,
+        largest: usize,
+        run: &Run,
+    ) -> Result<Vec<(Parity, Vec<TeethOrder>)>, FemError> {
+        let Some((gear, cell)) = self.teeth else {
+            return Ok(Vec::new());
+        };
+        let system = cell.system(heights, gear.section(), gear.face_heights());
+        let of_parity = |parity: &Parity| {
+            let orders = (0..=largest).into_par_iter().map(|order| {
+                run.check()?;
+                TeethOrder::new(&system, *parity, order as i64)
+            });
+            Ok((*parity, orders.collect::<Result<_, FemError>>()?))
+        };
+        heights.parities().iter().map(of_parity).collect()
+    }
+
+    /// Class `of.1` of the motions of parity `of.0`, before its first mode; `teeth` are those of the orders 0 to `largest`.
+    fn class<'s>(
+        &self,
+        system: &'s System<'s>,
+        (parity, class): (Parity, usize),
+        (largest, teeth): (usize, Option<&[TeethOrder]>),
+        run: &Run,
+    ) -> Result<Class<'s>, FemError> {
+        run.check()?;
+        let sectors = system.section.sectors as i64;
+        let largest = largest as i64;
+        let of_class = |order: &i64| order.rem_euclid(sectors) == class as i64;
+        let orders: Vec<i64> = (-largest..=largest).filter(of_class).collect();
+        let numbering = system.numbering(parity, class, &orders);
+        let mut entries: Vec<Entry> = Vec::new();
+        system.assemble(&numbering, &mut entries);
+        if let (Some(teeth), Some((gear, _))) = (teeth, self.teeth) {
+            let share = f64::from(gear.section().tooth_count()) / sectors as f64;
+            let size = numbering.amplitude_size();
+            for (k, order) in orders.iter().enumerate() {
+                let first = numbering.first_amplitude + k * size;
+                let of_order = &teeth[order.unsigned_abs() as usize];
+                match order {
+                    0.. => of_order.add(first, share, &mut entries),
+                    _ => of_order.add_opposite(first, share, &mut entries),
+                }
+            }
+        }
+        let pencil = Pencil::new(numbering.count, &entries);
+        let outer = self.blank.parts[0].outer_radius;
+        let shear = self.material.shear_modulus() / self.material.density;
+        let shift = SHIFT * shear / outer.powi(2);
+        let mut lanczos = Lanczos::new("the blank", pencil, shift)?;
+        lanczos.find(AT_FIRST, run)?;
+        let is_free = numbering.turn.is_some();
+        Ok(Class {
+            system,
+            parity,
+            class,
+            numbering,
+            lanczos,
+            rigid_below: if is_free {
+                RIGID * shift
+            } else {
+                f64::NEG_INFINITY
+            },
+        })
+    }
+}

@@ -1,0 +1,335 @@
+//! One mode: its frequency, its kind, and how the teeth move in it.
+
+use faer::{Mat, c64};
+
+use super::heights::Parity;
+use super::system::{Numbering, System};
+use super::teeth::{TeethOrder, ToothCell};
+use crate::fem::eigen::{EigenPair, Lanczos, inner};
+use crate::fem::prism::COMPONENTS;
+use crate::gear::SolidGear;
+
+/// Rings of equal depth over which shapes are told apart.
+const RINGS: usize = 24;
+/// The amplitude on a ring, as a part of the largest, below which its sign says nothing.
+const SMALL: f64 = 0.02;
+/// The largest order that nodal diameters are counted to.
+const MOST_DIAMETERS: i64 = 60;
+
+/// Along what a mode moves for the most part.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// Around the axis, alike on all of a circle.
+    Torsion,
+    /// In the plane of the gear.
+    InPlane,
+    /// Along the axis.
+    OutOfPlane,
+}
+
+/// The part of one order in how the teeth move: at the angle φ from tooth 0 the displacement is that times e^{inφ}.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OrderShape {
+    /// n, of either sign.
+    pub order: i64,
+    /// Outward along the radius, counter-clockwise, and along the axis, in kg^(−1/2): at the loaded flank on the reference circle, in the mean over the face.
+    pub at_pitch: [c64; COMPONENTS],
+    /// The same on the circle below the roots.
+    pub on_rim: [c64; COMPONENTS],
+}
+
+/// A natural mode of a gear.
+///
+/// Shapes have a modal mass of 1 kg. A double mode is two with the same frequency: the real part of its shape and the imaginary one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mode {
+    /// In hertz, of the gear at rest.
+    pub frequency: f64,
+    /// Whether it is two modes of one frequency.
+    pub is_double: bool,
+    /// Along what it moves.
+    pub direction: Direction,
+    /// Lines across the gear that stand still.
+    pub nodal_diameters: u32,
+    /// Circles between bore and teeth that stand still.
+    pub nodal_circles: u32,
+    /// c = −2 ∫ U V dm/∫ (U² + V²) dm for u_r = U cos nφ and u_t = V sin nφ: the part of Coriolis forces. 1 of a rigid translation.
+    pub coriolis: f64,
+    /// How far the pair is from a mode: ‖A⁻¹ M x − θ x‖/θ, which bounds the relative error of the frequency against the grid's own.
+    pub residual: f64,
+    /// How the teeth move.
+    pub shape: Vec<OrderShape>,
+}
+
+impl Mode {
+    /// The displacement (radial, tangential, axial) in kg^(−1/2) of the loaded flank on the reference circle at the angle `angle` from tooth 0: that of the cosine, and that
+    /// of the sine of a double mode, which is zero otherwise.
+    pub fn at_pitch(&self, angle: f64) -> [[f64; COMPONENTS]; 2] {
+        self.at(angle, |order| order.at_pitch)
+    }
+
+    /// The same on the circle below the roots.
+    pub fn on_rim(&self, angle: f64) -> [[f64; COMPONENTS]; 2] {
+        self.at(angle, |order| order.on_rim)
+    }
+
+    /// Takes `other`, a single mode with as many nodal diameters and nearly the same frequency, as its sine: both have the Coriolis forces of the wave
+    /// that they make. `coupled` is x₁ᵀ M J x₂ of their vectors, J the turn by a right angle. They become one double mode if they `are_alike`.
+    pub(super) fn pair_with(&mut self, other: &mut Self, coupled: f64, are_alike: bool) {
+        let joined = |sign: f64| -> Vec<OrderShape> {
+            let both = self.shape.iter().zip(&other.shape);
+            let add = |one: [c64; COMPONENTS], other: [c64; COMPONENTS]| {
+                std::array::from_fn(|i| one[i] + other[i] * c64::new(0.0, sign))
+            };
+            both.map(|(one, other)| OrderShape {
+                order: one.order,
+                at_pitch: add(one.at_pitch, other.at_pitch),
+                on_rim: add(one.on_rim, other.on_rim),
+            })
+            .collect()
+        };
+        let n = i64::from(self.nodal_diameters);
+        let forward = |shape: &[OrderShape]| -> f64 {
+            let own = shape.iter().filter(|of| of.order == n);
+            own.flat_map(|of| of.on_rim).map(|u| u.norm_sqr()).sum()
+        };
+        let [ahead, back] = [1.0, -1.0].map(joined);
+        let (sign, shape) = match forward(&ahead) >= forward(&back) {
+            true => (1.0, ahead),
+            false => (-1.0, back),
+        };
+        let coriolis = -sign * coupled;
+        (self.coriolis, other.coriolis) = (coriolis, coriolis);
+        if are_alike {
+            self.is_double = true;
+            self.frequency = f64::midpoint(self.frequency, other.frequency);
+            self.residual = self.residual.max(other.residual);
+            self.shape = shape;
+        }
+    }
+
+    fn at(
+        &self,
+        angle: f64,
+        of: impl Fn(&OrderShape) -> [c64; COMPONENTS],
+    ) -> [[f64; COMPONENTS]; 2] {
+        let mut sum = [[0.0; COMPONENTS]; 2];
+        for order in &self.shape {
+            let turn = c64::cis(order.order as f64 * angle);
+            for (component, value) in of(order).into_iter().enumerate() {
+                let value = value * turn;
+                sum[0][component] += value.re;
+                sum[1][component] += if self.is_double { value.im } else { 0.0 };
+            }
+        }
+        sum
+    }
+}
+
+/// The teeth of a gear.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Teeth<'a> {
+    pub(super) gear: &'a SolidGear,
+    pub(super) cell: &'a ToothCell,
+    pub(super) orders: &'a [TeethOrder],
+}
+
+/// A pair of a class, to be told as a mode.
+pub(super) struct Found<'a> {
+    pub(super) system: &'a System<'a>,
+    pub(super) numbering: &'a Numbering,
+    pub(super) parity: Parity,
+    pub(super) class: usize,
+    pub(super) weights: &'a [f64],
+    pub(super) phase: f64,
+    pub(super) teeth: Option<Teeth<'a>>,
+}
+
+impl Found<'_> {
+    /// The mode of `pair`, whose value ω² is `value`, and its vector.
+    pub(super) fn mode(&self, value: f64, pair: &EigenPair, lanczos: &Lanczos) -> (Mode, Mat<c64>) {
+        let sectors = self.system.section.sectors;
+        let is_double = self.class != 0 && 2 * self.class != sectors;
+        let x = self.normalized(&pair.vector, is_double);
+        let (order, component, nodal_circles) = self.ring_shape(&x);
+        let energies = self.energies(&x);
+        let direction = match self.parity {
+            Parity::Odd => Direction::OutOfPlane,
+            Parity::Whole if energies[2] > energies[0] + energies[1] => Direction::OutOfPlane,
+            _ if order == 0 && component == 1 => Direction::Torsion,
+            _ => Direction::InPlane,
+        };
+        let [turned, planar] = self.numbering.turned(&x);
+        let pencil = lanczos.pencil();
+        let whole = inner(&planar, &pencil.mass_times(&planar)).re;
+        let coupled = inner(&planar, &pencil.mass_times(&turned)).im;
+        let sign = if order < 0 { 1.0 } else { -1.0 };
+        let mode = Mode {
+            frequency: value.max(0.0).sqrt() / std::f64::consts::TAU,
+            is_double,
+            direction,
+            nodal_diameters: order.unsigned_abs() as u32,
+            nodal_circles,
+            coriolis: if whole > 0.0 {
+                sign * coupled / whole
+            } else {
+                0.0
+            },
+            residual: pair.residual,
+            shape: self.shape(&x),
+        };
+        (mode, x)
+    }
+
+    /// The vector with a modal mass of 1 kg in the whole gear, real where the mode is single.
+    fn normalized(&self, x: &Mat<c64>, is_double: bool) -> Mat<c64> {
+        let sectors = self.system.section.sectors as f64;
+        let copies = sectors * self.system.heights.copies;
+        // The real part of a wave has half of its mass.
+        let scale = if is_double {
+            (2.0 / copies).sqrt()
+        } else {
+            copies.sqrt().recip()
+        };
+        let mut squares = c64::new(0.0, 0.0);
+        for node in 0..self.weights.len() as u32 {
+            for u in self.system.in_middle(self.numbering, x, node) {
+                squares += u * u * self.weights[node as usize];
+            }
+        }
+        let turn = if is_double || squares.norm() == 0.0 {
+            c64::new(1.0, 0.0)
+        } else {
+            c64::cis(-squares.arg() / 2.0)
+        };
+        x * faer::Scale(turn * scale)
+    }
+
+    /// The kinetic energy of each component in the middle of its part, but for a factor.
+    fn energies(&self, x: &Mat<c64>) -> [f64; COMPONENTS] {
+        let mut energies = [0.0; COMPONENTS];
+        for (node, weight) in self.weights.iter().enumerate() {
+            let moved = self.system.in_middle(self.numbering, x, node as u32);
+            for (energy, u) in energies.iter_mut().zip(moved) {
+                *energy += weight * u.norm_sqr();
+            }
+        }
+        energies
+    }
+
+    /// The order that carries most of the energy, the component that does in it, and the circles on which that changes its sign.
+    fn ring_shape(&self, x: &Mat<c64>) -> (i64, usize, u32) {
+        let section = self.system.section;
+        let sectors = section.sectors as i64;
+        let radii: Vec<f64> = section.grid.nodes.iter().map(|p| p.norm()).collect();
+        let least = radii.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = radii.iter().copied().fold(0.0, f64::max);
+        let ring_of = |radius: f64| {
+            let part = (radius - least) / (most - least);
+            ((part * RINGS as f64) as usize).min(RINGS - 1)
+        };
+        let moved: Vec<[c64; COMPONENTS]> = (0..radii.len() as u32)
+            .map(|node| self.system.in_middle(self.numbering, x, node))
+            .collect();
+        let mut masses = [0.0; RINGS];
+        for (radius, weight) in radii.iter().zip(self.weights) {
+            masses[ring_of(*radius)] += weight;
+        }
+        let amplitudes = |order: i64| {
+            let mut sums = [[c64::new(0.0, 0.0); COMPONENTS]; RINGS];
+            for (node, moved) in moved.iter().enumerate() {
+                let turn = c64::cis(-(order as f64) * self.system.angles[node]);
+                for (sum, u) in sums[ring_of(radii[node])].iter_mut().zip(moved) {
+                    *sum += *u * turn * self.weights[node];
+                }
+            }
+            sums
+        };
+        let of_class = |order: &i64| order.rem_euclid(sectors) == self.class as i64;
+        let mut best = (0.0, 0, 0, [[c64::new(0.0, 0.0); COMPONENTS]; RINGS]);
+        let mut orders: Vec<i64> = (-MOST_DIAMETERS..=MOST_DIAMETERS)
+            .filter(of_class)
+            .collect();
+        orders.sort_by_key(|order| (order.abs(), *order < 0));
+        for order in orders {
+            let sums = amplitudes(order);
+            let mut energies = [0.0; COMPONENTS];
+            for (ring, mass) in sums.iter().zip(&masses) {
+                for (energy, sum) in energies.iter_mut().zip(ring) {
+                    *energy += if *mass > 0.0 {
+                        sum.norm_sqr() / mass
+                    } else {
+                        0.0
+                    };
+                }
+            }
+            let total: f64 = energies.iter().sum();
+            // Opposite orders of a real shape carry the same but for rounding.
+            if total > best.0 * (1.0 + 1e-6) {
+                let largest = (0..COMPONENTS)
+                    .max_by(|one, other| energies[*one].total_cmp(&energies[*other]));
+                best = (total, order, largest.unwrap_or(0), sums);
+            }
+        }
+        let (_, order, component, sums) = best;
+        let means = sums.iter().zip(&masses).filter(|(_, mass)| **mass > 0.0);
+        let means: Vec<c64> = means.map(|(ring, mass)| ring[component] / *mass).collect();
+        let largest = means
+            .iter()
+            .copied()
+            .fold(c64::new(0.0, 0.0), |one, other| {
+                if other.norm() > one.norm() {
+                    other
+                } else {
+                    one
+                }
+            });
+        let aligned = means.iter().map(|mean| (mean * largest.conj()).re);
+        let told: Vec<f64> = aligned
+            .filter(|mean| mean.abs() > SMALL * largest.norm_sqr())
+            .collect();
+        let changes = told.windows(2).filter(|two| two[0] * two[1] < 0.0).count();
+        (order, component, changes as u32)
+    }
+
+    /// How the teeth move, order by order.
+    fn shape(&self, x: &Mat<c64>) -> Vec<OrderShape> {
+        let Some(Teeth { gear, cell, orders }) = self.teeth else {
+            return Vec::new();
+        };
+        let tooth = cell.system(self.system.heights, gear.section(), gear.face_heights());
+        let size = self.numbering.amplitude_size();
+        let of_order = |(k, order): (usize, &i64)| {
+            let of = &orders[order.unsigned_abs() as usize];
+            let mut amplitude = x
+                .subrows(self.numbering.first_amplitude + k * size, size)
+                .to_owned();
+            // The opposite order is the conjugate.
+            if *order < 0 {
+                amplitude = amplitude.conjugate().to_owned();
+            }
+            let moved = &of.follows * &amplitude;
+            let turn = c64::cis(-(*order as f64) * self.phase);
+            let mean = |node: u32| {
+                let mut mean = tooth.mean(&of.numbering, &moved, node);
+                for u in &mut mean {
+                    let value = if *order < 0 { u.conj() } else { *u };
+                    *u = value * turn;
+                }
+                mean
+            };
+            let foot = cell.section.arc[cell.section.arc.len() / 2];
+            OrderShape {
+                order: *order,
+                at_pitch: mean(cell.pitch_node),
+                on_rim: mean(foot),
+            }
+        };
+        self.numbering
+            .orders
+            .iter()
+            .enumerate()
+            .map(of_order)
+            .collect()
+    }
+}
