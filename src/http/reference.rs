@@ -25,7 +25,7 @@ use super::client::Onlooker;
 use super::problem::Refusal;
 use super::static_files::StaticFile;
 use crate::compute::PreviewRules;
-use crate::jobs::{LONGEST_LINK_DAYS, MOST_LINKS, Rules};
+use crate::jobs::{LONGEST_LINK_DAYS, MOST_LINKS, MOST_PROJECT_BYTES, MOST_PROJECTS, Rules};
 use crate::webhooks::most_webhooks;
 
 /// The answer to what can be computed.
@@ -243,6 +243,10 @@ document! {
         webhooks: i64 = most_webhooks(),
         /// The most links to the results of one job.
         shares_of_job: i64 = MOST_LINKS,
+        /// The most projects.
+        projects: i64 = MOST_PROJECTS,
+        /// The most bytes of the document of a project.
+        project_bytes: usize = MOST_PROJECT_BYTES,
         /// The longest time that a link to results is open, in days.
         share_days: i64 = LONGEST_LINK_DAYS,
     }

@@ -47,6 +47,9 @@ pub(crate) const LOCK_WEBHOOKS: Words =
 pub(crate) const LOCK_LINKS: Words =
     Some("select 1 from pg_advisory_xact_lock(hashtext('meshwright'), 6)");
 
+pub(crate) const LOCK_PROJECTS: Words =
+    Some("select 1 from pg_advisory_xact_lock(hashtext('meshwright'), 7)");
+
 // Whose turn it is follows from who was served before. What is claimed is skipped by those who would wait for it.
 pub(crate) const LOCK_TURN: Words =
     Some("select 1 from pg_advisory_xact_lock(hashtext('meshwright'), 4)");
