@@ -10,6 +10,7 @@ use meshwright_engine::run::Run;
 use meshwright_studies::table::{QuantityEntry, quantities as all_quantities};
 use meshwright_studies::{MOST_DESIGNS, Study};
 use meshwright_wire::declare::document;
+use meshwright_wire::materials::{MATERIALS, MaterialEntry};
 use meshwright_wire::solve::EstimateDocument;
 use meshwright_wire::{Code, Limits, Problem, Submission, Validation};
 use serde::de::IgnoredAny;
@@ -212,6 +213,31 @@ pub(super) async fn quantities(request: HeaderMap) -> Response {
         StaticFile::document("application/json", json)
     });
     QUANTITIES.answer(&request).await
+}
+
+/// The materials that have names.
+#[derive(Serialize, ToSchema)]
+#[schema(title = "Materials")]
+pub(super) struct Materials {
+    /// The materials.
+    items: &'static [MaterialEntry],
+}
+
+/// Get materials
+///
+/// The materials that `material.name` of a gear takes: their numbers at a temperature, and where these are printed.
+#[utoipa::path(
+    get, path = "/v1/materials", tag = "Reference", operation_id = "get_materials",
+    security(()),
+    responses((status = 200, description = "The materials.", body = Materials)),
+)]
+pub(super) async fn materials(request: HeaderMap) -> Response {
+    static FILE: LazyLock<StaticFile> = LazyLock::new(|| {
+        let materials = Materials { items: &MATERIALS };
+        let json = serde_json::to_vec(&materials).expect("materials are plain data");
+        StaticFile::document("application/json", json)
+    });
+    FILE.answer(&request).await
 }
 
 document! {

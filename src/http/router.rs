@@ -146,6 +146,7 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(reference::examples))
         .routes(routes!(reference::limits))
         .routes(routes!(reference::quantities))
+        .routes(routes!(reference::materials))
         .routes(routes!(problem_pages::index))
         .routes(routes!(problem_pages::page_of))
         .routes(routes!(health::live))

@@ -1,7 +1,7 @@
 //! Many designs at once: studies, populations and searches, their tables, and the numbers behind them.
 //!
 //! Read in this order. The numbers: [`sample`] (members drawn from laws, and what a sample shows with which confidence) and [`optimum`] (which points of a
-//! cube to compute next); neither knows gears or JSON. Then [`table`], the quantities that designs are compared by. The documents: `population`, `search` and
+//! cube to compute next); neither knows gears or JSON. Then [`table`], the quantities that designs are compared by, and [`solve`](fn@solve), whose results tell them. The documents: `population`, `search` and
 //! [`study`], which holds one of them or lists its designs. Last what is made of the rows of a study: [`population_results`] and [`searching`]. [`refusals`] counts
 //! the designs without results.
 
@@ -9,6 +9,7 @@ pub mod optimum;
 pub mod sample;
 
 pub mod refusals;
+mod solve;
 pub mod table;
 
 mod population;
@@ -23,6 +24,7 @@ mod testing;
 
 pub use population_results::{PopulationResults, PopulationSample};
 pub use searching::{SearchState, Searching};
+pub use solve::solve;
 pub use study::{Design, Study};
 pub use table::{RowState, StudyResults, Summary};
 

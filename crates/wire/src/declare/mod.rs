@@ -66,6 +66,11 @@ pub trait Kind: Sized {
         None
     }
 
+    /// What another field of the object says in its place; nothing if none does.
+    fn by_another(_: &ObjectReader<'_>, _: &Self::Spec) -> Option<Self> {
+        None
+    }
+
     /// What stands for the field `name`, which is absent.
     fn absent(
         reader: &mut ObjectReader<'_>,
