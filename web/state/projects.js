@@ -107,15 +107,15 @@ export async function add(name, document) {
   } catch (error) {
     if (!mayNot(error)) throw error;
     const id = `browser-${crypto.getRandomValues(new Uint32Array(4)).join("-")}`;
-    return put({ id, name, document });
+    return put(await browser("readwrite"), { id, name, document });
   }
 }
 
-/** @type {(project: { id: string, name: string, document: object }) => Promise<Known>} */
-async function put({ id, name, document }) {
+/** @type {(store: IDBObjectStore, project: { id: string, name: string, document: object }) => Promise<Known>} */
+async function put(store, { id, name, document }) {
   const tag = crypto.getRandomValues(new Uint32Array(2)).join("-");
   const stored = { id, name, document, tag, updated_at: new Date().toISOString() };
-  await done((await browser("readwrite")).put(stored));
+  await done(store.put(stored));
   return { id, name, updated_at: stored.updated_at, place: "browser", tag };
 }
 
@@ -134,13 +134,11 @@ export async function change({ id, place, tag }, name, document) {
       throw error;
     }
   }
-  // The lock is over all tabs; where there are no locks the last one wins.
-  const write = async () => {
-    const stored = /** @type {Stored | undefined} */ (await done((await browser("readonly")).get(id)));
-    if (stored?.tag !== tag) throw new ChangedMeanwhile();
-    return put({ id, name, document });
-  };
-  return navigator.locks ? navigator.locks.request(DATABASE, write) : write();
+  // Reading and writing are one transaction, which other tabs wait for.
+  const store = await browser("readwrite");
+  const stored = /** @type {Stored | undefined} */ (await done(store.get(id)));
+  if (stored?.tag !== tag) throw new ChangedMeanwhile();
+  return put(store, { id, name, document });
 }
 
 /**
