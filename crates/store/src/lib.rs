@@ -101,7 +101,7 @@ pub struct Store {
     writer: Pool,
     readers: Pool,
     health: Arc<Health>,
-    /// What its file stands on, if it is one.
+    /// Identity of its files, for SQLite.
     files: Option<DatabaseFiles>,
     /// This process, among those that work on the same database. Another one at each start.
     process: Uuid,
@@ -119,7 +119,7 @@ impl Store {
         self.readers.close().await;
     }
 
-    /// Whether it was closed.
+    /// True if it was closed.
     pub fn is_closed(&self) -> bool {
         self.writer.is_closed()
     }
@@ -129,7 +129,7 @@ impl Store {
         self.files.as_ref()?.disk()
     }
 
-    /// Whether other processes may work on the same database.
+    /// True if other processes may work on the same database.
     pub fn is_shared(&self) -> bool {
         matches!(self.place, DatabaseAddress::Postgres(_))
     }

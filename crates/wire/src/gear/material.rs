@@ -46,7 +46,7 @@ impl MaterialDocument {
         Self { name: None, ..self }
     }
 
-    /// What the engine is told.
+    /// The material of the engine.
     pub(super) fn data(&self) -> Material {
         Material {
             youngs_modulus: from_gpa(self.youngs_modulus_gpa),
