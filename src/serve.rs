@@ -31,7 +31,7 @@ pub const END: Duration = Times::USUAL.shutdown.saturating_add(CLOSING);
 const CLOSING: Duration = Duration::from_secs(1);
 
 /// How a submission is computed with the substructures that all computations share, as by
-/// [`wire::solve`](fn@meshwright_wire::solve).
+/// [`studies::solve`](fn@meshwright_studies::solve).
 pub type Compute =
     Arc<dyn Fn(&Submission, &Library, &Run) -> Result<Results, Problem> + Send + Sync>;
 

@@ -16,6 +16,7 @@ import { json, patiently, ProblemError } from "./state/api.js";
 import { Design, fromFragment, nameOf, same, toFragment } from "./state/design.js";
 import { isSolid, needsSolid } from "./state/dimensions.js";
 import { remember, remembered } from "./state/kept.js";
+import { fetchMaterials } from "./state/materials.js";
 import { fixed, number } from "./state/numbers.js";
 import { alike, Follower, resultsOf } from "./state/preview.js";
 import { fetchQuantities } from "./state/quantities.js";
@@ -31,6 +32,7 @@ import { Notice } from "./views/notice.js";
 import { Pattern } from "./views/pattern.js";
 import { ProblemBox } from "./views/problem.js";
 import { Progress } from "./views/progress.js";
+import { Project } from "./views/project.js";
 import { RunUp } from "./views/runup.js";
 import { setUpKey, setUpLayout, setUpTheme } from "./views/settings.js";
 import { sheetOf } from "./views/sheet.js";
@@ -156,6 +158,13 @@ class Page {
     named: (pointer) => this.#form?.named(pointer) ?? pointer,
     usual: (submission, pointer) => (this.#form ? usualAt(this.#form.api, submission, pointer) : undefined),
   });
+  #project = new Project(this.#design, {
+    onChange: () => this.#keepState(),
+    compute: async ({ name, submission, asked, hidden }) => {
+      const results = await resultsOf(asked);
+      this.#keep({ name, results, submission, asked, teeth: submission.pair.driven.tooth_count, hidden });
+    },
+  });
   #follower = new Follower({
     onResults: (results, submission, how) => this.#onResults(results, submission, how),
     onOutline: (outline, submission) => this.#onOutline(outline, submission),
@@ -176,7 +185,7 @@ class Page {
     },
   });
   #carry = debounced(REST, () => void this.#address());
-  #keepState = debounced(REST, () => void remember(this.#design.state));
+  #keepState = debounced(REST, () => void remember({ ...this.#design.state, project: this.#project.state }));
 
   constructor() {
     this.#design.onChange((by) => this.#onChange(by));
@@ -203,10 +212,12 @@ class Page {
       remembered(),
       fetched(() => json("v1/examples")),
       fetched(fetchQuantities),
+      fetched(fetchMaterials),
     ]);
     if (!given) this.#unreadable();
     setUpStart(this.#design, examples, given !== null);
     const first = given ?? (examples.find(({ name }) => name === FIRST_EXAMPLE) ?? examples[0]).submission;
+    if (before?.project) this.#project.restore(before.project);
     if (before) this.#design.restore(first, before);
     else this.#design.replace(first, "start");
     const [api, limits] = await fetched(() => Promise.all([openapi(), json("v1/limits")]));
@@ -306,7 +317,7 @@ class Page {
     const { submission, canUndo, canRedo, changes } = this.#design;
     byId("undo", HTMLButtonElement).disabled = !canUndo;
     byId("redo", HTMLButtonElement).disabled = !canRedo;
-    this.#keepState();
+    this.#project.changed();
     if (by === "kept") return this.#shown && this.#showDesigns(this.#shown);
     if (by === "confirm") return this.#form?.refresh();
     // For those who test: the address carries this change once its state has the number.

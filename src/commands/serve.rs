@@ -74,7 +74,7 @@ impl Serve {
     async fn until_signal(&self) -> anyhow::Result<()> {
         self.log()?;
         let world = World {
-            compute: Arc::new(meshwright_wire::solve),
+            compute: Arc::new(meshwright_studies::solve),
             clock: Clock::system(),
             hooks: HookRules::to_named(self.config.admission.webhook_hosts.clone()),
             times: Times::USUAL,

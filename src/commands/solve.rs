@@ -9,8 +9,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use meshwright_exchange::rexs::is_model;
+use meshwright_studies::solve;
 use meshwright_wire::results::{CurveDocument, GearPeakStress, PeakStressDocument, Results};
-use meshwright_wire::{Problem, Submission, solve};
+use meshwright_wire::{Problem, Submission};
 
 use super::document::{EXIT_PROBLEM, is_dash, read, text_of, write};
 use super::rexs::ModelChoices;

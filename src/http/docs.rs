@@ -37,6 +37,7 @@ use super::studies::StudyProgressView;
         (name = "Jobs", description = "Computations, from submission to end."),
         (name = "Results", description = "Results of jobs."),
         (name = "Studies", description = "Many variants of a submission at once, and their table."),
+        (name = "Projects", description = "Documents that a client keeps under a name."),
         (name = "Webhooks", description = "Where a client is told that its jobs and studies have ended."),
         (name = "Reference", description = "Answers without a job."),
         (name = "Operation", description = "For those who run the service."),
@@ -83,6 +84,9 @@ fn example_of(path: &str) -> Option<Value> {
         }
         "/v1/rexs" => MODEL.into(),
         "/v1/jobs/{id}/shares" => json!({ "ends_at": "2100-01-01T00:00:00Z" }),
+        "/v1/projects" | "/v1/projects/{id}" => {
+            json!({ "name": "E-axle, second stage", "document": { "version": 1, "designs": [read(SUBMISSION)?] } })
+        }
         "/v1/webhooks" => json!({ "url": "https://hooks.example.com/meshwright" }),
         _ => return None,
     })
@@ -137,7 +141,12 @@ pub(super) fn add_common_answers(openapi: &mut OpenApi) {
         ("default", "Any other problem."),
     ];
     for (path, item) in &mut openapi.paths.paths {
-        let operations = [&mut item.get, &mut item.post, &mut item.delete];
+        let operations = [
+            &mut item.get,
+            &mut item.post,
+            &mut item.put,
+            &mut item.delete,
+        ];
         for operation in operations.into_iter().flatten() {
             describe_ids(path, operation);
             show_body(path, operation);
@@ -179,6 +188,7 @@ fn describe_ids(path: &str, operation: &mut Operation) {
         ("/v1/jobs/", "job"),
         ("/v1/studies/", "study"),
         ("/v1/webhooks/", "webhook"),
+        ("/v1/projects/", "project"),
         ("/v1/shares/", "link"),
     ];
     let whose = whose.iter().find(|(root, _)| path.starts_with(root));
@@ -254,9 +264,10 @@ pub(super) fn say_whether_keys_are_needed(
 
 /// Gives pages of a list a name that a person would: utoipa names a generic type and its parameter, `Page_Job`.
 fn name_lists(value: &mut Value) {
-    const LISTS: [(&str, &str); 2] = [
+    const LISTS: [(&str, &str); 3] = [
         ("Page_Job", "JobList"),
         ("Page_SubmittedStudy", "StudyList"),
+        ("Page_Project", "ProjectList"),
     ];
     match value {
         Value::String(text) => {

@@ -35,6 +35,7 @@ mod prefer;
 mod previews;
 mod problem;
 mod problem_pages;
+mod projects;
 mod readings;
 mod reference;
 mod resource;

@@ -120,6 +120,16 @@ pub(super) struct IfNoneMatch {
     tag: Option<String>,
 }
 
+/// The header of a change that is made from what was read.
+#[derive(IntoParams)]
+#[into_params(parameter_in = Header)]
+#[expect(dead_code, reason = "the document alone reads it")]
+pub(super) struct IfMatch {
+    /// The `ETag` of what was read. Needed, so that nobody's change is lost.
+    #[param(rename = "If-Match")]
+    tag: String,
+}
+
 /// The id in a path.
 #[derive(Deserialize)]
 struct Named {
@@ -156,6 +166,7 @@ ids! {
     JobId, JobNotFound: "There is no job of this id.";
     StudyId, StudyNotFound: "There is no study of this id.";
     WebhookId, WebhookNotFound: "There is no webhook of this id.";
+    ProjectId, ProjectNotFound: "There is no project of this id.";
     ShareId, NotFound: "There is no link of this id.";
 }
 

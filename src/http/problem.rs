@@ -229,7 +229,7 @@ impl From<PreviewError> for Problem {
     }
 }
 
-fn sentence(error: &impl std::error::Error) -> String {
+pub(super) fn sentence(error: &impl std::error::Error) -> String {
     let text = error.to_string();
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| {

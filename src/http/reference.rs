@@ -10,6 +10,7 @@ use meshwright_engine::run::Run;
 use meshwright_studies::table::{QuantityEntry, quantities as all_quantities};
 use meshwright_studies::{MOST_DESIGNS, Study};
 use meshwright_wire::declare::document;
+use meshwright_wire::materials::{MATERIALS, MaterialEntry};
 use meshwright_wire::solve::EstimateDocument;
 use meshwright_wire::{Code, Limits, Problem, Submission, Validation};
 use serde::de::IgnoredAny;
@@ -25,7 +26,7 @@ use super::client::Onlooker;
 use super::problem::Refusal;
 use super::static_files::StaticFile;
 use crate::compute::PreviewRules;
-use crate::jobs::{LONGEST_LINK_DAYS, MOST_LINKS, Rules};
+use crate::jobs::{LONGEST_LINK_DAYS, MOST_LINKS, MOST_PROJECT_BYTES, MOST_PROJECTS, Rules};
 use crate::webhooks::most_webhooks;
 
 /// The answer for a document that can be computed.
@@ -214,6 +215,31 @@ pub(super) async fn quantities(request: HeaderMap) -> Response {
     QUANTITIES.answer(&request).await
 }
 
+/// The materials that have names.
+#[derive(Serialize, ToSchema)]
+#[schema(title = "Materials")]
+pub(super) struct Materials {
+    /// The materials.
+    items: &'static [MaterialEntry],
+}
+
+/// Get materials
+///
+/// The materials that `material.name` of a gear takes: their numbers at a temperature, and where these are printed.
+#[utoipa::path(
+    get, path = "/v1/materials", tag = "Reference", operation_id = "get_materials",
+    security(()),
+    responses((status = 200, description = "The materials.", body = Materials)),
+)]
+pub(super) async fn materials(request: HeaderMap) -> Response {
+    static FILE: LazyLock<StaticFile> = LazyLock::new(|| {
+        let materials = Materials { items: &MATERIALS };
+        let json = serde_json::to_vec(&materials).expect("materials are plain data");
+        StaticFile::document("application/json", json)
+    });
+    FILE.answer(&request).await
+}
+
 document! {
     /// The limits of every submission, and those of this service.
     pub(super) struct ServiceLimits as ServiceLimits, "Limits" view of (app: &App) {
@@ -243,6 +269,10 @@ document! {
         webhooks: i64 = most_webhooks(),
         /// The most links to the results of one job.
         shares_of_job: i64 = MOST_LINKS,
+        /// The most projects.
+        projects: i64 = MOST_PROJECTS,
+        /// The most bytes of the document of a project.
+        project_bytes: usize = MOST_PROJECT_BYTES,
         /// The longest time that a link to results is open, in days.
         share_days: i64 = LONGEST_LINK_DAYS,
     }

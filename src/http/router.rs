@@ -6,8 +6,8 @@ use std::time::Duration;
 use axum::Router;
 use axum::extract::Request;
 use axum::http::header::{
-    ACCEPT, AUTHORIZATION, CONTENT_TYPE, ETAG, HeaderName, HeaderValue, IF_NONE_MATCH, LINK,
-    LOCATION, RETRY_AFTER, WWW_AUTHENTICATE,
+    ACCEPT, AUTHORIZATION, CONTENT_TYPE, ETAG, HeaderName, HeaderValue, IF_MATCH, IF_NONE_MATCH,
+    LINK, LOCATION, RETRY_AFTER, WWW_AUTHENTICATE,
 };
 use axum::http::{Method, StatusCode, Uri};
 use axum::middleware::{from_fn, from_fn_with_state};
@@ -29,8 +29,8 @@ use super::headers::Trace;
 use super::problem::Refusal;
 use super::{
     access, batch, contact_pattern, docs, draw, events, fields, guides, headers, health, jobs,
-    memory, metrics, outline, packing, previews, problem, problem_pages, reference, results, rexs,
-    shares, studies, submit, tables, usage, web, webhooks,
+    memory, metrics, outline, packing, previews, problem, problem_pages, projects, reference,
+    results, rexs, shares, studies, submit, tables, usage, web, webhooks,
 };
 use crate::jobs::without_secrets;
 
@@ -141,9 +141,12 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(webhooks::deliveries))
         .routes(routes!(webhooks::enable))
         .routes(routes!(webhooks::rotate))
+        .routes(routes!(projects::make, projects::list))
+        .routes(routes!(projects::show, projects::change, projects::delete))
         .routes(routes!(reference::examples))
         .routes(routes!(reference::limits))
         .routes(routes!(reference::quantities))
+        .routes(routes!(reference::materials))
         .routes(routes!(problem_pages::index))
         .routes(routes!(problem_pages::page_of))
         .routes(routes!(health::live))
@@ -194,11 +197,18 @@ fn cors(origins: &[HeaderValue]) -> CorsLayer {
     };
     CorsLayer::new()
         .allow_origin(origin)
-        .allow_methods([Method::GET, Method::HEAD, Method::POST, Method::DELETE])
+        .allow_methods([
+            Method::GET,
+            Method::HEAD,
+            Method::POST,
+            Method::PUT,
+            Method::DELETE,
+        ])
         .allow_headers([
             ACCEPT,
             AUTHORIZATION,
             CONTENT_TYPE,
+            IF_MATCH,
             IF_NONE_MATCH,
             name("idempotency-key"),
             name("last-event-id"),

@@ -30,7 +30,7 @@ pub(super) struct UsageParameters {
 #[derive(Serialize, ToSchema)]
 #[schema(title = "Usage")]
 pub(super) struct Usage {
-    /// The clients that have jobs, by their names.
+    /// The clients that have jobs or projects, by their names.
     clients: Vec<ClientUsageView>,
     /// The value of `cursor` that gives the next clients; null at the end of the list.
     next: Option<String>,
@@ -59,7 +59,7 @@ document! {
         done_last_hour: i64 = usage.done_last_hour,
         /// Jobs that succeeded or failed within the last day.
         done_last_day: i64 = usage.done_last_day,
-        /// Bytes of the results that are kept, packed.
+        /// Bytes of the results that are kept, packed, and of the documents of projects.
         bytes_kept: i64 = usage.bytes_kept,
         /// The ids of jobs that stand alone and wait or run, the oldest first; 1000 of a client at most.
         jobs: Vec<Uuid> = usage.jobs,

@@ -14,6 +14,7 @@ mod keeper;
 mod links;
 mod live;
 mod others;
+mod projects;
 mod queue;
 mod resource;
 mod searches;
@@ -26,8 +27,8 @@ mod worker_context;
 pub use meshwright_store::{
     BackupError, By, ClientUsage, Cursor, Damaged, DatabaseAddress, Depth, Document, DocumentLine,
     EventKind, Filter, Job, Kept, KeyRecord, LinkRecord, Membership, Migrate, NoCursor, OpenError,
-    Progress, Removed, Role, Space, Span, Status, Store, StoreError, StudyFilter, StudyRecord,
-    UserUsage,
+    Progress, ProjectRecord, Removed, Role, Space, Span, Status, Store, StoreError, StudyFilter,
+    StudyRecord, UserUsage,
 };
 
 pub use clock::Clock;
@@ -35,6 +36,7 @@ pub use error::{JobError, damage_problem};
 pub use keeper::{Keep, Keeper};
 pub use links::{LONGEST_LINK_DAYS, LinkError, LinkSecret, MOST_LINKS, without_secrets};
 pub use live::{Changes, News};
+pub use projects::{MOST_PROJECT_BYTES, MOST_PROJECTS, ProjectContent, ProjectError};
 pub(crate) use queue::KEY_LIFETIME;
 pub use queue::{Jobs, Member, Rules};
 pub use resource::{Listed, Resource, Submitted};

@@ -118,7 +118,7 @@ impl Bench {
 
     /// A service with one worker that computes.
     pub(crate) async fn real() -> Self {
-        Self::start_with(|_| {}, Arc::new(meshwright_wire::solve)).await
+        Self::start_with(|_| {}, Arc::new(meshwright_studies::solve)).await
     }
 
     pub(crate) async fn start(adjust: impl FnOnce(&mut Config), solve: Solve) -> Self {

@@ -29,6 +29,7 @@ mod either_store {
     mod population;
     mod previews;
     pub(crate) mod process;
+    mod projects;
     mod real;
     mod recovery;
     mod refusals;

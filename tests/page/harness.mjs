@@ -119,14 +119,14 @@ async function inPage({ on, work, options, others, beside }) {
   });
   context.setDefaultTimeout(PATIENCE);
   const page = await context.newPage();
-  if (process.env.WEB) await fromDisk(page, on);
+  if (process.env.WEB) await fromDisk(context, on);
   const faults = [];
   page.on("console", (message) => {
     // The browser itself logs a refusal, a service that is away, and one that is too busy for a preview; the page shows each.
     const logged = `${message.text()} ${message.location().url}`;
     if (
       message.type() === "error" &&
-      !/status of 4(01|22)|ERR_INTERNET_DISCONNECTED|status of 503 .*\/v1\/preview$/.test(logged)
+      !/status of 4(01|03|12|22)|ERR_INTERNET_DISCONNECTED|status of 503 .*\/v1\/preview$/.test(logged)
     )
       faults.push(logged);
   });

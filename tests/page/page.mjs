@@ -28,6 +28,7 @@ import {
   withOwnService,
 } from "./harness.mjs";
 import { hourSteps } from "./hour.mjs";
+import { projectSteps } from "./project.mjs";
 import { shownSteps } from "./shown.mjs";
 import { solidSteps } from "./solid.mjs";
 
@@ -461,6 +462,7 @@ await benchSteps(service);
 await solidSteps(service);
 await shownSteps(service);
 await hourSteps(service);
+await projectSteps();
 
 await withOwnService({}, (locked, { step: onLocked }) => {
   const key = locked.key("visitor");

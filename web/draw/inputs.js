@@ -80,6 +80,10 @@ export function read(input, kind) {
   return kind.kind === "number" ? numberIn(input, text) : text;
 }
 
+/** @type {(kind: Kind) => string} */
+const firstOf = ({ schema: { enum: words = [] } }) =>
+  words.some((word) => word === null) ? "" : String(words[0] ?? "");
+
 /**
  * Shows a value in a control; where there is none, what it is then.
  *
@@ -89,7 +93,7 @@ export function read(input, kind) {
  */
 export function write(input, kind, value) {
   if (input instanceof HTMLInputElement && kind.kind === "flag") input.checked = value ?? kind.schema.default ?? false;
-  else if (kind.kind === "choice") input.value = value ?? kind.schema.default ?? kind.schema.enum?.[0];
+  else if (kind.kind === "choice") input.value = value ?? kind.schema.default ?? firstOf(kind);
   else if (value === undefined || value === null) input.value = "";
   else if (typeof value === "number") put(input, String(value));
   else if (Array.isArray(value) && value.every((each) => typeof each === "number")) put(input, value.join(", "));

@@ -4,8 +4,10 @@
 /** @import { AnswerAt, Job, Problem, Submission } from "./documents.js" */
 
 /**
+ * `quiet` requests ask nobody for a key.
+ *
  * @typedef {{ method?: string, body?: unknown, headers?: Record<string, string>, signal?: AbortSignal,
- *   keepalive?: boolean }} Options
+ *   keepalive?: boolean, quiet?: boolean }} Options
  */
 const KEY = "meshwright-key";
 /** @type {Set<(problem: Problem) => void>} */
@@ -87,7 +89,7 @@ export function setKey(given) {
  *
  * @type {(path: string, options?: Options) => Promise<Response>}
  */
-export async function request(path, { method = "GET", body, headers = {}, signal, keepalive } = {}) {
+export async function request(path, { method = "GET", body, headers = {}, signal, keepalive, quiet } = {}) {
   /** @type {Record<string, string>} */
   const all = { ...headers };
   if (key()) all.authorization = `Bearer ${key()}`;
@@ -105,7 +107,7 @@ export async function request(path, { method = "GET", body, headers = {}, signal
   const problem = await response
     .json()
     .catch(() => ({ status: response.status, title: response.statusText, code: "unknown" }));
-  if (response.status === 401) for (const listener of listeners) listener(problem);
+  if (response.status === 401 && !quiet) for (const listener of listeners) listener(problem);
   throw new ProblemError(problem, Math.max(AGAIN, 1000 * Number(response.headers.get("retry-after"))));
 }
 

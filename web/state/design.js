@@ -3,6 +3,7 @@
 // address that carries it.
 
 /** @import { GearName, NamedDesign, Submission } from "./documents.js" */
+/** @import { RememberedProject } from "./project.js" */
 
 /**
  * What changed a design.
@@ -16,7 +17,7 @@
  * @typedef {{ submission: Submission, kept: NamedDesign[], typed: Record<string, number> }} State
  */
 
-/** @typedef {State & { past: State[], future: State[] }} Remembered */
+/** @typedef {State & { past: State[], future: State[], project?: RememberedProject }} Remembered */
 
 /** So many changes can be taken back. */
 const MOST_CHANGES = 200;
@@ -160,6 +161,15 @@ export class Design {
    */
   replace(submission, by) {
     this.#change({ submission: structuredClone(submission), typed: {} }, by, null);
+  }
+
+  /**
+   * Takes a submission with kept designs and what was typed, as a project has them.
+   *
+   * @param {State} state
+   */
+  begin(state) {
+    this.#change(structuredClone(state), "open", null);
   }
 
   /** @param {string} pointer */

@@ -3,9 +3,9 @@
 // tables have them.
 
 import { json } from "./api.js";
-import { extent, fixed, number, unit } from "./numbers.js";
+import { fixed, number, unit } from "./numbers.js";
 
-/** @import { Curve, GearName, Results, RowCurve, TableRow } from "./documents.js" */
+/** @import { Curve, GearName, RowCurve, TableRow } from "./documents.js" */
 
 /**
  * Units that are printed as multiples of the service's, and what numbers are multiplied by.
@@ -95,51 +95,13 @@ export function shown({ printed, factor }, value) {
 
 /** @type {(object: any, name: string) => any} */
 const at = (object, name) => name.split(".").reduce((part, step) => part?.[step], object);
-/**
- * @type {(curve: Curve, pattern: RegExp, value?: "transmission_error_um" | "transmission_error_of_holes_um") => number
- *   | null | undefined}
- */
-const order = (curve, pattern, value = "transmission_error_um") =>
-  curve.spectrum?.named.find(({ label }) => pattern.test(label))?.[value];
 
 /**
- * Where a curve has what does not stand among its statistics under its name.
- *
- * @type {Record<string, (curve: Curve) => number | null | undefined>}
- */
-const ELSEWHERE = {
-  hole_order_um: (curve) => order(curve, /^H_N\d?$/),
-  hole_order_of_holes_um: (curve) => order(curve, /^H_N\d?$/, "transmission_error_of_holes_um"),
-  mesh_order_um: (curve) => order(curve, /^H_Z2?$/),
-  face_load_factor: (curve) => curve.face?.face_load_factor,
-  peak_contact_pressure_mpa: (curve) => curve.statistics.peak_contact_pressure_mpa?.largest,
-  pressure_unbounded_share: (curve) => curve.pressure_unbounded_share,
-  pitch_point_pressure_mpa: (curve) => curve.pitch_point_pressure_mpa,
-  smooth_contact_pressure_mpa: (curve) => curve.smooth_contact_pressure_mpa,
-  "dynamic_transmission_error_um.peak_to_peak": ({ dynamics }) =>
-    dynamics &&
-    extent(
-      [dynamics.up, dynamics.down].flatMap((branch) => branch?.dynamic_transmission_error_um.peak_to_peak ?? []),
-    )?.[1],
-};
-
-/**
- * The value of a quantity of curves in one of them.
+ * The value of a quantity in a curve; undefined where its results are of a version that told none.
  *
  * @type {(quantity: Quantity, curve: Curve) => number | null | undefined}
  */
-export const inCurve = ({ name }, curve) => (ELSEWHERE[name] ?? (({ statistics }) => at(statistics, name)))(curve);
-
-/**
- * The value of a quantity in `results`, of one of their curves.
- *
- * @type {(quantity: Quantity, curve: Curve, results: Results) => number | null | undefined}
- */
-export function inResults(quantity, curve, { pair }) {
-  if (quantity.of === "curve") return inCurve(quantity, curve);
-  const [own, gear] = quantity.name.split(".");
-  return own === "pair_mass_kg" ? pair.driving.mass_kg + pair.driven.mass_kg : at(pair, gear ? `${gear}.${own}` : own);
-}
+export const inCurve = ({ name }, curve) => curve.quantities?.[name];
 
 /**
  * The same in a row of the table of a study, whose numbers of one gear are those of `gear`; undefined where it has none

@@ -3,6 +3,7 @@
 
 import { checked, json } from "./api.js";
 import { at } from "./design.js";
+import { numberOfMaterial } from "./materials.js";
 
 /** @import { Submission } from "./documents.js" */
 
@@ -15,7 +16,7 @@ import { at } from "./design.js";
  * @property {string} [title]
  * @property {string} [description]
  * @property {any} [default] a value of the field
- * @property {(string | number)[]} [enum]
+ * @property {(string | number | null)[]} [enum]
  * @property {Schema[]} [oneOf]
  * @property {Schema[]} [allOf]
  * @property {Schema} [not]
@@ -237,9 +238,21 @@ export async function bare(api, submission) {
 export function usualAt(api, submission, pointer) {
   const holder = pointer.slice(0, pointer.lastIndexOf("/"));
   if (holder && !isNested(at(submission, holder)) && !isFilledIn(holder)) return undefined;
+  const named = ofNamedMaterial(submission, pointer);
+  if (named !== undefined) return named;
   const schema = schemaAt(api, pointer);
   const modules = schema?.["x-default-modules"];
   return modules === undefined ? (schema?.default ?? undefined) : modules * at(submission, `${holder}/module_mm`);
+}
+
+/**
+ * The number that the name of a material gives to a field of it.
+ *
+ * @type {(submission: Submission, pointer: string) => number | undefined}
+ */
+export function ofNamedMaterial(submission, pointer) {
+  const [, holder, field] = /^(.*\/material)\/(\w+)$/.exec(pointer) ?? [];
+  return holder ? numberOfMaterial(at(submission, `${holder}/name`), field) : undefined;
 }
 
 /** @type {(api: Api, submission: Submission, period: number) => Submission} */

@@ -18,17 +18,20 @@ export function fileOfDesign(name, rest) {
   return `meshwright-${plain ? `${plain}-` : ""}${rest}`;
 }
 
-const COLUMNS = /** @type {const} */ ([
-  "mesh_position",
-  "driving_angle_deg",
-  "driven_angle_deg",
-  "transmission_error_um",
-  "mesh_stiffness_tangent_n_per_m",
-  "mesh_stiffness_secant_n_per_m",
-  "driving_torque_n_m",
-  "pairs_in_contact",
-  "peak_contact_pressure_mpa",
-]);
+/**
+ * The names of the lists of `curves` that run over their positions, in the order in which a curve has them.
+ *
+ * @type {(curves: Curve[]) => string[]}
+ */
+export function columnsOf(curves) {
+  /** @type {(curve: Curve) => string[]} */
+  const own = (curve) =>
+    Object.entries(curve).flatMap(([name, list]) => {
+      const runs = Array.isArray(list) && list.length === curve.mesh_position.length;
+      return runs && name !== "load_shares" ? [name] : [];
+    });
+  return [...new Set(curves.flatMap(own))];
+}
 
 const PLACES = ["root", "root_tension", "root_compression", "hole"];
 const STRESSES = ["driving", "driven"].flatMap((gear) =>
@@ -86,15 +89,16 @@ export function csv(results) {
   const stressed = results.curves.some(({ stress }) => stress)
     ? STRESSES.filter((name) => !name.endsWith("_z_mm") || results.curves.some((curve) => within(curve, name)))
     : [];
+  const columns = columnsOf(results.curves);
   /** @type {unknown[][]} */
-  const lines = [["output_torque_n_m", ...COLUMNS, ...stressed, ...offsets.map((offset) => `load_share.${offset}`)]];
+  const lines = [["output_torque_n_m", ...columns, ...stressed, ...offsets.map((offset) => `load_share.${offset}`)]];
   for (const curve of results.curves) {
     /** @type {(offset: number) => number[] | undefined} */
     const share = (offset) => curve.load_shares.find((each) => each.pair_offset === offset)?.share;
     curve.mesh_position.forEach((_, i) => {
       lines.push([
         curve.output_torque_n_m,
-        ...COLUMNS.map((name) => curve[name]?.[i]),
+        ...columns.map((name) => within(curve, name)?.[i]),
         ...stressed.map((name) => within(curve, name)?.[i]),
         ...offsets.map((offset) => share(offset)?.[i] ?? 0),
       ]);

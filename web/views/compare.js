@@ -6,7 +6,7 @@ import { button, h, note } from "../draw/dom.js";
 import { saveTable } from "../draw/download.js";
 import { differences, told } from "../state/design.js";
 import { extent, number } from "../state/numbers.js";
-import { calledOf, inResults, quantities, shown } from "../state/quantities.js";
+import { calledOf, inCurve, quantities, shown } from "../state/quantities.js";
 import { csvOf, fileOfDesign } from "../state/tables.js";
 
 /** @import { Curve, NamedDesign, Results, Submission } from "../state/documents.js" */
@@ -36,7 +36,7 @@ const SAME = 1e-3;
  */
 function toldBy(columns) {
   /** @type {(quantity: Quantity) => (number | undefined)[]} */
-  const read = (quantity) => columns.map(({ curve, results }) => inResults(quantity, curve, results) ?? undefined);
+  const read = (quantity) => columns.map(({ curve }) => inCurve(quantity, curve) ?? undefined);
   return quantities()
     .map((quantity) => ({ quantity, values: read(quantity) }))
     .filter(({ values }) => values.some(Number.isFinite));

@@ -7,7 +7,17 @@ import { Beginnings } from "../state/beginnings.js";
 import { at, HELIX } from "../state/design.js";
 import { helix, intoPlane, intoSolid, isSolid, kindOfTeeth, needsThird, offers, teeth } from "../state/dimensions.js";
 import { number, unit } from "../state/numbers.js";
-import { help, insteadOf, kindOf, partOf, resolve, saidDefault, schemaAt, SUBMISSION } from "../state/schema.js";
+import {
+  help,
+  insteadOf,
+  kindOf,
+  ofNamedMaterial,
+  partOf,
+  resolve,
+  saidDefault,
+  schemaAt,
+  SUBMISSION,
+} from "../state/schema.js";
 import { chooseReading, inOtherUnit, parsed, readingsOf, stepped, turned, unreadable } from "../state/typed.js";
 import { deviations } from "./deviations.js";
 
@@ -677,9 +687,10 @@ export class Form {
           const modules =
             (schema["x-default-modules"] ?? NaN) *
             this.design.get(`${pointer.slice(0, pointer.lastIndexOf("/"))}/module_mm`);
+          const usual = ofNamedMaterial(this.design.submission, pointer) ?? schema.default;
           input.placeholder =
-            schema.default !== undefined && schema.default !== null
-              ? String(schema.default)
+            usual !== undefined && usual !== null
+              ? String(usual)
               : modules > 0
                 ? number(modules, 5)
                 : saidDefault(schema);
@@ -871,8 +882,12 @@ export class Form {
     /** @type {(value: unknown) => void} */
     const put = (value) => this.#put(pointer, value);
     if (kind.kind === "choice") {
-      const options = (schema.enum ?? []).map((word) => h("option", { value: word }, String(word).replace(/_/g, " ")));
-      return h("select", { id, on: { change: (event) => put(event.target.value) } }, ...options);
+      const options = (schema.enum ?? []).map((word) =>
+        word === null
+          ? h("option", { value: "" }, saidDefault(schema))
+          : h("option", { value: word }, String(word).replace(/_/g, " ")),
+      );
+      return h("select", { id, on: { change: (event) => put(event.target.value || undefined) } }, ...options);
     }
     if (kind.kind === "flag")
       return h("input", { id, type: "checkbox", on: { change: (event) => put(event.target.checked) } });

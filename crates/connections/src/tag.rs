@@ -1,6 +1,6 @@
 //! Entity tags: a client that has the answer already gets 304 (RFC 9110, section 13).
 
-use hyper::header::{CACHE_CONTROL, CONTENT_ENCODING, ETAG, HeaderValue, IF_NONE_MATCH};
+use hyper::header::{CACHE_CONTROL, CONTENT_ENCODING, ETAG, HeaderValue, IF_MATCH, IF_NONE_MATCH};
 use hyper::{HeaderMap, Response, StatusCode};
 
 use super::accepts::takes_gzip;
@@ -36,6 +36,23 @@ impl Tag {
     /// The tag of the same answer packed by gzip: it has other bytes, so that it is another one (RFC 9110, section 8.8.3).
     fn packed(&self) -> Self {
         Self(format!("{}-gzip\"", self.0.trim_end_matches('"')))
+    }
+
+    /// The tag as a header has it.
+    pub fn value(&self) -> HeaderValue {
+        HeaderValue::from_str(&self.0).expect("a hash in quotes is visible ASCII")
+    }
+
+    /// Whether a change is of what has this tag, in either of its forms: by `If-Match`, whose tags are strong. None without that header.
+    pub fn matches(&self, request: &HeaderMap) -> Option<bool> {
+        let packed = self.packed();
+        let mut values = request.get_all(IF_MATCH).iter().peekable();
+        values.peek()?;
+        let mut named = values
+            .filter_map(|value| value.to_str().ok())
+            .flat_map(|value| value.split(','))
+            .map(str::trim);
+        Some(named.any(|named| named == "*" || named == self.0 || named == packed.0))
     }
 
     /// Which form of this the client says that it has, if it has one that it takes.
@@ -87,8 +104,7 @@ impl Tag {
             }
         };
         let headers = response.headers_mut();
-        let tag = HeaderValue::from_str(&tag.0).expect("a hash in quotes is visible ASCII");
-        headers.insert(ETAG, tag);
+        headers.insert(ETAG, tag.value());
         headers.insert(CACHE_CONTROL, HeaderValue::from_static(keep.value()));
         Ok(response)
     }
@@ -108,6 +124,25 @@ mod tests {
     use hyper::header::ACCEPT_ENCODING;
 
     use super::*;
+
+    #[test]
+    fn a_change_names_the_tag_that_it_was_made_from_and_no_weak_one() {
+        let tag = Tag::of_hash("abc", "");
+        let matches = |values: &[&'static str]| {
+            let values = values
+                .iter()
+                .map(|value| (IF_MATCH, HeaderValue::from_static(value)));
+            tag.matches(&values.collect())
+        };
+        for value in ["\"abc\"", "\"x\", \"abc\"", "\"abc-gzip\"", "*"] {
+            assert_eq!(matches(&[value]), Some(true), "{value}");
+        }
+        assert_eq!(matches(&["\"x\"", "\"abc\""]), Some(true));
+        for value in ["W/\"abc\"", "\"x\"", "abc", ""] {
+            assert_eq!(matches(&[value]), Some(false), "{value}");
+        }
+        assert_eq!(matches(&[]), None);
+    }
 
     #[test]
     fn a_tag_is_known_in_a_list_weak_or_by_a_star_and_packed_by_who_takes_that() {

@@ -8,7 +8,7 @@
 //! - the states (`state`), a [`Job`], a [`StudyRecord`], and their rows (`rows`);
 //! - the transitions of a job: `submit`, `claim` in its turn (`shares`), `attempt`, and other ends (`end`); those of a study (`studies`);
 //! - reading: lists, documents, tables; reports of other processes (`news`);
-//! - keys, `links` to results, [`webhooks`], and their messages, which are written with the change that they report (`outbox`);
+//! - keys, `projects`, `links` to results, [`webhooks`], and their messages, which are written with the change that they report (`outbox`);
 //! - for operators: `usage`, retention and backup.
 //!
 //! Each transition is one transaction that names the state it leaves; when the job is not in that state the transition does
@@ -43,6 +43,7 @@ mod news;
 mod open;
 mod outbox;
 mod private;
+mod projects;
 mod retention;
 mod rows;
 mod shares;
@@ -81,6 +82,7 @@ pub use lock::{DatabaseLock, LockError};
 pub use news::{Listener, Notice};
 pub use open::{Migrate, OpenError};
 pub use outbox::EventKind;
+pub use projects::{NewProject, ProjectChange, ProjectOutcome, ProjectRecord};
 pub use retention::{Removed, Space};
 pub use state::{By, Kept, Status};
 pub use studies::{NewRow, NewStudy, SearchStep, StudyOutcome};

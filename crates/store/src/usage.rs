@@ -36,7 +36,7 @@ pub struct UserUsage {
     pub done_last_hour: i64,
     /// The same within the last day.
     pub done_last_day: i64,
-    /// Bytes of the results that are kept, packed.
+    /// Bytes of the results that are kept, packed, and of projects.
     pub bytes_kept: i64,
     /// Jobs that stand alone and wait or run, the oldest first.
     pub jobs: Vec<Uuid>,
@@ -55,9 +55,12 @@ impl Store {
         // One step in the index a client, whatever the number of its jobs.
         let clients: Vec<(String,)> = query_as(
             "with recursive names(client) as (
-               select min(client) from jobs where client > $1
+               select min(client) from (select min(client) as client from jobs where client > $1
+                                        union all select min(client) from projects where client > $1) as first
                union all
-               select (select min(client) from jobs where client > names.client) from names where names.client is not null)
+               select (select min(client) from (select min(client) as client from jobs where client > names.client
+                                                union all select min(client) from projects where client > names.client) as next)
+               from names where names.client is not null)
              select client from names where client is not null limit $2",
         )
         .bind(after)
@@ -101,6 +104,13 @@ impl Store {
         .bind(client)
         .fetch_all(&self.readers)
         .await?;
+        let projects: Vec<(String, i64)> = query_as(
+            "select coalesce(submitted_by, ''), cast(sum(bytes) as bigint) from projects
+             where client = $1 group by submitted_by order by 1",
+        )
+        .bind(client)
+        .fetch_all(&self.readers)
+        .await?;
         let ids = async |words: &'static str| -> Result<Vec<(String, String)>, StoreError> {
             let ids = query_as(words).bind(client).bind(column(MOST_IDS));
             Ok(ids.fetch_all(&self.readers).await?)
@@ -131,6 +141,16 @@ impl Store {
             if let Some(place) = places.get(&user) {
                 users[*place].bytes_kept = bytes;
             }
+        }
+        for (user, bytes) in projects {
+            let place = *places.entry(user.clone()).or_insert(users.len());
+            if place == users.len() {
+                users.push(UserUsage {
+                    user: Some(user).filter(|user| !user.is_empty()),
+                    ..UserUsage::default()
+                });
+            }
+            users[place].bytes_kept += bytes;
         }
         for (user, id) in jobs {
             if let (Some(place), Ok(id)) = (places.get(&user), id.parse()) {

@@ -1,14 +1,15 @@
 //! Many designs at once: studies, populations and searches, their tables, and the numbers behind them.
 //!
 //! Read in this order. The numbers: [`sample`] (members drawn from laws, and estimates from a sample with their confidence) and [`optimum`] (choice of the next
-//! points of a cube); neither knows gears or JSON. Then [`table`], the quantities that designs are compared by. The documents: `population`, `search` and
-//! [`study`], which holds one of them or lists its designs. Last the statistics of a study's rows: [`population_results`] and [`searching`]. [`refusals`]
-//! counts the designs without results.
+//! points of a cube); neither knows gears or JSON. Then [`table`], the quantities that designs are compared by, and [`solve`](fn@solve), whose results have
+//! them. The documents: `population`, `search` and [`study`], which holds one of them or lists its designs. Last the statistics of a study's rows:
+//! [`population_results`] and [`searching`]. [`refusals`] counts the designs without results.
 
 pub mod optimum;
 pub mod sample;
 
 pub mod refusals;
+mod solve;
 pub mod table;
 
 mod population;
@@ -23,6 +24,7 @@ mod testing;
 
 pub use population_results::{PopulationResults, PopulationSample};
 pub use searching::{SearchState, Searching};
+pub use solve::solve;
 pub use study::{Design, Study};
 pub use table::{RowState, StudyResults, Summary};
 

@@ -1,5 +1,6 @@
 //! The reader's units at the edge: mm, um, degrees, GPa and MPa against SI, and numbers rounded for the wire.
 
+use std::collections::BTreeMap;
 use std::io;
 
 pub use meshwright_exchange::significant;
@@ -160,6 +161,17 @@ pub fn or_null<S: serde::Serializer>(
     #[derive(serde::Serialize)]
     struct One(#[serde(serialize_with = "one_or_null")] Option<f64>);
     serializer.collect_seq(values.iter().map(|value| One(*value)))
+}
+
+/// Writes numbers by their names, of which some may be meant to be absent.
+pub fn named_or_null<S: serde::Serializer>(
+    values: &Option<BTreeMap<String, Option<f64>>>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    #[derive(serde::Serialize)]
+    struct One(#[serde(serialize_with = "one_or_null")] Option<f64>);
+    let values = values.iter().flatten();
+    serializer.collect_map(values.map(|(name, value)| (name, One(*value))))
 }
 
 /// Writes a number that may be meant to be absent.

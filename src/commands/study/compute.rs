@@ -6,8 +6,9 @@ use std::time::Duration;
 use anyhow::{Context, anyhow};
 use indicatif::{ProgressBar, ProgressStyle};
 use meshwright_engine::library::Library;
+use meshwright_studies::solve;
 use meshwright_studies::{RowState, Study as StudyDocument};
-use meshwright_wire::{Kept, solve};
+use meshwright_wire::Kept;
 use tokio_util::sync::CancellationToken;
 use uuid::Uuid;
 

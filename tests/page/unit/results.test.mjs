@@ -211,8 +211,7 @@ test("answers are quantities of the service, in their printed unit, or the page'
   const curve = {
     ...curveOver(1),
     pairs_in_contact: [1, 1, 2, 2],
-    statistics: { transmission_error_um: { peak_to_peak: 2 } },
-    spectrum: { named: [{ label: "H_Z2", transmission_error_um: 0.5 }] },
+    quantities: { "transmission_error_um.peak_to_peak": 2, mesh_order_um: 0.5, hole_order_um: null },
   };
   const value = (id) =>
     valueOf(
@@ -222,14 +221,11 @@ test("answers are quantities of the service, in their printed unit, or the page'
   assert.deepEqual(["p-p", "h-z", "h-n", "share", "stress"].map(value), [2, 0.5, null, 50, null]);
 });
 
-test("where a corner carries at any position there is no largest pressure to compare designs by", () => {
+test("a quantity that results do not come to, or do not tell, is no number to compare designs by", () => {
   const answer = ANSWERS.find(({ id }) => id === "pressure");
-  const curve = (largest) => ({
-    ...curveOver(1),
-    peak_contact_pressure_mpa: [80, null, 75],
-    statistics: { peak_contact_pressure_mpa: { largest } },
-  });
-  assert.equal(valueOf(answer, curve(undefined)), null);
+  assert.equal(valueOf(answer, curveOver(1)), null);
+  const curve = (largest) => ({ ...curveOver(1), quantities: { peak_contact_pressure_mpa: largest } });
+  assert.equal(valueOf(answer, curve(null)), null);
   assert.equal(valueOf(answer, curve(81)), 81);
 });
 

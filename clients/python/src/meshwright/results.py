@@ -13,19 +13,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-_COLUMNS = (
-    "mesh_position",
-    "driving_angle_deg",
-    "driven_angle_deg",
-    "transmission_error_um",
-    "mesh_stiffness_tangent_n_per_m",
-    "mesh_stiffness_secant_n_per_m",
-    "driving_torque_n_m",
-    "pairs_in_contact",
-    "peak_contact_pressure_mpa",
-)
-
-
 def _array(values: list[float | None]) -> Array:
     """What is null on the wire is no number here."""
     return np.array([np.nan if value is None else value for value in values], dtype=np.float64)
@@ -83,6 +70,19 @@ class Curve:
     def peak_contact_pressure_mpa(self) -> Array:
         """NaN where a sharp tip corner carries."""
         return self["peak_contact_pressure_mpa"]
+
+    @property
+    def columns(self) -> list[str]:
+        """The names of the lists that run over the positions, in the order of the document."""
+        count = len(self.document["mesh_position"])
+        lists = ((name, value) for name, value in self.document.items() if name != "load_shares" and isinstance(value, list))
+        return [name for name, value in lists if len(value) == count]
+
+    @property
+    def quantities(self) -> dict[str, float | None]:
+        """The numbers of `GET /v1/quantities` by their names; empty in results of versions before 0.6."""
+        quantities: dict[str, float | None] = self.document.get("quantities", {})
+        return quantities
 
     @property
     def statistics(self) -> dict[str, Any]:
@@ -150,7 +150,7 @@ class Results:
 
         frames = []
         for curve in self.curves:
-            columns = {name: curve[name] for name in _COLUMNS if name in curve.document}
+            columns = {name: curve[name] for name in curve.columns}
             for gear in ("driving", "driven"):
                 columns |= {f"stress_{gear}_{name}": values for name, values in curve.stress(gear).items()}
             frames.append(pandas.DataFrame({"output_torque_n_m": curve.output_torque_n_m, **columns}))

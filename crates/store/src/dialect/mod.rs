@@ -126,6 +126,8 @@ pairs! {
     lock_webhooks = LOCK_WEBHOOKS;
     /// The same of links.
     lock_links = LOCK_LINKS;
+    /// The same of projects.
+    lock_projects = LOCK_PROJECTS;
     /// From here to its end, no other transaction decides whose turn it is.
     lock_turn = LOCK_TURN;
     /// From here to its end, no other transaction changes the shares of the client $1.

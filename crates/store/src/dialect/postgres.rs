@@ -47,6 +47,10 @@ pub(crate) const LOCK_WEBHOOKS: Words =
 pub(crate) const LOCK_LINKS: Words =
     Some("select 1 from pg_advisory_xact_lock(hashtext('meshwright'), 6)");
 
+pub(crate) const LOCK_PROJECTS: Words =
+    Some("select 1 from pg_advisory_xact_lock(hashtext('meshwright'), 7)");
+
+// The turn depends on the lanes served before. Claimed rows are skipped by other claims.
 // The turn depends on the lanes served before. Claimed rows are skipped by other claims.
 pub(crate) const LOCK_TURN: Words =
     Some("select 1 from pg_advisory_xact_lock(hashtext('meshwright'), 4)");

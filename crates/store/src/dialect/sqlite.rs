@@ -22,6 +22,8 @@ pub(crate) const LOCK_WEBHOOKS: Words = None;
 
 pub(crate) const LOCK_LINKS: Words = None;
 
+pub(crate) const LOCK_PROJECTS: Words = None;
+
 pub(crate) const LOCK_TURN: Words = None;
 
 pub(crate) const LOCK_SHARES: Words = None;

@@ -1,6 +1,7 @@
 //! The table of a study: a row for each design, with the few numbers that designs are compared by.
 
 mod csv;
+mod named;
 mod pareto;
 mod quantity;
 mod row;
@@ -17,6 +18,7 @@ use utoipa::ToSchema;
 use uuid::Uuid;
 
 pub use self::csv::CsvTable;
+pub(crate) use named::name_quantities;
 pub use pareto::{KnownQuantities, Outline};
 pub use quantity::{Better, Quantity, QuantityEntry, QuantityOf, quantities};
 pub(crate) use quantity::{Of, QUANTITIES};

@@ -65,6 +65,12 @@ pub trait Kind: Sized {
         None
     }
 
+    /// Value that another field of the object gives in its place; `None` if none does.
+    fn by_another(_: &ObjectReader<'_>, _: &Self::Spec) -> Option<Self> {
+        None
+    }
+
+    /// Value of the absent field `name`.
     /// Value of the absent field `name`.
     fn absent(
         reader: &mut ObjectReader<'_>,

@@ -31,6 +31,8 @@ pub struct Number {
     preset: Preset,
     /// Makes a default go with the numbers that were read before it.
     fitted: Option<fn(f64, &ObjectReader<'_>) -> f64>,
+    /// The number that another field of the object says in its place.
+    by_another: Option<fn(&ObjectReader<'_>) -> Option<f64>>,
     /// How a value below zero is refused.
     negative: Code,
     /// Meaning of a value below zero in other programs, and the reason of the refusal.
@@ -46,6 +48,7 @@ pub const fn number(title: &'static str, unit: &'static str, least: f64, most: f
         or_zero: false,
         preset: Preset::Needed,
         fitted: None,
+        by_another: None,
         negative: Code::OutOfRange,
         meaning: None,
     }
@@ -68,6 +71,12 @@ impl Number {
     pub const fn fitted(self, fit: fn(f64, &ObjectReader<'_>) -> f64) -> Self {
         let fitted = Some(fit);
         Self { fitted, ..self }
+    }
+
+    /// Not given, it is what another field of the object says, if one does.
+    pub const fn by_another(self, find: fn(&ObjectReader<'_>) -> Option<f64>) -> Self {
+        let by_another = Some(find);
+        Self { by_another, ..self }
     }
 
     /// Zero is accepted beside the bounds.
@@ -157,7 +166,14 @@ impl Number {
         }
     }
 
+    fn told_by_another(&self, reader: &ObjectReader<'_>) -> Option<f64> {
+        self.by_another.and_then(|find| find(reader))
+    }
+
     fn absent(&self, reader: &mut ObjectReader<'_>, name: &'static str) -> Option<f64> {
+        if let Some(value) = self.told_by_another(reader) {
+            return Some(value);
+        }
         if self.preset == Preset::Needed {
             return reader.missing(name);
         }
@@ -241,6 +257,10 @@ macro_rules! numbers {
 
             fn absent(reader: &mut ObjectReader<'_>, name: &'static str, spec: &Number) -> Option<Self> {
                 spec.absent(reader, name).map(|value| value as Self)
+            }
+
+            fn by_another(reader: &ObjectReader<'_>, spec: &Number) -> Option<Self> {
+                spec.told_by_another(reader).map(|value| value as Self)
             }
 
             fn is_needed(spec: &Number) -> bool {

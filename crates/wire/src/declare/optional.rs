@@ -100,7 +100,7 @@ impl<T: Kind> Kind for Option<T> {
         }
         match (node, spec.absent) {
             (Some(node), _) => Self::read(node, &reader.place_of(name), spec),
-            (None, Absent::Means(_)) => Some(None),
+            (None, Absent::Means(_)) => Some(T::by_another(reader, &spec.spec)),
             (None, Absent::Unless) => T::absent(reader, name, &spec.spec).map(Some),
             (None, Absent::OneOf) => reader.missing_one_of(&[&[name], spec.others].concat()),
         }

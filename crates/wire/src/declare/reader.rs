@@ -123,6 +123,15 @@ impl<'a> ObjectReader<'a> {
             .map(|(_, value)| *value)
     }
 
+    /// The text of the field `name`, if it is one.
+    pub fn text(&self, name: &str) -> Option<&'a str> {
+        let mut fields = self.fields.iter();
+        match fields.find(|(key, _)| key == name) {
+            Some((_, Node::Text(text))) => Some(text),
+            _ => None,
+        }
+    }
+
     /// Reports that the field `name` is needed.
     pub fn missing<T>(&mut self, name: &'static str) -> Option<T> {
         let place = self.place_of(name);
@@ -191,14 +200,17 @@ impl<'a> ObjectReader<'a> {
     }
 }
 
-/// The known word that takes the fewest edits, if they are few.
+/// The known word that takes the fewest edits, capitals aside, if they are few.
 pub(super) fn nearest_word(word: &str, known: &[&'static str]) -> Option<&'static str> {
     if word.len() > 60 {
         return None;
     }
     known
         .iter()
-        .map(|&other| (strsim::levenshtein(word, other), other))
+        .map(|&other| {
+            let edits = strsim::levenshtein(&word.to_lowercase(), &other.to_lowercase());
+            (edits, other)
+        })
         .min()
         .filter(|(edits, other)| *edits * 3 <= other.len())
         .map(|(_, other)| other)

@@ -66,7 +66,7 @@ impl<C: Copy> OneWord<C> {
         };
         C::of_word(word).or_else(|| {
             let known: Vec<_> = C::OPTIONS.iter().map(|(word, ..)| *word).collect();
-            let meant = nearest_word(&word.to_lowercase(), &known);
+            let meant = nearest_word(word, &known);
             let meant = meant.map_or_else(String::new, |word| format!(" Is {word} meant?"));
             let words = C::words();
             let detail = format!(

@@ -165,7 +165,9 @@ document! {
         tooth_deviations: Option<DeviationsDocument> =
             absent(nested("Tooth deviations"), "nothing"),
         /// Material of teeth and blank. Default: steel.
-        material: MaterialDocument = nested("Material").or_defaults(),
+        /// Material of teeth and blank. Default: steel.
+        pub(crate) material: MaterialDocument = nested("Material").or_defaults(),
+        /// The blank.
         /// The blank.
         blank: BlankDocument = EACH,
     }

@@ -1,5 +1,6 @@
 //! The curves at one output torque, and their statistics.
 
+use std::collections::BTreeMap;
 use std::ops::Deref;
 
 use meshwright_engine::analysis::at_speed::CurveDynamics;
@@ -13,7 +14,7 @@ use super::spectrum::SpectrumDocument;
 use super::stress::{PeakStressDocument, StressDocument};
 use super::{all, each};
 use crate::declare::document;
-use crate::units::{one_or_null, or_null, significant, to_mm, to_mpa, to_um};
+use crate::units::{named_or_null, one_or_null, or_null, significant, to_mm, to_mpa, to_um};
 
 document! {
     /// The curves at one output torque. All lists, those of the spectrum and of the dynamics aside, run over the same positions.
@@ -78,6 +79,10 @@ document! {
         face?: FaceDocument = curve.face.as_ref().map(FaceDocument::of),
         /// Statistics over the span.
         statistics: StatisticsDocument = StatisticsDocument::of(case, curve),
+        /// The numbers of `GET /v1/quantities` by their names, those of the pair among them; null where the results do not come to one. Where both gears make
+        /// hole orders of their own, those of the driven gear. Absent in results of versions before 0.6.
+        #[serde(serialize_with = "named_or_null")]
+        quantities?: BTreeMap<String, Option<f64>> = None,
         /// The order spectrum; absent for a partial span.
         spectrum?: SpectrumDocument = curve
             .spectrum

@@ -236,12 +236,15 @@ impl Submission {
         serde_json::to_string(&self.document).expect("a submission is words and finite numbers")
     }
 
-    /// SHA-256, in hexadecimal, of all that decides the result: the canonical document without its tags, and the solver's version.
+    /// SHA-256, in hexadecimal, of all that decides the result: the canonical document without its tags and the names of materials, and the solver's version.
     pub fn input_hash(&self) -> String {
-        let untagged = SubmissionDocument {
+        let mut untagged = SubmissionDocument {
             tags: Vec::new(),
             ..self.document.clone()
         };
+        for gear in [&mut untagged.pair.driving, &mut untagged.pair.driven] {
+            gear.material = gear.material.clone().unnamed();
+        }
         let text =
             serde_json::to_string(&untagged).expect("a submission is words and finite numbers");
         sha256_hex(format!("{SOLVER_VERSION}\0{text}"))

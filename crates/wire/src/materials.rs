@@ -1,0 +1,208 @@
+//! Materials by their names: what a submission may call them, their numbers, and where these are printed.
+
+use serde::Serialize;
+use utoipa::ToSchema;
+
+use super::declare::{Choice as _, words};
+
+words! {
+    /// The name of a material.
+    pub enum MaterialName {
+        CaseHardeningSteel = "16MnCr5": "case-hardening steel, flanks of 58 HRC",
+        HeatTreatableSteel = "42CrMo4": "alloy steel, quenched and tempered, 16 to 40 mm thick",
+        CarbonSteel = "C45": "carbon steel, quenched and tempered, 16 to 40 mm thick",
+        GrayIron = "GG-25": "gray cast iron, EN-GJL-250",
+        Polyoxymethylene = "POM": "polyoxymethylene, a copolymer without filler",
+        Polyamide = "PA66": "polyamide 66 without filler, conditioned at 50 % of humidity",
+        Polyetheretherketone = "PEEK": "polyetheretherketone without filler",
+    }
+}
+
+/// The numbers of a material at a temperature.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, ToSchema)]
+#[schema(as = NamedMaterial, title = "NamedMaterial")]
+pub struct MaterialEntry {
+    /// The name, which `material.name` of a gear takes.
+    #[serde(serialize_with = "as_word")]
+    #[schema(value_type = String)]
+    pub(crate) name: MaterialName,
+    /// The kind of material, and its state.
+    title: &'static str,
+    /// Young's modulus, in GPa.
+    pub(crate) youngs_modulus_gpa: f64,
+    /// Poisson's ratio.
+    pub(crate) poisson_ratio: f64,
+    /// The density, in kg/m3.
+    pub(crate) density_kg_m3: f64,
+    /// The coefficient of thermal expansion, in 1/K.
+    expansion_per_k: f64,
+    /// The yield strength of the flanks, in MPa.
+    pub(crate) yield_strength_mpa: f64,
+    /// The temperature for which the numbers are printed, in degrees Celsius.
+    temperature_c: f64,
+    /// The publications that print the numbers.
+    source: &'static str,
+}
+
+fn as_word<S: serde::Serializer>(name: &MaterialName, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(name.word())
+}
+
+/// Young's modulus, Poisson's ratio, density and expansion of steels, and where they are printed.
+macro_rules! steel {
+    ($name:ident, $yield_strength_mpa:literal, $source:literal) => {
+        MaterialEntry {
+            youngs_modulus_gpa: 210.0,
+            poisson_ratio: 0.3,
+            density_kg_m3: 7850.0,
+            expansion_per_k: 12e-6,
+            yield_strength_mpa: $yield_strength_mpa,
+            temperature_c: 20.0,
+            ..entry(
+                MaterialName::$name,
+                concat!(
+                    "EN 1993-1-1:2005, 3.2.6 (modulus, Poisson's ratio, expansion); EN 1991-1-1:2002, table A.4 (density); ",
+                    $source
+                ),
+            )
+        }
+    };
+}
+
+/// The materials, one for each name in their order.
+#[rustfmt::skip]
+pub static MATERIALS: [MaterialEntry; 7] = [
+    steel!(CaseHardeningSteel, 2130.0,
+        "ASTM E140 (58 HRC are 653 HV) and D. Tabor, The Hardness of Metals, 1951 (yield strength: a third of the hardness)"),
+    steel!(HeatTreatableSteel, 750.0, "EN 10083-3:2006 (least yield strength)"),
+    steel!(CarbonSteel, 430.0, "EN 10083-2:2006 (least yield strength)"),
+    MaterialEntry {
+        youngs_modulus_gpa: 110.0, poisson_ratio: 0.26, density_kg_m3: 7200.0, expansion_per_k: 11.7e-6,
+        yield_strength_mpa: 165.0, temperature_c: 20.0,
+        ..entry(MaterialName::GrayIron,
+            "EN 1561:2011, annex A: modulus 103 to 118 GPa, the least proof stress of 0.1 %, expansion from 20 to 200 deg C")
+    },
+    MaterialEntry {
+        youngs_modulus_gpa: 2.85, poisson_ratio: 0.37, density_kg_m3: 1410.0, expansion_per_k: 110e-6,
+        yield_strength_mpa: 64.0, temperature_c: 23.0,
+        ..entry(MaterialName::Polyoxymethylene,
+            "Celanese, data sheet of Hostaform C 9021 (ISO 527, ISO 1183, ISO 11359); Poisson's ratio: usual for POM")
+    },
+    MaterialEntry {
+        youngs_modulus_gpa: 1.4, poisson_ratio: 0.4, density_kg_m3: 1140.0, expansion_per_k: 100e-6,
+        yield_strength_mpa: 55.0, temperature_c: 23.0,
+        ..entry(MaterialName::Polyamide,
+            "DuPont, data sheet of Zytel 103HSL NC010, conditioned (ISO 527, ISO 1183, ISO 11359); Poisson's ratio: usual for PA66")
+    },
+    MaterialEntry {
+        youngs_modulus_gpa: 4.0, poisson_ratio: 0.4, density_kg_m3: 1300.0, expansion_per_k: 45e-6,
+        yield_strength_mpa: 98.0, temperature_c: 23.0,
+        ..entry(MaterialName::Polyetheretherketone,
+            "Victrex, data sheet of PEEK 450G (ISO 527, ISO 1183, ISO 11359 along the flow); Poisson's ratio: usual for PEEK")
+    },
+];
+
+/// An entry with its words alone.
+const fn entry(name: MaterialName, source: &'static str) -> MaterialEntry {
+    MaterialEntry {
+        name,
+        title: MaterialName::OPTIONS[name as usize].2,
+        youngs_modulus_gpa: 0.0,
+        poisson_ratio: 0.0,
+        density_kg_m3: 0.0,
+        expansion_per_k: 0.0,
+        yield_strength_mpa: 0.0,
+        temperature_c: 0.0,
+        source,
+    }
+}
+
+impl MaterialEntry {
+    /// The entry of this name.
+    pub(crate) fn of_name(name: MaterialName) -> &'static Self {
+        &MATERIALS[name as usize]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+    use crate::problem::Code;
+    use crate::submission::Submission;
+    use crate::testing::example;
+
+    fn with_material(material: serde_json::Value) -> serde_json::Value {
+        let mut submission = example("standard-pair");
+        submission["pair"]["driven"]["material"] = material;
+        // Within the limit of every material.
+        submission["output_torques_n_m"] = json!([5.0]);
+        submission
+    }
+
+    fn filled_in(material: serde_json::Value) -> serde_json::Value {
+        let submission = Submission::parse(with_material(material).to_string().as_bytes());
+        let echo: serde_json::Value =
+            serde_json::from_str(&submission.expect("valid").canonical_json()).expect("JSON");
+        echo["pair"]["driven"]["material"].clone()
+    }
+
+    #[test]
+    fn every_name_has_its_entry_and_numbers_that_a_gear_may_have() {
+        for (i, (word, name, title)) in MaterialName::OPTIONS.iter().enumerate() {
+            let entry = MaterialEntry::of_name(*name);
+            assert_eq!((entry.name, entry.title), (*name, *title), "{i}");
+            assert!(entry.source.len() > 20 && entry.expansion_per_k > 1e-6);
+            let material = filled_in(json!({ "name": word }));
+            assert_eq!(material["name"], *word);
+            assert_eq!(material["youngs_modulus_gpa"], entry.youngs_modulus_gpa);
+            assert_eq!(material["poisson_ratio"], entry.poisson_ratio);
+            assert_eq!(material["density_kg_m3"], entry.density_kg_m3);
+            assert_eq!(material["yield_strength_mpa"], entry.yield_strength_mpa);
+        }
+    }
+
+    #[test]
+    fn numbers_beside_a_name_hold_and_a_name_changes_nothing_but_numbers() {
+        let hot = filled_in(json!({ "name": "POM", "youngs_modulus_gpa": 1.2 }));
+        // The data sheet prints 2.85 GPa and 1410 kg/m3.
+        assert_eq!(
+            (&hot["youngs_modulus_gpa"], &hot["density_kg_m3"]),
+            (&json!(1.2), &json!(1410.0))
+        );
+        // What is filled in says the same when it is sent again.
+        assert_eq!(filled_in(hot.clone()), hot);
+        let hash = |material| {
+            let document = with_material(material).to_string();
+            Submission::parse(document.as_bytes())
+                .expect("valid")
+                .input_hash()
+        };
+        let mut unnamed = hot.clone();
+        unnamed.as_object_mut().expect("an object").remove("name");
+        assert_eq!(hash(hot), hash(unnamed));
+        assert!(filled_in(json!({})).get("name").is_none());
+    }
+
+    #[test]
+    fn an_unknown_name_is_refused_with_the_nearest() {
+        for (given, meant) in [
+            ("16mncr5", "16MnCr5"),
+            ("42CrMo", "42CrMo4"),
+            ("pom", "POM"),
+            ("GG25", "GG-25"),
+        ] {
+            let document = with_material(json!({ "name": given })).to_string();
+            let problem = Submission::parse(document.as_bytes()).expect_err("unknown");
+            let error = &problem.errors[0];
+            assert_eq!(error.code, Code::WrongType);
+            assert_eq!(error.pointer, "/pair/driven/material/name");
+            assert!(
+                error.detail.contains(&format!("Is {meant} meant?")),
+                "{}",
+                error.detail
+            );
+        }
+    }
+}

@@ -1,0 +1,186 @@
+// Projects: saved, listed, opened, written by two, exported and imported, and kept in the browser where no key may write.
+
+import assert from "node:assert/strict";
+import { writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { tmpdir } from "node:os";
+import { axe, computed, designOf, downloaded, field, named, open, service, stepsOn } from "./harness.mjs";
+
+const COUNT = "/pair/driven/blank/holes/count";
+const NAME = 'E-axle <b id="injected">stage 2</b>';
+
+const dialog = (page) => page.locator("#project-dialog");
+const press = (page, id) => page.locator(`#project-${id}`).click();
+const says = (page, words) => dialog(page).getByText(words).first().waitFor();
+const close = (page) => dialog(page).getByRole("button", { name: "Close" }).click();
+const show = (page) => press(page, "button");
+const openListed = (page, name) =>
+  dialog(page)
+    .getByRole("button", { name: `Open ${name}`, exact: true })
+    .click();
+
+/** Gives the driven gear so many holes. */
+async function holes(page, count) {
+  await (await field(page, COUNT)).fill(String(count));
+  await named(page, `${count}×`);
+  await computed(page);
+}
+
+const holesOf = async (page) => (await designOf(page)).pair.driven.blank.holes.count;
+
+async function choose(page, text) {
+  const path = join(tmpdir(), `meshwright-project-${process.pid}.json`);
+  writeFileSync(path, text);
+  await page.locator("#project-file").setInputFiles(path);
+}
+
+export async function projectSteps() {
+  const { dailyEngine } = stepsOn(service);
+
+  await dailyEngine.opened(
+    "a project is saved, survives a reload, is opened by another tab, and of two writers neither loses anything",
+    async (page, context) => {
+      await holes(page, 8);
+      await page.locator("#pin").click();
+      await show(page);
+      await press(page, "save");
+      await says(page, "Give the project a name.");
+      await page.locator("#project-name").fill(NAME);
+      await page.locator("#project-notes").fill("quiet at 100 N m");
+      await press(page, "save");
+      await says(page, /^Saved in the service/);
+      await says(page, "asks for no key: all who call it share");
+      await axe(page);
+      assert.equal(await page.locator("#injected").count(), 0, "names are text");
+      if (process.argv.includes("--screenshots")) await page.screenshot({ path: `${import.meta.dirname}/project.png` });
+      await close(page);
+      assert.equal(await page.locator("#project-button").innerText(), NAME);
+      await holes(page, 7);
+      assert.equal(await page.locator("#project-button").innerText(), `${NAME} *`, "it has changes");
+
+      await page.waitForTimeout(600);
+      await page.reload();
+      await named(page, "7×");
+      assert.equal(await page.locator("#project-button").innerText(), `${NAME} *`);
+
+      // Another tab opens what was saved; its kept design is computed by one press.
+      const other = await context.newPage();
+      await open(other, service);
+      await show(other);
+      await openListed(other, NAME);
+      await says(other, "Kept designs that are not computed yet");
+      assert.equal(await other.locator("#project-notes").inputValue(), "quiet at 100 N m");
+      await press(other, "compute");
+      await other.locator("#project-compute").waitFor({ state: "hidden" });
+      await close(other);
+      await named(other, "8×");
+      assert.equal(await other.locator("#against option").count(), 1);
+      await holes(other, 9);
+      await show(other);
+      await press(other, "save");
+      await says(other, /^Saved in the service/);
+
+      // The first tab is told, and offered both.
+      await show(page);
+      await press(page, "save");
+      await says(page, "Somebody else saved this project");
+      await axe(page);
+      if (process.argv.includes("--screenshots"))
+        await page.screenshot({ path: `${import.meta.dirname}/project-conflict.png` });
+      await press(page, "both");
+      await says(page, /^Saved in the service/);
+      await dialog(page)
+        .getByRole("button", { name: `Open ${NAME}`, exact: true })
+        .nth(1)
+        .waitFor();
+      await close(page);
+      assert.equal(await holesOf(page), 7, "mine is a project of its own");
+      await close(other);
+      await holes(other, 6);
+      await show(other);
+      await press(other, "save");
+      await says(other, /^Saved in the service/);
+      assert.equal(await holesOf(other), 6, "theirs is as it was left");
+
+      // A project that somebody has deleted is told as such, and nothing is lost.
+      for (const item of (await (await fetch(`${service.url}v1/projects`)).json()).items)
+        await fetch(`${service.url}v1/projects/${item.id}`, { method: "DELETE", headers: { "if-match": "*" } });
+      await close(other);
+      await holes(other, 5);
+      await show(other);
+      await press(other, "save");
+      await says(other, "Somebody else deleted this project.");
+      assert.equal(await holesOf(other), 5);
+    },
+  );
+
+  await dailyEngine.opened(
+    "a project is a file, and a foreign, newer or damaged one leaves everything as it is",
+    async (page) => {
+      await holes(page, 8);
+      await show(page);
+      await page.locator("#project-name").fill("As a file");
+      const { name, bytes } = await downloaded(page, () => press(page, "export"));
+      assert.equal(name, "meshwright-As-a-file-project.json");
+      const text = bytes.toString("utf8");
+      await close(page);
+      await holes(page, 7);
+      await show(page);
+      for (const [file, words] of [
+        ['{"pair":{}}', "This is no project of Meshwright."],
+        [text.replace('"version":1', '"version":9'), "A later Meshwright wrote this project"],
+        [text.slice(0, 300), "The file is damaged: it is cut off."],
+        [text.replace('"count":8', '"count":6'), "The file is damaged: it is not what was saved."],
+      ]) {
+        await choose(page, file);
+        await says(page, words);
+        assert.equal(await holesOf(page), 7, words);
+        assert.equal(await page.locator("#project-name").inputValue(), "As a file");
+      }
+      await choose(page, text);
+      await close(page);
+      await named(page, "8×");
+      assert.equal(await page.locator("#undo").isDisabled(), false, "there is a way back");
+    },
+  );
+
+  await dailyEngine.opened("without a key that may write a project stays in the browser", async (page, context) => {
+    const refuse = async (each) =>
+      each.route("**/v1/projects**", (route) =>
+        route.request().method() === "GET"
+          ? route.continue()
+          : route.fulfill({
+              status: 403,
+              contentType: "application/problem+json",
+              body: JSON.stringify({ code: "forbidden", status: 403, title: "", detail: "The key may look." }),
+            }),
+      );
+    await refuse(page);
+    await holes(page, 8);
+    await show(page);
+    await page.locator("#project-name").fill("In this browser");
+    await press(page, "save");
+    await says(page, /^Saved in this browser/);
+    await dialog(page).getByRole("cell", { name: "this browser", exact: true }).waitFor();
+    const other = await context.newPage();
+    await refuse(other);
+    await open(other, service);
+    await show(other);
+    await openListed(other, "In this browser");
+    await says(other, /^Saved in this browser/);
+    await close(other);
+    await named(other, "8×");
+    await holes(other, 9);
+    await show(other);
+    await press(other, "save");
+    await says(other, /^Saved in this browser/);
+    await page.locator("#project-notes").fill("mine");
+    await press(page, "save");
+    await says(page, "Somebody else saved this project");
+    await press(page, "theirs");
+    await says(page, /^Saved in this browser/);
+    assert.equal(await page.locator("#project-notes").inputValue(), "");
+    await close(page);
+    await named(page, "9×");
+  });
+}
