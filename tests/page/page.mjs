@@ -136,6 +136,25 @@ await daily.opened("a data sheet has both gears side by side, over a reload too"
   await page.locator("#layout").selectOption("answers-alone");
   assert.ok(await page.locator("#form").isHidden());
 });
+await engine.opened(
+  "a material by its name says the numbers that are left out, and one that is typed holds",
+  async (page) => {
+    const of = (name) => field(page, `/pair/driven/material/${name}`);
+    const [name, modulus, density] = [await of("name"), await of("youngs_modulus_gpa"), await of("density_kg_m3")];
+    assert.equal(await name.inputValue(), "", "there is none until one is chosen");
+    assert.equal(await modulus.getAttribute("placeholder"), "210");
+    await name.selectOption("POM");
+    // The data sheet of the material prints 2.85 GPa and 1410 kg/m3.
+    assert.equal(await modulus.getAttribute("placeholder"), "2.85");
+    assert.equal(await density.getAttribute("placeholder"), "1410");
+    await modulus.fill("1.2");
+    const { material } = (await designOf(page)).pair.driven;
+    assert.deepEqual(material, { name: "POM", youngs_modulus_gpa: 1.2 });
+    if (process.argv.includes("--screenshots")) await page.screenshot({ path: `${import.meta.dirname}/material.png` });
+    await name.selectOption("");
+    assert.equal(await density.getAttribute("placeholder"), "7850");
+  },
+);
 
 await daily.opened("a link opened again gives the same design", async (page, context) => {
   await (await field(page, `${HOLES}/count`)).fill("8");

@@ -708,6 +708,20 @@ export class Form {
   }
 
   /**
+   * Names the material of a gear. Its numbers stand in place of those that were given before.
+   *
+   * @param {string} pointer
+   * @param {unknown} name
+   */
+  #putMaterial(pointer, name) {
+    const holder = pointer.slice(0, pointer.lastIndexOf("/"));
+    const given = Object.keys(this.design.get(holder) ?? {}).filter((field) => field !== "name");
+    const numbers = name === undefined ? [] : given.map((field) => [`${holder}/${field}`, undefined]);
+    this.design.setAll({ [pointer]: name, ...Object.fromEntries(numbers) }, "form", [pointer]);
+    if (numbers.length) this.notify(`The numbers of ${name} stand in place of those that were given.`);
+  }
+
+  /**
    * Sets a field and `further` ones, and takes away what it stands in place of.
    *
    * @param {string} pointer
@@ -718,6 +732,7 @@ export class Form {
     const basic = this.#basic(pointer);
     if (basic) return this.#putBasic(basic.members, basic.name, value);
     if (pointer === HELIX) return this.#putHelix(value, "form");
+    if (pointer.endsWith("/material/name")) return this.#putMaterial(pointer, value);
     if (pointer === "/method" && isSolid(String(value)) && !isSolid(this.design.get("/method"))) {
       const { changes, told } = intoSolid(this.design);
       return this.#follow({ changes: { ...changes, [pointer]: value }, told: told.slice(1) }, "mend");
