@@ -1,6 +1,6 @@
 //! The gears of a submission, and what is wrong with those that cannot be made.
 //!
-//! The document by its parts: `tip`, `relief`, `modification`, `thickness`, `deviation`, `lead`, `material`, `blank`, `holes` and `openings`; `solid` is the gear along its axis. Then what prevents
+//! The document by its parts: `tip`, `relief`, `modification`, `thickness`, `deviation`, `traces`, `lead`, `material`, `blank`, `holes` and `openings`; `solid` is the gear along its axis. Then what prevents
 //! a gear (`proportions`, `faults`, `blank_faults`), which fields could change (`field`), and the values that together would do (`repair`).
 
 mod blank;
@@ -21,6 +21,7 @@ mod solid;
 #[cfg(test)]
 mod tests;
 mod thickness;
+mod traces;
 
 use meshwright_engine::gear::{GearData, Helix, Member, Rack, TipEdge, ToothDeviations};
 
@@ -39,6 +40,7 @@ pub use openings::{Point, SideDocument, SpokesDocument};
 pub use protuberance::ProtuberanceDocument;
 pub use relief::{ReliefEnd, RootReliefDocument, StartDocument, StartWay, TipReliefDocument};
 pub use thickness::{BallsDocument, SpanDocument, ThinnedBy};
+pub use traces::{LeadTracesDocument, ProfileTracesDocument};
 
 use super::declare::{
     EACH, Errors, Kind as _, Location, Node, ObjectReader, absent, document, list, nested, number,
