@@ -36,11 +36,6 @@ async fn begun(bench: &Bench, study: &Value) -> String {
     let taken: Value = response.json().await.expect("JSON");
     let validated = bench.post("/v1/validate", study).document().await;
     assert_eq!(taken["estimate"], validated["estimate"]);
-    assert!(
-        taken["estimate"]["seconds"]
-            .as_f64()
-            .is_some_and(|seconds| seconds > 0.0)
-    );
     location
 }
 

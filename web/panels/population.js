@@ -21,8 +21,9 @@ import { inUnit, inWords, quantityOf, shown } from "../state/quantities.js";
 /** What has come so far is fetched so often at most while members are computed, in milliseconds. */
 const PAUSE = 1000;
 
-/** What is looked at first. */
+/** What is looked at first; over windows, which do not tell the peak-to-peak of the true period. */
 const SHOWN = "transmission_error_um.peak_to_peak";
+const SHOWN_OF_WINDOW = "transmission_error_um.tooth_to_tooth";
 
 /**
  * A member has at most so many positions in a mesh period: what many members tell settles long before one curve does.
@@ -361,6 +362,7 @@ export function population(place, design, form, limits, onOpen) {
    * @param {string} address
    */
   function show(results, address) {
+    if (!last && results.partial && quantity.value === SHOWN) quantity.value = SHOWN_OF_WINDOW;
     last = { results, address };
     missed(results);
     const known = [

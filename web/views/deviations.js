@@ -147,9 +147,7 @@ export function traced(text, teeth, kind, flank) {
   const removed = sorted.map((row) => row.slice(first).map((value) => 0 - value));
   const bad = removed.findIndex((row) => row.length !== places.length || row.some((value) => !Number.isFinite(value)));
   if (bad >= 0)
-    throw new Error(
-      `The trace of tooth ${sorted[bad][tooth]} has not ${places.length} numbers, one for each place.`,
-    );
+    throw new Error(`The trace of tooth ${sorted[bad][tooth]} has not ${places.length} numbers, one for each place.`);
   return { [field]: { [name]: places, removed_um: removed } };
 }
 

@@ -270,7 +270,7 @@ fn windows_of_29_on_85_teeth_tell_the_percentiles_of_the_true_period() {
 #[ignore = "./test all"]
 fn windows_of_elastic_gears_tell_the_percentiles_of_the_true_period() {
     let members = members(Method::Flexible, &drawn_pair(27, 83), 20..28);
-    check_percentiles(members, &[0, 1, 2, 4]);
+    check_percentiles(members, &[0, 1, 4]);
 }
 
 #[test]

@@ -68,7 +68,8 @@ document! {
         /// The mesh periods of a window.
         pub(crate) mesh_periods: u32 = number("Mesh periods of a window", "1", 4.0, 20_000.0),
         /// The number of windows of each member.
-        pub(crate) places: u32 = number("Windows of a member", "1", 1.0, MOST_WINDOWS as f64).or(1.0),
+        pub(crate) places: u32 =
+            number("Windows of a member", "1", 1.0, MOST_WINDOWS as f64).or(1.0),
     }
 }
 

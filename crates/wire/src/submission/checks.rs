@@ -219,13 +219,10 @@ impl SubmissionDocument {
                 errors.push(FieldError::new(pointer, Code::OutOfRange, detail).nearest(nearest));
                 return;
             }
-            let overlaps = |other: &&u32| {
-                let apart = start.abs_diff(**other);
-                apart.min(period - apart) < span
-            };
-            if let Some(other) = starts[..i].iter().find(overlaps) {
+            let before = starts[..i].last().map_or(0, |before| before + span);
+            if *start < before || (i > 0 && start + span > starts[0] + period) {
                 let detail = format!(
-                    "{pointer} is {start}, less than the {span} mesh periods of a window from {other}; windows do not overlap, at the end of the true period of {period} neither."
+                    "{pointer} is {start}; windows rise and do not overlap, at the end of the true period of {period} neither, and each has {span} mesh periods."
                 );
                 errors.push(FieldError::new(pointer, Code::OutOfRange, detail));
                 return;

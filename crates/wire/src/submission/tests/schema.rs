@@ -143,7 +143,7 @@ fn a_submission_with_other_fields_or_words_has_another_version() {
         (DOCUMENT_VERSION, sha256_hex(told.join("\n")).as_str()),
         (
             4,
-            "0212399678f1d021a36861b11b8c77326e155bed94a3d505c4d00b411887410a"
+            "fcfee1968ccbd625d3f93c328b7bfab95562247933967dcedbff5b83c6f9ce7f"
         ),
         "{told:#?}"
     );
