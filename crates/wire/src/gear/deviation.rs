@@ -1,4 +1,4 @@
-//! What the teeth of a gear deviate from each other by, as measured.
+//! Measured deviations of the teeth of a gear.
 
 use meshwright_engine::gear::{Eccentricity, ToothDeviations};
 
@@ -15,9 +15,9 @@ pub(super) const LARGEST: f64 = 0.25;
 const CLOSURE: f64 = 0.01;
 
 document! {
-    /// What the teeth of a gear deviate from each other by. Positive is towards the mate, so that contact is earlier. Teeth are counted as angles are:
-    /// tooth 1 stands next to tooth 0 on the side of its loaded flank. So the teeth of a driven gear mesh in rising, those of a driving gear in falling
-    /// order, and both keep their numbers when the other gear drives.
+    /// Deviations of the teeth of a gear from each other. Positive is towards the mate, so that contact is earlier. Teeth are counted as angles are: tooth 1
+    /// stands next to tooth 0 on the side of its loaded flank. The teeth of a driven gear mesh in rising order, those of a driving gear in falling order, and
+    /// both keep their numbers when the other gear drives.
     pub struct DeviationsDocument as "ToothDeviations", "Tooth deviations" {
         /// How far the loaded flank of each tooth, tooth 0 first, stands from its place towards its mate, as a transverse arc on the
         /// reference circle (ISO 1328-1). Along the base tangent it is times the cosine of the pressure angle. The tooth is displaced as a whole,
@@ -39,8 +39,8 @@ document! {
         /// The slope deviation of the loaded flank of each tooth, tooth 0 first: nothing at the form circle, this much towards the mate at
         /// the tip circle, linear in the roll length.
         profile_slope_um: Option<Vec<f64>> = absent(each_tooth("Profile slope deviations"), "none"),
-        /// What is taken off the loaded flank of each tooth at the +z end of the face, tooth 0 first, linear from nothing at its -z end, as a
-        /// slope of lead_modifications takes it: positive is away from the mate. It needs three dimensions.
+        /// Material removed from the loaded flank of each tooth at the +z end of the face, tooth 0 first, linear from zero at its -z end, as a slope of
+        /// lead_modifications: positive is away from the mate. It needs three dimensions.
         pub(crate) lead_slope_um: Option<Vec<f64>> = absent(each_tooth("Lead slopes"), "none"),
         /// A measured trace of the profile of each loaded flank, beside its slope.
         profiles: Option<ProfileTracesDocument> =
@@ -209,7 +209,7 @@ impl DeviationsDocument {
         Some(FieldError::new(pointer, Code::PitchDoesNotClose, detail))
     }
 
-    /// What the engine is told.
+    /// The deviations of the engine.
     pub(super) fn data(&self) -> ToothDeviations {
         let meters = |values: &[f64]| values.iter().copied().map(from_um).collect();
         ToothDeviations {
