@@ -53,7 +53,7 @@ pub(super) struct StudyValidation {
 }
 
 /// Estimated cost of a study, from a few of its designs.
-#[derive(Serialize, ToSchema)]
+#[derive(Debug, Serialize, ToSchema)]
 #[schema(title = "StudyEstimate")]
 pub(super) struct StudyEstimate {
     /// One design: of those that were looked at, the one that takes longest.
@@ -67,28 +67,34 @@ pub(super) struct StudyEstimate {
 
 impl StudyValidation {
     fn of(study: &Study, run: &Run) -> Result<Self, Problem> {
+        Ok(Self {
+            valid: true,
+            total: study.total(),
+            estimate: StudyEstimate::of(study, run)?,
+        })
+    }
+}
+
+impl StudyEstimate {
+    /// That of `study`; none where none of the designs that are looked at can be built.
+    pub(super) fn of(study: &Study, run: &Run) -> Result<Option<Self>, Problem> {
         let samples = study.samples(SAMPLES, run)?;
         let mut estimates = Vec::with_capacity(samples.len());
         for sample in &samples {
             run.check().map_err(|_| stopped())?;
             estimates.push(EstimateDocument::of(sample));
         }
-        let (total, count) = (study.total(), estimates.len());
-        let scale = total as f64 / count.max(1) as f64;
+        let scale = study.total() as f64 / estimates.len().max(1) as f64;
         let seconds: f64 = estimates.iter().map(|each| each.seconds).sum();
         let positions: u64 = estimates.iter().map(|each| each.positions).sum();
         let longest = estimates
             .into_iter()
             .max_by(|a, b| a.seconds.total_cmp(&b.seconds));
-        Ok(Self {
-            valid: true,
-            total,
-            estimate: longest.map(|design| StudyEstimate {
-                design,
-                seconds: scale * seconds,
-                positions: (scale * positions as f64) as u64,
-            }),
-        })
+        Ok(longest.map(|design| Self {
+            design,
+            seconds: scale * seconds,
+            positions: (scale * positions as f64) as u64,
+        }))
     }
 }
 

@@ -31,7 +31,12 @@ fn members(size: u32, sampling: &str) -> Value {
 async fn begun(bench: &Bench, study: &Value) -> String {
     let response = bench.post("/v1/studies", study).answer().await;
     assert_eq!(response.status(), StatusCode::ACCEPTED);
-    response.headers()["location"].to_str().unwrap().to_owned()
+    let location = response.headers()["location"].to_str().unwrap().to_owned();
+    // Whoever asks learns at once what it will take, and by the words of POST /v1/validate.
+    let taken: Value = response.json().await.expect("JSON");
+    let validated = bench.post("/v1/validate", study).document().await;
+    assert_eq!(taken["estimate"], validated["estimate"]);
+    location
 }
 
 fn quantity<'a>(results: &'a Value, name: &str, torque: Option<f64>) -> &'a Value {

@@ -21,13 +21,20 @@ import { inUnit, inWords, quantityOf, shown } from "../state/quantities.js";
 /** What has come so far is fetched so often at most while members are computed, in milliseconds. */
 const PAUSE = 1000;
 
-/** What is looked at first. */
+/** What is looked at first; over windows, which do not tell the peak-to-peak of the true period. */
 const SHOWN = "transmission_error_um.peak_to_peak";
+const SHOWN_OF_WINDOW = "transmission_error_um.tooth_to_tooth";
 
 /**
  * A member has at most so many positions in a mesh period: what many members tell settles long before one curve does.
  */
 const POSITIONS = 10;
+
+/** The same over a window, from which the orders of the mesh are estimated. */
+const POSITIONS_OF_WINDOW = 20;
+
+/** The mesh periods of a window of members whose true period is too long: that long, the tooth-to-tooth error settles within some percent. */
+const WINDOW = 32;
 
 /** Of how many torques, as parts of that of the design, a member has curves where it has room for them. */
 const TORQUES = [[1], [0.6, 1], [0.6, 1, 1.4], [0.4, 0.7, 1, 1.4]];
@@ -80,6 +87,19 @@ export function population(place, design, form, limits, onOpen) {
       },
     },
   });
+  const span = h("input", {
+    type: "number",
+    id: "population-window",
+    min: 4,
+    max: 20000,
+    step: 1,
+    placeholder: "all",
+    on: {
+      input: () => {
+        span.dataset.typed = "yes";
+      },
+    },
+  });
   const classes = MEMBERS.map((gear) =>
     h(
       "select",
@@ -106,6 +126,10 @@ export function population(place, design, form, limits, onOpen) {
     h("span", { className: "unit" }, "N m"),
   );
   const missing = h("p", { className: "outdated", role: "status", hidden: true });
+  const short = note(
+    "These members are computed over a part of their true period: peak-to-peak and rms are those of that part, and less than those of the true period.",
+  );
+  short.hidden = true;
   const out = h("div", { className: "out" });
   place.replaceChildren(
     note(
@@ -128,13 +152,19 @@ export function population(place, design, form, limits, onOpen) {
         ...classes.flatMap((each, i) => [h("label", { htmlFor: each.id }, `teeth of the ${MEMBERS[i]} gear`), each]),
       ),
       ...laws.map((each) => each.element),
-      inLine(...labelled("Torques", torques), h("span", { className: "unit" }, "N m")),
+      inLine(
+        ...labelled("Torques", torques),
+        h("span", { className: "unit" }, "N m"),
+        ...labelled("over a window of", span),
+        h("span", { className: "unit" }, "mesh periods"),
+      ),
       ahead,
       inLine(question.run, question.cancel),
     ),
     question.state,
     question.of.element,
     missing,
+    short,
     picker,
     out,
   );
@@ -143,6 +173,7 @@ export function population(place, design, form, limits, onOpen) {
 
   const suggest = () => {
     laws.forEach((each) => each.refresh());
+    suggestWindow(false);
     suggestTorques(TORQUES.length);
     foresee();
   };
@@ -162,6 +193,17 @@ export function population(place, design, form, limits, onOpen) {
     put(torques, about.slice(0, most).join(", "));
   }
 
+  /**
+   * The window of members whose true period is too long, until somebody types another one; otherwise none. Tells whether it is another one now.
+   *
+   * @param {boolean} isLong
+   */
+  function suggestWindow(isLong) {
+    const before = span.value;
+    if (!span.dataset.typed) put(span, isLong ? String(WINDOW) : "");
+    return span.value !== before;
+  }
+
   /** Says what the members will take: one whose teeth all differ repeats only when every tooth has met every other. */
   const foresee = debounced(REST, async () => {
     if (place.hidden) return;
@@ -179,12 +221,16 @@ export function population(place, design, form, limits, onOpen) {
       ahead.textContent =
         length > most
           ? `A member has ${number(positions)} positions for each torque, which leaves room for ${most} of them.`
-          : `A member has ${number(length * positions)} positions, all torques together, and takes a core ${timeOf(1000 * length * seconds)} at most, by a rough estimate: ${timeOf(1000 * length * seconds * count)} for all ${number(count)}.`;
+          : `${overWindow()}A member has ${number(length * positions)} positions, all torques together, and takes a core ${timeOf(1000 * length * seconds)} at most, by a rough estimate: ${timeOf(1000 * length * seconds * count)} for all ${number(count)}.`;
     } catch (error) {
       if (!(error instanceof ProblemError)) throw error;
       // What is wrong with the design is told beside it.
       if (error.problem.code !== "too_large") ahead.textContent = "";
-      else {
+      else if (suggestWindow(true)) {
+        delete torques.dataset.typed;
+        suggestTorques(TORQUES.length);
+        foresee();
+      } else {
         suggestTorques(1);
         const ways = await waysOf(differing);
         ahead.textContent = `${form.inWords(error.reason)}${ways.length ? ` What fits: ${ways.join(", or ")}.` : ""}`;
@@ -226,15 +272,25 @@ export function population(place, design, form, limits, onOpen) {
     return differing.filter((_, i) => fits[i]).map((gear) => `teeth of the ${gear} gear as designed`);
   }
 
+  /** What a window tells, in words; nothing without one. */
+  function overWindow() {
+    return span.value
+      ? `Each member is computed where its teeth differ most from one to the next, over ${number(Number(span.value))} mesh periods: tooth-to-tooth error and mesh orders are those of the true period within some percent, peak-to-peak and rms are those of the window, and orders of rotation and of holes are not told. `
+      : "";
+  }
+
   function asked() {
+    const over = span.value ? { mesh_periods: Number(span.value), places: 1 } : null;
+    const most = over ? POSITIONS_OF_WINDOW : POSITIONS;
     const base = structuredClone(apart(design.submission).curves);
     base.output_torques_n_m = allGiven(torques);
     base.resolution = {
       ...base.resolution,
-      positions_per_mesh_period: Math.min(POSITIONS, base.resolution?.positions_per_mesh_period ?? POSITIONS),
+      positions_per_mesh_period: Math.min(most, base.resolution?.positions_per_mesh_period ?? most),
     };
     // The span of the drawing is not that of teeth that all differ.
     delete base.resolution.span_mesh_periods;
+    delete base.resolution.window_starts;
     /** @type {Partial<Record<GearName, { iso_1328_class: number }>>} */
     const accuracy = {};
     MEMBERS.forEach((member, i) => {
@@ -247,7 +303,12 @@ export function population(place, design, form, limits, onOpen) {
       base,
       keep: "statistics",
       name: `${nameOf(design.submission)} as made`,
-      population: { size: Number(size.value), vary, accuracy: Object.keys(accuracy).length ? accuracy : null },
+      population: {
+        size: Number(size.value),
+        vary,
+        accuracy: Object.keys(accuracy).length ? accuracy : null,
+        ...(over && { window: over }),
+      },
     };
   }
 
@@ -265,6 +326,7 @@ export function population(place, design, form, limits, onOpen) {
   function clear() {
     last = null;
     missing.hidden = true;
+    short.hidden = true;
     out.replaceChildren();
   }
 
@@ -285,11 +347,12 @@ export function population(place, design, form, limits, onOpen) {
   }
 
   /**
-   * Says how many members have no results, and why most of these.
+   * Says how many members have no results, and why most of these; of the others, what runs over a part of the true period.
    *
    * @param {PopulationResults} results
    */
-  function missed({ failed, size, refusals }) {
+  function missed({ failed, size, refusals, partial }) {
+    short.hidden = !partial;
     missing.hidden = !failed;
     missing.textContent = `${failed === size ? "None of the members can be computed" : `${failed} of ${size} members cannot be computed`}${mostOften(refusals, (detail) => form.inWords(detail))}.${failed === size ? "" : " What stands below is of the others alone."}`;
   }
@@ -299,6 +362,7 @@ export function population(place, design, form, limits, onOpen) {
    * @param {string} address
    */
   function show(results, address) {
+    if (!last && results.partial && quantity.value === SHOWN) quantity.value = SHOWN_OF_WINDOW;
     last = { results, address };
     missed(results);
     const known = [

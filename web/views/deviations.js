@@ -26,17 +26,32 @@ const COLUMNS = [
 ];
 
 /**
- * Numbers as spreadsheets write them: with points or commas, in columns between tabs, semicolons or commas.
+ * Traces of single flanks: the field that they are of, and that of their places.
  *
- * @type {(text: string) => { head: string[], rows: number[][] }}
+ * @type {Record<string, [field: Lists, places: string]>}
  */
-export function tableOf(text) {
+const TRACES = {
+  profiles_by_roll_length: ["profiles", "roll_length_mm"],
+  profiles_by_diameter: ["profiles", "diameter_mm"],
+  leads: ["leads", "z_mm"],
+};
+
+/** @type {(cell: string) => boolean} */
+const isNumber = (cell) => cell !== "" && Number.isFinite(Number(cell));
+
+/**
+ * The cells of a table as spreadsheets write it: with points or commas in its numbers, in columns between tabs,
+ * semicolons or commas.
+ *
+ * @type {(text: string) => string[][]}
+ */
+function cellsOf(text) {
   const lines = text
     .trim()
     .split(/\r?\n/)
     .filter((line) => line.trim());
   const separator = [/\t/, /;/].find((each) => lines.some((line) => each.test(line)));
-  const cells = lines.map((line) => {
+  return lines.map((line) => {
     // A comma within a number is its decimal comma where something else stands between columns.
     if (separator)
       return line.split(separator).map((cell) =>
@@ -55,8 +70,15 @@ export function tableOf(text) {
       .map((cell) => cell.trim().replace(/^"|"$/g, ""))
       .filter((cell) => cell !== "");
   });
-  /** @type {(cell: string) => boolean} */
-  const isNumber = (cell) => cell !== "" && Number.isFinite(Number(cell));
+}
+
+/**
+ * Numbers in columns, with names in the first line or without.
+ *
+ * @type {(text: string) => { head: string[], rows: number[][] }}
+ */
+export function tableOf(text) {
+  const cells = cellsOf(text);
   const head = (cells.length && !cells[0].every(isNumber) && cells.shift()) || [];
   const rows = cells.map((row) => row.map(Number));
   return { head, rows: rows.length === 1 && head.length === 0 ? rows[0].map((value) => [value]) : rows };
@@ -96,6 +118,40 @@ export function measured(text, teeth, kind) {
 }
 
 /**
+ * Traces of a measuring machine, for a gear of so many teeth: one row a tooth and flank, of which those of `flank` are
+ * taken. The first line names the columns: tooth, flank where there are both, then the places in mm. A machine counts
+ * material that is there as positive, a submission what is taken off. Throws with a reason where it cannot be read.
+ *
+ * @type {(text: string, teeth: number, kind: string, flank: string) => Record<string, object>}
+ */
+export function traced(text, teeth, kind, flank) {
+  const [field, name] = TRACES[kind];
+  const [head = [], ...rows] = cellsOf(text);
+  const first = head.findIndex(isNumber);
+  const places = head.slice(first).map(Number);
+  if (first < 1 || places.length < 2 || places.some((place) => !Number.isFinite(place)))
+    throw new Error("The first line has to name the columns: tooth, flank, and then the places in mm.");
+  const flanks = head.slice(0, first).findIndex((each) => /flank|side|seite/i.test(each));
+  const own =
+    flanks < 0
+      ? rows
+      : rows.filter((row) => (row[flanks] ?? "").toLowerCase().startsWith(flank.slice(0, 1).toLowerCase()));
+  if (own.length !== teeth)
+    throw new Error(
+      `There are ${own.length} traces${flanks < 0 ? "" : ` of the ${flank} flank`}; ${teeth} are needed, one for each tooth.`,
+    );
+  const tooth = flanks === 0 ? 1 : 0;
+  const sorted = own.map((row) => row.map(Number)).sort((one, other) => one[tooth] - other[tooth]);
+  if (sorted.some((row, i) => row[tooth] !== sorted[0][tooth] + i))
+    throw new Error("Teeth have to be numbered one after the other, each once.");
+  const removed = sorted.map((row) => row.slice(first).map((value) => 0 - value));
+  const bad = removed.findIndex((row) => row.length !== places.length || row.some((value) => !Number.isFinite(value)));
+  if (bad >= 0)
+    throw new Error(`The trace of tooth ${sorted[bad][tooth]} has not ${places.length} numbers, one for each place.`);
+  return { [field]: { [name]: places, removed_um: removed } };
+}
+
+/**
  * Single pitch deviations that sum to zero: what a measurement leaves is shared by all teeth.
  *
  * @type {(values: number[]) => number[]}
@@ -127,6 +183,15 @@ export function deviations(member, design) {
     h("option", { value: "pitch_single_um" }, "single pitch"),
     h("option", { value: "pitch_cumulative_um" }, "cumulative pitch"),
     h("option", { value: "profile_slope_um" }, "profile slope"),
+    h("option", { value: "profiles_by_roll_length" }, "profile traces over roll length"),
+    h("option", { value: "profiles_by_diameter" }, "profile traces over diameter"),
+    h("option", { value: "leads" }, "lead traces"),
+  );
+  const flank = h(
+    "select",
+    { id: `${id}-flank` },
+    h("option", { value: "right" }, "right"),
+    h("option", { value: "left" }, "left"),
   );
   const text = h("textarea", {
     id: `${id}-text`,
@@ -163,6 +228,13 @@ export function deviations(member, design) {
   /** @type {(given: string) => void} */
   function take(given) {
     try {
+      if (TRACES[kind.value]) {
+        const teeth = design.get(`/pair/${member}/tooth_count`);
+        design.set(pointer, { ...design.get(pointer), ...traced(given, teeth, kind.value, flank.value) }, "mend");
+        out.textContent = `Taken: a trace of the ${flank.value} flank of each of ${teeth} teeth.`;
+        text.value = "";
+        return;
+      }
       const lists = measured(given, design.get(`/pair/${member}/tooth_count`), kind.value);
       const {
         pitch_single_um: _,
@@ -202,11 +274,14 @@ export function deviations(member, design) {
     ),
     inLine(
       named("Measured", kind),
+      named("loaded flank", flank),
       h("label", { htmlFor: text.id, className: "visually-hidden" }, "Measured deviations"),
       text,
       button("Take them", () => take(text.value)),
     ),
-    note("Paste a column of a spreadsheet, or drop a CSV file here."),
+    note(
+      "Paste a column of a spreadsheet, or drop a CSV file here. Traces of a measuring machine have one row a tooth and flank: the first line names tooth, flank and the places in mm, and material that is there counts as positive, in µm.",
+    ),
     out,
   );
   element.addEventListener("dragover", (event) => {

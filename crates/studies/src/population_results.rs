@@ -20,7 +20,7 @@ use crate::sample::influence::{Ranked, of_group};
 use crate::sample::points::Sampling;
 use crate::sample::{Estimate, mean, percentile, standard_deviation};
 use crate::study::Study;
-use crate::table::{Of, QUANTITIES, RowState, Summary};
+use crate::table::{CurveSummary, Of, QUANTITIES, RowState, Summary};
 
 /// The percentiles that are told.
 const PERCENTS: [f64; 7] = [1.0, 5.0, 25.0, 50.0, 75.0, 95.0, 99.0];
@@ -45,6 +45,9 @@ pub struct PopulationResults {
     pub done: u64,
     /// Members that could not be built or computed. Of them only `failed_share` knows.
     pub failed: u64,
+    /// Members whose curves run over a part of their true period, over windows or a short span: their statistics are those of that part, and their peak-to-peak
+    /// and rms are less than those of the true period.
+    pub partial: u64,
     /// Why they could not, the most common reason first.
     pub refusals: Vec<RefusalState>,
     /// The quantities that the method has: those of the pair once, those of a curve for each torque.
@@ -159,6 +162,7 @@ pub struct PopulationSample {
     torques: Range<usize>,
     done: u64,
     failed: u64,
+    partial: u64,
     refusals: Refusals,
     /// Members that have results, in the order of the table.
     members: Vec<u32>,
@@ -229,6 +233,7 @@ impl PopulationSample {
             torques,
             done: 0,
             failed: 0,
+            partial: 0,
             refusals: Refusals::default(),
             members: Vec::new(),
         })
@@ -247,6 +252,8 @@ impl PopulationSample {
         let Some(summary) = &row.summary else {
             return;
         };
+        let is_partial = summary.curves().iter().any(CurveSummary::is_partial);
+        self.partial += u64::from(is_partial);
         let place = self.members.len();
         self.members.push(member);
         self.add_pair(summary);
@@ -367,6 +374,7 @@ impl PopulationSample {
             size: self.population.size() as u64,
             done: self.done,
             failed: self.failed,
+            partial: self.partial,
             refusals: self.refusals.most_common_first(),
             quantities,
             beyond_total_pitch_tolerance: of_gears(&|counted, _| {

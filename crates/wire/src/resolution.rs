@@ -10,12 +10,15 @@ use serde::ser::SerializeMap;
 use serde_json::{Value, json};
 
 use super::declare::{
-    Choice, EACH, Kind, Location, Named, Node, Object, ObjectReader, absent, document, flag,
+    Choice, EACH, Kind, Location, Named, Node, Object, ObjectReader, absent, document, flag, list,
     nested, number, word, words,
 };
 use super::interface::InterfaceRadii;
 use super::problem::Code;
 use super::units::from_um;
+
+/// The most windows of a submission.
+pub const MOST_WINDOWS: usize = 64;
 
 /// The words of the methods.
 pub fn methods() -> impl Iterator<Item = &'static str> {
@@ -82,6 +85,16 @@ document! {
             number("Mesh periods", "1", 1.0, 200_000.0),
             "the true period of the pair, which is filled in",
         ),
+        /// Where windows begin, in whole mesh periods from the start of the true period: each runs over span_mesh_periods, which are fewer than the true period
+        /// has, and no two overlap. Lists have one window behind the other, statistics are those of all. The orders of the mesh are estimated: what single
+        /// teeth make of them in the windows is replaced by what they make over the true period. Other orders are not told.
+        pub(super) window_starts: Option<Vec<u32>> = absent(
+            list("Windows", number("", "1", 0.0, 10_000_000.0), MOST_WINDOWS)
+                .not_empty(Code::WrongLength, "give the mesh period in which a window begins")
+                .unique("repeats a window"),
+            "one span, from the start of the true period",
+        )
+        .left_out(),
         /// How fine the finite elements are; each level halves every element. Differences from fine, on the paper's cases: coarse within
         /// 0.2 % of the mean STE, 2 % of peak-to-peak and rms, 0.3 % of the mean stiffness and 4 % of the first three mesh harmonics;
         /// standard within 0.03, 0.5, 0.1 and 1 %. error_estimate tells it for your pair. In three dimensions coarse has half as many
@@ -176,7 +189,7 @@ impl ResolutionDocument {
     pub(super) fn data(&self) -> Resolution {
         Resolution {
             positions_per_mesh_period: self.positions_per_mesh_period,
-            first_position: 0.0,
+            first_position: f64::from(self.windows().first().copied().unwrap_or(0)),
             span_mesh_periods: self.span_mesh_periods,
             grid: self.grid,
             contact_solver: match &self.contact_solver {
@@ -198,6 +211,11 @@ impl ResolutionDocument {
             interface_radii: self.interface_radius_mm.data(),
             error_estimate: self.error_estimate,
         }
+    }
+
+    /// Where windows begin; empty without.
+    pub(super) fn windows(&self) -> &[u32] {
+        self.window_starts.as_deref().unwrap_or_default()
     }
 
     /// The formulas of the load distribution.

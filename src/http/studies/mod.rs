@@ -26,6 +26,7 @@ use super::page::{self, Page, USUAL_LIMIT};
 use super::parameters::{IdempotencyKey, IfNoneMatch, Parameters, StudyId, User};
 use super::prefer::Wait;
 use super::problem::Refusal;
+use super::reference::StudyEstimate;
 use super::resource::{self, Shown};
 use crate::jobs::{JobError, Jobs, Resource as _, StudyFilter, StudyRecord};
 use view::StudyView;
@@ -51,7 +52,7 @@ const LONGEST_IN_VIEW: u64 = 64 << 10;
     request_body(content = Study, content_type = "application/json", description = "The study."),
     params(IdempotencyKey, User),
     responses(
-        (status = 202, description = "The study is taken.", body = StudyView, headers(
+        (status = 202, description = "The study is taken; `estimate` says what it will take.", body = StudyView, headers(
             ("Location" = String, description = "The address of the study."),
             ("Retry-After" = u32, description = "Seconds after which it is worth looking."),
         )),
@@ -67,19 +68,26 @@ pub(super) async fn submit(
     IdempotencyKey(key): IdempotencyKey,
     JsonBody(document, memory): JsonBody<MIB>,
 ) -> Result<Response, Refusal> {
-    let read = move |run: &Run| (Study::submitted(&document, run), memory);
-    let (study, _memory) = blocking(client.name(), read).await?;
-    let study = study?;
+    let read = move |run: &Run| {
+        let study = Study::submitted(&document, run);
+        let estimated = study.and_then(|study| {
+            let estimate = StudyEstimate::of(&study, run)?;
+            Ok((study, estimate))
+        });
+        (estimated, memory)
+    };
+    let (estimated, _memory) = blocking(client.name(), read).await?;
+    let (study, estimate) = estimated?;
     let submitted = client
         .app
         .jobs
         .submit_study(&client.member, study, key)
         .await?;
     let study = &submitted.record;
-    let view = StudyView::of(study, &client.app.edge).to_json();
+    let view = StudyView::submitted(study, estimate, &client.app.edge);
     let (address, has_ended) = (client.app.edge.study(study.id), study.status().has_ended());
     Ok(answer::submitted(
-        view,
+        view.to_json(),
         &address,
         has_ended,
         submitted.repeated,

@@ -10,6 +10,7 @@ use serde_json::value::RawValue;
 use uuid::Uuid;
 
 use crate::http::edge::Edge;
+use crate::http::reference::StudyEstimate;
 use crate::http::view::with_public_type;
 use crate::jobs::{self, StudyRecord, shown_status};
 
@@ -53,6 +54,8 @@ document! {
             .search
             .clone()
             .and_then(|text| RawValue::from_string(text).ok()),
+        /// What its computation will cost, in the answer to its submission; absent elsewhere, and where none of the designs that were looked at can be built.
+        estimate?: StudyEstimate = None,
         links: StudyLinks = StudyLinks::of(study, edge),
         /// The study as it was sent. Absent in lists, and where it has more than 64 KiB: `links.document` has it whole.
         #[schema(value_type = Option<Study>)]
@@ -95,6 +98,18 @@ impl StudyView {
     pub(super) fn whole(study: &StudyRecord, document: Option<String>, edge: &Edge) -> Self {
         Self {
             study: document.and_then(|text| RawValue::from_string(text).ok()),
+            ..Self::of(study, edge)
+        }
+    }
+
+    /// The view in answer to the submission, with what the study will take.
+    pub(super) fn submitted(
+        study: &StudyRecord,
+        estimate: Option<StudyEstimate>,
+        edge: &Edge,
+    ) -> Self {
+        Self {
+            estimate,
             ..Self::of(study, edge)
         }
     }

@@ -7,7 +7,7 @@ use super::setup::Setup;
 use super::warning::warnings;
 use super::{
     Analysis, AnalysisError, decomposition, flexible, light, load_distribution, projected,
-    three_dimensional,
+    three_dimensional, windows,
 };
 use crate::assembly::{Blanks, Parts};
 use crate::contact::PairModel;
@@ -19,15 +19,17 @@ use crate::run::Run;
 /// doubled.
 const FIRST_COUPLED: usize = 4;
 
-/// Computes `case` of what `parts` provides.
+/// Computes `case` of what `parts` provides, each of its windows by itself.
 ///
 /// # Errors
 ///
 /// [`AnalysisError`] says which position failed and why, or that `run` was stopped.
 pub fn analyze(case: &Case, parts: &dyn Parts, run: &Run) -> Result<Analysis, AnalysisError> {
-    let plan = Plan::of(case);
-    run.expect(plan.solutions());
-    answered(&plan, parts, run)
+    let plans: Vec<Plan> = case.windowed().iter().map(Plan::of).collect();
+    run.expect(plans.iter().map(Plan::solutions).sum());
+    let answers = plans.iter().map(|plan| answered(plan, parts, run));
+    let answers = answers.collect::<Result<Vec<_>, _>>()?;
+    Ok(windows::joined(answers))
 }
 
 /// The answer to the case of `plan`, and what the holes alone make where teeth deviate.

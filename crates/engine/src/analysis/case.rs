@@ -187,6 +187,8 @@ pub struct Case {
     pub output_torques: Vec<f64>,
     /// How to compute.
     pub resolution: Resolution,
+    /// Where windows of the span begin, in whole mesh periods; empty: the span begins at the first position.
+    pub windows: Vec<u32>,
     /// Whether the largest stresses at roots and holes are asked for.
     pub stress: bool,
     /// The speed of the driving gear, if frequencies are wanted.
@@ -250,12 +252,13 @@ impl Case {
                 error_estimate: false,
                 ..self.resolution
             },
+            windows: Vec::new(),
             stress: false,
             ..self.clone()
         })
     }
 
-    /// The positions of one curve.
+    /// The positions of one curve, of one with windows those of each.
     pub fn positions(&self) -> usize {
         self.span() as usize * self.resolution.positions_per_mesh_period as usize
     }
@@ -354,6 +357,7 @@ pub(in crate::analysis) mod tests {
                 interface_radii: [None; 2],
                 error_estimate: false,
             },
+            windows: Vec::new(),
             stress: false,
             driving_speed: None,
         }

@@ -1,5 +1,6 @@
 //! What comes out: curves over mesh position.
 
+use super::mesh_wave::MeshWave;
 use super::pressures::CurvePressures;
 use super::single_flank::SingleFlank;
 use super::spectrum::Spectrum;
@@ -137,6 +138,8 @@ pub struct Curve {
     pub sampling_error: SamplingError,
     /// The order spectrum, where the span is whole periods: of the curve between its positions too.
     pub spectrum: Option<Spectrum>,
+    /// What repeats with every mesh period, estimated from the windows of a case that has some.
+    pub mesh_wave: Option<MeshWave>,
     /// The parts of the decomposition, for that method.
     pub decomposition: Option<DecompositionParts>,
     /// The load along the common face, by the method that sees it, under load.

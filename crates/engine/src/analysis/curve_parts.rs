@@ -4,6 +4,7 @@ use super::Case;
 use super::between::Sections;
 use super::curve::{Curve, DecompositionParts, FaceLoad, LoadShare};
 use super::found::{Between, Found};
+use super::mesh_wave::MeshWave;
 use super::pressures::CurvePressures;
 use super::single_flank::SingleFlank;
 use super::spectrum::Spectrum;
@@ -37,6 +38,9 @@ impl CurveParts {
             .then(|| Spectrum::resampled(case, sections));
         let delta = resampled.as_ref().map(|[delta, _]| delta.as_slice());
         let single_flank = SingleFlank::of(sections, delta);
+        let is_window = !case.windows.is_empty() && !case.covers_whole_periods();
+        let found = (&*self.transmission_error, &*self.load_shares);
+        let mesh_wave = is_window.then(|| MeshWave::of((case, load), sections, found));
         let spectrum = resampled.map(|resampled| Spectrum::of(case, resampled));
         let [
             transmission_error_statistics,
@@ -67,6 +71,7 @@ impl CurveParts {
             pressures: self.pressures,
             load_shares: self.load_shares,
             spectrum,
+            mesh_wave,
             decomposition: self.decomposition,
             stresses: self.stresses,
             face: self.face,

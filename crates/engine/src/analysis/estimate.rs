@@ -65,7 +65,9 @@ pub fn estimate(case: &Case, forces: Option<&ForcesRequest>) -> Estimate {
         Model::Faces(faces, _) => add_faces(&mut estimate, &plan, faces),
         Model::Section(_) => add_gears(&mut estimate, &plan),
     }
-    add_contacts(&mut estimate, &plan);
+    for window in case.windowed() {
+        add_contacts(&mut estimate, &Plan::of(&window));
+    }
     if let Some(forces) = forces {
         // The gears are the same.
         for plan in TablePlan::of(case, forces.table).plans() {

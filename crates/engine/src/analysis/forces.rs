@@ -144,6 +144,7 @@ fn rows_case(case: &Case, loads: &[f64]) -> Case {
             .map(|load| load * case.pair.driven().base_radius())
             .collect(),
         stress: false,
+        windows: Vec::new(),
         driving_speed: None,
         ..case.clone()
     };

@@ -8,7 +8,7 @@
 //!   along faces) and `checks` (where that is compared with exact solutions), `light` (torque 0, alike for all);
 //! - [`stress`] (at roots and holes; along faces `face_stress`), [`fields`] (everywhere; along faces [`face_fields`]), [`contact_pattern`] (over the flanks);
 //! - `between` (a curve between its positions), `curve_parts` and [`curve`] with its `statistics`, [`largest_where`] (where its largest values stand), [`pressures`] (what they come to),
-//!   [`spectrum`] and [`single_flank`];
+//!   [`spectrum`] and [`single_flank`]; `windows` (stretches of a true period that is too long), [`mesh_wave`] and `pair_springs` (what they tell of the mesh orders);
 //! - [`evidence`], [`warning`], [`error`] and `answer` (all that comes out); [`forces`] (tables of force), [`at_speed`] (motion).
 
 mod analyze;
@@ -34,8 +34,10 @@ mod found;
 pub mod largest_where;
 mod light;
 mod load_distribution;
+pub mod mesh_wave;
 mod orders;
 mod pair_contacts;
+mod pair_springs;
 mod plan;
 pub mod pressures;
 mod projected;
@@ -47,6 +49,7 @@ pub mod stress;
 mod three_dimensional;
 mod under_load;
 pub mod warning;
+mod windows;
 
 pub use analyze::{analyze, pair_model};
 pub use answer::Analysis;
@@ -60,6 +63,7 @@ pub use evidence::{ErrorEstimate, Evidence};
 pub use orders::{OrderCause, OrderKind};
 pub use statistics::{SamplingError, Statistics};
 pub use warning::{FEW_POSITIONS, PLANE_RIM, PLANE_WEB, Warning, warnings};
+pub use windows::windows_at_largest_steps;
 
 pub use crate::contact::ContactSolver;
 pub use crate::gear::PlaneState;

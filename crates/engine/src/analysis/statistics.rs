@@ -1,7 +1,7 @@
 //! What a curve comes to over its span.
 
 /// Mean, rms of the fluctuation and extremes of a curve over one span, between its positions too.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Statistics {
     /// The mean.
     pub mean: f64,

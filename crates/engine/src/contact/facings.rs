@@ -101,7 +101,7 @@ impl Near {
             let slope = deviating
                 .deviations
                 .of_gear(member)
-                .slope(teeth[member.index()]);
+                .slope(teeth[member.index()], minimum.roll_lengths[member.index()]);
             slope / growth(member)
         };
         let (seat, mate) = (facing.seat, facing.seat.other());

@@ -83,6 +83,8 @@ impl Tolerances {
             other_cumulative_pitch: Vec::new(),
             profile_slope,
             lead_slope: Vec::new(),
+            profiles: None,
+            leads: None,
             eccentricity: match off_center[..] {
                 [x, y] => Some(Eccentricity {
                     amount: (x * x + y * y).sqrt(),

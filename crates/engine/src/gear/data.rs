@@ -94,6 +94,10 @@ pub enum DeviationList {
     ProfileSlope,
     /// The lead slope.
     LeadSlope,
+    /// Traces of the profiles.
+    Profiles,
+    /// Traces of the leads.
+    Leads,
 }
 
 /// Why a gear cannot be made as drawn. Lengths are in meters.
@@ -210,6 +214,14 @@ pub enum GearError {
         given: usize,
         /// The number of teeth.
         needed: usize,
+    },
+    /// The places of traces do not rise, are fewer than two, or a trace has not one entry for each.
+    #[error("entry {entry} of the traces does not follow the one before it")]
+    TraceDoesNotFit {
+        /// Of which traces.
+        list: DeviationList,
+        /// The first entry that is missing, one too many, or not beyond the one before it.
+        entry: usize,
     },
     /// The web does not lie between the bore and the rim under the teeth.
     #[error(

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use super::modification::TablePlaces;
 use super::{Vector, radial};
 
 /// The gear's own axis off the axis about which it turns.
@@ -12,6 +13,24 @@ pub struct Eccentricity {
     /// The direction of the gear's axis from the axis of rotation: the angle from the centerline of tooth 0, positive towards its
     /// loaded flank, in radians.
     pub direction: f64,
+}
+
+/// A trace of each loaded flank along its profile. What is removed adds to the modifications of the gear.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ToothProfiles {
+    /// Where the entries of all traces stand; linear between them, ends held.
+    pub places: TablePlaces,
+    /// What is removed at each, tooth 0 first.
+    pub removed: Vec<Vec<f64>>,
+}
+
+/// A trace of each loaded flank along its lead, alike at every roll length. What is removed adds to the lead modifications of the gear.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ToothLeads {
+    /// The heights from the middle of the face at which the entries of all traces stand, rising; linear between them, ends held.
+    pub heights: Vec<f64>,
+    /// What is removed at each, tooth 0 first.
+    pub removed: Vec<Vec<f64>>,
 }
 
 /// What each tooth deviates from its drawing, as measured. Lengths in meters, positive where the loaded flank stands farther towards its
@@ -28,6 +47,10 @@ pub struct ToothDeviations {
     /// The lead slope of each loaded flank, as [`super::LeadModification::Slope`]: nothing removed at the end at −z of the face, this at that at +z.
     /// The plane does not know it.
     pub lead_slope: Vec<f64>,
+    /// What the profile of each loaded flank has beside the modifications.
+    pub profiles: Option<ToothProfiles>,
+    /// What the lead of each loaded flank has beside the modifications. The plane does not know it.
+    pub leads: Option<ToothLeads>,
     /// The eccentricity of the teeth.
     pub eccentricity: Option<Eccentricity>,
 }
@@ -47,6 +70,9 @@ impl ToothDeviations {
                 list.clear();
             }
         }
+        let deviates = |rows: &[Vec<f64>]| rows.iter().flatten().any(|removed| *removed != 0.0);
+        self.profiles = self.profiles.filter(|traces| deviates(&traces.removed));
+        self.leads = self.leads.filter(|traces| deviates(&traces.removed));
         self.eccentricity = self.eccentricity.filter(|each| each.amount != 0.0);
         self
     }
@@ -62,6 +88,8 @@ impl ToothDeviations {
             && self.other_cumulative_pitch.is_empty()
             && self.profile_slope.is_empty()
             && self.lead_slope.is_empty()
+            && self.profiles.is_none()
+            && self.leads.is_none()
     }
 
     /// Where the gear's own axis stands from the axis of rotation while the centerline of tooth 0 points along `angle`.
@@ -84,7 +112,7 @@ impl ToothDeviations {
     }
 
     /// Those of the mirror image of the gear, whose loaded flanks are the other flanks of this one: teeth are counted the other way round, from the
-    /// tooth `first` of this gear on, which has so many `teeth`. Slopes are those of the loaded flanks and are left behind.
+    /// tooth `first` of this gear on, which has so many `teeth`. Slopes and traces are those of the loaded flanks and are left behind.
     pub(super) fn mirrored(&self, teeth: usize, first: usize) -> Self {
         let turned = |arcs: &[f64]| -> Vec<f64> {
             let from = |tooth: usize| (first + teeth - tooth) % teeth;
@@ -97,6 +125,8 @@ impl ToothDeviations {
             other_cumulative_pitch: turned(&self.cumulative_pitch),
             profile_slope: Vec::new(),
             lead_slope: Vec::new(),
+            profiles: None,
+            leads: None,
             eccentricity: self.eccentricity.map(|each| Eccentricity {
                 direction: to_first - each.direction,
                 ..each

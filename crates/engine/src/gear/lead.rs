@@ -142,6 +142,14 @@ impl LeadModification {
         }
     }
 
+    /// The values of a table; none of others.
+    pub(super) fn entries(&self) -> &[f64] {
+        match self {
+            Self::Table { removed, .. } => removed,
+            Self::Crowning { .. } | Self::Slope { .. } | Self::EndRelief { .. } => &[],
+        }
+    }
+
     /// What is removed at `z` of a face of `width`.
     pub fn removed(&self, z: f64, width: f64) -> f64 {
         match self {

@@ -36,7 +36,7 @@ pub use blank::{
     Moments, Side, Spokes, SpokesFault, Symmetry, Web,
 };
 pub use data::{DeviationList, GearData, GearError, ToolDepth};
-pub use deviation::{Eccentricity, ToothDeviations};
+pub use deviation::{Eccentricity, ToothDeviations, ToothLeads, ToothProfiles};
 pub use involute::{Involute, involute_function};
 pub use lead::{FaceEnds, LeadError, LeadModification};
 pub use material::{Material, PlaneState};
@@ -45,6 +45,7 @@ pub use modification::{
     ModificationData, Relief, ReliefData, ReliefShape, ReliefStart, TablePlaces,
 };
 pub use pair::{DeviationsError, GearPair, GearPairError};
+pub(crate) use pair_deviations::Trace;
 pub use pair_deviations::{GearDeviations, PairDeviations};
 pub use rack::{Protuberance, Rack};
 pub use solid::{Hand, Helix, Hub, Layer, SolidGear, SolidGearError};

@@ -259,6 +259,14 @@ impl Modification {
         }
     }
 
+    /// The values of a table; none of others.
+    pub(super) fn entries(&self) -> &[f64] {
+        match self {
+            Self::Table { removed, .. } => removed,
+            Self::Tip(_) | Self::Root(_) | Self::Crowning { .. } | Self::Slope { .. } => &[],
+        }
+    }
+
     /// The roll lengths at which [`Modification::slope`] jumps, or begins to grow.
     pub(super) fn kinks(&self, flank: &Involute) -> Vec<f64> {
         match self {

@@ -2,7 +2,9 @@
 
 use std::f64::consts::PI;
 
-use super::{Eccentricity, Member, SpurGear, ToothDeviations, Vector};
+use super::lead::LeadModification;
+use super::modification::Modification;
+use super::{Eccentricity, Involute, Member, SpurGear, ToothDeviations, Vector};
 
 /// What the teeth of one gear deviate by along their normals, tooth by tooth.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,6 +17,10 @@ pub struct GearDeviations {
     profile_slopes: Vec<f64>,
     /// What each lead slope removes. Empty where none does.
     lead_slopes: Vec<f64>,
+    /// The traces of the profiles.
+    profiles: Option<Profiles>,
+    /// What the trace of each lead removes. Empty where there are none.
+    leads: Vec<LeadModification>,
     /// The roll lengths between which a profile slope deviation grows from nothing to all of it.
     ends: [f64; 2],
     eccentricity: Option<Eccentricity>,
@@ -27,6 +33,8 @@ impl GearDeviations {
         other_turns: Vec::new(),
         profile_slopes: Vec::new(),
         lead_slopes: Vec::new(),
+        profiles: None,
+        leads: Vec::new(),
         ends: [0.0, 1.0],
         eccentricity: None,
     };
@@ -38,6 +46,25 @@ impl GearDeviations {
         let cosine = gear.data().rack.pressure_angle.cos();
         let turns = |arcs: &[f64]| arcs.iter().map(|arc| arc * cosine).collect();
         let alike = teeth.other_cumulative_pitch.is_empty();
+        let profiles = teeth.profiles.as_ref().map(|traces| Profiles {
+            flank: *gear.flank(),
+            rounded: gear.rounding_of_kinks(),
+            removed: traces
+                .removed
+                .iter()
+                .map(|removed| Modification::Table {
+                    places: traces.places.clone(),
+                    removed: removed.clone(),
+                })
+                .collect(),
+        });
+        let leads = teeth.leads.iter().flat_map(|traces| {
+            let rows = traces.removed.iter();
+            rows.map(|removed| LeadModification::Table {
+                places: traces.heights.clone(),
+                removed: removed.clone(),
+            })
+        });
         Self {
             turns: turns(&teeth.cumulative_pitch),
             other_turns: if alike {
@@ -46,6 +73,8 @@ impl GearDeviations {
                 turns(&teeth.other_pitch())
             },
             profile_slopes: teeth.profile_slope,
+            profiles,
+            leads: leads.collect(),
             lead_slopes: teeth.lead_slope,
             ends: [gear.form_roll_length(), gear.tip_roll_length()],
             eccentricity: teeth.eccentricity,
@@ -58,6 +87,8 @@ impl GearDeviations {
             && self.other_turns.is_empty()
             && self.profile_slopes.is_empty()
             && self.lead_slopes.is_empty()
+            && self.profiles.is_none()
+            && self.leads.is_empty()
             && self.eccentricity.is_none()
     }
 
@@ -67,18 +98,32 @@ impl GearDeviations {
             let [from, to] = self.ends;
             amount * (s - from) / (to - from)
         });
-        self.turn(tooth) + slope
+        let trace = self.trace(tooth);
+        self.turn(tooth) + slope - trace.map_or(0.0, |trace| trace.depth(s))
     }
 
-    /// What the lead slope of `tooth` removes at the end at +z of the face, in proportion to the distance from the other end.
-    pub fn lead_slope(&self, tooth: usize) -> f64 {
-        self.lead_slopes.get(tooth).copied().unwrap_or(0.0)
+    /// The trace of the profile of `tooth`, where there are traces.
+    pub(crate) fn trace(&self, tooth: usize) -> Option<Trace<'_>> {
+        let profiles = self.profiles.as_ref()?;
+        let removed = profiles.removed.get(tooth)?;
+        Some(Trace { profiles, removed })
     }
 
-    /// The most that any lead slope removes or adds.
-    pub fn steepest_lead(&self) -> f64 {
+    /// What the lead of `tooth` removes at the height `z` from the middle of its face of this `width`, beside the modifications.
+    pub fn removed_by_lead(&self, tooth: usize, z: f64, width: f64) -> f64 {
+        let slope = LeadModification::Slope {
+            amount: self.lead_slopes.get(tooth).copied().unwrap_or(0.0),
+        };
+        let trace = self.leads.get(tooth);
+        slope.removed(z, width) + trace.map_or(0.0, |trace| trace.removed(z, width))
+    }
+
+    /// The most that the lead of any tooth removes or adds.
+    pub fn largest_lead(&self) -> f64 {
+        let traces = self.leads.iter().flat_map(LeadModification::entries);
         let slopes = self.lead_slopes.iter();
-        slopes.fold(0.0, |most, slope| slope.abs().max(most))
+        let most = |all: f64, each: &f64| each.abs().max(all);
+        slopes.fold(0.0, most) + traces.fold(0.0, most)
     }
 
     /// What of [`GearDeviations::at`] is alike all along the flank of `tooth`.
@@ -92,11 +137,23 @@ impl GearDeviations {
         turn.unwrap_or_else(|| self.turn(tooth))
     }
 
-    /// The slope of [`GearDeviations::at`] by the roll length.
-    pub fn slope(&self, tooth: usize) -> f64 {
+    /// The slope of [`GearDeviations::at`] by the roll length, without the trace.
+    pub(crate) fn profile_slope(&self, tooth: usize) -> f64 {
         let [from, to] = self.ends;
         let amount = self.profile_slopes.get(tooth);
         amount.map_or(0.0, |amount| amount / (to - from))
+    }
+
+    /// The slope of [`GearDeviations::at`] by the roll length `s`.
+    pub fn slope(&self, tooth: usize, s: f64) -> f64 {
+        let trace = self.trace(tooth);
+        self.profile_slope(tooth) - trace.map_or(0.0, |trace| trace.slope(s))
+    }
+
+    /// By how much the normal of the flank of `tooth` is inclined at the roll length `s`, as [`SpurGear::inclination`] has it, towards the mate.
+    pub(crate) fn inclination(&self, tooth: usize, s: f64) -> f64 {
+        let trace = self.trace(tooth);
+        self.profile_slope(tooth) - trace.map_or(0.0, |trace| trace.inclination(s))
     }
 
     /// How far the eccentricity moves the loaded flank of `tooth` of `gear` along its normal at the roll length `s`, to the first order in it, in
@@ -128,8 +185,49 @@ impl GearDeviations {
     /// How far the point that stands out most does.
     fn farthest_out(&self) -> f64 {
         let teeth = self.turns.len().max(self.profile_slopes.len());
-        let all = (0..teeth).flat_map(|tooth| self.ends.map(|s| self.at(tooth, s)));
-        all.fold(0.0, f64::max)
+        let sloped = |tooth: usize| {
+            let slope = self.profile_slopes.get(tooth);
+            self.turn(tooth) + slope.map_or(0.0, |slope| slope.max(0.0))
+        };
+        let profiles = self.profiles.iter().flat_map(|traces| &traces.removed);
+        let added = profiles.flat_map(Modification::entries);
+        let added = added.fold(0.0, |most: f64, removed| most.max(-removed));
+        (0..teeth).map(sloped).fold(0.0, f64::max) + added
+    }
+}
+
+/// Traces of the profiles of a gear.
+#[derive(Debug, Clone, PartialEq)]
+struct Profiles {
+    flank: Involute,
+    /// A kink of a trace is rounded over this length to either side.
+    rounded: f64,
+    /// What each removes, tooth 0 first.
+    removed: Vec<Modification>,
+}
+
+/// The trace of the profile of one tooth.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Trace<'a> {
+    profiles: &'a Profiles,
+    removed: &'a Modification,
+}
+
+impl Trace<'_> {
+    /// What it removes at the roll length `s`.
+    pub(crate) fn depth(&self, s: f64) -> f64 {
+        self.removed.depth(&self.profiles.flank, s)
+    }
+
+    /// The slope of that.
+    pub(crate) fn slope(&self, s: f64) -> f64 {
+        self.removed.slope(&self.profiles.flank, s)
+    }
+
+    /// The same with kinks rounded, as those of modifications are.
+    pub(crate) fn inclination(&self, s: f64) -> f64 {
+        let half = self.profiles.rounded;
+        (self.depth(s + half) - self.depth(s - half)) / (2.0 * half)
     }
 }
 

@@ -361,10 +361,9 @@ impl SolidPair {
         Member::BOTH.map(|member| {
             let (width, own) = (self.gear(member).face_width(), self.own_height(member, z));
             let leads = self.leads(member).iter();
-            let slope = LeadModification::Slope {
-                amount: deviations.of_gear(member).lead_slope(teeth[member.index()]),
-            };
-            leads.map(|lead| lead.removed(own, width)).sum::<f64>() + slope.removed(own, width)
+            let of_tooth = deviations.of_gear(member);
+            let of_tooth = of_tooth.removed_by_lead(teeth[member.index()], own, width);
+            leads.map(|lead| lead.removed(own, width)).sum::<f64>() + of_tooth
         })
     }
 }

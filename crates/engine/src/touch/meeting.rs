@@ -6,7 +6,7 @@ use nalgebra::{SimdBool, SimdValue, Vector2};
 use simba::simd::WideF64x4;
 
 use super::placement::{self, FlankPlace, Placement, Sight, inclined, quarter_turned, unit};
-use crate::gear::{GearPair, Member, PairDeviations, SpurGear, Vector};
+use crate::gear::{GearPair, Member, PairDeviations, SpurGear, Trace, Vector};
 use crate::wide::{Loops, Numbers, wide};
 
 /// The square of an angle below which a few terms give its sine and cosine to the last bit.
@@ -136,6 +136,8 @@ pub(crate) struct Standing<'a> {
     /// The profile slope deviations, and the roll lengths at which they begin.
     slopes: [f64; 2],
     forms: [f64; 2],
+    /// The traces of both profiles, where there are some.
+    traces: [Option<Trace<'a>>; 2],
     weights: [f64; 2],
 }
 
@@ -242,7 +244,7 @@ impl<'a> Standing<'a> {
     /// Pair `n` with these `deviations` at the mesh position `eta`, the driven gear lagging by `lag`, from where a pair of `phase` was placed on
     /// `seat`.
     pub(crate) fn new(
-        (pair, deviations): (&'a GearPair, &PairDeviations),
+        (pair, deviations): (&'a GearPair, &'a PairDeviations),
         eta: f64,
         n: i64,
         lag: f64,
@@ -263,8 +265,13 @@ impl<'a> Standing<'a> {
             turns: Member::BOTH
                 .map(|member| turn(lengths[member.index()], pair.gear(member).base_radius())),
             centers: placement::centers(pair, deviations, n, body),
-            slopes: Member::BOTH
-                .map(|member| deviations.of_gear(member).slope(teeth[member.index()])),
+            slopes: Member::BOTH.map(|member| {
+                deviations
+                    .of_gear(member)
+                    .profile_slope(teeth[member.index()])
+            }),
+            traces: Member::BOTH
+                .map(|member| deviations.of_gear(member).trace(teeth[member.index()])),
             forms: Member::BOTH.map(|member| pair.gear(member).form_roll_length()),
             weights: placement::weights(pair, eta - n as f64),
         }
@@ -299,16 +306,16 @@ impl<'a> Standing<'a> {
         let number = T::splat;
         let (seat, mate) = (self.seat.index(), self.seat.other().index());
         let (gear, other) = (self.pair.gear(self.seat), self.pair.gear(self.seat.other()));
-        // A slope deviation turns each point by itself and inclines the flank.
+        // A slope deviation, or a trace, turns each point by itself and inclines the flank.
         let (mut place, mut normal) = (probe.point, probe.normal);
         let slope = self.slopes[seat];
-        if slope != 0.0 {
+        if slope != 0.0 || self.traces[seat].is_some() {
             let (s, r_b) = (probe.roll_length, gear.base_radius());
-            place = turned(
-                turn(number(slope) * (s - number(self.forms[seat])), r_b),
-                place,
-            );
-            normal -= probe.radial * (number(slope * r_b) / s.simd_max(number(1e-9 * r_b)));
+            let (depth, inclination) = depth_and_inclination(self.traces[seat].as_ref(), s);
+            let towards = number(slope) * (s - number(self.forms[seat])) - depth;
+            place = turned(turn(towards, r_b), place);
+            let inclination = (number(slope) - inclination) * number(r_b);
+            normal -= probe.radial * (inclination / s.simd_max(number(1e-9 * r_b)));
         }
         let point = self.centers[seat].map(number) + turned(self.turns[seat].map(number), place);
 
@@ -328,11 +335,13 @@ impl<'a> Standing<'a> {
         let foot = probe.foot - r_b * turn;
         let slope = number(self.slopes[mate]);
         let (removed, inclination) = removed_and_inclination(other, s);
-        let missing = removed - slope * (s - number(self.forms[mate]));
+        let trace = depth_and_inclination(self.traces[mate].as_ref(), s);
+        let missing = removed - slope * (s - number(self.forms[mate])) + trace.0;
+        let inclination = inclination - slope + trace.1;
 
         let on_mate = turned(
             [cosine, sine],
-            inclined(radial, across, s, other.base_radius(), inclination - slope),
+            inclined(radial, across, s, other.base_radius(), inclination),
         );
         let on_seat = turned(self.turns[seat].map(number), normal);
         let push = Push::new(self.seat, on_seat, on_mate, self.weights);
@@ -378,6 +387,20 @@ fn removed_and_inclination<T: Numbers>(gear: &SpurGear, s: T) -> (T, T) {
         inclination.replace(place, slope);
     }
     (removed, inclination)
+}
+
+/// What `trace` removes at each of the roll lengths `s`, and its inclination; nothing without one.
+#[inline(always)]
+fn depth_and_inclination<T: Numbers>(trace: Option<&Trace<'_>>, s: T) -> (T, T) {
+    let (mut depth, mut inclination) = (T::splat(0.0), T::splat(0.0));
+    if let Some(trace) = trace {
+        for place in 0..T::LANES {
+            let s = s.extract(place);
+            depth.replace(place, trace.depth(s));
+            inclination.replace(place, trace.inclination(s));
+        }
+    }
+    (depth, inclination)
 }
 
 #[cfg(test)]

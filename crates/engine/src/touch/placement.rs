@@ -220,7 +220,7 @@ impl<'a> Placement<'a> {
         self.deviating
             .map_or((depth, slope), |(deviations, teeth)| {
                 let (gear, tooth) = (deviations.of_gear(member), teeth[member.index()]);
-                (depth - gear.at(tooth, s), slope - gear.slope(tooth))
+                (depth - gear.at(tooth, s), slope - gear.slope(tooth, s))
             })
     }
 
@@ -229,7 +229,7 @@ impl<'a> Placement<'a> {
         let drawn = self.pair.gear(member).inclination(s);
         self.deviating.map_or(drawn, |(deviations, teeth)| {
             let gear = deviations.of_gear(member);
-            drawn - gear.slope(teeth[member.index()])
+            drawn - gear.inclination(teeth[member.index()], s)
         })
     }
 

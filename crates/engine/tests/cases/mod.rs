@@ -162,6 +162,7 @@ pub(crate) fn case(pair: GearPair, output_torques: &[f64]) -> Case {
             interface_radii: [None; 2],
             error_estimate: false,
         },
+        windows: Vec::new(),
         stress: false,
         driving_speed: None,
     }

@@ -5,6 +5,8 @@ use meshwright_wire::declare::{
 };
 use meshwright_wire::draw::{CAPABILITY, CLASS, INSPECTED, SEED};
 
+use meshwright_wire::resolution::MOST_WINDOWS;
+
 use crate::sample::points::Sampling;
 
 /// The most varied fields. With two numbers for each gear's eccentricity behind them they are fewer than the axes of the points.
@@ -51,6 +53,23 @@ document! {
         /// How accurately teeth are made.
         pub(crate) accuracy: Option<AccuracyDocument> =
             absent(nested("Accuracy"), "the teeth of the base"),
+        /// The parts of its true period over which each member is computed, where teeth of two gears come together again after a long time only; refused
+        /// beside span_mesh_periods. Orders of the mesh are estimated, as window_starts of a submission says; orders of rotation, sidebands and orders of
+        /// holes are not told.
+        pub(crate) window: Option<WindowDocument> =
+            absent(nested("Window"), "the span of the base, or the true period").left_out(),
+    }
+}
+
+document! {
+    /// Windows of the true period of each member. The first has the largest step from one pair of its teeth to the next in its middle, each further one the
+    /// largest that is left. A member whose true period is no longer than its windows together is computed over the true period.
+    pub(crate) struct WindowDocument as "Window", "Window" {
+        /// The mesh periods of a window.
+        pub(crate) mesh_periods: u32 = number("Mesh periods of a window", "1", 4.0, 20_000.0),
+        /// The number of windows of each member.
+        pub(crate) places: u32 =
+            number("Windows of a member", "1", 1.0, MOST_WINDOWS as f64).or(1.0),
     }
 }
 

@@ -17,6 +17,7 @@ use meshwright_wire::gear::{DeviationsDocument, GearDocument};
 use meshwright_wire::pair::PairDocument;
 use meshwright_wire::pointer::Pointer;
 use meshwright_wire::resolution::sees_faces;
+use meshwright_wire::submission::Windows;
 use meshwright_wire::units::significant;
 use serde_json::{Value, json};
 
@@ -38,6 +39,8 @@ pub(crate) struct Population {
     generating_profile_shift: MembersDepth,
     /// Of each gear, driving and driven: how accurately it is made.
     pub(crate) accuracy: [Option<GearAccuracy>; 2],
+    /// Over what parts of their true periods members are computed, if not by the base.
+    pub(crate) windows: Option<Windows>,
 }
 
 /// A field and its law.

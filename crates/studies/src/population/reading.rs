@@ -3,6 +3,7 @@
 use meshwright_wire::declare::{Choice as _, EACH, Errors, Kind as _, Location, Node};
 use meshwright_wire::pointer::{NumberKind, Pointer};
 use meshwright_wire::problem::Code;
+use meshwright_wire::submission::Windows;
 use meshwright_wire::units::plain;
 
 use super::document::{AccuracyDocument, PopulationDocument, VariedDocument};
@@ -54,6 +55,16 @@ impl PopulationDocument {
                 place.wrong::<()>(Code::ConflictingFields, detail, None);
             }
         }
+        let span = ["resolution", "span_mesh_periods"];
+        let stands = base.and_then(|base| base.at(&span));
+        if self.window.is_some() && stands.is_some_and(|node| *node != Node::Null) {
+            let place = place.of("window");
+            let detail = format!(
+                "{place} says what part of its true period a member is computed over, and the base has /{} of its own; leave out one of the two.",
+                span.join("/")
+            );
+            place.wrong::<()>(Code::ConflictingFields, detail, None);
+        }
         let mut varied: Vec<Varied> = Vec::new();
         for (i, document) in self.vary.iter().enumerate() {
             let place = place.of("vary").of(&i.to_string());
@@ -88,6 +99,10 @@ impl PopulationDocument {
             varied,
             generating_profile_shift: self.generating_profile_shift,
             accuracy,
+            windows: self.window.map(|window| Windows {
+                mesh_periods: window.mesh_periods,
+                places: window.places,
+            }),
         })
     }
 }

@@ -1,7 +1,11 @@
 //! Drawing of members, refusals, and results.
 
 use meshwright_engine::gear::{SpurGear, ToothDeviations};
+use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
+use meshwright_wire::solve;
+use meshwright_wire::submission::Submission;
+use meshwright_wire::warning::GearName;
 use meshwright_wire::{Code, Problem, Results, Status};
 use serde_json::{Value, json};
 
@@ -692,5 +696,135 @@ fn members_of_other_thickness_keep_the_root_of_the_drawn_gear_unless_asked() {
     );
     for (_, driven, thickness) in roots(json!({ "generating_profile_shift": "by_thickness" })) {
         assert!((driven - thickness / (2.0 * module * tan)).abs() < 1e-9);
+    }
+}
+
+/// A pair of 20 and 21 teeth, whose teeth come together again after 420 mesh periods.
+fn hunting() -> Value {
+    let mut base = base();
+    base["pair"]["driven"]["tooth_count"] = json!(21);
+    base["pair"]["center_distance_mm"] = json!(41.2);
+    base["resolution"] = json!({ "positions_per_mesh_period": 8 });
+    base
+}
+
+fn of_class_6(mut more: Value) -> Value {
+    more["size"] = json!(6);
+    more["accuracy"] =
+        json!({ "driving": { "iso_1328_class": 6 }, "driven": { "iso_1328_class": 6 } });
+    more
+}
+
+#[test]
+fn members_are_computed_over_windows_of_their_own() {
+    let window = json!({ "window": { "mesh_periods": 32, "places": 2 } });
+    let document = json!({ "base": hunting(), "population": of_class_6(window) });
+    let whole = testing::study(&document).expect("a population");
+    let windows: Vec<Vec<u32>> = (0..6)
+        .map(|row| {
+            let submission = whole.design(row).unwrap().submission.expect("valid");
+            let again = Submission::parse(submission.canonical_json().as_bytes());
+            assert_eq!(again.expect("valid").case(), submission.case());
+            assert_eq!(submission.case().span(), 32);
+            submission.case().windows.clone()
+        })
+        .collect();
+    assert!(windows.iter().all(|starts| starts.len() == 2));
+    assert!(
+        windows.windows(2).all(|two| two[0] != two[1]),
+        "{windows:?}"
+    );
+
+    let design = whole.design(0).unwrap();
+    let submission = design.submission.expect("valid");
+    let library = Library::with_capacity(1 << 20);
+    let results = solve(&submission, &library, &Run::unattended()).expect("computed");
+    let curve = &results.curves[0];
+    assert!(curve.spectrum.is_none() && curve.statistics.partial);
+    assert_eq!(curve.mesh_position.len(), 2 * 32 * 8);
+    let orders = curve.mesh_orders_um.clone().expect("estimated");
+    assert_eq!(orders.len(), 4);
+    let told = &curve.statistics.transmission_error_um;
+    assert_eq!(told.long_wave, None);
+    // The rms of harmonics is that of all of them, of which four are told.
+    let four = orders
+        .iter()
+        .map(|each| each * each / 2.0)
+        .sum::<f64>()
+        .sqrt();
+    let all = told.mesh_harmonics_rms.expect("estimated");
+    assert!(four <= all && four > 0.8 * all, "{four} {all}");
+
+    let summary = Summary::of(&results).expect("finite");
+    let state = RowState::computed(design.label, design.changes, Ok(summary));
+    let row = crate::table::TableRow::new(GearName::Driven, state.clone(), false);
+    assert_eq!(row.curves[0].mesh_order_um, Some(orders[0]));
+    assert_eq!(row.curves[0].hole_order_um, None);
+    let mut sample = PopulationSample::new(&whole, 0..60).expect("a population");
+    sample.add(0, &state);
+    let results = serde_json::to_value(sample.results(None, Status::Running)).unwrap();
+    assert_eq!(
+        (&results["done"], &results["partial"]),
+        (&json!(1), &json!(1))
+    );
+    assert_eq!(
+        quantity(&results, "mesh_order_um")["mean"],
+        json!(orders[0])
+    );
+    let names: Vec<&Value> = results["quantities"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|each| &each["name"])
+        .collect();
+    assert!(!names.contains(&&json!("transmission_error_um.long_wave")));
+}
+
+#[test]
+fn windows_as_long_as_the_true_period_are_the_true_period() {
+    let window = json!({ "window": { "mesh_periods": 210, "places": 2 } });
+    let whole = testing::study(&json!({ "base": hunting(), "population": of_class_6(window) }));
+    let submission = whole.expect("a population").design(3).unwrap().submission;
+    let submission = submission.expect("valid");
+    assert!(submission.case().windows.is_empty() && submission.case().covers_whole_periods());
+}
+
+#[test]
+fn a_window_is_refused_beside_a_span_and_for_goals_that_it_does_not_tell() {
+    let window = json!({ "window": { "mesh_periods": 32 } });
+    let mut spanned = hunting();
+    spanned["resolution"]["span_mesh_periods"] = json!(32);
+    let refused = refusal(&json!({ "base": spanned, "population": of_class_6(window.clone()) }));
+    assert_eq!(refused[0].0, "/population/window");
+    assert_eq!(refused[0].1, Code::ConflictingFields);
+
+    let mut relieved = hunting();
+    relieved["pair"]["driving"]["tip_relief"] =
+        json!({ "amount_um": 5, "start": { "radial_length_mm": 0.8 } });
+    let search = |quantity: &str| {
+        testing::study(&json!({ "base": relieved, "search": {
+            "variables": [{ "path": "/pair/driving/tip_relief/amount_um", "low": 1, "high": 10 }],
+            "minimize": [{ "quantity": quantity, "percent": 95 }],
+            "population": of_class_6(window.clone()), "evaluations": 10 } }))
+    };
+    for told in [
+        "mesh_order_um",
+        "transmission_error_um.mesh_harmonics_rms",
+        "transmission_error_um.tooth_to_tooth",
+    ] {
+        assert_eq!(search(told).err(), None, "{told}");
+    }
+    for untold in [
+        "transmission_error_um.long_wave",
+        "transmission_error_um.short_wave",
+    ] {
+        let problem = search(untold).expect_err(untold);
+        let error = &problem.errors[0];
+        assert_eq!(error.code, Code::QuantityNotTold);
+        assert!(
+            error.detail.contains("windows of 32 mesh periods"),
+            "{}",
+            error.detail
+        );
     }
 }

@@ -100,7 +100,7 @@ impl Composed {
     fn design(self, member: Option<(&Population, u32)>) -> Design {
         let submission = self.submission.and_then(|node| match member {
             Some((population, member)) => {
-                Submission::of_node_with(&node, |pair, method, errors| {
+                Submission::of_node_with(&node, population.windows, |pair, method, errors| {
                     population.keep_roots(&node, pair);
                     population.give_teeth(member, pair, method, errors)
                 })

@@ -23,6 +23,7 @@ pub use pareto::{KnownQuantities, Outline};
 pub use quantity::{Better, Quantity, QuantityEntry, QuantityOf, quantities};
 pub(crate) use quantity::{Of, QUANTITIES};
 pub use row::{RowCurve, RowState, TableRow};
+pub(crate) use summary::CurveSummary;
 pub use summary::Summary;
 
 /// The table of a study. It can be read at any time; rows fill as their designs are computed.

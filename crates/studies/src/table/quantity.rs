@@ -1,6 +1,6 @@
 //! The numbers of a design by name: columns of tables, statistics of populations, goals and bounds of searches.
 
-use meshwright_engine::analysis::Method;
+use meshwright_engine::analysis::{Case, Method};
 use meshwright_wire::declare::{Choice as _, document};
 use meshwright_wire::resolution::methods;
 use meshwright_wire::results::{GearPeakStress, StatisticsValues, TransmissionErrorStatistics};
@@ -213,6 +213,8 @@ enum Needs {
     Method(fn(Method) -> bool),
     /// A span of whole true periods, of which there is a spectrum.
     WholePeriods,
+    /// The same, or windows of a true period, which tell the orders of the mesh.
+    MeshOrders,
     /// Teeth that deviate.
     Deviations,
     /// No torque of 0.
@@ -229,7 +231,7 @@ impl Needs {
                 "/pair/driving/tooth_deviations",
                 "/pair/driven/tooth_deviations",
             ],
-            Self::Method(_) | Self::WholePeriods | Self::Load => &[],
+            Self::Method(_) | Self::WholePeriods | Self::MeshOrders | Self::Load => &[],
         }
     }
 
@@ -252,13 +254,11 @@ impl Needs {
                     methods.join(", ")
                 )
             }),
-            Self::WholePeriods => (!case.covers_whole_periods()).then(|| {
-                format!(
-                    "/base/resolution/span_mesh_periods is {}, a part of the true period of {} mesh periods; leave it out, or give whole periods",
-                    case.span(),
-                    case.pair.period()
-                )
-            }),
+            Self::WholePeriods => (!case.covers_whole_periods()).then(|| of_span(case)),
+            Self::MeshOrders => {
+                let is_told = case.covers_whole_periods() || !case.windows.is_empty();
+                (!is_told).then(|| of_span(case))
+            }
             Self::Deviations => case.pair.is_as_drawn().then(|| {
                 "teeth do not deviate, so that it is hole_order_um; ask for that, for /base/pair/driving/tooth_deviations or those of the driven gear, or for a percent of a population with accuracy".to_owned()
             }),
@@ -266,6 +266,20 @@ impl Needs {
                 "there is none at the torque 0; leave it out of /base/output_torques_n_m".to_owned()
             }),
         }
+    }
+}
+
+/// Why orders of rotation and of holes are not told of `case`, whose span is a part of its true period, and what would.
+fn of_span(case: &Case) -> String {
+    let (span, period) = (case.span(), case.pair.period());
+    if case.windows.is_empty() {
+        format!(
+            "/base/resolution/span_mesh_periods is {span}, a part of the true period of {period} mesh periods; leave it out, or give whole periods"
+        )
+    } else {
+        format!(
+            "windows of {span} mesh periods out of a true period of {period} tell the orders of the mesh alone; leave out the window"
+        )
     }
 }
 
@@ -412,7 +426,7 @@ pub(crate) const QUANTITIES: &[Quantity] = &[
         .needs(&[Needs::Method(Method::sees_holes), Needs::WholePeriods])
         .or(|design| (design.driving.has_no_holes() && design.driven.has_no_holes()).then_some(0.0)),
     curve(["mesh_order_um", "Amplitude at the mesh order", "H_Z2", "um"],
-        |curve, _| curve.mesh_order()).smaller().needs(&[Needs::WholePeriods]),
+        |curve, _| curve.mesh_order()).smaller().needs(&[Needs::MeshOrders]),
     curve(["peak_contact_pressure_mpa", "Largest contact pressure", "p_max", "MPa"],
         |curve, _| curve.peak_contact_pressure_mpa).smaller().where_known().or(|_| Some(f64::INFINITY)),
     curve(["pressure_unbounded_share", "Share of the period in which a sharp corner carries", "t_∞", "1"],
@@ -431,7 +445,7 @@ pub(crate) const QUANTITIES: &[Quantity] = &[
         |curve, _| ste(curve)?.short_wave).in_statistics().smaller().where_known().needs(&[Needs::WholePeriods]),
     curve(["transmission_error_um.mesh_harmonics_rms", "Rms of the mesh harmonics", "STE mesh rms", "um"],
         |curve, _| ste(curve)?.mesh_harmonics_rms).in_statistics().smaller().where_known()
-        .needs(&[Needs::WholePeriods]),
+        .needs(&[Needs::MeshOrders]),
 ];
 
 /// All of them, as clients see them.

@@ -147,6 +147,10 @@ impl CurveSummary {
             .flat_map(|branch| &branch.dynamic_transmission_error_um.peak_to_peak);
         let named = curve.spectrum.iter().flat_map(|spectrum| &spectrum.named);
         let shown = named.filter(|line| ORDERS.contains(&line.label.as_str()));
+        let estimated = curve
+            .mesh_orders_um
+            .iter()
+            .filter_map(|orders| orders.first());
         Self {
             output_torque_n_m: curve.output_torque_n_m,
             statistics: Some(curve.statistics.clone()),
@@ -162,6 +166,7 @@ impl CurveSummary {
                 .collect(),
             orders: shown
                 .map(|line| (line.label.clone(), line.transmission_error_um))
+                .chain(estimated.map(|amplitude| (MESH_ORDER.to_owned(), *amplitude)))
                 .collect(),
         }
     }
@@ -176,6 +181,12 @@ impl CurveSummary {
     /// The part of the hole order that comes from the holes alone, where teeth deviate.
     pub(super) fn hole_order_of_holes(&self, gear: GearName) -> Option<f64> {
         of_holes(&self.orders_of_holes, gear)
+    }
+
+    /// Whether it runs over a part of its true period.
+    pub(crate) fn is_partial(&self) -> bool {
+        let statistics = self.statistics.as_ref();
+        statistics.is_some_and(|statistics| statistics.partial)
     }
 
     /// The amplitude at the mesh order.

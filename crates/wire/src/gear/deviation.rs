@@ -3,9 +3,13 @@
 use meshwright_engine::gear::{Eccentricity, ToothDeviations};
 
 use super::GearDocument;
+use super::traces::{LeadTracesDocument, ProfileTracesDocument};
 use crate::declare::{List, Number, absent, document, list, nested, number};
 use crate::problem::{Code, FieldError};
 use crate::units::{from_um, plain, to_um};
+
+/// The most that a flank deviates, in modules: a search among neighboring flanks means nothing beyond.
+pub(super) const LARGEST: f64 = 0.25;
 
 /// How far the sum of all single pitch deviations may be from zero, in um.
 const CLOSURE: f64 = 0.01;
@@ -38,6 +42,12 @@ document! {
         /// Material removed from the loaded flank of each tooth at the +z end of the face, tooth 0 first, linear from zero at its -z end, as a slope of
         /// lead_modifications: positive is away from the mate. It needs three dimensions.
         pub(crate) lead_slope_um: Option<Vec<f64>> = absent(each_tooth("Lead slopes"), "none"),
+        /// A measured trace of the profile of each loaded flank, beside its slope.
+        profiles: Option<ProfileTracesDocument> =
+            absent(nested("ProfileTraces"), "none").left_out(),
+        /// A measured trace of the lead of each loaded flank, beside its slope. It needs three dimensions.
+        pub(crate) leads: Option<LeadTracesDocument> =
+            absent(nested("LeadTraces"), "none").left_out(),
         /// The gear's own axis beside the axis of rotation.
         eccentricity: Option<EccentricityDocument> = absent(nested("Eccentricity"), "none"),
     }
@@ -93,6 +103,8 @@ impl DeviationsDocument {
             ),
             lead_slope_um: (!deviations.lead_slope.is_empty())
                 .then(|| deviations.lead_slope.iter().copied().map(rounded).collect()),
+            profiles: None,
+            leads: None,
             eccentricity: deviations
                 .eccentricity
                 .map(|eccentricity| EccentricityDocument {
@@ -118,8 +130,13 @@ impl DeviationsDocument {
         given.filter_map(|(name, values)| Some((name, values.as_deref()?)))
     }
 
-    /// Faults on a gear of `tooth_count` teeth and of `module` mm, whose deviations stand at `pointer`.
-    pub(super) fn faults(&self, pointer: &str, tooth_count: u32, module: f64) -> Vec<FieldError> {
+    /// Faults on a gear of `tooth_count` teeth and of `module` over the base circle, both in mm, whose deviations stand at `pointer`.
+    pub(super) fn faults(
+        &self,
+        pointer: &str,
+        (tooth_count, module): (u32, f64),
+        base_radius: f64,
+    ) -> Vec<FieldError> {
         let wrong_length = self
             .lists()
             .filter(|(_, values)| values.len() != tooth_count as usize)
@@ -139,12 +156,19 @@ impl DeviationsDocument {
         large
             .into_iter()
             .chain(self.does_not_close(pointer))
+            .chain(self.profiles.iter().flat_map(|traces| {
+                let pointer = format!("{pointer}/{}", Self::profiles.name);
+                traces.faults(&pointer, (tooth_count, module), base_radius)
+            }))
+            .chain(self.leads.iter().flat_map(|traces| {
+                let pointer = format!("{pointer}/{}", Self::leads.name);
+                traces.faults(&pointer, tooth_count, module)
+            }))
             .collect()
     }
 
     /// Fault of a deviation above a quarter of a module, beyond which a search among neighboring flanks has no meaning.
     fn too_large(&self, pointer: &str, module: f64) -> Option<FieldError> {
-        const LARGEST: f64 = 0.25;
         let most = 1e3 * LARGEST * module;
         let listed = self.lists().flat_map(|(name, values)| {
             let place = move |i| format!("{name}/{i}");
@@ -200,6 +224,8 @@ impl DeviationsDocument {
             ),
             profile_slope: meters(self.profile_slope_um.as_deref().unwrap_or_default()),
             lead_slope: meters(self.lead_slope_um.as_deref().unwrap_or_default()),
+            profiles: self.profiles.as_ref().map(ProfileTracesDocument::data),
+            leads: self.leads.as_ref().map(LeadTracesDocument::data),
             eccentricity: self.eccentricity.as_ref().map(|eccentricity| Eccentricity {
                 amount: from_um(eccentricity.amount_um),
                 direction: eccentricity.phase_deg.to_radians(),

@@ -7,7 +7,7 @@ use meshwright_engine::gear::{DeviationList, GearError, Helix};
 
 use super::field::{Field, ReliefPlace};
 use super::relief::{ReliefEnd, StartWay};
-use super::{GearDocument, LEAST_RACK_TIP_RADIUS};
+use super::{DeviationsDocument, GearDocument, LEAST_RACK_TIP_RADIUS};
 use crate::problem::Code;
 use crate::units::{Side, from_mm, plain, to_mm, to_um};
 
@@ -216,8 +216,23 @@ impl GearDocument {
                         DeviationList::OtherFlankPitch => "pitch (other flank)",
                         DeviationList::ProfileSlope => "profile slope",
                         DeviationList::LeadSlope => "lead slope",
+                        DeviationList::Profiles => "profile trace",
+                        DeviationList::Leads => "lead trace",
                     }
                 ),
+                None,
+            ),
+            GearError::TraceDoesNotFit { list, entry } => Fault::new(
+                Field::whole(format!(
+                    "{}/{}",
+                    Self::tooth_deviations.name,
+                    match list {
+                        DeviationList::Leads => DeviationsDocument::leads.name,
+                        _ => DeviationsDocument::profiles.name,
+                    }
+                )),
+                Code::TableDoesNotRise,
+                format!("Entry {entry} of the traces does not stand beyond the one before it."),
                 None,
             ),
             GearError::HolesOverlap {

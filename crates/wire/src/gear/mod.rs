@@ -1,8 +1,13 @@
 //! The gears of a submission, and the faults of those that cannot be made.
 //!
+<<<<<<< HEAD
 //! The document by its parts: `tip`, `relief`, `modification`, `thickness`, `deviation`, `lead`, `material`, `blank`, `holes` and `openings`; `solid` is the
 //! gear along its axis. Then the faults of a gear (`proportions`, `faults`, `blank_faults`), the fields that could change (`field`), and values that would do
 //! together (`repair`).
+=======
+//! The document by its parts: `tip`, `relief`, `modification`, `thickness`, `deviation`, `traces`, `lead`, `material`, `blank`, `holes` and `openings`; `solid` is the gear along its axis. Then what prevents
+//! a gear (`proportions`, `faults`, `blank_faults`), which fields could change (`field`), and the values that together would do (`repair`).
+>>>>>>> pre-window
 
 mod blank;
 mod blank_faults;
@@ -22,6 +27,7 @@ mod solid;
 #[cfg(test)]
 mod tests;
 mod thickness;
+mod traces;
 
 use meshwright_engine::gear::{GearData, Helix, Member, Rack, TipEdge, ToothDeviations};
 
@@ -40,6 +46,7 @@ pub use openings::{Point, SideDocument, SpokesDocument};
 pub use protuberance::ProtuberanceDocument;
 pub use relief::{ReliefEnd, RootReliefDocument, StartDocument, StartWay, TipReliefDocument};
 pub use thickness::{BallsDocument, SpanDocument, ThinnedBy};
+pub use traces::{LeadTracesDocument, ProfileTracesDocument};
 
 use super::declare::{
     EACH, Errors, Kind as _, Location, Node, ObjectReader, absent, document, list, nested, number,
@@ -165,9 +172,13 @@ document! {
         tooth_deviations: Option<DeviationsDocument> =
             absent(nested("Tooth deviations"), "nothing"),
         /// Material of teeth and blank. Default: steel.
+<<<<<<< HEAD
         /// Material of teeth and blank. Default: steel.
         pub(crate) material: MaterialDocument = nested("Material").or_defaults(),
         /// The blank.
+=======
+        material: MaterialDocument = nested("Material").or_defaults(),
+>>>>>>> pre-window
         /// The blank.
         blank: BlankDocument = EACH,
     }

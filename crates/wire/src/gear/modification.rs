@@ -11,10 +11,10 @@ use crate::units::{Side, from_mm, from_um, plain, rounded_inward};
 pub(crate) const MOST_ENTRIES: usize = 1000;
 
 /// The fewest entries of a table. Too few are told with the number that is needed.
-const LEAST_ENTRIES: usize = 2;
+pub(super) const LEAST_ENTRIES: usize = 2;
 
 /// The least step from entry to entry of a table, in modules: a shorter one is a step in the flank.
-const LEAST_STEP: f64 = 1e-4;
+pub(super) const LEAST_STEP: f64 = 1e-4;
 
 tagged! {
     /// Material removed from every loaded flank, normal to it. Removed is positive.
@@ -151,43 +151,13 @@ impl TableDocument {
         Some(FieldError::new(pointer, Code::WrongLength, detail).nearest(needed as f64))
     }
 
-    /// The first diameter below the base circle, where there is no flank, and each entry that is not beyond the one before it. Each comes with a
-    /// value such that all of them together make a table.
+    /// What is wrong with the places of its entries.
     fn place_faults(&self, pointer: &str, step: f64, base_radius: f64) -> Vec<FieldError> {
-        const ROUNDING: f64 = 1e-9;
-        let (name, places) = self.places();
-        let mut faults = Vec::new();
-        let mut floor = match self.diameter_mm {
+        let floor = match self.diameter_mm {
             None => 0.0,
             Some(_) => 2.0 * base_radius,
         };
-        for (i, &value) in places.iter().enumerate() {
-            if value >= floor * (1.0 - ROUNDING) {
-                floor = value + step;
-                continue;
-            }
-            let nearest = rounded_inward(floor, Side::AtLeast, 0);
-            let pointer = format!("{pointer}/{name}/{i}");
-            let (code, what) = if i == 0 {
-                (
-                    Code::OutOfRange,
-                    "below the base circle, where there is no flank",
-                )
-            } else {
-                (
-                    Code::TableDoesNotRise,
-                    "not beyond the entry before it by 0.0001 modules",
-                )
-            };
-            let detail = format!(
-                "{pointer} is {} mm, {what}; at least {} mm.",
-                plain(value),
-                plain(nearest)
-            );
-            faults.push(FieldError::new(pointer, code, detail).nearest(nearest));
-            floor = nearest + step;
-        }
-        faults
+        place_faults(pointer, self.places(), step, floor)
     }
 
     fn data(&self) -> ModificationData {
@@ -200,4 +170,44 @@ impl TableDocument {
             removed: self.removed_um.iter().copied().map(from_um).collect(),
         }
     }
+}
+
+/// The first of these places below the `floor`, a diameter below the base circle, where there is no flank, and each that is not beyond the one before it by `step`.
+/// Each comes with a value such that all of them together make a table.
+pub(super) fn place_faults(
+    pointer: &str,
+    (name, places): (&str, &[f64]),
+    step: f64,
+    floor: f64,
+) -> Vec<FieldError> {
+    const ROUNDING: f64 = 1e-9;
+    let mut faults = Vec::new();
+    let mut floor = floor;
+    for (i, &value) in places.iter().enumerate() {
+        if value >= floor * (1.0 - ROUNDING) {
+            floor = value + step;
+            continue;
+        }
+        let nearest = rounded_inward(floor, Side::AtLeast, 0);
+        let pointer = format!("{pointer}/{name}/{i}");
+        let (code, what) = if i == 0 {
+            (
+                Code::OutOfRange,
+                "below the base circle, where there is no flank",
+            )
+        } else {
+            (
+                Code::TableDoesNotRise,
+                "not beyond the entry before it by 0.0001 modules",
+            )
+        };
+        let detail = format!(
+            "{pointer} is {} mm, {what}; at least {} mm.",
+            plain(value),
+            plain(nearest)
+        );
+        faults.push(FieldError::new(pointer, code, detail).nearest(nearest));
+        floor = nearest + step;
+    }
+    faults
 }

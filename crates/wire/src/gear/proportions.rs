@@ -136,7 +136,8 @@ impl GearDocument {
         });
         let of_deviations = self.tooth_deviations.iter().flat_map(|deviations| {
             let place = format!("{pointer}/tooth_deviations");
-            deviations.faults(&place, self.tooth_count, self.module_mm)
+            let size = (self.tooth_count, self.module_mm);
+            deviations.faults(&place, size, self.base_radius_mm())
         });
         let of_holes = self.blank.too_many(pointer);
         of_tables.chain(of_deviations).chain(of_holes).collect()

@@ -66,10 +66,14 @@ impl GearDocument {
         let slopes = self.tooth_deviations.as_ref();
         let slopes = slopes.and_then(|deviations| deviations.lead_slope_um.as_ref());
         let slopes = slopes.filter(|slopes| slopes.iter().any(|slope| *slope != 0.0));
+        let traces = self.tooth_deviations.as_ref();
+        let traces = traces.and_then(|deviations| deviations.leads.as_ref());
+        let traces = traces.filter(|traces| traces.deviates());
         let found = [
             (!self.lead_modifications.is_empty())
                 .then(|| (Self::lead_modifications.name.to_owned(), None)),
             slopes.map(|_| ("tooth_deviations/lead_slope_um".to_owned(), None)),
+            traces.map(|_| ("tooth_deviations/leads".to_owned(), None)),
             web.map(|_| {
                 let place = format!("blank/web/{}", WebDocument::offset_mm.name);
                 (place, Some(0.0))

@@ -5,6 +5,7 @@ use std::ops::Deref;
 
 use meshwright_engine::analysis::at_speed::CurveDynamics;
 use meshwright_engine::analysis::curve::{LeadCure, LoadShare};
+use meshwright_engine::analysis::mesh_wave::MeshWave;
 use meshwright_engine::analysis::{Case, Curve, FaceLoad, Statistics};
 
 use super::decomposition::DecompositionDocument;
@@ -15,6 +16,9 @@ use super::stress::{PeakStressDocument, StressDocument};
 use super::{all, each};
 use crate::declare::document;
 use crate::units::{named_or_null, one_or_null, or_null, significant, to_mm, to_mpa, to_um};
+
+/// The most multiples of the mesh order that are told of windows.
+const MOST_MESH_ORDERS: u32 = 10;
 
 document! {
     /// The curves at one output torque. All lists, those of the spectrum and of the dynamics aside, run over the same positions.
@@ -88,6 +92,13 @@ document! {
             .spectrum
             .as_ref()
             .map(|spectrum| SpectrumDocument::of(case, spectrum)),
+        /// The amplitudes of the transmission error at the mesh order and its multiples, in um, the first ten or as many as the positions tell, estimated from
+        /// windows; absent without windows.
+        mesh_orders_um?: Vec<f64> = curve.mesh_wave.as_ref().map(|wave| {
+            let told = (case.resolution.positions_per_mesh_period / 2).min(MOST_MESH_ORDERS);
+            let amplitudes = wave.amplitudes().into_iter().take(told as usize);
+            amplitudes.map(to_um).collect()
+        }),
         /// The parts that the decomposition adds; absent for other methods.
         decomposition?: DecompositionDocument =
             curve.decomposition.as_ref().map(DecompositionDocument::of),
@@ -180,10 +191,13 @@ document! {
         #[serde(default, serialize_with = "one_or_null")]
         #[schema(required)]
         short_wave: Option<f64> = curve.single_flank.short_wave.map(to_um),
-        /// The root mean square of the harmonics of the mesh; null as `long_wave` is.
+        /// The root mean square of the harmonics of the mesh; null as `long_wave` is, but over windows, from which it is estimated.
         #[serde(default, serialize_with = "one_or_null")]
         #[schema(required)]
-        mesh_harmonics_rms: Option<f64> = curve.single_flank.mesh_harmonics_rms.map(to_um),
+        mesh_harmonics_rms: Option<f64> = {
+            let estimated = curve.mesh_wave.as_ref().map(MeshWave::rms);
+            curve.single_flank.mesh_harmonics_rms.or(estimated).map(to_um)
+        },
     }
 }
 

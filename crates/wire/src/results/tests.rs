@@ -95,6 +95,7 @@ fn analysis(case: &Case) -> Analysis {
                 mean: 0.0,
                 peak_to_peak: 0.0,
             },
+            mesh_wave: None,
             spectrum: case.covers_whole_periods().then(|| {
                 Spectrum::of_samples(&case.pair, case.span(), &delta, &k, case.driving_speed)
             }),

@@ -85,10 +85,12 @@ fn real_teeth_do_not_see(case: &Case) -> Vec<&'static str> {
             &gear.deviations().profile_slope,
             &gear.deviations().lead_slope,
         ];
-        !gear.data().modifications.is_empty() || slopes.iter().any(|list| !list.is_empty())
+        let traces = gear.deviations().profiles.is_some() || gear.deviations().leads.is_some();
+        let slopes = slopes.iter().any(|list| !list.is_empty());
+        !gear.data().modifications.is_empty() || slopes || traces
     };
     if any(one_sided) {
-        unseen.push("the unloaded flanks: modifications and slopes of single teeth are those of the loaded ones");
+        unseen.push("the unloaded flanks: modifications, slopes and traces of single teeth are those of the loaded ones");
     }
     if any(|gear| !gear.deviations().are_teeth_alike()) {
         unseen.push("that a tooth which stands out is thicker, and stiffer, by what it stands out: every tooth yields as drawn");

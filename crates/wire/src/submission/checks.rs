@@ -220,6 +220,43 @@ impl SubmissionDocument {
         }
     }
 
+    /// Refuses windows of whole true periods, beyond the true period, or over each other.
+    pub(super) fn check_windows(&self, pair: &GearPair, errors: &Errors) {
+        let (starts, period) = (self.resolution.windows(), pair.period());
+        if starts.is_empty() {
+            return;
+        }
+        let pointer = format!("/resolution/{}", ResolutionDocument::window_starts.name);
+        let span = self.resolution.span_mesh_periods.unwrap_or(period);
+        if span >= period {
+            let detail = format!(
+                "{pointer} are windows of {span} mesh periods, and the true period has {period}; leave them out, or give a span_mesh_periods below it."
+            );
+            errors.push(FieldError::new(pointer, Code::ConflictingFields, detail));
+            return;
+        }
+        for (i, start) in starts.iter().enumerate() {
+            let pointer = format!("{pointer}/{i}");
+            if *start >= period {
+                let detail = format!(
+                    "{pointer} is {start}; the true period has {period} mesh periods, of which the last begins at {}.",
+                    period - 1
+                );
+                let nearest = f64::from(period - 1);
+                errors.push(FieldError::new(pointer, Code::OutOfRange, detail).nearest(nearest));
+                return;
+            }
+            let before = starts[..i].last().map_or(0, |before| before + span);
+            if *start < before || (i > 0 && start + span > starts[0] + period) {
+                let detail = format!(
+                    "{pointer} is {start}; windows rise and do not overlap, at the end of the true period of {period} neither, and each has {span} mesh periods."
+                );
+                errors.push(FieldError::new(pointer, Code::OutOfRange, detail));
+                return;
+            }
+        }
+    }
+
     pub(super) fn check_size(&self, purpose: Purpose, pair: &GearPair, errors: &Errors) {
         let most = if self.method.is_projected() && pair.is_as_drawn() {
             MOST_PROJECTED_POSITIONS
@@ -234,7 +271,8 @@ impl SubmissionDocument {
             ),
         };
         let resolution = &self.resolution;
-        let span = u64::from(resolution.span_mesh_periods.unwrap_or(1));
+        let windows = resolution.windows().len().max(1) as u64;
+        let span = u64::from(resolution.span_mesh_periods.unwrap_or(1)) * windows;
         let (positions, torques) = (
             u64::from(resolution.positions_per_mesh_period),
             self.output_torques_n_m.len() as u64,
@@ -250,7 +288,7 @@ impl SubmissionDocument {
         let left = limit.saturating_sub(positions * of_table);
         let fitting_positions = limit / (of_curves + of_table);
         let fitting_torques = left / (span * positions);
-        let fitting_span = left / (positions * torques);
+        let fitting_span = left / (positions * torques * windows);
         let mut ways = Vec::new();
         let least_positions = ResolutionDocument::positions_per_mesh_period.spec.bounds.0 as u64;
         if fitting_positions >= least_positions {
@@ -267,7 +305,8 @@ impl SubmissionDocument {
         }
         if fitting_span >= 1 && of_table == 0 {
             ways.push(format!(
-                "a span of {}",
+                "{} of {}",
+                if windows > 1 { "windows" } else { "a span" },
                 counted(fitting_span, "mesh period")
             ));
         }

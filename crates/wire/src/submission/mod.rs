@@ -2,9 +2,10 @@
 
 use meshwright_engine::analysis::RotationSpeed;
 use meshwright_engine::analysis::forces::{ForcesRequest, MORE_POSITIONS};
-use meshwright_engine::analysis::{Case, Faces, Method, Warning};
+use meshwright_engine::analysis::{Case, Faces, Method, Warning, windows_at_largest_steps};
 use meshwright_engine::analysis::{FaceHoles, Model, SectionHoles};
 use meshwright_engine::assembly::FaceResolution;
+use meshwright_engine::gear::GearPair;
 
 mod checks;
 mod document;
@@ -89,9 +90,34 @@ pub(super) enum Purpose {
     },
 }
 
+/// Windows of a true period that are chosen by the teeth of the pair.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Windows {
+    /// The mesh periods of each.
+    pub mesh_periods: u32,
+    /// How many there are at most.
+    pub places: u32,
+}
+
+impl Windows {
+    /// The span, and where windows of `pair` begin; its true period where they would be as long.
+    fn within(self, pair: &GearPair) -> (Option<u32>, Option<Vec<u32>>) {
+        if self.mesh_periods.saturating_mul(self.places) >= pair.period() {
+            return (None, None);
+        }
+        let starts = windows_at_largest_steps(pair, self.mesh_periods, self.places as usize);
+        (Some(self.mesh_periods), Some(starts))
+    }
+}
+
 impl SubmissionDocument {
     /// The submission, if all that it says goes together.
-    fn checked(mut self, purpose: Purpose, errors: &Errors) -> Option<Submission> {
+    fn checked(
+        mut self,
+        purpose: Purpose,
+        windows: Option<Windows>,
+        errors: &Errors,
+    ) -> Option<Submission> {
         let solid = if self.method.sees_faces() {
             self.refuse_plane_choices(errors);
             Some(self.pair.to_solid_pair(errors)?)
@@ -107,7 +133,14 @@ impl SubmissionDocument {
         self.check_stress(errors);
         self.check_torques(&pair, errors);
         self.check_interface(&pair, errors);
+        if let Some(windows) = windows {
+            (
+                self.resolution.span_mesh_periods,
+                self.resolution.window_starts,
+            ) = windows.within(&pair);
+        }
         self.check_span(&pair, errors);
+        self.check_windows(&pair, errors);
         self.resolution
             .span_mesh_periods
             .get_or_insert(pair.period());
@@ -145,6 +178,7 @@ impl SubmissionDocument {
             model,
             output_torques: self.output_torques_n_m.clone(),
             resolution: self.resolution.data(),
+            windows: self.resolution.windows().to_vec(),
             stress: self.stress,
             driving_speed: self
                 .driving_speed_rpm
@@ -176,12 +210,13 @@ impl Submission {
 
     /// Reads and checks a submission that is taken apart already.
     pub fn of_node(node: &Node) -> Result<Self, Problem> {
-        Self::of_node_with(node, |_, _, _| Some(()))
+        Self::of_node_with(node, None, |_, _, _| Some(()))
     }
 
-    /// The same, after `finish` has added to the pair the parts that cannot be written down beforehand. Its faults are reported.
+    /// The same over `windows`, after `finish` has added to the pair the parts that cannot be written down beforehand. Its faults are reported.
     pub fn of_node_with(
         node: &Node,
+        windows: Option<Windows>,
         finish: impl FnOnce(&mut PairDocument, Method, &Errors) -> Option<()>,
     ) -> Result<Self, Problem> {
         let errors = Errors::default();
@@ -189,7 +224,7 @@ impl Submission {
         let document = document.filter(|_| errors.count() == 0);
         let read = document.and_then(|mut document| {
             finish(&mut document.pair, document.method, &errors)?;
-            document.checked(Purpose::Job, &errors)
+            document.checked(Purpose::Job, windows, &errors)
         });
         errors.settle(read)
     }
@@ -211,7 +246,7 @@ impl Submission {
         if errors.count() > 0 {
             return None;
         }
-        document.checked(purpose, errors)
+        document.checked(purpose, None, errors)
     }
 
     /// The case of the engine.
@@ -257,7 +292,8 @@ impl Submission {
             let positions = u64::from(self.case.pair.period() * MORE_POSITIONS) * per_period;
             u64::from(forces.table.loads) * positions
         });
-        self.case.positions() as u64 * self.case.output_torques.len() as u64 + of_table
+        let windows = self.case.windows.len().max(1);
+        (self.case.positions() * windows * self.case.output_torques.len()) as u64 + of_table
     }
 
     /// The method's word.

@@ -63,7 +63,7 @@ impl FaceFlanks {
     /// Where each pair touches at the position `eta` that may be the first.
     fn touches(&self, eta: f64) -> Vec<FirstTouch> {
         let beside = 0.5 * self.pair.overlap_ratio();
-        let slopes = Member::BOTH.map(|member| self.deviations.of_gear(member).steepest_lead());
+        let slopes = Member::BOTH.map(|member| self.deviations.of_gear(member).largest_lead());
         let apart = 2.0 * (self.deviations.nearest() + slopes[0] + slopes[1]) + self.rounding();
         let pairs = on_path(self.pair.section(), eta, beside);
         touching_near(pairs, apart, |n| self.touch_of(eta, n))

@@ -7,7 +7,9 @@ use crate::gear::data::{
 };
 use crate::gear::modification::{Modification, Relief, TablePlaces};
 use crate::gear::tip::BrokenEdge;
-use crate::gear::{GearError, ModificationData, ReliefData, TipEdge, ToothDeviations};
+use crate::gear::{
+    GearError, ModificationData, ReliefData, TipEdge, ToothDeviations, ToothLeads, ToothProfiles,
+};
 use crate::root_finding::bisect;
 
 impl SpurGear {
@@ -293,6 +295,13 @@ impl SpurGear {
                 });
             }
         }
+        if let Some(ToothProfiles { places, removed }) = &deviations.profiles {
+            let rising = places.roll_lengths(&self.flank);
+            traces_fit(DeviationList::Profiles, &rising, removed, needed)?;
+        }
+        if let Some(ToothLeads { heights, removed }) = &deviations.leads {
+            traces_fit(DeviationList::Leads, heights, removed, needed)?;
+        }
         Ok(())
     }
 
@@ -308,5 +317,30 @@ impl SpurGear {
             self.data.rack.addendum,
             thick_enough,
         )
+    }
+}
+
+/// Whether traces with entries at the rising `places` are those of so many teeth.
+fn traces_fit(
+    list: DeviationList,
+    places: &[f64],
+    removed: &[Vec<f64>],
+    needed: usize,
+) -> Result<(), GearError> {
+    if removed.len() != needed {
+        return Err(GearError::DeviationCount {
+            list,
+            given: removed.len(),
+            needed,
+        });
+    }
+    let falls = places.windows(2).position(|pair| pair[0] >= pair[1]);
+    let short = (places.len() < 2).then_some(places.len());
+    let rows = removed.iter().map(Vec::len);
+    let other = rows.filter(|len| *len != places.len()).min();
+    let other = other.map(|len| len.min(places.len()));
+    match falls.map(|before| before + 1).or(short).or(other) {
+        Some(entry) => Err(GearError::TraceDoesNotFit { list, entry }),
+        None => Ok(()),
     }
 }

@@ -43,13 +43,18 @@ impl SpurGear {
     /// By how much the normal of the flank is inclined at the roll length `s`, as [`SpurGear::removed_slope`]: a kink of a modification is rounded
     /// over a length far below any contact's. Flanks that are pressed together bend over it; a normal that jumped would open a step in their gap.
     pub fn inclination(&self, s: f64) -> f64 {
-        let half = ROUNDED * self.data.rack.module;
+        let half = self.rounding_of_kinks();
         let modified = if self.modifications.is_empty() {
             0.0
         } else {
             (self.modified(s + half) - self.modified(s - half)) / (2.0 * half)
         };
         modified + self.ends_depth_and_slope(s).1
+    }
+
+    /// The length to either side of a kink of a modification over which normals are rounded.
+    pub(in crate::gear) fn rounding_of_kinks(&self) -> f64 {
+        ROUNDED * self.data.rack.module
     }
 
     /// [`SpurGear::removed`] and [`SpurGear::inclination`] at once; where nothing is removed that costs nothing.
@@ -67,7 +72,7 @@ impl SpurGear {
     }
 
     pub(super) fn untouched_roll_lengths(&self) -> [f64; 2] {
-        let half = ROUNDED * self.data.rack.module;
+        let half = self.rounding_of_kinks();
         let below_edge = self.broken_edge.map_or(f64::INFINITY, |edge| edge.from);
         let above_undercut = if self.is_undercut {
             self.form_roll_length

@@ -281,6 +281,78 @@ fn deviations_need_one_number_a_tooth_and_single_ones_have_to_close() {
 }
 
 #[test]
+fn traces_reach_the_engine_and_their_wrong_lengths_orders_and_amounts_are_told() {
+    let row = |value: f64| json!([0.0, value, 0.5]);
+    let rows = |count: usize| -> Value { (0..count).map(|i| row(i as f64)).collect() };
+    let profiles = |places: Value, removed: Value| json!({ "tooth_deviations": { "profiles": { "roll_length_mm": places, "removed_um": removed } } });
+    let places = json!([12.0, 16.0, 22.0]);
+    let data = data_of(&profiles(places.clone(), rows(50)));
+    let traces = data.deviations.profiles.as_ref().expect("traces");
+    near(traces.removed[7][1], 7e-6);
+    near(traces.places.values()[2], 22e-3);
+    assert!(!data.deviations.are_teeth_alike());
+    let by_diameter = json!({ "tooth_deviations": { "profiles": { "diameter_mm": [97, 100, 103], "removed_um": rows(50) } } });
+    let data = data_of(&by_diameter);
+    near(
+        data.deviations.profiles.expect("traces").places.values()[1],
+        0.1,
+    );
+    let at = "tooth_deviations/profiles";
+    let short = fault(
+        &profiles(places.clone(), rows(49)),
+        &format!("{at}/removed_um"),
+        Code::WrongLength,
+    );
+    assert_eq!(short.nearest, Some(50.0));
+    assert!(short.detail.contains("49 rows"), "{}", short.detail);
+    let mut uneven = rows(50);
+    uneven[3] = json!([0.0, 1.0]);
+    let uneven = fault(
+        &profiles(places.clone(), uneven),
+        &format!("{at}/removed_um/3"),
+        Code::WrongLength,
+    );
+    assert_eq!(uneven.nearest, Some(3.0));
+    let falls = fault(
+        &profiles(json!([12.0, 22.0, 16.0]), rows(50)),
+        &format!("{at}/roll_length_mm/2"),
+        Code::TableDoesNotRise,
+    );
+    assert!(falls.nearest.expect("the least") > 22.0);
+    let mut far = rows(50);
+    far[4][2] = json!(-600.0);
+    let far = fault(
+        &profiles(places.clone(), far),
+        &format!("{at}/removed_um/4/2"),
+        Code::OutOfRange,
+    );
+    assert_eq!(far.nearest, Some(-500.0));
+    let both = json!({ "tooth_deviations": { "profiles": { "roll_length_mm": [12, 16, 22], "diameter_mm": [97, 100, 103], "removed_um": rows(50) } } });
+    assert!(!faults(&both).is_empty());
+    let inside = json!({ "tooth_deviations": { "profiles": { "diameter_mm": [90, 100, 103], "removed_um": rows(50) } } });
+    fault(&inside, &format!("{at}/diameter_mm/0"), Code::OutOfRange);
+}
+
+#[test]
+fn lead_traces_have_a_row_for_each_tooth_and_rise() {
+    let leads = |z: Value, count: usize| {
+        let removed: Value = (0..count).map(|_| json!([0.0, 1.0])).collect();
+        json!({ "tooth_deviations": { "leads": { "z_mm": z, "removed_um": removed } } })
+    };
+    let data = data_of(&leads(json!([-10, 10]), 50));
+    let traces = data.deviations.leads.expect("traces");
+    near(traces.heights[1], 10e-3);
+    near(traces.removed[49][1], 1e-6);
+    let at = "tooth_deviations/leads";
+    let short = leads(json!([-10, 10]), 51);
+    fault(&short, &format!("{at}/removed_um"), Code::WrongLength);
+    let falls = leads(json!([10, -10]), 50);
+    fault(&falls, &format!("{at}/z_mm/1"), Code::TableDoesNotRise);
+    let few = leads(json!([10]), 50);
+    fault(&few, &format!("{at}/z_mm"), Code::WrongLength);
+}
+
+#[test]
 fn lists_and_numbers_that_are_wrong_are_told_together() {
     let found = faults(&json!({
         "tooth_deviations": { "profile_slope_um": [1.0] },

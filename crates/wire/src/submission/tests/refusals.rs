@@ -340,3 +340,37 @@ fn a_refusal_says_what_is_meant_and_proposes_no_other_pair() {
     let largest = format!(" The largest is {} mm.", nearest.expect("a radius"));
     assert!(detail.ends_with(&largest), "{detail}");
 }
+
+#[test]
+fn windows_lie_apart_in_a_true_period_that_is_longer() {
+    // The holes of case 2 repeat after five mesh periods.
+    let over = |span: u32, starts: Value| {
+        let resolution = json!({ "span_mesh_periods": span, "window_starts": starts });
+        with(case_2(), &[("/resolution", resolution)])
+    };
+    let submission = parse(&over(2, json!([1, 3]))).expect("valid");
+    assert_eq!(submission.case().windows, [1, 3]);
+    assert_eq!(submission.case().resolution.first_position, 1.0);
+    assert_eq!(submission.positions_total(), 2 * 2 * 40);
+    assert!(
+        submission
+            .canonical_json()
+            .contains("\"window_starts\":[1,3]")
+    );
+    let place = "/resolution/window_starts";
+    fault(&over(5, json!([0])), place, Code::ConflictingFields);
+    let beyond = fault(
+        &over(2, json!([5])),
+        &format!("{place}/0"),
+        Code::OutOfRange,
+    );
+    assert_eq!(beyond.nearest, Some(4.0));
+    // The second one begins within the first, and the last one runs over the end into the first.
+    for starts in [json!([1, 2]), json!([0, 4])] {
+        fault(&over(2, starts), &format!("{place}/1"), Code::OutOfRange);
+    }
+    let none = over(2, json!([]));
+    fault(&none, place, Code::WrongLength);
+    let whole = parse(&case_2()).expect("valid").canonical_json();
+    assert!(!whole.contains("window_starts"));
+}

@@ -46,6 +46,7 @@ fn every_field_of_the_schema_has_a_title_and_the_defaults_are_those_that_are_fil
                 "spokes",
                 "outline",
                 "name",
+                "window_starts",
             ];
             !ways.contains(&field.as_str())
         };
