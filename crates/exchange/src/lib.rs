@@ -5,6 +5,7 @@
 //! that document this crate knows the names.
 
 mod digits;
+pub mod divided;
 pub mod dxf;
 pub mod fmu;
 pub mod force_table;
