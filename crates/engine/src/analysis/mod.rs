@@ -8,7 +8,7 @@
 //!   along faces) and `checks` (where that is compared with exact solutions), `light` (torque 0, alike for all);
 //! - [`stress`] (at roots and holes; along faces `face_stress`), [`fields`] (everywhere; along faces [`face_fields`]), [`contact_pattern`] (over the flanks);
 //! - `between` (a curve between its positions), `curve_parts` and [`curve`] with its `statistics`, [`largest_where`] (where its largest values stand), [`pressures`] (what they come to),
-//!   [`spectrum`] and [`single_flank`];
+//!   [`spectrum`] and [`single_flank`] with the `long_wave`;
 //! - [`evidence`], [`warning`], [`error`] and `answer` (all that comes out); [`forces`] (tables of force), [`at_speed`] (motion).
 
 mod analyze;
@@ -34,6 +34,7 @@ mod found;
 pub mod largest_where;
 mod light;
 mod load_distribution;
+mod long_wave;
 mod orders;
 mod pair_contacts;
 mod plan;
