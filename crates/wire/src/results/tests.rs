@@ -143,6 +143,7 @@ fn analysis(case: &Case) -> Analysis {
             largest_penetration: 1e-18,
             contact_iterations: 7,
             projection_error: Some(2e-9),
+            decomposition_error: Some(3e-9),
             error_estimate: Some(ErrorEstimate {
                 mean: 1e-9,
                 peak_to_peak: 2e-9,
@@ -205,6 +206,7 @@ fn the_document_speaks_the_units_of_its_names() {
         "/evidence/error_estimate/transmission_error_peak_to_peak_um",
         2e-3,
     );
+    near("/evidence/decomposition_error_um", 3e-3);
     near("/curves/0/stress/driving/root_mpa/1", 140.0);
     near("/curves/0/stress/driven/hole_angle_deg/0", 180.0);
     near("/curves/0/stress/driven/hole_z_mm/0", -2.0);
