@@ -196,6 +196,7 @@ pub(super) fn curves(
     Ok(Analysis {
         curves,
         evidence,
+        hole_phase: None,
         warnings,
     })
 }
