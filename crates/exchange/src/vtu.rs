@@ -81,7 +81,7 @@ impl<'a> Piece<'a> {
         }
     }
 
-    /// What VTK calls the shape of a cell, and its points.
+    /// VTK's number of the shape of a cell, and its points.
     pub(crate) fn cell(self, number: usize) -> (u8, &'a [u32]) {
         match self {
             Self::Plate(gear) => {
@@ -130,7 +130,7 @@ const QUADRATIC_WEDGE: u8 = 26;
 ///
 /// # Errors
 ///
-/// Those of `out`.
+/// Errors of `out`.
 pub fn write(gears: [Piece<'_>; 2], out: impl Write) -> io::Result<()> {
     let [driving, driven] = gears;
     let of_points = || {
