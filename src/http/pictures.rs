@@ -9,7 +9,9 @@ use meshwright_plot::{
     Axis, Chart, Color, Drawing, Figure, Look, Map, Mark, PALETTE, Panel, Series, drawing,
 };
 
-use meshwright_wire::results::{CurveDocument, ResonanceDocument, ResonanceKindName};
+use meshwright_wire::results::{
+    CurveDocument, HolePhaseDocument, ResonanceDocument, ResonanceKindName,
+};
 
 /// Width and height of a picture in pixels.
 const SIZE: (u32, u32) = (760, 340);
@@ -127,6 +129,47 @@ pub(super) fn contact_pattern(pattern: &ContactPattern) -> String {
         panels: panels.collect(),
     };
     figure.to_svg()
+}
+
+/// Amplitude at the order of the holes and peak-to-peak over the turn of the driving gear's holes, with the best turn.
+pub(super) fn hole_phase(phase: &HolePhaseDocument) -> String {
+    let over = &phase.over_turn;
+    let turns = over.turn_of_driving_deg.iter().copied();
+    let series = [
+        ("amplitude at the order of the holes", &over.amplitude_um),
+        ("peak-to-peak", &over.peak_to_peak_um),
+    ];
+    let lines = series.into_iter().zip(colors());
+    let lines = lines.map(|((name, values), &color)| {
+        let points = turns.clone().zip(values.iter().copied()).collect();
+        Series::new(name, color, Look::Line, points)
+    });
+    let confirmed = vec![
+        (0.0, phase.amplitude_now_um),
+        (phase.turn_of_driving_deg, phase.amplitude_um),
+    ];
+    let confirmed = Series::new("in full", PALETTE[0], Look::Rings, confirmed);
+    let series: Vec<Series> = lines.chain([confirmed]).collect();
+    let points = series.iter().flat_map(|each| &each.points);
+    let [right, most] = points.fold([0.0_f64; 2], |[x, y], point| {
+        [x.max(point.0), y.max(point.1)]
+    });
+    let chart = Chart {
+        title: String::new(),
+        x: Axis::linear("turn of the driving gear's holes in degrees", 0.0, right),
+        y: Axis::linear("transmission error in µm", 0.0, 1.08 * most),
+        marks: vec![Mark {
+            x: phase.turn_of_driving_deg,
+            name: format!("{:.1}°", phase.turn_of_driving_deg),
+        }],
+        series,
+    };
+    let title = format!(
+        "Phase of the holes: order {}, {} N m",
+        phase.order,
+        short(phase.output_torque_n_m)
+    );
+    svg(&title, Panel::Chart(chart), SIZE)
 }
 
 /// A number without digits that say nothing.
@@ -428,6 +471,22 @@ mod tests {
         (bare.spectrum, bare.dynamics) = (None, None);
         for (picture, _) in ALL {
             assert!(picture.draw(&[&bare]).is_none(), "{picture:?}");
+        }
+    }
+
+    #[test]
+    fn the_phase_of_the_holes_is_drawn_with_its_best_turn() {
+        let phase = json!({ "output_torque_n_m": 115.0, "order": 10, "turn_of_driving_deg": 28.26, "amplitude_um": 0.0004, "amplitude_now_um": 0.418,
+            "other_flanks_turn_deg": 14.94,
+            "over_turn": { "turn_of_driving_deg": [0.0, 18.0, 36.0], "amplitude_um": [0.418, 0.521, 0.418], "peak_to_peak_um": [3.9, 4.2, 3.9] } });
+        let svg = hole_phase(&serde_json::from_value(phase).expect("a phase"));
+        for word in [
+            "order 10, 115 N m",
+            "28.3°",
+            "peak-to-peak",
+            "turn of the driving gear",
+        ] {
+            assert!(svg.contains(word), "{word} in {svg}");
         }
     }
 

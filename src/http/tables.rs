@@ -238,7 +238,7 @@ pub(super) struct TableParameters {
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/results/{table}", tag = "Results", operation_id = "get_table",
     params(
-        ("table" = String, Path, example = "ste.csv", description = "`ste`, `mesh-stiffness`, `spectrum`, `run-up` or `face-load`, with `.json`, `.csv` or `.svg`; or `load-share.svg`; or `force-table.csv`, `force-table.txt` (CombiTable2D), `force-table.mo` (a Modelica package), `force-table.fmu` (FMU 2.0, `application/octet-stream`); or `look-up-table.csv`, `look-up-table.txt`, which have one curve over the angle in SI units, datum and signs in their head."),
+        ("table" = String, Path, example = "ste.csv", description = "`ste`, `mesh-stiffness`, `spectrum`, `run-up` or `face-load`, with `.json`, `.csv` or `.svg`; or `load-share.svg`; or `hole-phase.svg`; or `force-table.csv`, `force-table.txt` (CombiTable2D), `force-table.mo` (a Modelica package), `force-table.fmu` (FMU 2.0, `application/octet-stream`); or `look-up-table.csv`, `look-up-table.txt`, which have one curve over the angle in SI units, datum and signs in their head."),
         TableParameters,
         IfNoneMatch,
     ),
@@ -332,6 +332,13 @@ fn make(
             });
             Ok(pictures::answer(svg?))
         }
+        File::HolePhase => {
+            let phase = results.hole_phase.as_ref().ok_or_else(|| {
+                let detail = "These results have no hole_phase: it is found in the plane for gears as drawn that repeat at one order, over whole true periods.";
+                Problem::new(Code::NotFound, detail)
+            });
+            Ok(pictures::answer(pictures::hole_phase(phase?)))
+        }
         File::LookUp(form) => look_up_table(&results, &curves, form, name),
         File::Forces(form) => forces(&results, form, name),
         File::Fmu => packed(&results, name),
@@ -394,13 +401,14 @@ enum Form {
 enum File {
     Table(Table, Form),
     Picture(Picture),
+    HolePhase,
     LookUp(look_up::Form),
     Forces(force_table::Form),
     Fmu,
 }
 
 #[rustfmt::skip]
-const FILES: [(&str, File); 22] = [
+const FILES: [(&str, File); 23] = [
     ("ste.json", File::Table(Table::TransmissionError, Form::Json)),
     ("ste.csv", File::Table(Table::TransmissionError, Form::Csv)),
     ("ste.svg", File::Picture(Picture::TransmissionError)),
@@ -417,6 +425,7 @@ const FILES: [(&str, File); 22] = [
     ("face-load.csv", File::Table(Table::FaceLoad, Form::Csv)),
     ("face-load.svg", File::Picture(Picture::FaceLoad)),
     ("load-share.svg", File::Picture(Picture::LoadShare)),
+    ("hole-phase.svg", File::HolePhase),
     ("look-up-table.csv", File::LookUp(look_up::Form::Csv)),
     ("look-up-table.txt", File::LookUp(look_up::Form::Text)),
     ("force-table.csv", File::Forces(force_table::Form::Csv)),
@@ -433,7 +442,7 @@ impl File {
             Self::Table(_, Form::Csv)
             | Self::LookUp(look_up::Form::Csv)
             | Self::Forces(force_table::Form::Csv) => "text/csv",
-            Self::Picture(_) => "image/svg+xml",
+            Self::Picture(_) | Self::HolePhase => "image/svg+xml",
             Self::LookUp(look_up::Form::Text)
             | Self::Forces(force_table::Form::Text | force_table::Form::Modelica) => "text/plain",
             Self::Fmu => "application/octet-stream",

@@ -7,6 +7,9 @@ import { isSolid } from "../state/dimensions.js";
 
 /** @import { Submission } from "../state/documents.js" */
 
+/** @type {(submission: Submission) => unknown} */
+const hasHolesInBoth = ({ method, pair: { driving, driven } }) =>
+  !isSolid(method) && driving.blank.holes && driven.blank.holes;
 /** @type {(submission: Submission) => boolean} */
 const isInThree = ({ method }) => isSolid(method);
 /** @type {(submission: Submission) => unknown} */
@@ -24,6 +27,7 @@ const FILES = [
   ["look-up-table.csv", "Look-up table, CSV"],
   ["look-up-table.txt", "Look-up table, Modelica text"],
   ["fields.vtu", "Stress and displacement, VTU"],
+  ["hole-phase.svg", "Phase of the holes, SVG", hasHolesInBoth],
   ["contact-pattern.json", "Contact pattern, JSON", isInThree],
   ["contact-pattern.svg", "Contact pattern, SVG", isInThree],
   ["face-load.csv", "Load along the face, CSV", isInThree],

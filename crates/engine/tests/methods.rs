@@ -481,6 +481,35 @@ fn the_projection_says_how_far_off_it_is() {
 }
 
 #[test]
+fn the_decomposition_says_how_far_off_it_is() {
+    // Holes whose rim is as high as a tooth, and small ones far from the teeth: there the rigid blank shares the load otherwise than a solid one.
+    for holes in [(10, 40e-3, 5e-3), (10, 26e-3, 2e-3)] {
+        let mut case = study_design(Some(holes), &[115.0]);
+        case.resolution.positions_per_mesh_period = 20;
+        let exact = curve(&case, Method::Flexible);
+        let decomposed = solve(&case, Method::Decomposition);
+        let found = &decomposed.curves[0];
+        let pairs = exact
+            .transmission_error
+            .iter()
+            .zip(&found.transmission_error);
+        let furthest = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let told = decomposed
+            .evidence
+            .decomposition_error
+            .expect("it is fitted");
+        let part = told / found.transmission_error_statistics.peak_to_peak;
+        println!("told {told:.2e} of {furthest:.2e} m, {part:.3} of the peak-to-peak");
+        // It is met at 16 places of a hole pitch, at other fractions of the mesh period than the curve.
+        assert!(told > 0.6 * furthest && told < 1.5 * furthest);
+        let mut warnings = decomposed.warnings.iter();
+        let is_doubtful =
+            warnings.any(|warning| matches!(warning, Warning::DecompositionDoubtful { .. }));
+        assert_eq!(is_doubtful, part > 0.05);
+    }
+}
+
+#[test]
 fn a_library_provides_what_is_made_without_one() {
     for case in designs_by_methods() {
         let made = analyze(&case, &MakeAll, &Run::unattended()).expect("a design of the study");

@@ -5,6 +5,7 @@
 //! knows the names of that document's fields.
 
 mod digits;
+pub mod divided;
 pub mod dxf;
 pub mod fmu;
 pub mod force_table;

@@ -9,6 +9,8 @@ use meshwright_engine::analysis::fields::GearField;
 use meshwright_engine::fem::volume::{Volume, von_mises};
 use meshwright_engine::grid::ElementKind;
 
+use super::divided::{Divided, Values};
+
 /// A gear, as a plate or as a volume.
 #[derive(Clone, Copy)]
 pub enum Piece<'a> {
@@ -16,6 +18,8 @@ pub enum Piece<'a> {
     Plate(&'a GearField),
     /// As those see it that see the faces.
     Volume(&'a Volume),
+    /// Either on linear cells.
+    Linear(&'a Divided),
 }
 
 impl<'a> Piece<'a> {
@@ -23,64 +27,62 @@ impl<'a> Piece<'a> {
         match self {
             Self::Plate(gear) => gear.nodes.len(),
             Self::Volume(gear) => gear.nodes.len(),
+            Self::Linear(gear) => gear.points.len(),
         }
     }
 
-    fn cells(self) -> usize {
+    pub(crate) fn cells(self) -> usize {
         match self {
             Self::Plate(gear) => gear.elements.len(),
             Self::Volume(gear) => gear.elements.len(),
+            Self::Linear(gear) => gear.cells.len(),
         }
     }
 
-    /// Where a point lies, in mm.
-    fn point(self, number: usize) -> [f64; 3] {
-        match self {
-            Self::Plate(gear) => [gear.nodes[number].x, gear.nodes[number].y, 0.0],
-            Self::Volume(gear) => gear.nodes[number].into(),
-        }
-        .map(|x| 1e3 * x)
-    }
-
-    /// How it moves, in µm.
-    fn displacement(self, number: usize) -> [f64; 3] {
-        match self {
+    /// What goes on at a point: where it lies in mm, how it moves in µm, and its stresses in MPa.
+    pub(crate) fn values(self, number: usize) -> Values {
+        let (place, displacement, stress, von_mises) = match self {
             Self::Plate(gear) => {
-                let u = gear.displacements[number];
-                [u.x, u.y, 0.0]
-            }
-            Self::Volume(gear) => gear.displacements[number].into(),
-        }
-        .map(|u| 1e6 * u)
-    }
-
-    /// The stress tensor there, in MPa.
-    fn stress(self, number: usize) -> [f64; 9] {
-        match self {
-            Self::Plate(gear) => {
+                let (at, u) = (gear.nodes[number], gear.displacements[number]);
                 let [xx, yy, xy] = gear.stresses[number];
-                [xx, xy, 0.0, xy, yy, 0.0, 0.0, 0.0, 0.0]
+                (
+                    [at.x, at.y, 0.0],
+                    [u.x, u.y, 0.0],
+                    [xx, xy, 0.0, xy, yy, 0.0, 0.0, 0.0, 0.0],
+                    gear.von_mises[number],
+                )
             }
             Self::Volume(gear) => {
                 // Symmetric, so that rows are columns.
                 let stress = gear.stresses[number].as_slice();
-                std::array::from_fn(|place| stress[place])
+                (
+                    gear.nodes[number].into(),
+                    gear.displacements[number].into(),
+                    std::array::from_fn(|place| stress[place]),
+                    von_mises(&gear.stresses[number]),
+                )
             }
+            Self::Linear(gear) => return gear.points[number],
+        };
+        Values {
+            place: place.map(|x| 1e3 * x),
+            displacement: displacement.map(|u| 1e6 * u),
+            stress: stress.map(|stress| stress / 1e6),
+            von_mises: von_mises / 1e6,
         }
-        .map(|stress| stress / 1e6)
     }
 
-    /// The von Mises stress there, in MPa.
-    fn von_mises(self, number: usize) -> f64 {
-        let stress = match self {
-            Self::Plate(gear) => gear.von_mises[number],
-            Self::Volume(gear) => von_mises(&gear.stresses[number]),
-        };
-        stress / 1e6
+    /// The shape of the section of an element, and the layers of linear cells across it: none of a plate, or where its cells are linear.
+    pub(crate) fn element(self, number: usize) -> (ElementKind, u32) {
+        match self {
+            Self::Plate(gear) => (gear.elements[number].kind(), 0),
+            Self::Volume(gear) => (gear.elements[number].kind, Divided::LAYERS),
+            Self::Linear(gear) => (gear.cells[number].section(), 0),
+        }
     }
 
     /// VTK's number of the shape of a cell, and its points.
-    fn cell(self, number: usize) -> (u8, &'a [u32]) {
+    pub(crate) fn cell(self, number: usize) -> (u8, &'a [u32]) {
         match self {
             Self::Plate(gear) => {
                 let element = &gear.elements[number];
@@ -98,14 +100,19 @@ impl<'a> Piece<'a> {
                 };
                 (shape, &element.nodes)
             }
+            Self::Linear(gear) => {
+                let cell = &gear.cells[number];
+                (cell.shape, cell.corners())
+            }
         }
     }
 
     /// The thickness of a cell in mm; none of a volume, which shows it.
-    fn thickness(self, number: usize) -> Option<f64> {
+    pub(crate) fn thickness(self, number: usize) -> Option<f64> {
         match self {
             Self::Plate(gear) => Some(1e3 * gear.thicknesses[number]),
             Self::Volume(_) => None,
+            Self::Linear(gear) => gear.cells[number].thickness,
         }
     }
 }
@@ -146,21 +153,21 @@ pub fn write(gears: [Piece<'_>; 2], out: impl Write) -> io::Result<()> {
         file.0,
         r#"<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64"><UnstructuredGrid><Piece NumberOfPoints="{points}" NumberOfCells="{cells}"><PointData>"#
     )?;
-    let displacements = of_points().flat_map(|(gear, i)| gear.displacement(i));
+    let displacements = of_points().flat_map(|(gear, i)| gear.values(i).displacement);
     file.array(
         "displacement_um",
         ("Float32", 3),
         3 * points,
         displacements.map(single),
     )?;
-    let stresses = of_points().flat_map(|(gear, i)| gear.stress(i));
+    let stresses = of_points().flat_map(|(gear, i)| gear.values(i).stress);
     file.array(
         "stress_mpa",
         ("Float32", 9),
         9 * points,
         stresses.map(single),
     )?;
-    let von_mises = of_points().map(|(gear, i)| gear.von_mises(i));
+    let von_mises = of_points().map(|(gear, i)| gear.values(i).von_mises);
     file.array(
         "von_mises_mpa",
         ("Float32", 1),
@@ -185,7 +192,7 @@ pub fn write(gears: [Piece<'_>; 2], out: impl Write) -> io::Result<()> {
         )?;
     }
     file.0.write_all(b"</CellData><Points>")?;
-    let at = of_points().flat_map(|(gear, i)| gear.point(i));
+    let at = of_points().flat_map(|(gear, i)| gear.values(i).place);
     file.array("Points", ("Float32", 3), 3 * points, at.map(single))?;
     file.0.write_all(b"</Points><Cells>")?;
     let first = [0, driving.points() as u64];

@@ -174,13 +174,13 @@ pub fn named_or_null<S: serde::Serializer>(
     serializer.collect_map(values.map(|(name, value)| (name, One(*value))))
 }
 
-/// Writes a number that may be meant to be absent.
-pub fn one_or_null<S: serde::Serializer>(
-    value: &Option<f64>,
+/// Writes a value that may be meant to be absent.
+pub fn one_or_null<T: serde::Serialize, S: serde::Serializer>(
+    value: &Option<T>,
     serializer: S,
 ) -> Result<S::Ok, S::Error> {
     match value {
-        Some(value) => serializer.serialize_f64(*value),
+        Some(value) => value.serialize(serializer),
         // As it stands, past the formatter, which takes a null for a number that went wrong.
         None => RawValue::from_string("null".to_owned())
             .map_err(serde::ser::Error::custom)?

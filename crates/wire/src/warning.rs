@@ -81,6 +81,8 @@ pub enum WarningCode {
     HolesNotSeen,
     /// The projected decomposition leaves out too much of the effect of the holes.
     ProjectionDoubtful,
+    /// The decomposition leaves out too much of how the holed blanks turn.
+    DecompositionDoubtful,
 }
 
 /// One of the two gears.
@@ -351,6 +353,19 @@ impl WarningDocument {
                     "Where the holes let teeth touch earlier or later the projected decomposition is up to {} um off the exact transmission error, {} % of its mean and {} % of its peak-to-peak; the flexible method is exact.",
                     plain(significant(to_um(error), 3)),
                     plain(significant(100.0 * part_of_mean, 2)),
+                    plain(significant(100.0 * part_of_peak_to_peak, 2))
+                ),
+            ),
+            Warning::DecompositionDoubtful {
+                error,
+                part_of_peak_to_peak,
+            } => (
+                Code::DecompositionDoubtful,
+                None,
+                Some((to_um(error), "um")),
+                format!(
+                    "One harmonic for each holed blank leaves up to {} um of the exact transmission error, {} % of its peak-to-peak: what the holes do changes from tooth to tooth, as where they stand near the roots. The flexible method is exact.",
+                    plain(significant(to_um(error), 3)),
                     plain(significant(100.0 * part_of_peak_to_peak, 2))
                 ),
             ),

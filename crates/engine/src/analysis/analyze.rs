@@ -12,6 +12,7 @@ use super::{
 use crate::assembly::{Blanks, Parts};
 use crate::contact::PairModel;
 use crate::gear::PairDeviations;
+use crate::grid::GridLevel;
 use crate::ring::teeth::FARTHEST_COUPLED;
 use crate::run::Run;
 
@@ -32,7 +33,7 @@ pub fn analyze(case: &Case, parts: &dyn Parts, run: &Run) -> Result<Analysis, An
     Ok(windows::joined(answers))
 }
 
-/// The answer to the case of `plan`, and what the holes alone make where teeth deviate.
+/// The answer to the case of `plan`, what the holes alone make where teeth deviate, and how those of both gears stand best.
 pub(super) fn answered(
     plan: &Plan,
     parts: &dyn Parts,
@@ -46,6 +47,12 @@ pub(super) fn answered(
                 own.tell_holes_alone(alone);
             }
         }
+    }
+    if let Some(phase) = &plan.hole_phase {
+        let (case, level) = (&plan.case, plan.case.resolution.grid);
+        analysis.hole_phase = coupled_as_needed(case, level, parts, run, |setup| {
+            phase.solve(setup, &analysis.curves)
+        })?;
     }
     Ok(analysis)
 }
@@ -65,6 +72,7 @@ pub(super) fn carried_out(
         None => Analysis {
             curves: Vec::new(),
             evidence: Evidence::new(0),
+            hole_phase: None,
             warnings: warnings(case),
         },
     };
@@ -90,7 +98,8 @@ fn passed(
     parts: &dyn Parts,
     run: &Run,
 ) -> Result<Analysis, AnalysisError> {
-    let in_plane = |solve| coupled_as_needed(case, pass, parts, run, solve);
+    let in_plane =
+        |solve: Solve| coupled_as_needed(case, pass.level, parts, run, |setup| solve(setup, pass));
     match &case.model {
         Model::Section(SectionHoles::Whole) => in_plane(flexible::solve),
         Model::Section(SectionHoles::Fitted) => in_plane(decomposition::solve),
@@ -105,19 +114,19 @@ fn passed(
 /// How a plane method computes a case.
 type Solve = fn(Setup<'_>, &Pass) -> Result<Analysis, AnalysisError>;
 
-/// Makes one `pass` over `case` in the plane, with teeth coupled as far apart as they turn out to be loaded together.
-fn coupled_as_needed(
+/// What `solve` finds of `case` in the plane at `level`, with teeth coupled as far apart as they turn out to be loaded together.
+fn coupled_as_needed<T>(
     case: &Case,
-    pass: &Pass,
+    level: GridLevel,
     parts: &dyn Parts,
     run: &Run,
-    solve: Solve,
-) -> Result<Analysis, AnalysisError> {
+    solve: impl Fn(Setup<'_>) -> Result<T, AnalysisError>,
+) -> Result<T, AnalysisError> {
     let deviations = case.pair.deviations();
     let mut farthest = FIRST_COUPLED;
     loop {
-        let setup = Setup::new((case, &deviations), pass.level, farthest, parts, run);
-        match solve(setup, pass) {
+        let setup = Setup::new((case, &deviations), level, farthest, parts, run);
+        match solve(setup) {
             Err(AnalysisError::TooFarApart { .. }) if farthest < FARTHEST_COUPLED => farthest *= 2,
             answer => return answer,
         }

@@ -2,6 +2,7 @@
 
 use super::curve::Curve;
 use super::evidence::Evidence;
+use super::hole_phase::HolePhase;
 use super::warning::Warning;
 
 /// The answer to a [`super::Case`].
@@ -11,6 +12,8 @@ pub struct Analysis {
     pub curves: Vec<Curve>,
     /// How good it is.
     pub evidence: Evidence,
+    /// How the holes of both gears stand best, where they excite one order together.
+    pub hole_phase: Option<HolePhase>,
     /// What a reader should know.
     pub warnings: Vec<Warning>,
 }

@@ -45,6 +45,14 @@ impl Method {
         matches!(self, Self::Flexible | Self::ThreeDimensional)
     }
 
+    /// Whether it says how the holes of both gears stand best.
+    pub fn finds_hole_phase(self) -> bool {
+        matches!(
+            self,
+            Self::Flexible | Self::Decomposition | Self::ProjectedDecomposition
+        )
+    }
+
     /// Whether it sees the holes of the blanks.
     pub fn sees_holes(self) -> bool {
         self != Self::LoadDistribution

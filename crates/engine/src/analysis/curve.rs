@@ -7,7 +7,7 @@ use super::spectrum::Spectrum;
 use super::statistics::{SamplingError, Statistics};
 use super::stress::GearStresses;
 use crate::contact::face::even::EvenLead;
-use crate::gear::Member;
+use crate::gear::{Member, SpurGear};
 
 /// The share of the load that the tooth pairs at one offset carry, position by position.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,6 +54,20 @@ impl BlankFit {
         let higher =
             higher.map(|((amplitude, phase), k)| amplitude * (f64::from(k) * angle + phase).cos());
         self.mean + first + higher.sum::<f64>()
+    }
+
+    /// The fitted rotation of the blank of `gear` at a mesh position, in meters.
+    pub(super) fn at_position(&self, gear: &SpurGear, mesh_position: f64) -> f64 {
+        // Eq. (13) has 2πθ and N; with θ in radians, a period of 2π/N is cos(Nθ).
+        self.at(f64::from(gear.hole_repeats()) * mesh_position * gear.pitch_angle())
+    }
+
+    /// The largest difference of the fit to its samples, in meters.
+    pub(super) fn remainder(&self, gear: &SpurGear) -> f64 {
+        let each = self.samples.iter();
+        let left = each
+            .map(|sample| (sample.rotation - self.at_position(gear, sample.mesh_position)).abs());
+        left.fold(0.0, f64::max)
     }
 }
 

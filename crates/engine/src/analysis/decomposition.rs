@@ -106,6 +106,7 @@ pub(super) fn solve(setup: Setup<'_>, pass: &Pass) -> Result<Analysis, AnalysisE
         };
         let found = find(&pass.curve)?;
         let (parts, _) = under.parts(&found, &[], |sweep, _| find(sweep))?;
+        under.fitted_but_for(middle.remainder());
         let of_rigid = found.contacts.iter();
         let of_rigid = of_rigid.map(|contact| contact.transmission_error);
         Ok(CurveParts {
@@ -126,6 +127,13 @@ struct Terms<'a> {
 }
 
 impl<'a> Terms<'a> {
+    /// By how much δ is off at the samples of the holed blanks: what the fits leave of them.
+    fn remainder(&self) -> f64 {
+        let pair = &self.rigid.setup.case.pair;
+        let each = self.fits.iter();
+        each.map(|fit| fit.remainder(pair.gear(fit.member))).sum()
+    }
+
     fn under(
         rigid: &'a ModeledPair<'a>,
         blanks: &[HoledBlank<'_>],
@@ -147,9 +155,7 @@ impl<'a> Terms<'a> {
         let delta = places.map(|place| {
             let fits = self.fits.iter().map(|fit| {
                 let gear = case.pair.gear(fit.member);
-                // Eq. (13) has 2πθ and N; with θ in radians, a period of 2π/N is cos(Nθ).
-                let n = f64::from(gear.hole_repeats());
-                fit.at(n * place.position * gear.pitch_angle())
+                fit.at_position(gear, place.position)
             });
             contacts[place.contact].transmission_error + fits.sum::<f64>()
         });

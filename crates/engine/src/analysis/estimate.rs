@@ -90,7 +90,20 @@ fn add_contacts(estimate: &mut Estimate, plan: &Plan) {
             estimate.memory += 8 * (positions * faces.slices as u64);
             along_faces(plan, faces)
         }
-        Model::Section(_) => plan.passes.iter().map(|pass| in_plane(plan, pass)).sum(),
+        Model::Section(_) => {
+            let of_passes = case.output_torques.iter().flat_map(|torque| {
+                let each = plan.passes.iter();
+                each.map(|pass| {
+                    let solutions = [pass.solutions(), pass.first_solutions()];
+                    in_plane(case, *torque, pass.level, solutions)
+                })
+            });
+            let of_phase = plan.hole_phase.as_ref().map_or(0.0, |phase| {
+                let solutions = [phase.solutions(), phase.first_solutions()];
+                in_plane(case, phase.output_torque(), case.resolution.grid, solutions)
+            });
+            of_passes.sum::<f64>() + of_phase
+        }
     };
 }
 
@@ -98,7 +111,9 @@ fn add_contacts(estimate: &mut Estimate, plan: &Plan) {
 fn add_gears(estimate: &mut Estimate, plan: &Plan) {
     for (number, pass) in plan.passes.iter().enumerate() {
         for member in Member::BOTH {
-            let gear = of_gear(&plan.case, member, pass);
+            let again = plan.hole_phase.as_ref().filter(|_| number == 0);
+            let again = again.map_or(0, |phase| phase.joined(member));
+            let gear = of_gear(&plan.case, member, pass, again);
             estimate.seconds += gear.seconds;
             estimate.memory += gear.memory;
             if number == 0 {
@@ -221,22 +236,21 @@ fn along_faces(plan: &Plan, faces: &Faces) -> f64 {
     plan.passes.iter().map(of_pass).sum()
 }
 
-/// Seconds that the contacts of a `pass` of `plan` take in the plane.
-fn in_plane(plan: &Plan, pass: &Pass) -> f64 {
-    let case = &plan.case;
+/// Seconds that so many contacts of `case` under a torque take in the plane, of which so many are the first at their fraction of the mesh period.
+fn in_plane(
+    case: &Case,
+    output_torque: f64,
+    level: GridLevel,
+    [solutions, firsts]: [u64; 2],
+) -> f64 {
     let [per_first, per_further, per_system, ..] = SECONDS;
-    let torques = case.output_torques.len() as f64;
-    let [solutions, firsts] =
-        [pass.solutions(), pass.first_solutions()].map(|count| torques * count as f64);
-    let of_torque = |&output_torque: &f64| {
-        let (pairs, digging) = pairs_together(case, output_torque);
-        let cells = (pairs * cells_per_patch(pass.level)) as f64;
-        let first = per_first * if digging { DIGGING } else { 1.0 };
-        let solved = first * firsts + per_further * (solutions - firsts);
-        (cells / CELLS).powi(3) * (solved + per_system * systems(case) * solutions)
-    };
-    let seconds: f64 = case.output_torques.iter().map(of_torque).sum();
-    seconds / torques
+    let further = (solutions - firsts) as f64;
+    let [solutions, firsts] = [solutions, firsts].map(|count| count as f64);
+    let (pairs, digging) = pairs_together(case, output_torque);
+    let cells = (pairs * cells_per_patch(level)) as f64;
+    let first = per_first * if digging { DIGGING } else { 1.0 };
+    let solved = first * firsts + per_further * further;
+    (cells / CELLS).powi(3) * (solved + per_system * systems(case) * solutions)
 }
 
 /// The tooth pairs that come together under a torque, about, and whether they are more than without load.
@@ -269,8 +283,8 @@ fn systems(case: &Case) -> f64 {
     5.0 + updates.min(2000.0)
 }
 
-/// What making one gear costs, in all models that `pass` needs of it.
-fn of_gear(case: &Case, member: Member, pass: &Pass) -> Estimate {
+/// What making one gear costs, in all models that `pass` needs of it, and joining it with its blank `again` so many times.
+fn of_gear(case: &Case, member: Member, pass: &Pass, again: u32) -> Estimate {
     let mut estimate = Estimate::default();
     let level = pass.level;
     let [.., per_node, per_operation] = SECONDS;
@@ -296,7 +310,8 @@ fn of_gear(case: &Case, member: Member, pass: &Pass) -> Estimate {
     let repeats = f64::from(gcd(gear.tooth_count(), blank.sector_count));
     let rows = teeth as f64 / repeats;
     // One model has this blank flexible; in another that stands beside it all teeth are coupled alike.
-    let couplings = rows + if pass.has_rigid_blanks() { 17.0 } else { 0.0 };
+    let joined = f64::from(1 + again);
+    let couplings = joined * rows + if pass.has_rigid_blanks() { 17.0 } else { 0.0 };
     // At the most two matrices of all orders at once: the ring of teeth, and what is factorized.
     estimate.memory = (8.0
         * (2.0 * all * all
@@ -309,7 +324,7 @@ fn of_gear(case: &Case, member: Member, pass: &Pass) -> Estimate {
     }
     let factorization = met * met * met / (6.0 * repeats * repeats);
     let answers = rows * PATTERNS * met * (met / (2.0 * repeats) + 5.0 * PATTERNS);
-    estimate.seconds =
-        per_node * (tooth_nodes + blank_nodes) as f64 + per_operation * (factorization + answers);
+    estimate.seconds = per_node * (tooth_nodes + blank_nodes) as f64
+        + per_operation * joined * (factorization + answers);
     estimate
 }

@@ -30,6 +30,8 @@ pub struct Evidence {
     /// The largest difference of the projected decomposition to exact solutions at a few positions of each torque where it is least
     /// sure, in meters; `None` for other methods.
     pub projection_error: Option<f64>,
+    /// The largest difference of the decomposition to exact solutions where the turn of its holed blanks was sampled, in meters; `None` for other methods.
+    pub decomposition_error: Option<f64>,
     /// The discretization error, where it was asked for.
     pub error_estimate: Option<ErrorEstimate>,
 }
@@ -44,6 +46,7 @@ impl Evidence {
             largest_penetration: 0.0,
             contact_iterations: 0,
             projection_error: None,
+            decomposition_error: None,
             error_estimate: None,
         }
     }

@@ -5,10 +5,11 @@
 //! - `under_load` (what all methods do alike, torque by torque), `found` (what each finds at some positions), `setup` and `pair_contacts` (what methods by
 //!   finite elements work with);
 //! - `flexible`, `decomposition`, `projected`, `three_dimensional` and `load_distribution` (the methods), `first_order` (what holes change, in the plane and
-//!   along faces) and `checks` (where that is compared with exact solutions), `light` (torque 0, alike for all);
+//!   along faces) and `checks` (where that is compared with exact solutions), [`hole_phase`] (how the holes of both gears stand best), `light` (torque 0, alike for
+//!   all);
 //! - [`stress`] (at roots and holes; along faces `face_stress`), [`fields`] (everywhere; along faces [`face_fields`]), [`contact_pattern`] (over the flanks);
 //! - `between` (a curve between its positions), `curve_parts` and [`curve`] with its `statistics`, [`largest_where`] (where its largest values stand), [`pressures`] (what they come to),
-//!   [`spectrum`] and [`single_flank`]; `windows` (stretches of a true period that is too long), [`mesh_wave`] and `pair_springs` (what they tell of the mesh orders);
+//!   [`spectrum`] and [`single_flank`] with the `long_wave`; `windows` (stretches of a true period that is too long), [`mesh_wave`] and `pair_springs` (what they tell of the mesh orders);
 //! - [`evidence`], [`warning`], [`error`] and `answer` (all that comes out); [`forces`] (tables of force), [`at_speed`] (motion).
 
 mod analyze;
@@ -31,9 +32,11 @@ mod first_order;
 mod flexible;
 pub mod forces;
 mod found;
+pub mod hole_phase;
 pub mod largest_where;
 mod light;
 mod load_distribution;
+mod long_wave;
 pub mod mesh_wave;
 mod orders;
 mod pair_contacts;

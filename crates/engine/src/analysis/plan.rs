@@ -6,6 +6,7 @@ use super::between::{MOST_FOR_PEAKS, Refinement, Sample, Sections, most_further}
 use super::case::{Case, Method, Place, StiffnessRule};
 use super::case::{FaceHoles, Model, SectionHoles};
 use super::checks::Checks;
+use super::hole_phase::PhasePlan;
 use crate::assembly::Blanks;
 use crate::contact::MeshContact;
 use crate::contact::positions::stages;
@@ -27,6 +28,8 @@ pub(super) struct Plan {
     pub(super) light: Sweep,
     /// The pass behind the curves, and a second one at another level for their discretization error. There is none without load.
     pub(super) passes: Vec<Pass>,
+    /// The best turn of the driving blank, where there is one.
+    pub(super) hole_phase: Option<PhasePlan>,
 }
 
 /// The level with which one along faces is compared for its error: the next coarser, which differs by more than a finer one would and costs less; the next finer of the
@@ -120,6 +123,7 @@ impl Plan {
             case: case.clone(),
             light: Sweep::repeating(case, Blanks::HoledRigid, None),
             passes: levels.into_iter().map(pass).collect(),
+            hole_phase: PhasePlan::of(case),
         }
     }
 
@@ -127,6 +131,7 @@ impl Plan {
     pub(super) fn of_rows(case: &Case) -> Self {
         let mut plan = Self::of(case);
         plan.light.further = Further::NONE;
+        plan.hole_phase = None;
         for pass in &mut plan.passes {
             pass.curve.further = Further::NONE;
         }
@@ -136,7 +141,8 @@ impl Plan {
     /// The contact solutions under all torques.
     pub(super) fn solutions(&self) -> u64 {
         let under_each: u64 = self.passes.iter().map(Pass::solutions).sum();
-        under_each * self.case.loaded_torques().count() as u64
+        let phase = self.hole_phase.as_ref().map_or(0, PhasePlan::solutions);
+        under_each * self.case.loaded_torques().count() as u64 + phase
     }
 }
 

@@ -64,7 +64,7 @@ pub(super) fn solve(setup: Setup<'_>, pass: &Pass) -> Result<Analysis, AnalysisE
 }
 
 /// The model whose `holed` blanks are alike all around.
-fn round_average(whole: &PairModel, holed: &[Member]) -> PairModel {
+pub(super) fn round_average(whole: &PairModel, holed: &[Member]) -> PairModel {
     whole.with_couplings(|member, coupling| {
         if holed.contains(&member) {
             Arc::new(coupling.round_average())
@@ -75,7 +75,12 @@ fn round_average(whole: &PairModel, holed: &[Member]) -> PairModel {
 }
 
 /// qᵀ X p and qᵀ X q of `members` for the loads of `pairs` in the mesh period `period`: what their blanks yield.
-fn yielded(model: &PairModel, members: &[Member], pairs: &[PairLoads], period: i64) -> [f64; 2] {
+pub(super) fn yielded(
+    model: &PairModel,
+    members: &[Member],
+    pairs: &[PairLoads],
+    period: i64,
+) -> [f64; 2] {
     let mut sums = [0.0; 2];
     for &member in members {
         add_yielded(&mut sums, member.index(), pairs, |a, b| {

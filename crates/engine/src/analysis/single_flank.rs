@@ -2,9 +2,8 @@
 
 use std::collections::VecDeque;
 
-use realfft::RealFftPlanner;
-
 use super::between::Sections;
+use super::long_wave::LongWave;
 
 /// Places in a mesh period, at least, between which δ is taken as straight.
 const TRACED: usize = 400;
@@ -30,13 +29,10 @@ impl SingleFlank {
         let [long_wave, short_wave, mesh_harmonics_rms] = match resampled {
             None => [None; 3],
             Some(delta) => {
-                let long = slow(delta, periods as usize);
-                let step = periods / delta.len() as f64;
-                let short = traced
-                    .iter()
-                    .map(|&(x, value)| value - between(&long, (x - traced[0].0) / step));
-                let [long, short] = [range(long.iter().copied()), range(short)];
-                [long, short, repeating_rms(delta, periods as usize)].map(Some)
+                let long = LongWave::of(delta, traced[0].0, periods as u32);
+                let short = traced.iter().map(|&(x, value)| value - long.at(x));
+                let short = range(short);
+                [long.range(), short, repeating_rms(delta, periods as usize)].map(Some)
             }
         };
         Self {
@@ -46,39 +42,6 @@ impl SingleFlank {
             mesh_harmonics_rms,
         }
     }
-}
-
-/// What of `values`, at equal steps over so many mesh periods that repeat, has fewer than half a cycle in a mesh period, but for the mean.
-fn slow(values: &[f64], periods: usize) -> Vec<f64> {
-    let n = values.len();
-    if periods <= 2 {
-        return vec![0.0; n];
-    }
-    let mut planner = RealFftPlanner::<f64>::new();
-    let (forward, back) = (planner.plan_fft_forward(n), planner.plan_fft_inverse(n));
-    let mut input = values.to_vec();
-    let mut lines = forward.make_output_vec();
-    forward
-        .process(&mut input, &mut lines)
-        .expect("the planner made both buffers for this length");
-    for (bin, line) in lines.iter_mut().enumerate() {
-        *line = if bin > 0 && 2 * bin < periods {
-            *line / n as f64
-        } else {
-            Default::default()
-        };
-    }
-    back.process(&mut lines, &mut input)
-        .expect("the planner made both buffers for this length");
-    input
-}
-
-/// `values`, which repeat, at a place between two of them.
-fn between(values: &[f64], place: f64) -> f64 {
-    let (before, part) = (place.floor(), place.fract());
-    let at = |i: usize| values[i % values.len()];
-    let before = before as usize;
-    at(before) + part * (at(before + 1) - at(before))
 }
 
 /// The largest less the smallest.

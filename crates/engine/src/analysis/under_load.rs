@@ -7,7 +7,8 @@ use super::evidence::Evidence;
 use super::found::{Between, Found, Kept};
 use super::plan::{Pass, Sweep};
 use super::warning::{
-    Warning, warn_of_positions, warn_of_pressures, warn_of_projection, warn_of_tips, warnings,
+    Warning, warn_of_decomposition, warn_of_positions, warn_of_pressures, warn_of_projection,
+    warn_of_tips, warnings,
 };
 use super::{Analysis, AnalysisError};
 use crate::run::Run;
@@ -74,6 +75,8 @@ pub(super) struct UnderLoad<'a> {
     pub(super) warnings: &'a mut Vec<Warning>,
     /// The largest difference to exact solutions, in meters, where there is one.
     projection_error: Option<f64>,
+    /// By how much δ of the decomposition is off where its blanks were sampled, in meters.
+    decomposition_error: Option<f64>,
 }
 
 impl UnderLoad<'_> {
@@ -100,6 +103,11 @@ impl UnderLoad<'_> {
                 Ok(further)
             },
         )
+    }
+
+    /// Notes that the rotations of holed blanks are fitted but for `remainder`, in meters.
+    pub(super) fn fitted_but_for(&mut self, remainder: f64) {
+        self.decomposition_error = Some(remainder);
     }
 
     /// Compares what is `found` by a projection with δ of `exact` solutions, at the positions at which it is least sure.
@@ -164,13 +172,20 @@ pub(super) fn curves(
             evidence: &mut evidence,
             warnings: &mut warnings,
             projection_error: None,
+            decomposition_error: None,
         };
         let parts = solve(&mut under)?;
         check_work(case, output_torque, &parts.sections)?;
-        let error = under.projection_error;
+        let (projection_error, decomposition_error) =
+            (under.projection_error, under.decomposition_error);
         let curve = parts.into_curve(case, output_torque);
         warn_of_positions(under.warnings, case, &curve);
-        if let Some(error) = error {
+        if let Some(error) = decomposition_error {
+            let known = evidence.decomposition_error.unwrap_or(0.0);
+            evidence.decomposition_error = Some(error.max(known));
+            warn_of_decomposition(&mut warnings, error, &curve.transmission_error_statistics);
+        }
+        if let Some(error) = projection_error {
             let known = evidence.projection_error.unwrap_or(0.0);
             evidence.projection_error = Some(error.max(known));
             warn_of_projection(&mut warnings, error, &curve.transmission_error_statistics);
@@ -181,6 +196,7 @@ pub(super) fn curves(
     Ok(Analysis {
         curves,
         evidence,
+        hole_phase: None,
         warnings,
     })
 }

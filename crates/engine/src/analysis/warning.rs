@@ -25,6 +25,9 @@ const LIKE_WIDTHS: f64 = 1.5;
 /// holes do to the fluctuation; at single positions case 1 of the paper is 4 % of it off, in its statistics 0.1 %.
 const DOUBTFUL_PROJECTION: [f64; 2] = [0.01, 0.05];
 
+/// Beyond this part of the peak-to-peak there is a warning of what the fits of the decomposition leave of the turn of holed blanks.
+const DOUBTFUL_DECOMPOSITION: f64 = 0.05;
+
 /// Below so many positions a mesh period there is a warning of orders: each position gives half a mesh harmonic, and the upper ones badly.
 pub const FEW_POSITIONS: u32 = 20;
 
@@ -170,6 +173,13 @@ pub enum Warning {
         /// What part of the mean of its curve that is.
         part_of_mean: f64,
         /// What part of its peak-to-peak.
+        part_of_peak_to_peak: f64,
+    },
+    /// What one harmonic for each holed blank leaves out shows in the curve of the decomposition.
+    DecompositionDoubtful {
+        /// The largest difference to the exact δ that was found, in meters.
+        error: f64,
+        /// What part of the peak-to-peak of its curve that is.
         part_of_peak_to_peak: f64,
     },
 }
@@ -342,6 +352,25 @@ pub(super) fn warn_of_projection(warnings: &mut Vec<Warning>, error: f64, statis
             part_of_peak_to_peak: parts[1],
         });
     }
+}
+
+/// Warns of an `error` of the decomposition that shows in a curve with these `statistics`; of that which shows most once.
+pub(super) fn warn_of_decomposition(
+    warnings: &mut Vec<Warning>,
+    error: f64,
+    statistics: &Statistics,
+) {
+    let least = LEAST_FLUCTUATION * statistics.mean.abs().max(f64::MIN_POSITIVE);
+    let part = error / statistics.peak_to_peak.max(least);
+    let more = |warning: &Warning| matches!(warning, Warning::DecompositionDoubtful { part_of_peak_to_peak, .. } if *part_of_peak_to_peak >= part);
+    if part <= DOUBTFUL_DECOMPOSITION || warnings.iter().any(more) {
+        return;
+    }
+    warnings.retain(|warning| !matches!(warning, Warning::DecompositionDoubtful { .. }));
+    warnings.push(Warning::DecompositionDoubtful {
+        error,
+        part_of_peak_to_peak: part,
+    });
 }
 
 /// Warns of a `curve` whose positions leave its peak-to-peak open; of that which leaves most once.

@@ -192,6 +192,24 @@ impl GearPair {
         }
     }
 
+    /// The [mirror image](Self::mirror_image) with the blanks that the mirror shows: it rolls on its loaded flanks as this pair does on the others.
+    pub fn mirror_image_of_gears(&self) -> Self {
+        let mirrored = self.mirror_image();
+        Self {
+            driving: mirrored.driving.with_blank_mirrored(self.teeth(0)[0]),
+            driven: mirrored.driven.with_blank_mirrored(self.teeth(1)[1]),
+            ..mirrored
+        }
+    }
+
+    /// The same pair with the driving blank turned by `angle` under its teeth, counter-clockwise.
+    pub fn with_driving_blank_turned(&self, angle: f64) -> Self {
+        Self {
+            driving: self.driving.with_blank_turned(angle),
+            ..self.clone()
+        }
+    }
+
     /// How many mesh periods after the loaded flank of a driving tooth its other flank passes the pitch point: the thickness of the tooth.
     pub fn other_flanks_later(&self) -> f64 {
         let alpha_w = self.working_pressure_angle();

@@ -9,6 +9,7 @@ use meshwright_wire::declare::{
 use meshwright_wire::draw::SEED;
 use meshwright_wire::pointer::{NumberKind, Pointer, Schema};
 use meshwright_wire::problem::Code;
+use meshwright_wire::submission::MOST_TORQUES;
 use meshwright_wire::units::plain;
 
 use super::{Condition, Goal, MOST_EVALUATIONS, Measure, OF_POPULATION, Search, Variable};
@@ -29,6 +30,8 @@ words! {
         Largest = "largest":
             "of the torque at which it is worst: the largest value, in at_least the smallest",
         Mean = "mean": "the mean over the torques",
+        Rms = "rms":
+            "the root mean square over the torques; with a percent, that of each member",
     }
 }
 
@@ -85,6 +88,13 @@ document! {
         ),
         /// Which torque it is told of.
         torques: Torques = word("Torques").or(Torques::Largest),
+        /// How much each of the base's output torques counts, in their order, where `torques` is
+        /// `mean` or `rms`.
+        weights: Option<Vec<f64>> = absent(
+            list("Weights", WEIGHT, MOST_TORQUES)
+                .not_empty(Code::MissingField, "give each torque its weight"),
+            "all alike",
+        ),
         /// The percentile over the members of the population that is told of it.
         percent: Option<f64> = absent(PERCENT, "the design as it is drawn"),
     }
@@ -111,6 +121,13 @@ document! {
         at_most: Option<f64> = absent(value("At most"), "no bound"),
         /// Which torque it is told of.
         torques: Torques = word("Torques").or(Torques::Largest),
+        /// How much each of the base's output torques counts, in their order, where `torques` is
+        /// `mean` or `rms`.
+        weights: Option<Vec<f64>> = absent(
+            list("Weights", WEIGHT, MOST_TORQUES)
+                .not_empty(Code::MissingField, "give each torque its weight"),
+            "all alike",
+        ),
         /// The percentile over the members of the population that has to keep it.
         percent: Option<f64> = absent(PERCENT, "the design as it is drawn"),
     }
@@ -120,6 +137,9 @@ document! {
 const fn value(title: &'static str) -> Number {
     number(title, "", -1e12, 1e12)
 }
+
+/// How much a torque counts.
+const WEIGHT: Number = number("Weight", "1", 0.0, 1e6);
 
 /// A percentile.
 const PERCENT: Number = number("Percentile", "%", 0.1, 99.9);
@@ -177,6 +197,10 @@ impl Search {
         let reader = Reader {
             population: varied,
             variables: &variables,
+            torques: base.and_then(|base| match base.at(&["output_torques_n_m"])? {
+                Node::List(torques) => Some(torques.len()),
+                _ => None,
+            }),
         };
         let numbered = document.minimize.iter().enumerate();
         let goals: Vec<_> = numbered
@@ -343,18 +367,26 @@ impl VariableDocument {
 struct Reader<'a> {
     population: Option<&'a Population>,
     variables: &'a [Variable],
+    /// The output torques of the base, if they are a list.
+    torques: Option<usize>,
 }
 
 impl Reader<'_> {
     fn goal(&self, document: &GoalDocument, place: &Location<'_>) -> Option<Goal> {
         if let Some(quantity) = document.quantity {
-            let measure = self.measure(quantity, document.torques, document.percent, place)?;
+            let torques = (document.torques, document.weights.as_deref());
+            let measure = self.measure(quantity, torques, document.percent, place)?;
             return Some(Goal::Quantity(measure));
         }
-        if document.percent.is_some() {
-            let place = place.of("percent");
-            let detail = format!("{place} stands beside cost, which is the same for all members.");
-            return place.wrong(Code::ConflictingFields, detail, None);
+        for (field, is_given, same) in [
+            ("percent", document.percent.is_some(), "for all members"),
+            ("weights", document.weights.is_some(), "under all torques"),
+        ] {
+            if is_given {
+                let place = place.of(field);
+                let detail = format!("{place} stands beside cost, which is the same {same}.");
+                return place.wrong(Code::ConflictingFields, detail, None);
+            }
         }
         let parts = document.cost.iter().flatten().enumerate().map(|(i, part)| {
             let known = |variable: &Variable| variable.path.text() == part.path;
@@ -380,7 +412,8 @@ impl Reader<'_> {
     }
 
     fn condition(&self, document: &ConditionDocument, place: &Location<'_>) -> Option<Condition> {
-        let measure = self.measure(document.quantity, document.torques, document.percent, place);
+        let torques = (document.torques, document.weights.as_deref());
+        let measure = self.measure(document.quantity, torques, document.percent, place);
         if document.at_least.is_none() && document.at_most.is_none() {
             let detail = format!("{place} needs one of at_least, at_most; it has none.");
             return place.wrong(Code::MissingField, detail, None);
@@ -396,10 +429,11 @@ impl Reader<'_> {
     fn measure(
         &self,
         QuantityName(quantity): QuantityName,
-        torques: Torques,
+        (torques, weights): (Torques, Option<&[f64]>),
         percent: Option<f64>,
         place: &Location<'_>,
     ) -> Option<Measure> {
+        self.check_weights(torques, weights, &place.of("weights"))?;
         if percent.is_some() && self.population.is_none() {
             let place = place.of("percent");
             let detail = format!(
@@ -410,8 +444,39 @@ impl Reader<'_> {
         Some(Measure {
             quantity,
             torques,
+            weights: weights.unwrap_or_default().to_vec(),
             percent,
         })
+    }
+
+    /// Refuses weights that are not one for each torque of the base, or count nothing.
+    fn check_weights(
+        &self,
+        torques: Torques,
+        weights: Option<&[f64]>,
+        place: &Location<'_>,
+    ) -> Option<()> {
+        let Some(weights) = weights else {
+            return Some(());
+        };
+        if torques == Torques::Largest {
+            let detail = format!(
+                "{place} is given, and the torque at which it is worst has no weight; torques mean and rms have."
+            );
+            return place.wrong(Code::ConflictingFields, detail, None);
+        }
+        if let Some(count) = self.torques.filter(|count| *count != weights.len()) {
+            let detail = format!(
+                "{place} has {}; the base has {count} output torques, and each needs one.",
+                weights.len()
+            );
+            return place.wrong(Code::OutOfRange, detail, Some(count as f64));
+        }
+        if weights.iter().sum::<f64>() <= 0.0 {
+            let detail = format!("{place} are all 0, so that no torque counts.");
+            return place.wrong(Code::OutOfRange, detail, None);
+        }
+        Some(())
     }
 }
 

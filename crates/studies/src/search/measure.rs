@@ -39,11 +39,11 @@ impl Measure {
         gear: GearName,
         worst: Worst,
     ) -> Option<f64> {
-        let at = |place: usize| match self.percent {
-            None => self.at(design, place, gear),
+        let over_members = |of: &dyn Fn(&Summary) -> Option<f64>| match self.percent {
+            None => of(design),
             Some(percent) => {
                 let numbers = members.iter().map(|member| {
-                    let value = member.as_ref().and_then(|one| self.at(one, place, gear));
+                    let value = member.as_ref().and_then(of);
                     value.unwrap_or(worst.beyond())
                 });
                 let mut values: Vec<f64> = numbers.collect();
@@ -61,12 +61,40 @@ impl Measure {
             Of::Pair(_) => 1,
             Of::Curve(_) => design.curves().len(),
         };
-        let values = (0..torques).map(at).collect::<Option<Vec<f64>>>()?;
-        match (self.torques, worst) {
-            (Torques::Mean, _) => crate::sample::mean(&values),
-            (Torques::Largest, Worst::Largest) => values.into_iter().reduce(f64::max),
-            (Torques::Largest, Worst::Smallest) => values.into_iter().reduce(f64::min),
+        let places = || 0..torques;
+        let of_each = || -> Option<Vec<f64>> {
+            places()
+                .map(|place| over_members(&|one| self.at(one, place, gear)))
+                .collect()
+        };
+        match self.torques {
+            Torques::Rms => over_members(&|one| {
+                let squares = places().map(|place| Some(self.at(one, place, gear)?.powi(2)));
+                Some(
+                    self.weighted(&squares.collect::<Option<Vec<f64>>>()?)?
+                        .sqrt(),
+                )
+            }),
+            Torques::Mean => self.weighted(&of_each()?),
+            Torques::Largest => of_each()?.into_iter().reduce(match worst {
+                Worst::Largest => f64::max,
+                Worst::Smallest => f64::min,
+            }),
         }
+    }
+
+    /// The mean of `values`, one for each torque, by the weights; none of nothing.
+    fn weighted(&self, values: &[f64]) -> Option<f64> {
+        // Of the pair there is one value, whatever the torques.
+        if self.weights.len() != values.len() {
+            return crate::sample::mean(values);
+        }
+        let weighed = values
+            .iter()
+            .zip(&self.weights)
+            .filter(|(_, weight)| **weight > 0.0);
+        let sum: f64 = weighed.map(|(value, weight)| weight * value).sum();
+        Some(sum / self.weights.iter().sum::<f64>())
     }
 
     /// The quantity at one torque.

@@ -60,10 +60,12 @@ pub(crate) enum Goal {
 }
 
 /// A quantity of a design, or of its members, at all torques together.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Measure {
     quantity: &'static Quantity,
     torques: Torques,
+    /// How much each torque counts, in their order; all alike if there are none.
+    weights: Vec<f64>,
     percent: Option<f64>,
 }
 
@@ -76,7 +78,7 @@ impl Measure {
     }
 }
 
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Condition {
     measure: Measure,
     at_least: Option<f64>,

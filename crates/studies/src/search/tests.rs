@@ -263,6 +263,53 @@ fn percentiles_conditions_and_costs_decide_what_is_best() {
 }
 
 #[test]
+fn a_goal_is_the_rms_over_the_torques_of_each_member_by_their_weights() {
+    let weights = [3.0, 1.0];
+    let mut search = searching(json!({
+        "variables": [{ "path": CLASS, "low": 5, "high": 6 }],
+        "minimize": [{ "quantity": RANGE, "torques": "rms", "weights": weights, "percent": 95 }],
+        "population": { "size": 8, "accuracy": { "driven": { "iso_1328_class": 6 } } },
+        "evaluations": 2,
+    }));
+    let rows = go_on(&mut search, usize::MAX);
+    let best = search.state().best.expect("a best one");
+    let class = &best.values[CLASS];
+    let members = rows
+        .iter()
+        .filter(|row| &row.changes[CLASS] == class && row.label.contains("member"));
+    let mut rms: Vec<f64> = members
+        .map(|row| {
+            let squares = [0, 1].map(|torque| weights[torque] * range_at(row, torque).powi(2));
+            (squares.iter().sum::<f64>() / 4.0).sqrt()
+        })
+        .collect();
+    rms.sort_by(f64::total_cmp);
+    let expected = crate::sample::percentile::percentile(&rms, 95.0);
+    assert!((best.goals[0].expect("told") / expected - 1.0).abs() < 1e-9);
+
+    // A weight for each torque, and only where they are averaged.
+    for (goal, place) in [
+        (
+            json!({ "torques": "rms", "weights": [1.0] }),
+            "/search/minimize/0/weights",
+        ),
+        (
+            json!({ "torques": "rms", "weights": [0.0, 0.0] }),
+            "/search/minimize/0/weights",
+        ),
+        (
+            json!({ "weights": [1.0, 1.0] }),
+            "/search/minimize/0/weights",
+        ),
+    ] {
+        let mut wrong = document(reliefs());
+        wrong["search"]["minimize"][0] = and(json!({ "quantity": RANGE }), &goal);
+        let problem = testing::study(&wrong).expect_err("refused");
+        assert_eq!(problem.errors[0].pointer, place, "{problem:?}");
+    }
+}
+
+#[test]
 fn refusals_are_counted_and_their_distance_is_that_of_the_nearest_that_would_do() {
     let mut search = searching(json!({
         "variables": [{ "path": "/pair/center_distance_mm", "low": 45, "high": 50 }],

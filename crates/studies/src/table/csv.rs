@@ -4,7 +4,6 @@ use meshwright_wire::csv::CsvWriter;
 use meshwright_wire::warning::GearName;
 
 use super::pareto::KnownQuantities;
-use super::quantity::{Of, QUANTITIES, Quantity};
 use super::row::TableRow;
 use super::summary::CurveSummary;
 
@@ -36,7 +35,8 @@ impl CsvTable {
             text.text(name);
         }
         // Rows of any study have the same names.
-        of_pair(GearName::Driven).for_each(|quantity| text.text(&quantity.column()));
+        let of_pair = self.quantities.columns_of_pair(GearName::Driven);
+        of_pair.for_each(|quantity| text.text(&quantity.column()));
         for name in ["pareto", "output_torque_n_m"] {
             text.text(name);
         }
@@ -71,7 +71,8 @@ impl CsvTable {
         text.text(&row.job.map_or_else(String::new, |job| job.to_string()));
         text.text(row.status.as_str());
         text.text(row.method.as_deref().unwrap_or_default());
-        of_pair(row.gear()).for_each(|quantity| text.number(row.number(quantity, curve)));
+        let of_pair = self.quantities.columns_of_pair(row.gear());
+        of_pair.for_each(|quantity| text.number(row.number(quantity, curve)));
         text.text(if row.pareto { "true" } else { "false" });
         text.number(curve.map(|curve| curve.output_torque_n_m));
         let curves = self.quantities.columns();
@@ -81,11 +82,4 @@ impl CsvTable {
         }
         text.end_line();
     }
-}
-
-/// The quantities that a row of a study of `gear` has of the pair.
-fn of_pair(gear: GearName) -> impl Iterator<Item = &'static Quantity> {
-    let of_pair = |quantity: &&Quantity| matches!(quantity.of, Of::Pair(_));
-    let all = QUANTITIES.iter().filter(of_pair);
-    all.filter(move |quantity| quantity.is_in_rows_of(gear))
 }

@@ -22,9 +22,9 @@ pub(crate) use named::name_quantities;
 pub use pareto::{KnownQuantities, Outline};
 pub use quantity::{Better, Quantity, QuantityEntry, QuantityOf, quantities};
 pub(crate) use quantity::{Of, QUANTITIES};
-pub use row::{RowCurve, RowState, TableRow};
+pub use row::{RowCurve, RowMeshOrders, RowState, TableRow};
 pub(crate) use summary::CurveSummary;
-pub use summary::Summary;
+pub use summary::{HolePhaseSummary, Summary};
 
 /// The table of a study. It can be read at any time; rows fill as their designs are computed.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]

@@ -30,12 +30,26 @@ impl KnownQuantities {
     /// Looks at the numbers of the next row.
     pub(super) fn add(&mut self, summary: &Summary) {
         for (i, quantity) in QUANTITIES.iter().enumerate() {
-            let Of::Curve(of) = quantity.of else { continue };
-            // A quantity of one gear has the same form for both.
-            let mut curves = summary.curves().iter();
-            let is_known = curves.any(|curve| of(curve, GearName::Driven).is_some());
+            let is_known = match quantity.of {
+                Of::Pair(of) => of(summary).is_some(),
+                // A quantity of one gear has the same form for both.
+                Of::Curve(of) => {
+                    let mut curves = summary.curves().iter();
+                    curves.any(|curve| of(curve, GearName::Driven).is_some())
+                }
+            };
             self.0 |= u64::from(is_known) << i;
         }
+    }
+
+    /// The quantities that a table has columns of, of the pair in a study of `gear`.
+    pub(super) fn columns_of_pair(self, gear: GearName) -> impl Iterator<Item = &'static Quantity> {
+        let all = QUANTITIES.iter().enumerate();
+        let shown = all.filter(move |(i, quantity)| {
+            let is_shown = quantity.in_every_table || self.0 & (1 << i) != 0;
+            matches!(quantity.of, Of::Pair(_)) && is_shown && quantity.is_in_rows_of(gear)
+        });
+        shown.map(|(_, quantity)| quantity)
     }
 
     /// The quantities of curves that a table has columns of.

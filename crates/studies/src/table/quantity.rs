@@ -389,6 +389,24 @@ const HOLE: [Quantity; 2] = stresses! {
     "hole_mpa", "Hole stress", "σ_hole", |stress| stress.hole_mpa
 };
 
+/// The amplitude at a multiple of the mesh order.
+macro_rules! mesh_order {
+    ($harmonic:literal) => {
+        curve(
+            [
+                concat!("mesh_order_", $harmonic, "_um"),
+                concat!("Amplitude at mesh harmonic ", $harmonic),
+                concat!("H_", $harmonic, "·Z2"),
+                "um",
+            ],
+            |curve, _| curve.mesh_harmonic($harmonic),
+        )
+        .smaller()
+        .where_known()
+        .needs(&[Needs::MeshOrders])
+    };
+}
+
 /// Every number that has a name, in the order of the columns of a table: a row each.
 #[rustfmt::skip]
 pub(crate) const QUANTITIES: &[Quantity] = &[
@@ -446,6 +464,14 @@ pub(crate) const QUANTITIES: &[Quantity] = &[
     curve(["transmission_error_um.mesh_harmonics_rms", "Rms of the mesh harmonics", "STE mesh rms", "um"],
         |curve, _| ste(curve)?.mesh_harmonics_rms).in_statistics().smaller().where_known()
         .needs(&[Needs::MeshOrders]),
+    mesh_order!(1), mesh_order!(2), mesh_order!(3), mesh_order!(4), mesh_order!(5),
+    mesh_order!(6), mesh_order!(7), mesh_order!(8), mesh_order!(9), mesh_order!(10),
+    pair(["hole_phase.amplitude_um", "Amplitude at the order of the holes with their best turn", "H_N at best", "um"],
+        |design| Some(design.hole_phase?.amplitude_um)).smaller().where_known()
+        .needs(&[Needs::Method(Method::finds_hole_phase), Needs::WholePeriods]),
+    pair(["hole_phase.turn_of_driving_deg", "Best turn of the driving gear's holes", "φ best", "deg"],
+        |design| Some(design.hole_phase?.turn_of_driving_deg)).where_known()
+        .needs(&[Needs::Method(Method::finds_hole_phase), Needs::WholePeriods]),
 ];
 
 /// All of them, as clients see them.

@@ -12,7 +12,7 @@ use utoipa::ToSchema;
 use uuid::Uuid;
 
 use super::quantity::{Of, Quantity};
-use super::summary::{CurveSummary, Summary};
+use super::summary::{CurveSummary, HolePhaseSummary, Summary};
 
 /// A design and its outcome so far.
 #[derive(Debug, Clone, PartialEq)]
@@ -87,6 +87,9 @@ pub struct TableRow {
     pub contact_ratio: Option<f64>,
     /// The backlash, in mm, as in the results.
     pub backlash_mm: Option<f64>,
+    /// How the holes of both gears stand best; absent where they do not make one order.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hole_phase: Option<HolePhaseSummary>,
     /// True if no other design of the study is at least as good in everything and better in one quantity, among those that were computed by the same method at
     /// the same torques so far. The quantities are the mass of both gears (less is better), the largest peak-to-peak transmission error over the torques
     /// (less), and the mean tangent stiffness, averaged over the torques (more), each to six significant digits.
@@ -125,6 +128,9 @@ pub struct RowCurve {
     pub hole_order_of_holes_um: Option<f64>,
     /// The amplitude of the transmission error at the mesh order, H_Z2, in um; null without spectrum.
     pub mesh_order_um: Option<f64>,
+    /// The amplitudes at the mesh harmonics.
+    #[serde(flatten)]
+    pub mesh_orders: RowMeshOrders,
     /// K_Hbeta, the load of the heaviest of ten strips of the face over the mean; absent for methods that do not see the face, and at torque 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub face_load_factor: Option<f64>,
@@ -143,6 +149,43 @@ pub struct RowCurve {
     /// Results of a run-up; absent without one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dynamic_transmission_error_um: Option<RowDynamics>,
+}
+
+/// Declares the mesh harmonics of a row.
+macro_rules! mesh_orders {
+    ($($name:ident: $harmonic:literal,)*) => {
+        /// Amplitudes of the transmission error at the mesh harmonics, in um; absent without spectrum, and where the positions do not show them.
+        #[derive(Debug, Clone, Copy, PartialEq, Serialize, ToSchema)]
+        #[schema(title = "Mesh harmonics of a row")]
+        pub struct RowMeshOrders {
+            $(
+                #[doc = concat!("The amplitude at mesh harmonic ", $harmonic, ", in um.")]
+                #[serde(skip_serializing_if = "Option::is_none")]
+                pub $name: Option<f64>,
+            )*
+        }
+
+        impl RowMeshOrders {
+            fn of(curve: &CurveSummary) -> Self {
+                Self {
+                    $($name: curve.mesh_harmonic($harmonic),)*
+                }
+            }
+        }
+    };
+}
+
+mesh_orders! {
+    mesh_order_1_um: 1,
+    mesh_order_2_um: 2,
+    mesh_order_3_um: 3,
+    mesh_order_4_um: 4,
+    mesh_order_5_um: 5,
+    mesh_order_6_um: 6,
+    mesh_order_7_um: 7,
+    mesh_order_8_um: 8,
+    mesh_order_9_um: 9,
+    mesh_order_10_um: 10,
 }
 
 /// Results of a design's run-up at one torque.
@@ -175,6 +218,7 @@ impl TableRow {
             mass_removed_percent: own.mass_removed_percent,
             least_ligament_mm: own.least_ligament_mm,
             polar_inertia_kg_m2: own.polar_inertia_kg_m2,
+            hole_phase: summary.hole_phase,
             pareto,
             curves: summary
                 .curves
@@ -219,6 +263,7 @@ impl RowCurve {
             hole_order_um: curve.hole_order(gear),
             hole_order_of_holes_um: curve.hole_order_of_holes(gear),
             mesh_order_um: curve.mesh_order(),
+            mesh_orders: RowMeshOrders::of(&curve),
             output_torque_n_m: curve.output_torque_n_m,
             face_load_factor: curve.face_load_factor,
             peak_contact_pressure_mpa: curve.peak_contact_pressure_mpa,

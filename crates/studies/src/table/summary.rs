@@ -26,6 +26,9 @@ pub struct Summary {
     pub(super) backlash_mm: Option<f64>,
     #[serde(default)]
     pub(super) curves: Vec<CurveSummary>,
+    /// How the holes of both gears stand best, where they make one order.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) hole_phase: Option<HolePhaseSummary>,
     /// Change by a second grid level, if requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     error_estimate: Option<ErrorEstimateDocument>,
@@ -43,6 +46,16 @@ pub(super) struct GearSummary {
     pub least_ligament_mm: Option<f64>,
     /// The polar moment of inertia of the true profile, in kg m2.
     pub polar_inertia_kg_m2: Option<f64>,
+}
+
+/// The best turn of the driving gear's holes against those of the driven one.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, ToSchema)]
+#[schema(title = "Phase of the holes of a row")]
+pub struct HolePhaseSummary {
+    /// The amplitude of the transmission error at the order of the holes with it, in um.
+    pub amplitude_um: f64,
+    /// The turn, in degrees: what to add to `phase_deg` of the driving gear's holes.
+    pub turn_of_driving_deg: f64,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -77,14 +90,12 @@ pub(crate) struct CurveSummary {
 /// Method and torques: a comparison has a meaning only where they are the same.
 pub(super) type Conditions = (Option<String>, Vec<u64>);
 
-/// The names of orders that a table shows.
-const ORDERS: [&str; 4] = [
-    MESH_ORDER,
-    HOLE_ORDER,
-    DRIVING_HOLE_ORDER,
-    DRIVEN_HOLE_ORDER,
+/// The names of orders of holes that a table shows.
+const ORDERS: [&str; 3] = [HOLE_ORDER, DRIVING_HOLE_ORDER, DRIVEN_HOLE_ORDER];
+/// The names of the mesh harmonics 1, 2, ….
+const MESH_ORDERS: [&str; 10] = [
+    "H_Z2", "H_2Z2", "H_3Z2", "H_4Z2", "H_5Z2", "H_6Z2", "H_7Z2", "H_8Z2", "H_9Z2", "H_10Z2",
 ];
-const MESH_ORDER: &str = "H_Z2";
 /// The holes of the only holed gear, or of both if they make the same order.
 const HOLE_ORDER: &str = "H_N";
 const DRIVING_HOLE_ORDER: &str = "H_N1";
@@ -101,6 +112,7 @@ impl Summary {
             method,
             pair,
             curves,
+            hole_phase,
             evidence,
             ..
         } = results;
@@ -111,6 +123,10 @@ impl Summary {
             contact_ratio: Some(pair.contact_ratio),
             backlash_mm: Some(pair.backlash_mm),
             curves: curves.iter().map(CurveSummary::of).collect(),
+            hole_phase: hole_phase.as_ref().map(|phase| HolePhaseSummary {
+                amplitude_um: phase.amplitude_um,
+                turn_of_driving_deg: phase.turn_of_driving_deg,
+            }),
             error_estimate: evidence.error_estimate.clone(),
         };
         rounded(&exact).map_err(|error| Problem::new(Code::InternalError, error.to_string()))
@@ -146,11 +162,13 @@ impl CurveSummary {
             .flatten()
             .flat_map(|branch| &branch.dynamic_transmission_error_um.peak_to_peak);
         let named = curve.spectrum.iter().flat_map(|spectrum| &spectrum.named);
-        let shown = named.filter(|line| ORDERS.contains(&line.label.as_str()));
-        let estimated = curve
-            .mesh_orders_um
-            .iter()
-            .filter_map(|orders| orders.first());
+        let shown = named.filter(|line| {
+            let mut names = ORDERS.iter().chain(&MESH_ORDERS);
+            names.any(|name| *name == line.label)
+        });
+        let estimated = MESH_ORDERS
+            .into_iter()
+            .zip(curve.mesh_orders_um.iter().flatten());
         Self {
             output_torque_n_m: curve.output_torque_n_m,
             statistics: Some(curve.statistics.clone()),
@@ -166,7 +184,7 @@ impl CurveSummary {
                 .collect(),
             orders: shown
                 .map(|line| (line.label.clone(), line.transmission_error_um))
-                .chain(estimated.map(|amplitude| (MESH_ORDER.to_owned(), *amplitude)))
+                .chain(estimated.map(|(name, amplitude)| (name.to_owned(), *amplitude)))
                 .collect(),
         }
     }
@@ -191,7 +209,12 @@ impl CurveSummary {
 
     /// The amplitude at the mesh order.
     pub(super) fn mesh_order(&self) -> Option<f64> {
-        self.orders.get(MESH_ORDER).copied()
+        self.mesh_harmonic(1)
+    }
+
+    /// The amplitude at this multiple of the mesh order, from 1 to 10.
+    pub(super) fn mesh_harmonic(&self, harmonic: usize) -> Option<f64> {
+        self.orders.get(MESH_ORDERS[harmonic - 1]).copied()
     }
 }
 

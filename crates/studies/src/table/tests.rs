@@ -323,12 +323,14 @@ fn a_row_and_its_line_of_csv_have_every_quantity_under_one_name() {
     let stress = |n: f64| json!({ "root_mpa": n, "root_tension_mpa": n + 1.0, "root_compression_mpa": -n, "hole_mpa": n + 2.0 });
     let summary = json!({
         "method": "flexible", "driving": gear(10.0), "driven": gear(20.0), "contact_ratio": 34.0, "backlash_mm": 35.0,
+        "hole_phase": { "amplitude_um": 36.0, "turn_of_driving_deg": 37.0 },
         "curves": [{
             "output_torque_n_m": 115.0,
             "statistics": { "partial": false, "transmission_error_um": and(spread(40.0), &json!({ "tooth_to_tooth": 43.0, "long_wave": 44.0, "short_wave": 45.0, "mesh_harmonics_rms": 46.0 })), "mesh_stiffness_tangent_n_per_m": spread(50.0),
                 "stress": { "driving": stress(60.0), "driven": stress(70.0) } },
             "peak_contact_pressure_mpa": 80.0, "pressure_unbounded_share": 0.88, "pitch_point_pressure_mpa": 89.0, "smooth_contact_pressure_mpa": 90.0, "dynamic_peak_to_peak_um": 81.0, "face_load_factor": 82.0,
-            "orders": { "H_N1": 83.0, "H_N2": 84.0, "H_Z2": 85.0 }, "orders_of_holes": { "H_N1": 86.0, "H_N2": 87.0 },
+            "orders": { "H_N1": 83.0, "H_N2": 84.0, "H_Z2": 85.0, "H_2Z2": 102.0, "H_3Z2": 103.0, "H_4Z2": 104.0, "H_5Z2": 105.0,
+                "H_6Z2": 106.0, "H_7Z2": 107.0, "H_8Z2": 108.0, "H_9Z2": 109.0, "H_10Z2": 110.0 }, "orders_of_holes": { "H_N1": 86.0, "H_N2": 87.0 },
         }],
     });
     let summary: Summary = serde_json::from_value(summary).expect("as it is kept");
@@ -353,7 +355,10 @@ fn a_row_and_its_line_of_csv_have_every_quantity_under_one_name() {
             let in_row = at.pointer(&pointer).and_then(Value::as_f64);
             assert_eq!(in_row, Some(value), "{} at {pointer}", quantity.name);
             assert_eq!(column(&text, &name), [format!("{value:?}")], "{name}");
-            seen.push(value.to_bits());
+            // The first harmonic is the mesh order by its number.
+            if name != "mesh_order_1_um" {
+                seen.push(value.to_bits());
+            }
             names.push(name);
         }
         let count = seen.len();

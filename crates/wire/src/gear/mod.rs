@@ -1,13 +1,8 @@
 //! The gears of a submission, and the faults of those that cannot be made.
 //!
-<<<<<<< HEAD
-//! The document by its parts: `tip`, `relief`, `modification`, `thickness`, `deviation`, `lead`, `material`, `blank`, `holes` and `openings`; `solid` is the
-//! gear along its axis. Then the faults of a gear (`proportions`, `faults`, `blank_faults`), the fields that could change (`field`), and values that would do
-//! together (`repair`).
-=======
-//! The document by its parts: `tip`, `relief`, `modification`, `thickness`, `deviation`, `traces`, `lead`, `material`, `blank`, `holes` and `openings`; `solid` is the gear along its axis. Then what prevents
-//! a gear (`proportions`, `faults`, `blank_faults`), which fields could change (`field`), and the values that together would do (`repair`).
->>>>>>> pre-window
+//! The document by its parts: `tip`, `relief`, `modification`, `thickness`, `deviation`, `traces`, `lead`, `material`, `blank`, `holes` and `openings`;
+//! `solid` is the gear along its axis. Then the faults of a gear (`proportions`, `faults`, `blank_faults`), the fields that could change (`field`), and values
+//! that would do together (`repair`).
 
 mod blank;
 mod blank_faults;
@@ -172,13 +167,7 @@ document! {
         tooth_deviations: Option<DeviationsDocument> =
             absent(nested("Tooth deviations"), "nothing"),
         /// Material of teeth and blank. Default: steel.
-<<<<<<< HEAD
-        /// Material of teeth and blank. Default: steel.
         pub(crate) material: MaterialDocument = nested("Material").or_defaults(),
-        /// The blank.
-=======
-        material: MaterialDocument = nested("Material").or_defaults(),
->>>>>>> pre-window
         /// The blank.
         blank: BlankDocument = EACH,
     }

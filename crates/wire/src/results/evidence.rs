@@ -36,6 +36,9 @@ document! {
         /// The largest difference of the projected decomposition to exact solutions at a few positions of each torque where it is least
         /// sure, in um; absent for other methods.
         projection_error_um?: f64 = evidence.projection_error.map(to_um),
+        /// The largest difference of the decomposition to exact solutions where the turn of its holed blanks was sampled, in um: what one harmonic leaves of it. Absent
+        /// for other methods, and in results of versions before 0.6.
+        decomposition_error_um?: f64 = evidence.decomposition_error.map(to_um),
         /// How the tangent stiffness was obtained.
         stiffness_rule: String = submission.resolution().stiffness_in_words(),
         /// How it was computed, with every default filled in.

@@ -5,6 +5,7 @@ mod decomposition;
 mod evidence;
 mod exchanged;
 mod forces;
+mod hole_phase;
 mod largest_where;
 mod spectrum;
 mod stress;
@@ -30,6 +31,7 @@ pub use forces::{
     BranchDocument, CurveDynamicsDocument, DynamicErrorDocument, ForceTableDocument,
     OrderAmplitudesDocument, ResonanceDocument, ResonanceKindName,
 };
+pub use hole_phase::{HolePhaseDocument, OverTurnDocument};
 pub use largest_where::{PressureStatistics, WhereDocument};
 pub use spectrum::{NamedOrderDocument, OrderKindName, SpectrumDocument};
 pub use stress::{
@@ -40,7 +42,7 @@ use super::declare::document;
 use super::geometry::{Frequencies, PairGeometry};
 use super::problem::{Code, Problem};
 use super::submission::Submission;
-use super::units::{known, rounded_json};
+use super::units::{known, one_or_null, rounded_json};
 use super::warning::WarningDocument;
 
 document! {
@@ -70,6 +72,13 @@ document! {
         /// The force over mesh position and approach; absent unless the submission asks for it.
         force_table?: ForceTableDocument =
             forces.map(|forces| ForceTableDocument::of(&forces.table)),
+        /// How the holes of both gears stand best. Null where the gears do not repeat at one order
+        /// or teeth deviate, over a part of the true period, for methods along faces and the load
+        /// distribution, and in results of versions before 0.6.
+        #[serde(default, serialize_with = "one_or_null")]
+        #[schema(required)]
+        hole_phase: Option<HolePhaseDocument> =
+            analysis.hole_phase.as_ref().map(HolePhaseDocument::of),
         /// Evidence for the numbers, and their meaning.
         evidence: EvidenceDocument = EvidenceDocument::of(submission, analysis),
     }

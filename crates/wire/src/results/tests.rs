@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use meshwright_engine::analysis::curve::{BlankFit, BlankSample, DecompositionParts, LoadShare};
+use meshwright_engine::analysis::hole_phase::{AtTurn, HolePhase};
 use meshwright_engine::analysis::largest_where::LargestPressure;
 use meshwright_engine::analysis::pressures::CurvePressures;
 use meshwright_engine::analysis::single_flank::SingleFlank;
@@ -144,12 +145,26 @@ fn analysis(case: &Case) -> Analysis {
             largest_penetration: 1e-18,
             contact_iterations: 7,
             projection_error: Some(2e-9),
+            decomposition_error: Some(3e-9),
             error_estimate: Some(ErrorEstimate {
                 mean: 1e-9,
                 peak_to_peak: 2e-9,
                 mean_stiffness: 1e5,
             }),
         },
+        hole_phase: Some(HolePhase {
+            output_torque: 115.0,
+            order: 10,
+            turn_of_driving: TAU / 16.0,
+            amplitude: 4e-10,
+            amplitude_now: 418e-9,
+            other_flanks_turn: TAU / 32.0,
+            over_turn: vec![AtTurn {
+                turn: TAU / 64.0,
+                amplitude: 0.5e-6,
+                peak_to_peak: 4e-6,
+            }],
+        }),
         warnings: vec![Warning::TipCornerContact {
             member: Member::Driven,
             largest_share: 0.125,
@@ -206,6 +221,14 @@ fn the_document_speaks_the_units_of_its_names() {
         "/evidence/error_estimate/transmission_error_peak_to_peak_um",
         2e-3,
     );
+    near("/evidence/decomposition_error_um", 3e-3);
+    near("/hole_phase/turn_of_driving_deg", 22.5);
+    near("/hole_phase/other_flanks_turn_deg", 11.25);
+    near("/hole_phase/amplitude_um", 4e-4);
+    near("/hole_phase/amplitude_now_um", 0.418);
+    near("/hole_phase/over_turn/turn_of_driving_deg/0", 5.625);
+    near("/hole_phase/over_turn/amplitude_um/0", 0.5);
+    near("/hole_phase/over_turn/peak_to_peak_um/0", 4.0);
     near("/curves/0/stress/driving/root_mpa/1", 140.0);
     near("/curves/0/stress/driven/hole_angle_deg/0", 180.0);
     near("/curves/0/stress/driven/hole_z_mm/0", -2.0);

@@ -1,6 +1,6 @@
 //! Further positions, where a curve is least known.
 
-use super::sections::{Section, Sections, tolerance};
+use super::sections::{Extremes, Section, Sections, tolerance};
 use super::{Sample, Span};
 use crate::analysis::Case;
 
@@ -132,13 +132,49 @@ impl Refinement {
 
 /// Where the curve of `sections` leaves most open.
 fn candidates(sections: &Sections) -> Vec<Candidate> {
-    let delta = |section: &Section| section.delta;
-    let [(low, _), (high, _)] = sections.extremes(delta);
-    let tolerance = tolerance(high - low);
     let mut candidates = Vec::new();
-    for (i, section) in sections.sections.iter().enumerate() {
+    let are_extreme = add_extremes(&mut candidates, sections, 1e3, |_| 0.0);
+    if let Some(long) = sections.long_wave() {
+        add_extremes(&mut candidates, sections, 5e2, |place| long.at(place));
+    }
+    let [(low, _), (high, _)] = sections.extremes(|section| section.delta);
+    let tolerance = tolerance(high - low);
+    let others = sections.sections.iter().zip(are_extreme);
+    candidates.extend(others.filter_map(|(section, is_extreme)| {
         let urgency = section.error / tolerance;
-        let extremes = section.extremes(delta);
+        (!is_extreme && urgency > ELSEWHERE).then(|| Candidate {
+            position: section.look(section.middle()),
+            priority: urgency * (section.to - section.from) / sections.span.step(),
+        })
+    }));
+    candidates.extend(candidates_for_stiffness(sections));
+    candidates
+}
+
+/// Adds to `candidates`, with this `priority`, where the extremes of δ less a slow `wave` are open, and tells of which sections they are.
+fn add_extremes(
+    candidates: &mut Vec<Candidate>,
+    sections: &Sections,
+    priority: f64,
+    wave: impl Fn(f64) -> f64,
+) -> Vec<bool> {
+    let extremes_of = |section: &Section| {
+        let extremes = section.extremes(|section| section.delta);
+        extremes.map(|(value, place)| (value - wave(place), place))
+    };
+    let all: Vec<Extremes> = sections.sections.iter().map(extremes_of).collect();
+    let low = all
+        .iter()
+        .map(|[low, _]| low.0)
+        .fold(f64::INFINITY, f64::min);
+    let high = all
+        .iter()
+        .map(|[_, high]| high.0)
+        .fold(f64::NEG_INFINITY, f64::max);
+    let tolerance = tolerance(high - low);
+    let mut are_extreme = Vec::with_capacity(all.len());
+    for (i, (section, extremes)) in sections.sections.iter().zip(all).enumerate() {
+        let urgency = section.error / tolerance;
         let beyond = [low - extremes[0].0, extremes[1].0 - high];
         let mut is_extreme = false;
         for ((_, place), beyond) in extremes.into_iter().zip(beyond) {
@@ -152,19 +188,13 @@ fn candidates(sections: &Sections) -> Vec<Candidate> {
                 is_extreme = true;
                 candidates.push(Candidate {
                     position: section.look(place),
-                    priority: 1e3 + urgency,
+                    priority: priority + urgency,
                 });
             }
         }
-        if !is_extreme && urgency > ELSEWHERE {
-            candidates.push(Candidate {
-                position: section.look(section.middle()),
-                priority: urgency * (section.to - section.from) / sections.span.step(),
-            });
-        }
+        are_extreme.push(is_extreme);
     }
-    candidates.extend(candidates_for_stiffness(sections));
-    candidates
+    are_extreme
 }
 
 /// Where the extremes of k are read off a line that goes on to an event from far away, and between two events without a position, where other pairs carry
@@ -339,6 +369,49 @@ mod tests {
             assert!((stiffness.largest / 4e8 - 1.0).abs() < 1e-9);
             assert!(solved <= most_further(10, 1));
         }
+    }
+
+    #[test]
+    fn the_extremes_of_the_mesh_are_found_where_a_long_wave_hides_them_from_those_of_the_curve() {
+        // The same springs on a wave over five mesh periods that is ten times as high.
+        const PERIODS: u32 = 5;
+        let short: Vec<f64> = (0..100_000)
+            .map(|i| sample(f64::from(i) * 1e-5).transmission_error)
+            .collect();
+        let range = |values: &[f64]| {
+            let [low, high] = [f64::min, f64::max].map(|pick| values.iter().copied().reduce(pick));
+            high.expect("values") - low.expect("values")
+        };
+        let expected = range(&short);
+        let turn = std::f64::consts::TAU / f64::from(PERIODS);
+        let wave = |x: f64| 5.0 * expected * (turn * x).sin();
+        let on_wave = |x: f64| {
+            let of_mesh = sample(x);
+            Sample {
+                transmission_error: of_mesh.transmission_error + wave(x),
+                ..of_mesh
+            }
+        };
+        let span = span(20, PERIODS, true);
+        let refinement = Refinement {
+            span,
+            most: most_further(20 * PERIODS as usize, PERIODS),
+            repeats_after: PERIODS,
+        };
+        let samples = (0..20 * PERIODS)
+            .map(|i| on_wave(f64::from(i) / 20.0))
+            .collect();
+        let sections = refinement.sections(samples, |further| {
+            Ok::<_, Infallible>(further.iter().copied().map(on_wave).collect())
+        });
+        let traced = sections.expect("nothing fails").traced(400);
+        let found: Vec<f64> = traced.iter().map(|(x, value)| value - wave(*x)).collect();
+        // The tolerance of the curve is a thousandth of its range, ten of the mesh.
+        assert!(
+            (range(&found) / expected - 1.0).abs() < 0.01,
+            "{} {expected}",
+            range(&found)
+        );
     }
 
     #[test]

@@ -6,6 +6,7 @@ use super::cubic::Cubic;
 use super::events::events;
 use super::{Sample, Span};
 use crate::analysis::Case;
+use crate::analysis::long_wave::LongWave;
 use crate::analysis::statistics::{SamplingError, Statistics};
 use crate::quadrature::gauss_legendre_panels;
 
@@ -31,6 +32,9 @@ const NEARBY: f64 = 0.1;
 /// An event whose place no pair gives stands where both sides meet, anywhere between neighbors that are nearer to each other than this part of
 /// a step.
 const CLOSE: f64 = 1.0 / 8.0;
+
+/// Places in a mesh period by which the long wave is known well enough to tell extremes from it.
+const WAVE: usize = 16;
 
 /// How well δ is to be known between positions: its extremes to this part of its peak-to-peak, and no better than so many meters.
 const TOLERANCE: (f64, f64) = (1e-3, 5e-10);
@@ -192,6 +196,17 @@ impl Sections {
         });
         let (delta, stiffness) = values.unzip();
         [delta, stiffness]
+    }
+
+    /// The long wave of δ; `None` where the curve does not close, or fluctuates no slower than the mesh by more than its extremes are to be known.
+    pub(super) fn long_wave(&self) -> Option<LongWave> {
+        if !self.span.closes || self.span.periods <= 2 {
+            return None;
+        }
+        let [delta, _] = self.resampled(WAVE * self.span.periods as usize);
+        let long = LongWave::of(&delta, self.span.first, self.span.periods);
+        let [(low, _), (high, _)] = self.extremes(|section| section.delta);
+        (long.range() > tolerance(high - low)).then_some(long)
     }
 
     /// The mesh periods of the span.

@@ -368,6 +368,13 @@ impl Contour {
         Self(self.0.iter().map(side).collect())
     }
 
+    /// The mirror image about the x axis, counter-clockwise again: reflection and the reversed order change the sign of a bulge twice.
+    pub(super) fn mirrored(&self) -> Self {
+        let mirror = |p: Vector| Vector::new(p.x, -p.y);
+        let side = |s: &Side| Side::new(mirror(s.to), mirror(s.from), s.bulge);
+        Self(self.0.iter().rev().map(side).collect())
+    }
+
     /// Whether the sides of both are the same to within `slack`, whichever side is the first. The middle of an arc may be off by twice as much as its ends: it moves
     /// with both of them and with the point that says it.
     pub(super) fn is_like(&self, other: &Self, slack: f64) -> bool {

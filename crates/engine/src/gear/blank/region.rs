@@ -210,6 +210,22 @@ impl BlankRegion {
             ..self.clone()
         }
     }
+
+    /// The mirror image of the blank about the centerline of tooth 0.
+    pub(in crate::gear) fn mirrored(&self) -> Self {
+        let mirror = |hole: &Hole| Hole {
+            angle: -hole.angle,
+            shape: match &hole.shape {
+                HoleShape::Contour(contour) => HoleShape::Contour(contour.mirrored()),
+                round => round.clone(),
+            },
+            ..hole.clone()
+        };
+        Self {
+            holes: self.holes.iter().map(mirror).collect(),
+            ..self.clone()
+        }
+    }
 }
 
 #[cfg(test)]

@@ -131,6 +131,17 @@ impl SpurGear {
         self.on_blank(self.data.blank.turned(-self.hole_angle()))
     }
 
+    /// The same gear with its blank turned by `angle` under the teeth, counter-clockwise.
+    pub(in crate::gear) fn with_blank_turned(&self, angle: f64) -> Self {
+        self.on_blank(self.data.blank.turned(angle))
+    }
+
+    /// The same gear with its blank seen in a mirror, tooth 0 being the tooth `first` of this gear.
+    pub(in crate::gear) fn with_blank_mirrored(&self, first: usize) -> Self {
+        let tooth = first as f64 * self.pitch_angle();
+        self.on_blank(self.data.blank.mirrored().turned(tooth))
+    }
+
     /// The same gear with flanks as the rack cuts them, each like the other, up to a sharp tip.
     pub fn with_plain_flanks(&self) -> Self {
         let plain = self.with_unmodified_flanks();
