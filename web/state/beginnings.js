@@ -126,6 +126,8 @@ export class Beginnings {
     if (!gear) return undefined;
     const { root, bore, module } = circlesOf(gear);
     const { web, holes } = gear.blank ?? {};
+    // It stands in place of the bore.
+    if (name === "shaft") return { radius_mm: rounded(bore) };
     if (name === "holes") {
       // Within the web, where there is one: no hole crosses its edges.
       const [inner, outer] = web ? [web.inner_radius_mm, web.outer_radius_mm] : [bore, root];
