@@ -96,6 +96,7 @@ pub(super) fn joined(mut analyses: Vec<Analysis>) -> Analysis {
         curves: curves.into_iter().filter_map(curve_of).collect(),
         evidence,
         warnings,
+        hole_phase: None,
     }
 }
 
@@ -122,6 +123,7 @@ fn both(one: Evidence, other: Evidence) -> Evidence {
         largest_penetration: one.largest_penetration.max(other.largest_penetration),
         contact_iterations: one.contact_iterations + other.contact_iterations,
         projection_error: larger(one.projection_error, other.projection_error),
+        decomposition_error: larger(one.decomposition_error, other.decomposition_error),
         error_estimate,
     }
 }
