@@ -70,6 +70,7 @@ impl CurveParts {
             decomposition: self.decomposition,
             stresses: self.stresses,
             face: self.face,
+            running: None,
         }
     }
 }

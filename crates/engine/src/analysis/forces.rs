@@ -145,6 +145,7 @@ fn rows_case(case: &Case, loads: &[f64]) -> Case {
             .collect(),
         stress: false,
         driving_speed: None,
+        running: None,
         ..case.clone()
     };
     rows.resolution.positions_per_mesh_period *= MORE_POSITIONS;

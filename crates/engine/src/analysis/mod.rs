@@ -5,7 +5,7 @@
 //! - `under_load` (what all methods do alike, torque by torque), `found` (what each finds at some positions), `setup` and `pair_contacts` (what methods by
 //!   finite elements work with);
 //! - `flexible`, `decomposition`, `projected`, `three_dimensional` and `load_distribution` (the methods), `first_order` (what holes change, in the plane and
-//!   along faces) and `checks` (where that is compared with exact solutions), `light` (torque 0, alike for all);
+//!   along faces) and `checks` (where that is compared with exact solutions), `light` (torque 0, alike for all), [`running`] and `spun_pair` (pairs that turn, are warm, and are pressed onto shafts);
 //! - [`stress`] (at roots and holes; along faces `face_stress`), [`fields`] (everywhere; along faces [`face_fields`]), [`contact_pattern`] (over the flanks);
 //! - `between` (a curve between its positions), `curve_parts` and [`curve`] with its `statistics`, [`largest_where`] (where its largest values stand), [`pressures`] (what they come to),
 //!   [`spectrum`] and [`single_flank`];
@@ -39,9 +39,11 @@ mod pair_contacts;
 mod plan;
 pub mod pressures;
 mod projected;
+pub mod running;
 mod setup;
 pub mod single_flank;
 pub mod spectrum;
+mod spun_pair;
 mod statistics;
 pub mod stress;
 mod three_dimensional;
@@ -50,14 +52,13 @@ pub mod warning;
 
 pub use analyze::{analyze, pair_model};
 pub use answer::Analysis;
-pub use case::{
-    Case, FaceHoles, Faces, Method, Model, Resolution, RotationSpeed, SectionHoles, StiffnessRule,
-};
+pub use case::{Case, FaceHoles, Faces, Method, Model, Resolution, SectionHoles, StiffnessRule};
 pub use curve::{Curve, FaceLoad};
 pub use error::AnalysisError;
 pub use estimate::{Estimate, estimate};
 pub use evidence::{ErrorEstimate, Evidence};
 pub use orders::{OrderCause, OrderKind};
+pub use running::RotationSpeed;
 pub use statistics::{SamplingError, Statistics};
 pub use warning::{FEW_POSITIONS, PLANE_RIM, PLANE_WEB, Warning, warnings};
 

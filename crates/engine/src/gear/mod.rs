@@ -45,7 +45,7 @@ pub use modification::{
     ModificationData, Relief, ReliefData, ReliefShape, ReliefStart, TablePlaces,
 };
 pub use pair::{DeviationsError, GearPair, GearPairError};
-pub use pair_deviations::{GearDeviations, PairDeviations};
+pub use pair_deviations::{FlankGrowth, GearDeviations, PairDeviations};
 pub use rack::{Protuberance, Rack};
 pub use solid::{Hand, Helix, Hub, Layer, SolidGear, SolidGearError};
 pub use solid_pair::{Alignment, ContactLine, SolidPair, SolidPairError};

@@ -164,6 +164,7 @@ pub(crate) fn case(pair: GearPair, output_torques: &[f64]) -> Case {
         },
         stress: false,
         driving_speed: None,
+        running: None,
     }
 }
 

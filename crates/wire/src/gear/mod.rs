@@ -164,7 +164,7 @@ document! {
         tooth_deviations: Option<DeviationsDocument> =
             absent(nested("Tooth deviations"), "nothing"),
         /// What teeth and blank are made of. Default: steel.
-        material: MaterialDocument = nested("Material").or_defaults(),
+        pub(crate) material: MaterialDocument = nested("Material").or_defaults(),
         /// What carries the teeth.
         blank: BlankDocument = EACH,
     }

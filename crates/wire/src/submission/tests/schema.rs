@@ -142,7 +142,7 @@ fn a_submission_with_other_fields_or_words_has_another_version() {
         (DOCUMENT_VERSION, sha256_hex(told.join("\n")).as_str()),
         (
             4,
-            "0212399678f1d021a36861b11b8c77326e155bed94a3d505c4d00b411887410a"
+            "be548aebb6c7e85b1f505f661c0285524dd27756adb8217e415466d72870552c"
         ),
         "{told:#?}"
     );
