@@ -10,7 +10,7 @@ use pulldown_cmark::{CowStr, Event, Options, Parser, Tag, TagEnd, html};
 use crate::Named;
 
 /// In the order in which they are listed.
-const GUIDES: [&str; 14] = [
+const GUIDES: [&str; 15] = [
     "my-first-pair",
     "an-hour-at-the-bench",
     "from-kisssoft-or-a-drawing",
@@ -20,6 +20,7 @@ const GUIDES: [&str; 14] = [
     "find-a-design",
     "is-my-thin-web-all-right",
     "my-helical-pair",
+    "what-speed-does-to-my-holes",
     "will-it-rattle-or-whine",
     "limits",
     "theory",

@@ -100,6 +100,7 @@ async fn a_preview_is_the_document_of_a_job_to_the_last_digit_and_is_not_kept() 
             "teeth",
             "blanks",
             "gears",
+            "spun",
             "flanks",
             "compliances",
             "contacts",

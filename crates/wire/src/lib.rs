@@ -27,6 +27,7 @@ mod interface;
 pub mod materials;
 pub mod pair;
 pub mod resolution;
+pub mod running;
 pub mod submission;
 
 pub mod contact_pattern;

@@ -173,14 +173,28 @@ impl PairDocument {
         errors.report(Err(found))
     }
 
-    /// The pair, if its gears can be made and mesh; faults are reported to `errors`.
-    pub(super) fn to_pair(&self, errors: &Errors) -> Option<GearPair> {
+    /// The pair, if its gears can be made and mesh; faults are reported to `errors`. Its center distance is `growth` times the cold one.
+    pub(super) fn to_pair(&self, growth: f64, errors: &Errors) -> Option<GearPair> {
         let [driving, driven] = self.made(errors, |gear, member| {
             gear.to_gear(&format!("/pair/{member}"), Helix::STRAIGHT)
         })?;
         let (one, other) = (driving.clone(), driven.clone());
-        let pair = GearPair::new(one, other, from_mm(self.center_distance_mm));
-        errors.report(pair.map_err(|error| self.field_error([&driving, &driven], 0.0, &error)))
+        let distance = growth * from_mm(self.center_distance_mm);
+        let pair = GearPair::new(one, other, distance);
+        let refused = |error: GearPairError| {
+            let gears = [&driving, &driven];
+            if growth == 1.0 {
+                return self.field_error(gears, 0.0, &error);
+            }
+            let warm = Self {
+                center_distance_mm: growth * self.center_distance_mm,
+                ..self.clone()
+            };
+            let error = warm.field_error(gears, 0.0, &error)?;
+            let detail = format!("In lengths of the warm gears: {}", error.detail);
+            Some(FieldError::new("/running", error.code, detail))
+        };
+        errors.report(pair.map_err(|error| refused(error)))
     }
 
     /// Both gears, if they can be made and could mesh; faults are reported to `errors`.

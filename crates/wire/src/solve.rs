@@ -17,10 +17,11 @@ use super::geometry::PairGeometry;
 use super::problem::{Code, FieldError, Problem};
 use super::resolution::ResolutionDocument;
 use super::results::Results;
+use super::running::jammed;
 use super::submission::{
     MOST_POSITIONS, MOST_PROJECTED_POSITIONS, MOST_TAGS, MOST_TORQUES, SOLVER_VERSION, Submission,
 };
-use super::units::{plain, to_um};
+use super::units::{Side, plain, rounded_inward, significant, to_mpa, to_um};
 use super::warning::WarningDocument;
 
 /// Computes `submission`.
@@ -213,6 +214,32 @@ fn problem_of(error: &AnalysisError) -> Problem {
                 plain(to_um(row.falls))
             ),
         ),
+        AnalysisError::RimBreaks {
+            member,
+            stress,
+            strength,
+            speed,
+        } => {
+            let pointer = match speed {
+                Some(_) => "/running/driving_speed_rpm".to_owned(),
+                None => format!("/running/press_fit_um/{member}"),
+            };
+            let nearest = speed.map(|speed| rounded_inward(60.0 * speed, Side::AtMost, 0));
+            let bearable = nearest.map_or_else(
+                || "The press fit alone is too much.".to_owned(),
+                |rpm| format!("It bears {} 1/min.", plain(rpm)),
+            );
+            let detail = format!(
+                "{pointer}: rotation and press fit stretch the {member} gear by {} MPa, and its material bears {} MPa. {bearable}",
+                plain(significant(to_mpa(*stress), 4)),
+                plain(significant(to_mpa(*strength), 4))
+            );
+            let error = FieldError::new(pointer, Code::OutOfRange, detail).nearest(nearest);
+            Problem::of_fields(vec![error])
+        }
+        AnalysisError::FlanksJam { backlash } => {
+            Problem::of_fields(vec![jammed("/running", *backlash)])
+        }
         AnalysisError::Discretization { member, reason } => of_field(
             &format!("/pair/{member}"),
             Code::DiscretizationFailed,

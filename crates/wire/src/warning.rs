@@ -79,6 +79,8 @@ pub enum WarningCode {
     FormulaRange,
     /// The method does not see the holes that the drawing has.
     HolesNotSeen,
+    /// A gear comes loose from the shaft that it is pressed onto.
+    FitComesLoose,
     /// The projected decomposition leaves out too much of the effect of the holes.
     ProjectionDoubtful,
     /// The decomposition leaves out too much of how the holed blanks turn.
@@ -341,6 +343,15 @@ impl WarningDocument {
                 None,
                 "This method does not see holes: its curves are those of solid blanks.".to_owned(),
             ),
+            Warning::FitComesLoose { member, speed } => (
+                Code::FitComesLoose,
+                Some(member),
+                Some((significant(60.0 * speed, 4), "1/min")),
+                format!(
+                    "The {member} gear comes loose from the shaft that it is pressed onto: from {} 1/min of the driving gear on, the mean pressure of the fit is gone. At speed its bore is taken to be free.",
+                    plain(significant(60.0 * speed, 4))
+                ),
+            ),
             Warning::ProjectionDoubtful {
                 error,
                 part_of_mean,
@@ -409,6 +420,7 @@ impl WarningCode {
             Self::MotionUnbounded | Self::LoadBeyondForceTable | Self::RimInertiaOnHub => {
                 Some("/guides/will-it-rattle-or-whine")
             }
+            Self::FitComesLoose => Some("/guides/what-speed-does-to-my-holes"),
             _ => None,
         }
     }

@@ -3,7 +3,9 @@
 use super::case::{Case, Model, SectionHoles};
 use super::evidence::{ErrorEstimate, Evidence};
 use super::plan::{Pass, Plan};
+use super::running::CurveRunning;
 use super::setup::Setup;
+use super::spun_pair::PairState;
 use super::warning::warnings;
 use super::{
     Analysis, AnalysisError, decomposition, flexible, light, load_distribution, projected,
@@ -40,6 +42,7 @@ pub(super) fn answered(
     run: &Run,
 ) -> Result<Analysis, AnalysisError> {
     let mut analysis = carried_out(plan, parts, run)?;
+    tell_apart_from_rest(&mut analysis, plan, parts, run)?;
     if let Some(drawn) = plan.case.holes_alone() {
         let alone = carried_out(&Plan::of(&drawn), parts, &run.unwatched())?;
         for (curve, alone) in analysis.curves.iter_mut().zip(&alone.curves) {
@@ -57,6 +60,27 @@ pub(super) fn answered(
     Ok(analysis)
 }
 
+/// Says in the curves of a case that runs how far its speed alone moves them at the orders of its holes.
+fn tell_apart_from_rest(
+    analysis: &mut Analysis,
+    plan: &Plan,
+    parts: &dyn Parts,
+    run: &Run,
+) -> Result<(), AnalysisError> {
+    let Some(case) = plan.case.at_rest() else {
+        return Ok(());
+    };
+    let at_rest = carried_out(&Plan::of(&case), parts, &run.unwatched())?;
+    for (curve, at_rest) in analysis.curves.iter_mut().zip(&at_rest.curves) {
+        let both = curve.spectrum.as_ref().zip(at_rest.spectrum.as_ref());
+        let apart = both.and_then(|(one, other)| one.apart_at_hole_orders(other));
+        if let Some(running) = &mut curve.running {
+            running.hole_order = apart;
+        }
+    }
+    Ok(())
+}
+
 /// The curves of the case of `plan`.
 pub(super) fn carried_out(
     plan: &Plan,
@@ -66,9 +90,11 @@ pub(super) fn carried_out(
     // Threads work on different bodies and positions; inside one, faer is sequential.
     faer::set_global_parallelism(faer::Par::Seq);
     let case = &plan.case;
+    let state = PairState::of(case, case.resolution.grid, parts, run)?;
+    let state = state.as_ref();
     let mut passes = plan.passes.iter();
     let mut analysis = match passes.next() {
-        Some(pass) => passed(case, pass, parts, run)?,
+        Some(pass) => passed((case, state), pass, parts, run)?,
         None => Analysis {
             curves: Vec::new(),
             evidence: Evidence::new(0),
@@ -77,29 +103,45 @@ pub(super) fn carried_out(
         },
     };
     if let Some(pass) = passes.next() {
-        let other = passed(case, pass, parts, run)?;
+        let other = passed((case, state), pass, parts, run)?;
         let estimate = ErrorEstimate::between(&analysis.curves, &other.curves);
         analysis.evidence.error_estimate = Some(estimate);
     }
     let mut loaded = analysis.curves.into_iter();
     let curve = |torque: &f64| match *torque {
-        0.0 => Some(light::curve(case, &plan.light)),
+        0.0 => Some(light::curve((case, state), &plan.light)),
         _ => loaded.next().map(Ok),
     };
     let torques = case.output_torques.iter();
     analysis.curves = torques.filter_map(curve).collect::<Result<_, _>>()?;
+    if let Some(state) = state {
+        analysis.warnings.extend(state.warnings.iter().copied());
+        let turns = case
+            .runs()
+            .is_some_and(|running| running.driving_speed.0 != 0.0);
+        for curve in &mut analysis.curves {
+            let has_orders = !case.holed().is_empty() && curve.spectrum.is_some();
+            curve.running = Some(CurveRunning {
+                radial_growth: state.radial_growth,
+                hole_order: (has_orders && !turns).then_some(0.0),
+            });
+        }
+    }
     Ok(analysis)
 }
 
 /// Makes one `pass` over `case`.
 fn passed(
-    case: &Case,
+    (case, state): (&Case, Option<&PairState>),
     pass: &Pass,
     parts: &dyn Parts,
     run: &Run,
 ) -> Result<Analysis, AnalysisError> {
-    let in_plane =
-        |solve: Solve| coupled_as_needed(case, pass.level, parts, run, |setup| solve(setup, pass));
+    let in_plane = |solve: Solve| {
+        coupled_as_needed((case, state), pass.level, parts, run, |setup| {
+            solve(setup, pass)
+        })
+    };
     match &case.model {
         Model::Section(SectionHoles::Whole) => in_plane(flexible::solve),
         Model::Section(SectionHoles::Fitted) => in_plane(decomposition::solve),
@@ -114,18 +156,22 @@ fn passed(
 /// How a plane method computes a case.
 type Solve = fn(Setup<'_>, &Pass) -> Result<Analysis, AnalysisError>;
 
-/// What `solve` finds of `case` in the plane at `level`, with teeth coupled as far apart as they turn out to be loaded together.
+/// Result of `solve` for `case` in the plane at `level`, with teeth coupled as far apart as they turn out to be loaded together.
 fn coupled_as_needed<T>(
-    case: &Case,
+    (case, state): (&Case, Option<&PairState>),
     level: GridLevel,
     parts: &dyn Parts,
     run: &Run,
     solve: impl Fn(Setup<'_>) -> Result<T, AnalysisError>,
 ) -> Result<T, AnalysisError> {
-    let deviations = case.pair.deviations();
+    let drawn = case.pair.deviations();
+    let deviations = state.map_or(&drawn, |state| &state.deviations);
     let mut farthest = FIRST_COUPLED;
     loop {
-        let setup = Setup::new((case, &deviations), level, farthest, parts, run);
+        let setup = Setup {
+            resting: state.map(|state| &state.stresses),
+            ..Setup::new((case, deviations), level, farthest, parts, run)
+        };
         match solve(setup) {
             Err(AnalysisError::TooFarApart { .. }) if farthest < FARTHEST_COUPLED => farthest *= 2,
             answer => return answer,

@@ -1,5 +1,6 @@
 //! What is asked: a pair, the torques and how to compute.
 
+use super::running::{RotationSpeed, Running};
 use crate::assembly::FaceResolution;
 use crate::contact::ContactSolver;
 use crate::gear::{GearPair, Member, SolidPair};
@@ -180,10 +181,6 @@ impl Faces {
     }
 }
 
-/// A speed of rotation, in revolutions per second.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RotationSpeed(pub f64);
-
 /// A pair under load, and how to compute it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Case {
@@ -201,6 +198,8 @@ pub struct Case {
     pub stress: bool,
     /// The speed of the driving gear, if frequencies are wanted.
     pub driving_speed: Option<RotationSpeed>,
+    /// How the pair runs: seen by [`SectionHoles::Whole`] alone.
+    pub running: Option<Running>,
 }
 
 impl Case {
@@ -266,6 +265,33 @@ impl Case {
         })
     }
 
+    /// How it runs, by a method that sees that.
+    pub(super) fn runs(&self) -> Option<&Running> {
+        let running = self.running.as_ref();
+        running.filter(|_| self.model == Model::Section(SectionHoles::Whole))
+    }
+
+    /// The same at rest, as warm and on the same shafts, which a curve at speed is compared with; `None` at rest, and where that says nothing of its holes.
+    pub(super) fn at_rest(&self) -> Option<Self> {
+        let running = self.runs()?;
+        if running.driving_speed.0 == 0.0 || self.holed().is_empty() || !self.covers_whole_periods()
+        {
+            return None;
+        }
+        Some(Self {
+            running: Some(Running {
+                driving_speed: RotationSpeed(0.0),
+                ..*running
+            }),
+            resolution: Resolution {
+                error_estimate: false,
+                ..self.resolution
+            },
+            stress: false,
+            ..self.clone()
+        })
+    }
+
     /// The positions of one curve, of one with windows those of each.
     pub fn positions(&self) -> usize {
         self.span() as usize * self.resolution.positions_per_mesh_period as usize
@@ -280,11 +306,16 @@ impl Case {
             .collect()
     }
 
+    /// Whether all flanks stand as drawn, so that contact on blanks that are alike all around repeats with every mesh period.
+    fn flanks_are_alike(&self) -> bool {
+        self.pair.is_as_drawn() && self.runs().is_none()
+    }
+
     /// The mesh positions after which contact on blanks that are alike all around repeats: those of one mesh period, or of the whole
     /// span where teeth deviate.
     pub(super) fn repeating_positions(&self) -> Vec<f64> {
         let mut positions = self.mesh_positions();
-        if self.pair.is_as_drawn() {
+        if self.flanks_are_alike() {
             positions.truncate(self.resolution.positions_per_mesh_period as usize);
         }
         positions
@@ -309,7 +340,7 @@ impl Case {
 
     /// The mesh periods after which contact on blanks that are alike all around repeats; the span where teeth deviate.
     pub(super) fn contacts_repeat_after(&self) -> u32 {
-        if self.pair.is_as_drawn() {
+        if self.flanks_are_alike() {
             1
         } else {
             self.span()
@@ -368,6 +399,7 @@ pub(in crate::analysis) mod tests {
             windows: Vec::new(),
             stress: false,
             driving_speed: None,
+            running: None,
         }
     }
 }

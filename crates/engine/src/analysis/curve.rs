@@ -2,6 +2,7 @@
 
 use super::mesh_wave::MeshWave;
 use super::pressures::CurvePressures;
+use super::running::CurveRunning;
 use super::single_flank::SingleFlank;
 use super::spectrum::Spectrum;
 use super::statistics::{SamplingError, Statistics};
@@ -160,4 +161,6 @@ pub struct Curve {
     pub face: Option<FaceLoad>,
     /// The largest stresses in the driving and in the driven gear, where they were asked for, by a whole contact at each position, under load.
     pub stresses: Option<[GearStresses; 2]>,
+    /// What running does to it, of a pair that runs.
+    pub running: Option<CurveRunning>,
 }

@@ -75,6 +75,7 @@ impl CurveParts {
             decomposition: self.decomposition,
             stresses: self.stresses,
             face: self.face,
+            running: None,
         }
     }
 }

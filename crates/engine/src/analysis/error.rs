@@ -85,6 +85,24 @@ pub enum AnalysisError {
     /// The rows of a force table do not rise: a mistake of the method.
     #[error(transparent)]
     RowFalls(#[from] FallingRow),
+    /// Rotation and press fit stretch a gear beyond the strength of its material.
+    #[error("the {member} gear is stretched by {stress} Pa where its material bears {strength} Pa")]
+    RimBreaks {
+        /// The gear.
+        member: Member,
+        /// The largest tension, in Pa, without load on the teeth.
+        stress: f64,
+        /// The tensile strength, in Pa.
+        strength: f64,
+        /// The speed of the driving gear that it bears, in revolutions per second; `None` if the press fit alone is too much.
+        speed: Option<f64>,
+    },
+    /// The flanks have grown until the teeth have no room.
+    #[error("the flanks that have grown leave a backlash of {backlash} m")]
+    FlanksJam {
+        /// The least backlash along the line of action, in meters, negative.
+        backlash: f64,
+    },
     /// A grid or a factorization failed.
     #[error("the {member} gear cannot be discretized: {reason}")]
     Discretization {

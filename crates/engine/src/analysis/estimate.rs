@@ -68,6 +68,10 @@ pub fn estimate(case: &Case, forces: Option<&ForcesRequest>) -> Estimate {
     for window in case.windowed() {
         add_contacts(&mut estimate, &Plan::of(&window));
     }
+    if let Some(at_rest) = case.at_rest() {
+        // The gears are the same.
+        add_contacts(&mut estimate, &Plan::of(&at_rest));
+    }
     if let Some(forces) = forces {
         // The gears are the same.
         for plan in TablePlan::of(case, forces.table).plans() {
@@ -118,6 +122,11 @@ fn add_gears(estimate: &mut Estimate, plan: &Plan) {
             estimate.memory += gear.memory;
             if number == 0 {
                 estimate.degrees_of_freedom += gear.degrees_of_freedom;
+            }
+            if number == 0 && plan.case.runs().is_some() {
+                // It is made once more, with what its rotation does inside.
+                estimate.seconds += gear.seconds;
+                estimate.memory += gear.memory / 4;
             }
             if pass.stress {
                 // It is made once more, with rows that lead inside.

@@ -4,6 +4,7 @@ use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
 
 use super::setup::Setup;
+use super::spun_pair::PairState;
 use super::{AnalysisError, Case};
 use crate::assembly::inside::Answer;
 use crate::assembly::{Blanks, Inside, PartError, Parts, Probes};
@@ -69,8 +70,9 @@ pub fn fields(
     run: &Run,
 ) -> Result<Fields, AnalysisError> {
     faer::set_global_parallelism(faer::Par::Seq);
-    let deviations = &case.pair.deviations();
     let level = case.resolution.grid;
+    let state = PairState::of(case, level, parts, run)?;
+    let deviations = &state.map_or_else(|| case.pair.deviations(), |state| state.deviations);
     let setup = Setup::new((case, deviations), level, FARTHEST_COUPLED, parts, run);
     let (model, _) = setup.model(Blanks::Flexible)?;
     let at = |error| AnalysisError::at_position(error, eta);

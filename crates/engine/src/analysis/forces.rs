@@ -146,6 +146,7 @@ fn rows_case(case: &Case, loads: &[f64]) -> Case {
         stress: false,
         windows: Vec::new(),
         driving_speed: None,
+        running: None,
         ..case.clone()
     };
     rows.resolution.positions_per_mesh_period *= MORE_POSITIONS;

@@ -9,6 +9,7 @@ use super::curve::Curve;
 use super::found::Found;
 use super::load_distribution::{ends_of_contact, light};
 use super::plan::Sweep;
+use super::spun_pair::PairState;
 use super::under_load::parts_of;
 use crate::contact::face::FaceFlanks;
 use crate::contact::{MeshContact, PositionError, light_contact};
@@ -19,14 +20,18 @@ use crate::run::Run;
 type Light<'a> = Box<dyn Fn(f64) -> Result<MeshContact, AnalysisError> + Sync + 'a>;
 
 /// The curve of `case` at torque 0, by contacts at the positions of `sweep`.
-pub(super) fn curve(case: &Case, sweep: &Sweep) -> Result<Curve, AnalysisError> {
+pub(super) fn curve(
+    (case, state): (&Case, Option<&PairState>),
+    sweep: &Sweep,
+) -> Result<Curve, AnalysisError> {
     let mut kinks = Vec::new();
     let at = |eta, contact: Result<MeshContact, PositionError>| {
         contact.map_err(|error| AnalysisError::at_position(error, eta))
     };
     let contact: Light<'_> = match &case.model {
         Model::Section(_) => {
-            let deviations = case.pair.deviations();
+            let drawn = || case.pair.deviations();
+            let deviations = state.map_or_else(drawn, |state| state.deviations.clone());
             Box::new(move |eta| at(eta, light_contact(&case.pair, &deviations, eta)))
         }
         Model::Faces(faces, _) => {

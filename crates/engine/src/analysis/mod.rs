@@ -6,7 +6,7 @@
 //!   finite elements work with);
 //! - `flexible`, `decomposition`, `projected`, `three_dimensional` and `load_distribution` (the methods), `first_order` (what holes change, in the plane and
 //!   along faces) and `checks` (where that is compared with exact solutions), [`hole_phase`] (how the holes of both gears stand best), `light` (torque 0, alike for
-//!   all);
+//!   all), [`running`] and `spun_pair` (pairs that turn, are warm, and are pressed onto shafts);
 //! - [`stress`] (at roots and holes; along faces `face_stress`), [`fields`] (everywhere; along faces [`face_fields`]), [`contact_pattern`] (over the flanks);
 //! - `between` (a curve between its positions), `curve_parts` and [`curve`] with its `statistics`, [`largest_where`] (where its largest values stand), [`pressures`] (what they come to),
 //!   [`spectrum`] and [`single_flank`] with the `long_wave`; `windows` (stretches of a true period that is too long), [`mesh_wave`] and `pair_springs` (what they tell of the mesh orders);
@@ -44,9 +44,11 @@ mod pair_springs;
 mod plan;
 pub mod pressures;
 mod projected;
+pub mod running;
 mod setup;
 pub mod single_flank;
 pub mod spectrum;
+mod spun_pair;
 mod statistics;
 pub mod stress;
 mod three_dimensional;
@@ -56,14 +58,13 @@ mod windows;
 
 pub use analyze::{analyze, pair_model};
 pub use answer::Analysis;
-pub use case::{
-    Case, FaceHoles, Faces, Method, Model, Resolution, RotationSpeed, SectionHoles, StiffnessRule,
-};
+pub use case::{Case, FaceHoles, Faces, Method, Model, Resolution, SectionHoles, StiffnessRule};
 pub use curve::{Curve, FaceLoad};
 pub use error::AnalysisError;
 pub use estimate::{Estimate, estimate};
 pub use evidence::{ErrorEstimate, Evidence};
 pub use orders::{OrderCause, OrderKind};
+pub use running::RotationSpeed;
 pub use statistics::{SamplingError, Statistics};
 pub use warning::{FEW_POSITIONS, PLANE_RIM, PLANE_WEB, Warning, warnings};
 pub use windows::windows_at_largest_steps;

@@ -1,6 +1,7 @@
 //! What every method by finite elements works with.
 
 use super::plan::Sweep;
+use super::running::RestingStresses;
 use super::{AnalysisError, Case};
 use crate::assembly::{Blanks, Modeling, PairSpec, Parts};
 use crate::contact::positions::{contacts, contacts_keeping};
@@ -18,6 +19,8 @@ pub(super) struct Setup<'a> {
     pub(super) case: &'a Case,
     /// What the teeth of its pair deviate by.
     pub(super) deviations: &'a PairDeviations,
+    /// How its gears are stressed without load.
+    pub(super) resting: Option<&'a [RestingStresses; 2]>,
     pub(super) modeling: Modeling,
     pub(super) parts: &'a dyn Parts,
     pub(super) run: &'a Run,
@@ -41,6 +44,7 @@ impl<'a> Setup<'a> {
         Self {
             case,
             deviations,
+            resting: None,
             modeling,
             parts,
             run,

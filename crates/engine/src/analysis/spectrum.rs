@@ -3,8 +3,9 @@
 use realfft::RealFftPlanner;
 
 use super::between::Sections;
-use super::case::{Case, RotationSpeed};
+use super::case::Case;
 use super::orders::{KnownOrder, OrderKind, Orders};
+use super::running::RotationSpeed;
 use crate::gear::GearPair;
 
 /// A line of the spectrum that has a name.
@@ -111,6 +112,26 @@ impl Spectrum {
         for line in self.named.iter_mut().filter(of_holes) {
             line.of_holes = drawn.line(&line.label).map(|own| own.transmission_error);
         }
+    }
+
+    /// The places of the orders of the holes among the lines.
+    fn hole_orders(&self) -> impl Iterator<Item = usize> {
+        let of_holes = |line: &&NamedOrder| matches!(&line.kind, OrderKind::Cause { cause, multiple: 1 } if cause.holes);
+        let orders = self.named.iter().filter(of_holes).map(|line| line.order);
+        orders.filter_map(|order| self.order.iter().position(|each| *each == order))
+    }
+
+    /// The largest amplitude, over the orders of holes, of δ of this curve less that of `other`; `None` without holes.
+    pub(super) fn apart_at_hole_orders(&self, other: &Self) -> Option<f64> {
+        let apart = self.hole_orders().map(|i| {
+            let [a, b] = [self, other].map(|spectrum| {
+                let (sin, cos) = spectrum.transmission_error_phase[i].sin_cos();
+                let amplitude = spectrum.transmission_error[i];
+                [amplitude * cos, amplitude * sin]
+            });
+            (a[0] - b[0]).hypot(a[1] - b[1])
+        });
+        apart.reduce(f64::max)
     }
 
     /// The named line with this label.

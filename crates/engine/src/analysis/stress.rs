@@ -5,15 +5,15 @@
 use std::f64::consts::TAU;
 
 use super::found::Kept;
+use super::running::RestingStresses;
 use super::setup::Setup;
 use super::{AnalysisError, Case};
 use crate::assembly::face_roots::UNDER_CONTACT;
 use crate::assembly::inside::{Answer, LoadedGear};
 use crate::assembly::{Blanks, Inside, PartError, Probes};
 use crate::contact::{ContactCells, ContactSolution, FlankLoad};
-use crate::fem::recovery::edge_stresses;
 use crate::gear::{Involute, Member, Vector, radial};
-use crate::grid::{BlankGrid, Grid};
+use crate::grid::Grid;
 use crate::run::Run;
 
 /// How far from a loaded tooth, in teeth, the roots are looked at: a rim bends between the ends of a slot or the spokes under it.
@@ -78,6 +78,8 @@ struct StressedGear {
     fillets: Vec<[f64; 2]>,
     /// How many of them are beside the loaded flank.
     beside_loaded: usize,
+    /// What stresses the gear without load.
+    resting: RestingStresses,
     /// The same of the nodes along the edges of holes, in the frame of sector 0.
     edges: Vec<[f64; 2]>,
 }
@@ -107,22 +109,11 @@ impl StressModel {
             let grids = spec.grids(member)?;
             let (tooth, loaded) = (&grids.tooth.grid, &grids.tooth.fillet_nodes);
             let sides = [loaded, &grids.tooth.back_fillet_nodes];
-            let (mut edges, mut in_blank) = (Vec::new(), Vec::new());
-            if let Some(BlankGrid {
-                grid, hole_edges, ..
-            }) = &grids.blank
-            {
-                edges = polar(grid, &hole_edges.concat());
-                let along = |edge: &Vec<u32>| edge_stresses(grid, gear.material(), edge, true);
-                in_blank = hole_edges.iter().flat_map(along).collect();
-            }
-            let probes = Probes {
-                in_tooth: sides
-                    .into_iter()
-                    .flat_map(|side| edge_stresses(tooth, gear.material(), side, false))
-                    .collect(),
-                in_blank,
-            };
+            let edges = grids.blank.as_ref().map_or_else(Vec::new, |blank| {
+                polar(&blank.grid, &blank.hole_edges.concat())
+            });
+            let probes =
+                Probes::along_free_edges(&grids.tooth, grids.blank.as_ref(), gear.material());
             let inside = spec.inside(member, &grids, &probes, setup.parts, setup.run)?;
             Ok(StressedGear {
                 member,
@@ -133,6 +124,10 @@ impl StressModel {
                 under_contact: UNDER_CONTACT * gear.data().rack.module,
                 fillets: polar(tooth, &sides.map(Vec::as_slice).concat()),
                 beside_loaded: loaded.len(),
+                resting: setup
+                    .resting
+                    .map(|both| both[member.index()].clone())
+                    .unwrap_or_default(),
                 edges,
             })
         };
@@ -181,6 +176,9 @@ impl LoadedPair<'_> {
             let sectors = gear.sector_angles.iter().enumerate();
             let holes = sectors.flat_map(|(sector, &turn)| {
                 let along = answer.in_blank(sector).into_iter().zip(&gear.edges);
+                let along = along.enumerate().map(move |(i, (stress, place))| {
+                    (stress + gear.resting.in_blank(sector, i), place)
+                });
                 along.map(move |(stress, place)| in_plane(stress.abs(), turn, *place))
             });
             let hole = (!gear.edges.is_empty()).then(|| largest(holes));
@@ -247,15 +245,17 @@ impl StressedGear {
                 let mut pressed = pressed.iter();
                 pressed.all(|contact| (place - contact).norm() >= self.under_contact)
             };
-            along
-                .enumerate()
-                .filter(move |(_, (_, place))| is_free(**place))
-                .map(move |(i, (stress, place))| RootStress {
+            let along = along.enumerate().map(move |(i, (stress, place))| {
+                (i, (stress + self.resting.in_tooth(tooth, i), place))
+            });
+            along.filter(move |(_, (_, place))| is_free(**place)).map(
+                move |(i, (stress, place))| RootStress {
                     peak: in_plane(stress, turn, *place),
                     // Nothing presses on a free edge.
                     principal: [stress; 2],
                     in_mesh: i < self.beside_loaded && away(tooth) <= 1,
-                })
+                },
+            )
         };
         reached.flat_map(of_tooth).collect()
     }

@@ -166,6 +166,13 @@ pub enum Warning {
     FormulaRange(FormulaRange),
     /// The method does not see holes that the drawing has.
     HolesNotSeen,
+    /// A gear comes loose from the shaft that it is pressed onto, and is computed as free from it.
+    FitComesLoose {
+        /// The gear.
+        member: Member,
+        /// The speed of the driving gear from which the mean pressure of the fit is gone, in revolutions per second.
+        speed: f64,
+    },
     /// What the first-order term of the projected decomposition leaves out shows in its curve.
     ProjectionDoubtful {
         /// The largest difference to the exact δ that was found, in meters.

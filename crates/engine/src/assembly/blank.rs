@@ -6,7 +6,7 @@ use crate::fem::recovery::Functional;
 use crate::gear::SpurGear;
 use crate::grid::ring_grid::ELEMENTS_PER_TOOTH;
 use crate::grid::{BlankGrid, GridError, GridLevel};
-use crate::ring::blank::{BlankRecovery, BlankSubstructure};
+use crate::ring::blank::{BlankLoad, BlankLoads, BlankRecovery, BlankSubstructure, Hold};
 use crate::ring::cyclic::Harmonics;
 use crate::run::Run;
 
@@ -74,11 +74,31 @@ impl BlankSpec {
         asked: &[Functional],
         run: &Run,
     ) -> Result<(BlankSubstructure, BlankRecovery), PartError> {
-        let core = self.gear.data().blank.core;
-        let plate = (core, self.gear.material(), self.gear.face_width());
-        let (radius, orders) = (self.interface_radius, self.orders());
-        let made = BlankSubstructure::with_recovery(grid, radius, plate, orders, asked, run)?;
-        Ok(made)
+        let hold = self.gear.data().blank.core.into();
+        let (blank, recovery, _) = self.make_loaded(grid, hold, asked, &[], run)?;
+        Ok((blank, recovery))
+    }
+
+    /// Makes it of its `grid`, its bore held as `hold` says, with the functionals `asked` of its sector 0 and under the `loads` inside it.
+    pub(super) fn make_loaded(
+        &self,
+        grid: &BlankGrid,
+        hold: Hold,
+        asked: &[Functional],
+        loads: &[BlankLoad],
+        run: &Run,
+    ) -> Result<(BlankSubstructure, BlankRecovery, BlankLoads), PartError> {
+        let plate = (self.gear.material(), self.gear.face_width());
+        let made = (hold, plate, self.orders());
+        let radius = self.interface_radius;
+        Ok(BlankSubstructure::loaded(
+            grid, radius, made, asked, loads, run,
+        )?)
+    }
+
+    /// The gear, as far as its blank goes.
+    pub(super) fn gear(&self) -> &SpurGear {
+        &self.gear
     }
 }
 

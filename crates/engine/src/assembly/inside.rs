@@ -4,24 +4,14 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use super::cut::{CutBlank, CutGear};
-use super::{GearGrids, GearSpec, PartError, Parts};
+use super::{GearGrids, GearSpec, PartError, Parts, Probes};
 use crate::contact::FlankLoad;
 use crate::fem::FemError;
-use crate::fem::recovery::Functional;
 use crate::ring::blank::BlankRecovery;
 use crate::ring::motion::InterfaceMotion;
 use crate::ring::teeth_recovery::TeethRecovery;
 use crate::ring::tooth::ToothSubstructure;
 use crate::run::Run;
-
-/// What is asked of the inside of a gear.
-#[derive(Debug, Clone, Default)]
-pub struct Probes {
-    /// Functionals of the displacements of one tooth.
-    pub in_tooth: Vec<Functional>,
-    /// Functionals of the displacements of sector 0 of the blank.
-    pub in_blank: Vec<Functional>,
-}
 
 /// A gear that can be asked what goes on inside it.
 pub struct Inside {

@@ -3,7 +3,7 @@
 //! In reading order: [`interface`] (the circle on which teeth and blank meet), [`teeth`] (all teeth of a gear down to it),
 //! [`blank`] (what they stand on), [`gear`] (both joined), [`pair_spec`] and `pair` (two gears and the rules of their contact);
 //! along faces [`face_yield`] (the parts under the teeth, and what holes change: `stack`, `holed`, in the real amplitudes of a circle: `amplitudes`; how it becomes polynomials: `flank_fit`), [`face_roots`] and [`face_holes`] (how it is stressed at its roots and at its holes), [`face_inside`] (how all of it moves);
-//! beside them [`cut`] (a gear parted at that circle again) and [`inside`] (what goes on in a gear whose flanks are loaded).
+//! beside them [`cut`] (a gear parted at that circle again) and [`inside`] (what goes on in a gear whose flanks are loaded) and [`spun`] (in one that rotates).
 //!
 //! Each part is a pure function of its *spec*, a value that says all that the part depends on. Equal specs are equal parts;
 //! who makes them, and whether anyone keeps them, is asked of [`Parts`].
@@ -26,6 +26,8 @@ pub mod interface;
 mod pair;
 pub mod pair_spec;
 mod parts;
+mod probes;
+pub mod spun;
 mod stack;
 pub mod teeth;
 
@@ -39,8 +41,10 @@ pub use face_roots::FaceRoots;
 pub use face_yield::{FaceYield, FaceYieldSpec, PlainFace};
 pub use flank_forces::FlankForces;
 pub use gear::{BlankUnderTeeth, Gear, GearGrids, GearSpec, WantedGear};
-pub use inside::{Inside, Probes};
+pub use inside::Inside;
 pub use pair_spec::{Blanks, ContactsSpec, FlanksSpec, Modeling, PairSpec};
 pub use parts::{MakeAll, Parts, make_gears};
+pub use probes::Probes;
+pub use spun::{InnerLoad, Spun, SpunSpec};
 pub use stack::{NearHoles, Stack};
 pub use teeth::{Teeth, TeethSpec};

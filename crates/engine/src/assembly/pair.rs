@@ -1,9 +1,14 @@
 //! A pair of gears ready for contact, of the parts that somebody provides.
 
+use std::sync::Arc;
+
 use super::pair_spec::cells_per_patch;
-use super::{AssemblyError, CutGear, GearGrids, Inside, PairSpec, Parts, Probes, WantedGear};
+use super::{
+    AssemblyError, CutGear, GearGrids, Inside, PairSpec, Parts, Probes, Spun, SpunSpec, WantedGear,
+};
 use crate::contact::PairModel;
 use crate::gear::Member;
+use crate::ring::blank::Hold;
 use crate::run::Run;
 
 impl PairSpec {
@@ -32,6 +37,23 @@ impl PairSpec {
     ) -> Result<Inside, AssemblyError> {
         let spec = &self.gears[member.index()];
         Inside::new(spec, grids, probes, parts, run).map_err(|error| error.of(member))
+    }
+
+    /// How the gear `member` answers to its rotation, its bore held as `hold` says; `None` of one on a rigid blank.
+    ///
+    /// # Errors
+    ///
+    /// [`AssemblyError`].
+    pub fn spun(
+        &self,
+        member: Member,
+        hold: Hold,
+        parts: &dyn Parts,
+        run: &Run,
+    ) -> Result<Option<Arc<Spun>>, AssemblyError> {
+        let spec = SpunSpec::new(&self.gears[member.index()], hold);
+        let spun = spec.map(|spec| parts.spun(&spec, run)).transpose();
+        spun.map_err(|error| error.of(member))
     }
 
     /// The gear `member` cut at its interface circle.

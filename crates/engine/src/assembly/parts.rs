@@ -8,6 +8,7 @@ use super::face_holes::FaceHoles;
 use super::face_roots::FaceRoots;
 use super::face_yield::{FaceYield, FaceYieldSpec, PlainFace};
 use super::pair_spec::{ContactsSpec, FlanksSpec, PairSpec};
+use super::spun::{Spun, SpunSpec};
 use super::stack::Stack;
 use super::{AssemblyError, BlankSpec, Gear, PartError, Teeth, TeethSpec, WantedGear};
 
@@ -50,6 +51,17 @@ pub trait Parts: Sync {
     /// [`AssemblyError`].
     fn gears(&self, wanted: &[WantedGear], run: &Run) -> Result<Vec<Arc<Gear>>, AssemblyError> {
         make_gears(wanted, self, run)
+    }
+
+    /// How the gear of `spec` answers to its rotation.
+    ///
+    /// # Errors
+    ///
+    /// [`PartError`].
+    fn spun(&self, spec: &SpunSpec, run: &Run) -> Result<Arc<Spun>, PartError> {
+        let teeth = self.teeth(spec.teeth(), run)?;
+        let solid = spec.solid().map(|solid| self.blank(&solid, run));
+        spec.make(teeth, solid.transpose()?, run).map(Arc::new)
     }
 
     /// What the flanks of a solid gear yield without holes.

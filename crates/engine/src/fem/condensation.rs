@@ -26,6 +26,10 @@ pub struct Condensed {
     pub stiffness: Mat<f64>,
     /// The functionals asked for, one a row, by the same unknowns: what they are while no force acts on any other node.
     pub rows: Mat<f64>,
+    /// The loads on all nodes as forces on the same unknowns, one load a row.
+    pub loads: Mat<f64>,
+    /// The functionals asked for under the loads, with the kept nodes held: one functional a row, one load a column.
+    pub under_loads: Mat<f64>,
 }
 
 /// The stiffness of every element of `grid` in turn, of one material; `thickness`, in meters, is that of an element whose own
@@ -70,10 +74,28 @@ pub fn condense(
 pub fn condense_with(
     part: &'static str,
     grid: &Grid,
-    (material, thickness): (&Material, f64),
+    plate: (&Material, f64),
     kept: &[u32],
     fixed: &[u32],
     asked: &[Functional],
+) -> Result<Condensed, FemError> {
+    condense_loaded(part, grid, plate, (kept, fixed), asked, &[])
+}
+
+/// Condenses `grid` as [`condense_with`] does, with the `loads` on its nodes, each given by the work Σ f·u of its forces.
+///
+/// A load is condensed as a functional is: L₁₁⁻¹ of both, multiplied, is the functional under the load with the kept nodes held.
+///
+/// # Errors
+///
+/// As [`condense`].
+pub fn condense_loaded(
+    part: &'static str,
+    grid: &Grid,
+    (material, thickness): (&Material, f64),
+    (kept, fixed): (&[u32], &[u32]),
+    asked: &[Functional],
+    loads: &[Functional],
 ) -> Result<Condensed, FemError> {
     let numbering = Numbering::new(grid.nodes.len(), kept, fixed);
     let mut matrix = BlockMatrix::new(COMPONENTS, &grid.elements, &numbering);
@@ -100,13 +122,29 @@ pub fn condense_with(
     for i in 0..stiffness.nrows() {
         stiffness[(i, i)] -= spring;
     }
+    let of_loads = factor.halved(loads, &numbering);
     let mut rows = Mat::zeros(asked.len(), 2 * kept.len());
+    let mut under_loads = Mat::zeros(asked.len(), loads.len());
     for (chunk, asked) in asked.chunks(FUNCTIONALS_AT_ONCE).enumerate() {
-        let columns = factor.on_kept(asked, &numbering, &trailing);
-        rows.subrows_mut(chunk * FUNCTIONALS_AT_ONCE, asked.len())
+        let halved = factor.halved(asked, &numbering);
+        let columns = &trailing * &halved.on_kept;
+        let first = chunk * FUNCTIONALS_AT_ONCE;
+        rows.subrows_mut(first, asked.len())
             .copy_from(columns.transpose());
+        if !loads.is_empty() {
+            let inside = halved.inside.transpose() * &of_loads.inside;
+            under_loads
+                .subrows_mut(first, asked.len())
+                .copy_from(inside);
+        }
     }
-    Ok(Condensed { stiffness, rows })
+    let loads = (&trailing * &of_loads.on_kept).transpose().to_owned();
+    Ok(Condensed {
+        stiffness,
+        rows,
+        loads,
+        under_loads,
+    })
 }
 
 /// L Lᵀ of a lower triangle.

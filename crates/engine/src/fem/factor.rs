@@ -23,6 +23,14 @@ pub(super) struct Factor {
     interior: usize,
 }
 
+/// Functionals multiplied by L⁻¹, a column each.
+pub(super) struct Halved {
+    /// The part on the unknowns that are eliminated.
+    pub(super) inside: Mat<f64>,
+    /// The part on those that are kept.
+    pub(super) on_kept: Mat<f64>,
+}
+
 impl Factor {
     /// Factorizes `matrix`, that of `part`, in an order of few entries which leaves the kept nodes of `numbering` last.
     pub(super) fn new(
@@ -128,13 +136,8 @@ impl Factor {
         l_22
     }
 
-    /// b₂ − L₂₁ L₁₁⁻¹ b₁ for each functional b, a column each: L₂₂ times the trailing part of L⁻¹ b.
-    pub(super) fn on_kept(
-        &self,
-        asked: &[Functional],
-        numbering: &Numbering,
-        trailing: &Mat<f64>,
-    ) -> Mat<f64> {
+    /// L⁻¹ b for each functional b, a column each. L₂₂ times the part on the kept unknowns is b₂ − L₂₁ L₁₁⁻¹ b₁.
+    pub(super) fn halved(&self, asked: &[Functional], numbering: &Numbering) -> Halved {
         let place = self.places();
         let mut solved = Mat::<f64>::zeros(self.symbolic.nrows(), asked.len());
         for (column, functional) in asked.iter().enumerate() {
@@ -147,9 +150,14 @@ impl Factor {
                 solved[(place[COMPONENTS * node + 1] as usize, column)] += weight.y;
             }
         }
-        self.half_solve_in_place(&mut solved);
-        let on_kept = solved.subrows(self.interior, trailing.nrows());
-        trailing * on_kept
+        if !asked.is_empty() {
+            self.half_solve_in_place(&mut solved);
+        }
+        let kept = solved.nrows() - self.interior;
+        Halved {
+            inside: solved.subrows(0, self.interior).to_owned(),
+            on_kept: solved.subrows(self.interior, kept).to_owned(),
+        }
     }
 
     /// Where each unknown stands in the order of the factor.

@@ -2,9 +2,10 @@
 //!
 //! Read in this order: [`law`] (what strains stress), [`element`] (one element), `sparse` (the matrix of a grid) and `factor`,
 //! [`condensation`] (a grid's stiffness on the unknowns that are kept), [`recovery`] (displacements and stresses of the others), and
-//! [`prescribed`] (at every node); of bodies with an extent along an axis [`axial`], [`prism`], [`surface`] and [`volume`]. Beside them: [`dense`]. It knows grids and materials, and nothing of gears.
+//! [`prescribed`] (at every node), [`centrifugal`] (what rotation pulls at them); of bodies with an extent along an axis [`axial`], [`prism`], [`surface`] and [`volume`]. Beside them: [`dense`]. It knows grids and materials, and nothing of gears.
 
 pub mod axial;
+pub mod centrifugal;
 pub mod condensation;
 pub mod dense;
 pub mod eigen;

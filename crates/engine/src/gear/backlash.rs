@@ -23,6 +23,11 @@ impl GearPair {
         (self.backlash() - self.taken_backlash(&self.deviations())).max(0.0)
     }
 
+    /// The least backlash of teeth that have these `deviations`, along the line of action; negative where they jam.
+    pub fn backlash_with(&self, deviations: &PairDeviations) -> f64 {
+        self.backlash() - self.taken_backlash(deviations)
+    }
+
     /// By how much the other flanks of teeth that have these `deviations` have to be moved back for room: nothing, or as much as the last printed digits
     /// explain.
     pub(super) fn shortfall(&self, deviations: &PairDeviations) -> Result<f64, GearPairError> {

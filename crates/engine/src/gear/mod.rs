@@ -46,7 +46,7 @@ pub use modification::{
 };
 pub use pair::{DeviationsError, GearPair, GearPairError};
 pub(crate) use pair_deviations::Trace;
-pub use pair_deviations::{GearDeviations, PairDeviations};
+pub use pair_deviations::{FlankGrowth, GearDeviations, PairDeviations};
 pub use rack::{Protuberance, Rack};
 pub use solid::{Hand, Helix, Hub, Layer, SolidGear, SolidGearError};
 pub use solid_pair::{Alignment, ContactLine, SolidPair, SolidPairError};

@@ -2,7 +2,8 @@
 
 use super::involute::involute_function;
 use super::{
-    GearError, Member, PairDeviations, SpurGear, ToothDeviations, Vector, gcd, radial, teeth_on,
+    FlankGrowth, GearError, Member, PairDeviations, SpurGear, ToothDeviations, Vector, gcd, radial,
+    teeth_on,
 };
 use crate::root_finding::bisect;
 
@@ -555,6 +556,13 @@ impl PairDeviations {
         let deviations = Self::of([&pair.driving, &pair.driven], teeth);
         pair.shortfall(&deviations).map_err(DeviationsError::Pair)?;
         Ok(deviations)
+    }
+
+    /// These on the gears of `pair` whose flanks have grown, so turned that flanks on the pitch point stand in the mean where they did.
+    pub fn growing(self, pair: &GearPair, growth: [&FlankGrowth; 2]) -> Self {
+        let s_1 = pair.pitch_roll_length();
+        let pitch = [s_1, pair.line_of_action() - s_1];
+        self.grown([&pair.driving, &pair.driven], pitch, growth)
     }
 }
 

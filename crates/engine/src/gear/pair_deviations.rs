@@ -182,6 +182,40 @@ impl GearDeviations {
         self.eccentricity.map_or(0.0, |each| each.amount)
     }
 
+    /// These on flanks of `gear` that have grown, so turned as a whole that flanks on the pitch point, at the roll length `pitch`, stand in the mean where they
+    /// did.
+    fn growing(mut self, gear: &SpurGear, growth: &FlankGrowth, pitch: f64) -> Self {
+        let teeth = growth.at_form.len();
+        if teeth == 0 {
+            return self;
+        }
+        self.ends = [gear.form_roll_length(), gear.tip_roll_length()];
+        let at = |s: f64| -> Vec<f64> {
+            let part = (s - self.ends[0]) / (self.ends[1] - self.ends[0]);
+            let both = growth.at_form.iter().zip(&growth.to_tip);
+            both.map(|(form, more)| form + part * more).collect()
+        };
+        let mean = |values: &[f64]| values.iter().sum::<f64>() / teeth as f64;
+        let (turned, middle) = (
+            mean(&at(pitch)),
+            at(f64::midpoint(self.ends[0], self.ends[1])),
+        );
+        // A tooth that grows does so on both of its flanks, which stand out in opposite senses.
+        let grown = 2.0 * mean(&middle);
+        let other_turns = (0..teeth).map(|i| self.other_turn(i) + middle[i] - grown - turned);
+        let other_turns = other_turns.collect();
+        let turns = (0..teeth).map(|i| self.turn(i) + growth.at_form[i] - turned);
+        let turns = turns.collect();
+        let slope = |i: usize| self.profile_slopes.get(i).copied().unwrap_or(0.0);
+        let slopes = (0..teeth).map(|i| slope(i) + growth.to_tip[i]).collect();
+        Self {
+            turns,
+            other_turns,
+            profile_slopes: slopes,
+            ..self
+        }
+    }
+
     /// How far the point that stands out most does.
     fn farthest_out(&self) -> f64 {
         let teeth = self.turns.len().max(self.profile_slopes.len());
@@ -231,6 +265,70 @@ impl Trace<'_> {
     }
 }
 
+/// How the loaded flanks of a gear that runs stand out beyond its drawing: along the normal, linear in the roll length. Empty lists are no growth.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct FlankGrowth {
+    /// At the form circle, in meters, tooth by tooth.
+    at_form: Vec<f64>,
+    /// By how much more at the tip circle.
+    to_tip: Vec<f64>,
+}
+
+impl FlankGrowth {
+    /// Adds what all lengths of `gear` do that grow by the `strain`: at the roll length s a flank then stands out by so much of s.
+    pub fn add_strain(&mut self, gear: &SpurGear, strain: f64) {
+        if strain == 0.0 {
+            return;
+        }
+        let (from, to) = (gear.form_roll_length(), gear.tip_roll_length());
+        let teeth = gear.tooth_count() as usize;
+        self.add(vec![[strain * from, strain * (to - from)]; teeth]);
+    }
+
+    /// Adds `amount` times what the flanks of each tooth of `gear` stand out by at the rising `roll_lengths`: the line that is nearest to it, by least
+    /// squares over the flank.
+    pub fn add_flanks(
+        &mut self,
+        gear: &SpurGear,
+        roll_lengths: &[f64],
+        flanks: &[Vec<f64>],
+        amount: f64,
+    ) {
+        let (from, to) = (gear.form_roll_length(), gear.tip_roll_length());
+        let last = roll_lengths.len() - 1;
+        let weights =
+            (0..=last).map(|i| roll_lengths[(i + 1).min(last)] - roll_lengths[i.max(1) - 1]);
+        let weights: Vec<f64> = weights.collect();
+        let parts = roll_lengths.iter().map(|s| (s - from) / (to - from));
+        let parts: Vec<f64> = parts.collect();
+        let line = |values: &Vec<f64>| {
+            let mut sums = [0.0; 5];
+            for ((w, x), y) in weights.iter().zip(&parts).zip(values) {
+                for (sum, term) in sums.iter_mut().zip([1.0, *x, x * x, *y, x * y]) {
+                    *sum += w * term;
+                }
+            }
+            let [one, x, xx, y, xy] = sums;
+            let determinant = one * xx - x * x;
+            [
+                (y * xx - xy * x) / determinant,
+                (xy * one - y * x) / determinant,
+            ]
+            .map(|value| amount * value)
+        };
+        self.add(flanks.iter().map(line).collect());
+    }
+
+    fn add(&mut self, lines: Vec<[f64; 2]>) {
+        self.at_form.resize(lines.len(), 0.0);
+        self.to_tip.resize(lines.len(), 0.0);
+        for (i, [form, more]) in lines.into_iter().enumerate() {
+            self.at_form[i] += form;
+            self.to_tip[i] += more;
+        }
+    }
+}
+
 /// What the teeth of both gears of a pair deviate by: what one pair differs by from others made to the same drawings.
 ///
 /// Contact is solved for a model of the drawn pair and these ([`crate::contact::PairModel::deviating`]).
@@ -253,6 +351,24 @@ impl PairDeviations {
         let gears = Member::BOTH
             .map(Member::index)
             .map(|i| GearDeviations::of(gears[i], teeth[i]));
+        Self::of_gears(gears)
+    }
+
+    /// These on `gears` whose flanks have grown, so turned that flanks at the roll lengths `pitch` stand in the mean where they did.
+    pub(super) fn grown(
+        self,
+        gears: [&SpurGear; 2],
+        pitch: [f64; 2],
+        growth: [&FlankGrowth; 2],
+    ) -> Self {
+        let [driving, driven] = self.gears;
+        Self::of_gears([
+            driving.growing(gears[0], growth[0], pitch[0]),
+            driven.growing(gears[1], growth[1], pitch[1]),
+        ])
+    }
+
+    fn of_gears(gears: [GearDeviations; 2]) -> Self {
         // Off the path of contact the arm differs from one; a tenth more is more than it ever makes.
         let each = gears
             .each_ref()

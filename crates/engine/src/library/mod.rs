@@ -11,8 +11,8 @@ pub use shelf::ShelfUsage;
 
 use crate::assembly::{
     AssemblyError, BlankSpec, ContactsSpec, FaceHoles, FaceRoots, FaceYield, FaceYieldSpec,
-    FlanksSpec, Gear, GearSpec, PairSpec, PartError, Parts, PlainFace, Stack, Teeth, TeethSpec,
-    WantedGear, make_gears,
+    FlanksSpec, Gear, GearSpec, PairSpec, PartError, Parts, PlainFace, Spun, SpunSpec, Stack,
+    Teeth, TeethSpec, WantedGear, make_gears,
 };
 use crate::contact::compliances::Compliances;
 use crate::contact::drawn::DrawnFlanks;
@@ -31,6 +31,7 @@ struct Shelves {
     teeth: Shelf<TeethSpec, Teeth>,
     blanks: Shelf<BlankSpec, BlankSubstructure>,
     gears: Shelf<GearSpec, Gear>,
+    spun: Shelf<SpunSpec, Spun>,
     flanks: Shelf<FlanksSpec, DrawnFlanks>,
     compliances: Shelf<PairSpec, Compliances>,
     contacts: Shelf<ContactsSpec, Vec<MeshContact>>,
@@ -54,6 +55,7 @@ impl Library {
             teeth: Shelf::new(bytes / 8, bytes_of_teeth),
             blanks: Shelf::new(bytes / 8, bytes_of_blank),
             gears: Shelf::new(bytes / 8, bytes_of_gear),
+            spun: Shelf::new(bytes / 32, |_, spun| size_of::<f64>() * spun.entries()),
             flanks: Shelf::new(bytes / 8, |_, flanks| flanks.bytes()),
             compliances: Shelf::new(bytes / 8, |_, compliances| compliances.bytes()),
             contacts: Shelf::new(bytes / 8, |spec, contacts| {
@@ -67,11 +69,12 @@ impl Library {
     }
 
     /// How each of its shelves is used, by what stands on it.
-    pub fn usage(&self) -> [(&'static str, ShelfUsage); 10] {
+    pub fn usage(&self) -> [(&'static str, ShelfUsage); 11] {
         let Shelves {
             teeth,
             blanks,
             gears,
+            spun,
             flanks,
             compliances,
             contacts,
@@ -84,6 +87,7 @@ impl Library {
             ("teeth", teeth.usage()),
             ("blanks", blanks.usage()),
             ("gears", gears.usage()),
+            ("spun", spun.usage()),
             ("flanks", flanks.usage()),
             ("compliances", compliances.usage()),
             ("contacts", contacts.usage()),
@@ -127,6 +131,14 @@ impl Parts for Library {
             .into_iter()
             .filter_map(|known| known.or_else(|| made.next()))
             .collect())
+    }
+
+    fn spun(&self, spec: &SpunSpec, run: &Run) -> Result<Arc<Spun>, PartError> {
+        self.0.spun.made(spec, || {
+            let teeth = self.teeth(spec.teeth(), run)?;
+            let solid = spec.solid().map(|solid| self.blank(&solid, run));
+            spec.make(teeth, solid.transpose()?, run)
+        })
     }
 
     fn plain_face(&self, spec: &Stack, run: &Run) -> Result<Arc<PlainFace>, PartError> {

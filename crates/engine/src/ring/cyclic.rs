@@ -221,6 +221,31 @@ impl Sector {
         on_harmonics
     }
 
+    /// What `rows` on the unknowns of sector 0 are under `forces` on the same unknowns, a row each, that act on every sector alike: the sides follow, and
+    /// all behind them is held. One row a functional, one column a load.
+    ///
+    /// # Errors
+    ///
+    /// [`FemError::NotPositiveDefinite`], or [`FemError::Stopped`].
+    pub(super) fn alike(
+        &self,
+        rows: &Mat<f64>,
+        forces: &Mat<f64>,
+        run: &Run,
+    ) -> Result<Mat<f64>, FemError> {
+        let behind = self.stiffness.nrows() - 4 * self.side_nodes;
+        let held = Mat::zeros(behind, 0);
+        let (_, solution) = self.condense_class_on(0, &held, Vec::new(), run)?;
+        let mut answers = Mat::zeros(rows.nrows(), forces.nrows());
+        if let Some(sides) = &solution.sides {
+            let mut moved = self.side_rows(forces, 0).transpose().to_owned();
+            sides.solve_in_place(moved.as_mut());
+            let moved = self.side_rows(rows, 0) * moved;
+            answers = Mat::from_fn(moved.nrows(), moved.ncols(), |i, j| moved[(i, j)].re);
+        }
+        Ok(answers)
+    }
+
     /// Rows on both sides of sector 0 as rows on the amplitudes of its right side in one class.
     pub fn side_rows(&self, rows: &Mat<f64>, class: usize) -> Mat<c64> {
         let (ns, turn) = (2 * self.side_nodes, self.turn(class, 1));

@@ -107,6 +107,18 @@ impl Harmonics {
         turned
     }
 
+    /// The sum over `sectors` equal sectors of `rows` on the unknowns, each turned to its sector: a column for each row. Orders that are no multiple of
+    /// the number of sectors cancel.
+    pub(super) fn of_all_sectors(&self, rows: MatRef<'_, f64>, sectors: usize) -> Mat<f64> {
+        Mat::from_fn(rows.ncols(), rows.nrows(), |unknown, row| {
+            if self.order(unknown).is_multiple_of(sectors) {
+                sectors as f64 * rows[(row, unknown)]
+            } else {
+                0.0
+            }
+        })
+    }
+
     /// Enters `of_order`, rows on the complex amplitudes (radial, tangential) of order `n`, into real `rows`.
     ///
     /// With c_n = (a_n − i b_n)/2 and its conjugate at −n, a row x + i y of order n is x on a_n and y on b_n.

@@ -2,7 +2,7 @@
 //!
 //! Read in this order: [`harmonics`] (the unknowns of an interface circle), [`cyclic`] (N equal sectors joined into a ring on them),
 //! [`tooth`], [`teeth`] (the ring of them), [`blank`] and `shaft` (what it stands on, where it is one piece with that), and [`body`], which joins them into the compliance of a whole gear. What happens
-//! inside: [`motion`] (of the interface circle under loads), [`teeth_recovery`] and [`blank::BlankRecovery`]. A blank by itself:
+//! inside: [`motion`] (of the interface circle under loads), [`teeth_recovery`] and [`blank::BlankRecovery`]; under loads inside [`teeth_loads`] and [`blank::BlankLoads`]. A blank by itself:
 //! [`annulus`]. The same with an extent along the axis: [`solid`]. Beside them: [`axes`] and `modes`.
 
 pub mod annulus;
@@ -16,5 +16,6 @@ pub mod motion;
 pub(crate) mod shaft;
 pub mod solid;
 pub mod teeth;
+pub mod teeth_loads;
 pub mod teeth_recovery;
 pub mod tooth;

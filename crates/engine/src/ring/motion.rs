@@ -72,16 +72,46 @@ impl<'a> InterfaceMotion<'a> {
     pub fn under(&self, modal_loads: &[(usize, Vec<f64>)]) -> Vec<f64> {
         let mut motion = forces(&self.seen, modal_loads);
         self.gear.solve_in_place(motion.as_mut());
-        let mut all = vec![0.0; self.ring.harmonics.unknowns()];
-        all[..motion.nrows()].copy_from_slice(motion.col_as_slice(0));
         if self.above.is_empty() {
-            return all;
+            return motion.col_as_slice(0).to_vec();
         }
         let forces = forces(self.ring, modal_loads);
-        for group in &self.above {
-            let mut moved = Mat::from_fn(group.unknowns.len(), 1, |i, _| {
+        self.with_orders_above(motion.col_as_slice(0), |group| {
+            Mat::from_fn(group.unknowns.len(), 1, |i, _| {
                 forces[(group.unknowns[i], 0)]
-            });
+            })
+        })
+    }
+
+    /// The amplitudes of the circle, in meters, under the `forces` on all orders of the ring of teeth.
+    pub fn under_forces(&self, forces: &[f64]) -> Vec<f64> {
+        let low = self.seen.harmonics.unknowns();
+        let mut motion = Mat::from_fn(low, 1, |i, _| forces[i]);
+        let of_group = |group: &OrdersAbove| {
+            Mat::from_fn(group.unknowns.len(), 1, |i, _| forces[group.unknowns[i]])
+        };
+        for group in &self.above {
+            let mut moved = of_group(group);
+            group.rim.solve_in_place(moved.as_mut());
+            let passed = group.coupling.transpose() * moved;
+            for (i, unknown) in group.of_low.iter().enumerate() {
+                motion[(*unknown, 0)] -= passed[(i, 0)];
+            }
+        }
+        self.gear.solve_in_place(motion.as_mut());
+        self.with_orders_above(motion.col_as_slice(0), of_group)
+    }
+
+    /// The motion of all orders of which `low` is that of the lower ones, under the forces `of_group` on each group above them.
+    fn with_orders_above(
+        &self,
+        low: &[f64],
+        of_group: impl Fn(&OrdersAbove) -> Mat<f64>,
+    ) -> Vec<f64> {
+        let mut all = vec![0.0; self.ring.harmonics.unknowns()];
+        all[..low.len()].copy_from_slice(low);
+        for group in &self.above {
+            let mut moved = of_group(group);
             let of_low = Mat::from_fn(group.of_low.len(), 1, |i, _| all[group.of_low[i]]);
             moved -= &group.coupling * of_low;
             group.rim.solve_in_place(moved.as_mut());

@@ -1,4 +1,4 @@
-//! A blank in one piece with its shaft: the disc inside the shaft's radius, on the harmonics of its edge.
+//! A blank on the edge of its bore, which its shaft or nothing holds: the disc inside the shaft's radius, on the harmonics of its edge.
 //!
 //! The disc is solid to the axis. A force and a torque that act on its edge are held by what the shaft takes over its section: a force by one that is even
 //! over it, a torque by a tangential force f = T r/(b J) that rises with the radius, as torsion leaves it. Both do work on the mean displacement of the
@@ -25,6 +25,14 @@ pub(crate) fn orders_of_edge(grid: &BlankGrid) -> Harmonics {
     }
 }
 
+/// A load that acts on all sectors of a ring alike.
+pub(super) struct EdgeLoads<'a> {
+    /// The forces on the unknowns of sector 0, behind the arc those of the edge: a load a row.
+    pub(super) forces: &'a Mat<f64>,
+    /// By how much the free disc of the shaft is larger in radius than the edge, under each load.
+    pub(super) swelling: &'a [f64],
+}
+
 /// A ring of sectors on a shaft, condensed to its outer circle.
 pub(super) struct OnShaft {
     /// The stiffness on the harmonics of the outer circle.
@@ -35,18 +43,28 @@ pub(super) struct OnShaft {
     pub(super) edge: Harmonics,
     /// How that edge moves, by the harmonics of the outer circle.
     pub(super) edge_moved: Mat<f64>,
+    /// The forces of the loads on the harmonics of the outer circle, a load a column.
+    pub(super) forces: Mat<f64>,
+    /// How the loads move the edge while the outer circle is held, a load a column.
+    pub(super) edge_under_loads: Mat<f64>,
+    /// What the rows become then: one row a functional, one column a load.
+    pub(super) under_loads: Mat<f64>,
 }
 
 impl OnShaft {
-    /// Condenses the ring of `sector`, whose stiffness and whose `rows` go on behind the arc with the nodes of the edge of `shaft` at `edge_angles`.
+    /// Condenses the ring of `sector`, whose stiffness, `rows` and `loads` go on behind the arc with the nodes of the edge at `edge_angles`, which `core`
+    /// holds.
     pub(super) fn new(
         sector: &Sector,
         (edge_angles, edge): (&[f64], Harmonics),
-        shaft: &ShaftSection,
+        core: &EdgeCore,
         outer: &Harmonics,
         rows: &Mat<f64>,
+        loads: &EdgeLoads<'_>,
         run: &Run,
     ) -> Result<Self, FemError> {
+        let asked = rows.nrows();
+        let rows = &below(rows, loads.forces);
         let [o, i] = [outer.unknowns(), edge.unknowns()];
         let (mut on_outer, mut between, mut on_edge) =
             (Mat::zeros(o, o), Mat::zeros(i, o), Mat::zeros(i, i));
@@ -99,7 +117,7 @@ impl OnShaft {
                 }
             }
         }
-        shaft.add_to(&mut on_edge, &edge);
+        core.add_to(&mut on_edge, &edge);
         let factor = Cholesky::new(on_edge).ok_or(FemError::NotPositiveDefinite {
             part: "the edge of a shaft",
             unknowns: i,
@@ -110,12 +128,91 @@ impl OnShaft {
         let mut stiffness = on_outer;
         stiffness += between.transpose() * &edge_moved;
         symmetrize(&mut stiffness);
+        let of_loads = |rows: &Mat<f64>, harmonics: &Harmonics| {
+            let loads = rows.subrows(asked, rows.nrows() - asked);
+            harmonics.of_all_sectors(loads, sector.count)
+        };
+        let mut on_edge = of_loads(&edge_rows, &edge);
+        let outward = edge.cosine(0, Component::Radial);
+        for (load, swelling) in loads.swelling.iter().enumerate() {
+            on_edge[(outward, load)] += core.stiffness_outward() * swelling;
+        }
+        let forces = of_loads(&outer_rows, outer) + edge_moved.transpose() * &on_edge;
+        factor.solve_in_place(on_edge.as_mut());
+        let under_loads = edge_rows.subrows(0, asked) * &on_edge;
+        let rows = outer_rows.subrows(0, asked) + edge_rows.subrows(0, asked) * &edge_moved;
         Ok(Self {
             stiffness,
-            rows: outer_rows + edge_rows * &edge_moved,
+            rows,
             edge,
             edge_moved,
+            forces,
+            edge_under_loads: on_edge,
+            under_loads,
         })
+    }
+}
+
+/// The rows of `one`, and below them those of `other`.
+fn below(one: &Mat<f64>, other: &Mat<f64>) -> Mat<f64> {
+    let first = one.nrows();
+    Mat::from_fn(first + other.nrows(), one.ncols(), |i, j| {
+        if i < first {
+            one[(i, j)]
+        } else {
+            other[(i - first, j)]
+        }
+    })
+}
+
+/// What holds the edge of a bore.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum EdgeCore {
+    /// The shaft that fills it.
+    Shaft(ShaftSection),
+    /// Nothing but the means of its motion as a whole, which springs of this stiffness in N/m hold.
+    Free {
+        /// The stiffness: far above that of any gear in its plane, and far below what costs digits.
+        stiffness: f64,
+    },
+}
+
+impl EdgeCore {
+    /// What holds the edge of a bore in a plate, if only its mean rotation and displacement are held.
+    pub(super) fn free(material: &Material, thickness: f64) -> Self {
+        const FIRM: f64 = 1e4;
+        Self::Free {
+            stiffness: FIRM * material.youngs_modulus * thickness,
+        }
+    }
+
+    /// Adds what holds the edge to the `stiffness` on `harmonics` of it.
+    fn add_to(&self, stiffness: &mut Mat<f64>, harmonics: &Harmonics) {
+        let firm = match self {
+            Self::Shaft(shaft) => return shaft.add_to(stiffness, harmonics),
+            Self::Free { stiffness } => *stiffness,
+        };
+        let turned = harmonics.cosine(0, Component::Tangential);
+        stiffness[(turned, turned)] += firm;
+        let radial = harmonics.cosine(1, Component::Radial);
+        let tangential = harmonics.cosine(1, Component::Tangential);
+        // Displaced as a whole by d along x: u_r = d cos θ, u_t = −d sin θ; along y: u_r = d sin θ, u_t = d cos θ.
+        for (i, j, sign) in [
+            (radial, tangential + 2, -1.0),
+            (radial + 2, tangential, 1.0),
+        ] {
+            for (row, column, share) in [(i, i, 1.0), (j, j, 1.0), (i, j, sign), (j, i, sign)] {
+                stiffness[(row, column)] += 0.25 * firm * share;
+            }
+        }
+    }
+
+    /// The force in N, summed around the edge, by which it is held outward for each meter of its mean radial displacement.
+    fn stiffness_outward(&self) -> f64 {
+        match self {
+            Self::Shaft(shaft) => shaft.stiffness(0)[0][0],
+            Self::Free { .. } => 0.0,
+        }
     }
 }
 

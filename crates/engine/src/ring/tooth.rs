@@ -6,7 +6,7 @@ use super::axes::{in_axes, polar_axes, rows_in_axes};
 use super::cyclic::Sector;
 use super::modes::compress;
 use crate::fem::FemError;
-use crate::fem::condensation::condense_with;
+use crate::fem::condensation::condense_loaded;
 use crate::fem::dense::{Cholesky, mirror_lower, symmetrize};
 use crate::fem::recovery::Functional;
 use crate::gear::{SpurGear, Vector, radial};
@@ -43,6 +43,17 @@ pub struct ToothRows {
     pub(super) by_interface: Mat<f64>,
 }
 
+/// Loads inside a tooth, with its interface held.
+#[derive(Debug, Clone)]
+pub struct ToothLoads {
+    /// How they move the unknowns of the flank, a load a column.
+    pub(super) flank: Mat<f64>,
+    /// What the functionals asked for become under them: one functional a row, one load a column.
+    pub(super) values: Mat<f64>,
+    /// The forces that they exert on the interface (right side, left side, arc) in polar components, with the flank free: a load a row.
+    pub(super) on_interface: Mat<f64>,
+}
+
 impl ToothSubstructure {
     /// Condenses `grid`, a sector of `gear`.
     ///
@@ -63,6 +74,21 @@ impl ToothSubstructure {
         grid: &ToothGrid,
         asked: &[Functional],
     ) -> Result<(Self, ToothRows), FemError> {
+        let (tooth, rows, _) = Self::loaded(gear, grid, asked, &[])?;
+        Ok((tooth, rows))
+    }
+
+    /// Condenses `grid`, a sector of `gear`, the functionals `asked`, and `loads` inside the tooth, given by the work that they do.
+    ///
+    /// # Errors
+    ///
+    /// As [`ToothSubstructure::new`].
+    pub fn loaded(
+        gear: &SpurGear,
+        grid: &ToothGrid,
+        asked: &[Functional],
+        loads: &[Functional],
+    ) -> Result<(Self, ToothRows, ToothLoads), FemError> {
         let (right, left) = &grid.side_nodes;
         let kept: Vec<u32> = grid
             .flank_nodes
@@ -72,13 +98,13 @@ impl ToothSubstructure {
             .chain(&grid.arc_nodes)
             .copied()
             .collect();
-        let condensed = condense_with(
+        let condensed = condense_loaded(
             "the tooth",
             &grid.grid,
             (gear.material(), gear.face_width()),
-            &kept,
-            &[],
+            (&kept, &[]),
             asked,
+            loads,
         )?;
 
         // Components: normal and towards the tip on the flank, polar elsewhere.
@@ -95,6 +121,7 @@ impl ToothSubstructure {
             .collect();
         let schur = in_axes(&condensed.stiffness, &axes);
         let rows = rows_in_axes(&condensed.rows, &axes);
+        let forces = rows_in_axes(&condensed.loads, &axes);
 
         let f = 2 * grid.flank_nodes.len();
         let b = schur.nrows() - f;
@@ -117,6 +144,13 @@ impl ToothSubstructure {
         flank_factor.other_half_solve_in_place(half.as_mut());
         // u_f = H_0 p + Ψ u_b.
         let on_flank = rows.subcols(0, f);
+        let pulled = forces.subcols(0, f);
+        let moved = &fixed_compliance * pulled.transpose();
+        let loads = ToothLoads {
+            values: condensed.under_loads + on_flank * &moved,
+            flank: moved,
+            on_interface: forces.subcols(f, b).to_owned() - pulled * &half,
+        };
         let rows = ToothRows {
             by_flank: on_flank * &fixed_compliance,
             by_interface: rows.subcols(f, b).to_owned() - on_flank * &half,
@@ -145,7 +179,7 @@ impl ToothSubstructure {
             mode_forces,
             sector,
         };
-        Ok((tooth, rows))
+        Ok((tooth, rows, loads))
     }
 
     /// The nodes of the sector that are not also nodes of its neighbor: all but one side, which ends on the arc.

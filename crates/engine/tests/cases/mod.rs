@@ -165,6 +165,7 @@ pub(crate) fn case(pair: GearPair, output_torques: &[f64]) -> Case {
         windows: Vec::new(),
         stress: false,
         driving_speed: None,
+        running: None,
     }
 }
 

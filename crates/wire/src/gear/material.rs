@@ -31,6 +31,15 @@ document! {
                 .by_another(|material| Some(named(material)?.yield_strength_mpa)),
             "that of the name; without a name a warning beyond 2 % of Young's modulus where that is above 60 GPa, and beyond 4 % below",
         ),
+        /// The thermal expansion for each kelvin, for gears that run warm.
+        pub(crate) expansion_per_k: f64 = number("Thermal expansion", "1/K", 0.0, 1e-3)
+            .or(11.5e-6)
+            .by_another(|material| Some(named(material)?.expansion_per_k)),
+        /// The tensile strength. A gear that its rotation and its press fit stretch beyond it is refused.
+        pub(crate) tensile_strength_mpa: Option<f64> = absent(
+            number("Tensile strength", "MPa", 0.1, 10_000.0),
+            "gears at speed are not compared with it",
+        ),
     }
 }
 

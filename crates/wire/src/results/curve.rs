@@ -6,6 +6,7 @@ use std::ops::Deref;
 use meshwright_engine::analysis::at_speed::CurveDynamics;
 use meshwright_engine::analysis::curve::{LeadCure, LoadShare};
 use meshwright_engine::analysis::mesh_wave::MeshWave;
+use meshwright_engine::analysis::running::CurveRunning;
 use meshwright_engine::analysis::{Case, Curve, FaceLoad, Statistics};
 
 use super::decomposition::DecompositionDocument;
@@ -79,6 +80,8 @@ document! {
         /// The largest stresses; absent unless the submission asks for them, for other methods than `flexible` and `three_dimensional`, and
         /// at the torque 0.
         stress?: StressDocument = curve.stresses.as_ref().map(StressDocument::of),
+        /// What speed, heat and press fits do; absent unless the submission says how the pair runs.
+        running?: CurveRunningDocument = curve.running.as_ref().map(CurveRunningDocument::of),
         /// The load along the common face; absent for plane methods and at the torque 0.
         face?: FaceDocument = curve.face.as_ref().map(FaceDocument::of),
         /// Statistics over the span.
@@ -104,6 +107,30 @@ document! {
             curve.decomposition.as_ref().map(DecompositionDocument::of),
         /// The motion over speed; absent unless the submission asks for it.
         dynamics?: CurveDynamicsDocument = dynamics.map(CurveDynamicsDocument::of),
+    }
+}
+
+document! {
+    /// What speed, heat and press fits do to a curve.
+    pub struct CurveRunningDocument as CurveRunning, "What running does"
+    answer of (running: &CurveRunning) {
+        /// How far the tips have moved outward in the mean, in um.
+        radial_growth_um: RadialGrowth = RadialGrowth::of(running.radial_growth),
+        /// The amplitude, at the order of the holes, of the transmission error at speed less that of the same pair at rest, as warm and on the same shafts, under
+        /// the same torque, in um; of several such orders the largest. Null without holes, and for a partial span.
+        #[serde(serialize_with = "one_or_null")]
+        #[schema(required)]
+        hole_order_um: Option<f64> = running.hole_order.map(to_um),
+    }
+}
+
+document! {
+    /// How far the tips of both gears have moved outward.
+    pub struct RadialGrowth as RadialGrowth, "Radial growth" answer of (growth: [f64; 2]) {
+        /// Those of the driving gear, in um.
+        driving: f64 = to_um(growth[0]),
+        /// Those of the driven gear, in um.
+        driven: f64 = to_um(growth[1]),
     }
 }
 

@@ -20,8 +20,8 @@ use meshwright_engine::analysis::Analysis;
 use meshwright_engine::analysis::forces::Forces;
 
 pub use curve::{
-    CurveDocument, FaceDocument, LeadCureDocument, LoadShareDocument, StatisticsDocument,
-    StatisticsValues, TransmissionErrorStatistics,
+    CurveDocument, CurveRunningDocument, FaceDocument, LeadCureDocument, LoadShareDocument,
+    RadialGrowth, StatisticsDocument, StatisticsValues, TransmissionErrorStatistics,
 };
 pub use decomposition::{
     BlankFitDocument, BlankHarmonicDocument, BlankSampleDocument, DecompositionDocument,

@@ -56,6 +56,7 @@ fn analysis(case: &Case) -> Analysis {
         let load = case.pair.load(torque);
         Curve {
             face: None,
+            running: None,
             single_flank: SingleFlank {
                 tooth_to_tooth: 0.9e-6,
                 long_wave: Some(0.3e-6),

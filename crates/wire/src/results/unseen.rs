@@ -38,7 +38,9 @@ pub(super) fn does_not_see(case: &Case, forces: Option<&ForcesRequest>) -> Vec<&
         Model::Formulas(formulas) => formulas_do_not_see(*formulas),
     };
     let runs = forces.is_some_and(|forces| forces.dynamics.is_some());
-    let inertia = if runs {
+    let inertia = if case.running.is_some() {
+        "inertia and damping, but for the steady pull of rotation: the curves are quasi-static"
+    } else if runs {
         "inertia and damping, but in the dynamics: the curves are quasi-static"
     } else {
         "inertia and damping: the analysis is quasi-static"
@@ -52,6 +54,7 @@ pub(super) fn does_not_see(case: &Case, forces: Option<&ForcesRequest>) -> Vec<&
         .chain(real_teeth_do_not_see(case))
         .chain(own)
         .chain(stress_not_computed(case))
+        .chain(running_does_not_see(case))
         .collect()
 }
 
@@ -66,6 +69,18 @@ fn forces_do_not_see(forces: Option<&ForcesRequest>) -> Vec<&'static str> {
         unseen.push("in the dynamics, that the gears turn unevenly: the mesh position follows the mean speed; the damping is one number, in contact and out of it");
     }
     unseen
+}
+
+/// What is left out of gears that run.
+fn running_does_not_see(case: &Case) -> Vec<&'static str> {
+    if case.running.is_none() {
+        return Vec::new();
+    }
+    vec![
+        "that tips which have moved outward reach farther: pairs come and go where the drawn tips do, and the growth of a flank is a line over its roll length",
+        "rotation that a web or a hub out of the middle of its face turns into bending, and heat that is uneven within a gear",
+        "what speed and heat make of stiffness: a load acts on the drawn gears, their bores held; displacement fields are those of the load alone",
+    ]
 }
 
 /// Why stresses that were asked for are not all there.

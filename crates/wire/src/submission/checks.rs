@@ -49,6 +49,34 @@ impl SubmissionDocument {
         }
     }
 
+    /// The center distance at which the pair runs over the cold one, in lengths of its gears.
+    pub(super) fn distance_growth(&self) -> f64 {
+        let running = self.running.as_ref();
+        running.map_or(1.0, |running| running.distance_growth(&self.pair))
+    }
+
+    /// Refuses a pair that cannot run so, and tables and run-ups of one that runs.
+    pub(super) fn check_running(&self, pair: &GearPair, errors: &Errors) {
+        let Some(running) = &self.running else {
+            return;
+        };
+        running.check((self.method, &self.pair, pair), errors);
+        let forces = [
+            (self.force_table.is_some(), Self::force_table.name),
+            (self.dynamics.is_some(), Self::dynamics.name),
+        ];
+        for (_, name) in forces.into_iter().filter(|(is_asked, _)| *is_asked) {
+            let detail = format!(
+                "/{name} is asked for beside /running: tables of force and run-ups are those of gears at rest, as drawn. Leave one of them out."
+            );
+            errors.push(FieldError::new(
+                format!("/{name}"),
+                Code::QuantityNotTold,
+                detail,
+            ));
+        }
+    }
+
     /// Refuses choices that three dimensions do not have.
     pub(super) fn refuse_plane_choices(&self, errors: &Errors) {
         let solver = matches!(

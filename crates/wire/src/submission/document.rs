@@ -9,6 +9,7 @@ use crate::forces::{DynamicsQuestion, ForceTableQuestion};
 use crate::pair::PairDocument;
 use crate::problem::Code;
 use crate::resolution::ResolutionDocument;
+use crate::running::RunningDocument;
 
 /// The most output torques of one submission.
 pub const MOST_TORQUES: usize = 60;
@@ -39,11 +40,14 @@ document! {
                 .of("torques in N m", "torques", "fit in one submission")
                 .not_empty(Code::OutOfRange, "give a torque")
                 .unique("repeats a torque; each gives one curve"),
-        /// The speed that turns orders into frequencies. It changes nothing else: the analysis is quasi-static.
+        /// The speed that turns orders into frequencies. It changes nothing else: what speed does to the gears is asked for by `running`.
         pub(super) driving_speed_rpm: Option<f64> = absent(
             number("Speed of the driving gear", "1/min", 1e-3, 1e6),
             "no frequencies beside the orders",
         ),
+        /// How the pair runs: its speed, temperatures and press fits, and what they do to flanks and stresses.
+        pub(super) running: Option<RunningDocument> =
+            absent(nested("Running"), "at rest, as drawn"),
         /// Also computes the largest von Mises stress at the tensile root fillets and at the edges of the holes, position by position, and its place. The
         /// methods `flexible` and `three_dimensional` compute it; with another one it is refused.
         pub(super) stress: bool = flag("Stress", false),

@@ -128,8 +128,9 @@ impl SubmissionDocument {
         };
         let pair = match &solid {
             Some(solid) => solid.section().clone(),
-            None => self.pair.to_pair(errors)?,
+            None => self.pair.to_pair(self.distance_growth(), errors)?,
         };
+        self.check_running(&pair, errors);
         self.check_stress(errors);
         self.check_torques(&pair, errors);
         self.check_interface(&pair, errors);
@@ -183,6 +184,10 @@ impl SubmissionDocument {
             driving_speed: self
                 .driving_speed_rpm
                 .map(|speed| RotationSpeed(speed / 60.0)),
+            running: self
+                .running
+                .as_ref()
+                .map(|running| running.data(&self.pair)),
         };
         let forces = self.force_table.as_ref().map(|table| ForcesRequest {
             table: table.data(largest, bearable),

@@ -2,6 +2,7 @@
 
 mod chance;
 mod refusals;
+mod running;
 mod schema;
 mod three_dimensions;
 
@@ -44,7 +45,7 @@ fn the_least_submission_is_echoed_with_every_default() {
                 "tooth_thickness_deviation_um": 0.0, "thinned_by": "hob", "tip_rounding_mm": null, "tip_chamfer_mm": null,
                 "face_width_mm": 20.0, "tip_relief": null, "profile_modifications": [], "lead_modifications": [],
                 "tooth_deviations": null,
-                "material": { "youngs_modulus_gpa": 210.0, "poisson_ratio": 0.3, "density_kg_m3": 7850.0, "yield_strength_mpa": null },
+                "material": { "youngs_modulus_gpa": 210.0, "poisson_ratio": 0.3, "density_kg_m3": 7850.0, "yield_strength_mpa": null, "expansion_per_k": 11.5e-6, "tensile_strength_mpa": null },
                 "blank": { "bore_radius_mm": 15.0, "holes": null, "web": null, "hub": null }
             })
         );
