@@ -35,7 +35,7 @@ pub struct MaterialEntry {
     /// The density, in kg/m3.
     pub(crate) density_kg_m3: f64,
     /// The coefficient of thermal expansion, in 1/K.
-    expansion_per_k: f64,
+    pub(crate) expansion_per_k: f64,
     /// The yield strength of the flanks, in MPa.
     pub(crate) yield_strength_mpa: f64,
     /// The temperature for which the numbers are printed, in degrees Celsius.
