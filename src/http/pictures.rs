@@ -9,7 +9,7 @@ use meshwright_plot::{
     Axis, Chart, Color, Drawing, Figure, Look, Map, Mark, PALETTE, Panel, Series, drawing,
 };
 
-use meshwright_wire::results::{CurveDocument, ResonanceDocument, ResonanceKindName};
+use meshwright_wire::results::{CurveDocument, ExcitationName, ResonanceDocument};
 
 /// Width and height of a picture in pixels.
 const SIZE: (u32, u32) = (760, 340);
@@ -305,7 +305,7 @@ fn resonances(curves: &[&CurveDocument]) -> Vec<Mark> {
     let found = curves.iter().find_map(|curve| curve.dynamics.as_ref());
     let resonances = found.iter().flat_map(|dynamics| &dynamics.resonances);
     let shown = resonances.filter(|resonance| {
-        resonance.kind == ResonanceKindName::Forced
+        resonance.excited == ExcitationName::Forced
             && ["H_N", "H_N1", "H_N2", "H_Z2", "H_2Z2", "H_3Z2"].contains(&&*resonance.label)
     });
     let mark = |resonance: &ResonanceDocument| Mark {
@@ -390,7 +390,7 @@ mod tests {
                     "dynamic_load_factor": [], "contact_lost": [], "period_multiple": [], "orders": [] })
         };
         let dynamics = json!({ "natural_frequency_hz": 1.0, "equivalent_mass_kg": 1.0, "driving_speed_rpm": [0.0, 500.0, 1000.0],
-            "resonances": [{ "driving_speed_rpm": 500.0, "label": "H_Z2", "kind": "forced" }], "up": branch(9.0), "down": branch(8.0) });
+            "resonances": [{ "driving_speed_rpm": 500.0, "label": "H_Z2", "excited": "forced" }], "up": branch(9.0), "down": branch(8.0) });
         curve.dynamics = Some(serde_json::from_value(dynamics).expect("a run-up"));
         curve
     }

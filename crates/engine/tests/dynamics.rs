@@ -5,7 +5,8 @@ use std::f64::consts::PI;
 use meshwright_engine::dynamics::orbit::{Scale, multipliers};
 use meshwright_engine::dynamics::oscillator::Step;
 use meshwright_engine::dynamics::{
-    FlankRows, ForceTable, Ladder, Laws, Orbit, Oscillator, ResonanceKind, RunUp, RunUpData, State,
+    Excitation, FlankRows, ForceTable, Ladder, Laws, Orbit, Order, Oscillator, RunUp, RunUpData,
+    State,
 };
 use meshwright_engine::run::Run;
 
@@ -210,6 +211,7 @@ fn data(speeds: Vec<f64>, load: f64, orders: &[f64]) -> RunUpData {
         damping_ratio: 0.05,
         stiffness: 1.0,
         orders: orders.to_vec(),
+        most_orders: 1000,
         sweeps: [true, true],
     }
 }
@@ -230,11 +232,17 @@ fn a_linear_mesh_answers_each_harmonic_as_a_forced_oscillator() {
             .map(|w| w / (2.0 * PI))
             .collect();
         let found = run_up(&data(speeds.clone(), 1.0, &[1.0, 3.0]), &table);
-        let (up, down) = (found.up.expect("asked"), found.down.expect("asked"));
+        let [up, down] = [&found.up, &found.down].map(|branch| branch.as_ref().expect("asked"));
         let mut worst = 0.0_f64;
         for (i, speed) in speeds.iter().enumerate() {
             let mut squares = 0.0;
-            for (k, (order, amplitude)) in [(1.0, 0.02), (3.0, 0.01)].into_iter().enumerate() {
+            for (order, amplitude) in [(1_u32, 0.02), (3, 0.01)] {
+                let k = found
+                    .orders
+                    .iter()
+                    .position(|each| *each == Order::new(order, 1));
+                let k = k.expect("in the results");
+                let order = f64::from(order);
                 let r = order * speed * 2.0 * PI;
                 let expected = amplitude / ((1.0 - r * r).powi(2) + (0.1 * r).powi(2)).sqrt();
                 worst = worst.max((up.orders[k][i] / expected - 1.0).abs());
@@ -364,30 +372,115 @@ fn a_nonlinear_mesh_moves_as_a_plain_integrator_has_it() {
     }
 }
 
+/// The amplitudes of a branch of `found` at the order `times` in `periods`.
+fn at(found: &RunUp, order: Order) -> &[f64] {
+    let place = found.orders.iter().position(|each| *each == order);
+    let branch = found.up.as_ref().expect("asked");
+    &branch.orders[place.expect("it is in the results")]
+}
+
+/// The resonances of `found`: how often the order comes in a true period, what excites it, the circular frequency of the mesh and the amplitude.
+fn resonances(found: &RunUp) -> Vec<(f64, Excitation, f64, f64)> {
+    let all = found.resonances.iter();
+    all.map(|each| {
+        let order = each.order.per_true_period();
+        assert!((each.frequency / (order * each.speed) - 1.0).abs() < 1e-12);
+        (order, each.excited, 2.0 * PI * each.speed, each.amplitude)
+    })
+    .collect()
+}
+
 #[test]
-fn resonances_stand_where_orders_meet_the_natural_frequency_or_twice_it_by_what_they_do_there() {
-    // A linear mesh under 0.02 cos θ + 0.01 cos 3θ: at its resonance an order is 1/(2ζ) = 10 times its static amplitude, and nothing pumps. Twice the
-    // natural frequency meets the first order beyond the range.
+fn a_resonance_stands_once_at_its_largest_amplitude_however_few_the_speeds() {
+    // A linear mesh under 0.02 cos θ + 0.01 cos 3θ: at r² = 1 − 2ζ² an order is 1/(2ζ √(1 − ζ²)) times its static amplitude, and nothing pumps.
     let wave = |eta: f64| 0.02 * (2.0 * PI * eta).cos() + 0.01 * (6.0 * PI * eta).cos();
-    let table = table(128, 2.0, wave, |_| 1.0);
-    let speeds = [0.1, 0.5, 1.9].map(|w| w / (2.0 * PI)).to_vec();
-    let found = run_up(&data(speeds, 1.0, &[1.0, 3.0]), &table);
-    let told: Vec<_> = found
-        .resonances
-        .iter()
-        .map(|each| (each.order, each.kind, 2.0 * PI * each.speed, each.amplitude))
-        .collect();
-    use ResonanceKind::{Forced, Parametric};
-    let expected = [
-        (0, Forced, 1.0, 0.2),
-        (1, Forced, 1.0 / 3.0, 0.1),
-        (1, Parametric, 2.0 / 3.0, 0.0),
-    ];
-    assert_eq!(told.len(), expected.len(), "{told:?}");
-    for ((order, kind, speed, amplitude), expected) in told.into_iter().zip(expected) {
-        assert_eq!((order, kind), (expected.0, expected.1));
-        assert!((speed / expected.2 - 1.0).abs() < 1e-12);
-        // Steps of a 128th of a period, second order.
-        assert!((amplitude - expected.3).abs() < 2e-3 * 0.2, "{amplitude}");
+    let table = table(256, 2.0, wave, |_| 1.0);
+    for speeds in [&[0.1, 0.5, 1.9][..], &[0.2, 0.97, 1.01, 1.5]] {
+        let speeds: Vec<f64> = speeds.iter().map(|w| w / (2.0 * PI)).collect();
+        let found = resonances(&run_up(&data(speeds, 1.0, &[1.0, 3.0]), &table));
+        let (place, gain) = ((1.0_f64 - 0.005).sqrt(), 10.0 / (1.0_f64 - 0.0025).sqrt());
+        let expected = [(1.0, place, 0.02 * gain), (3.0, place / 3.0, 0.01 * gain)];
+        assert_eq!(found.len(), expected.len(), "{found:?}");
+        for ((order, excited, speed, amplitude), expected) in found.into_iter().zip(expected) {
+            assert_eq!((order, excited), (expected.0, Excitation::Forced));
+            // Amplitude and parabola in the speed are of second order there.
+            assert!(
+                (speed / expected.1 - 1.0).abs() < 1e-3,
+                "{speed} {}",
+                expected.1
+            );
+            assert!(
+                (amplitude / expected.2 - 1.0).abs() < 2e-3,
+                "{amplitude} {}",
+                expected.2
+            );
+        }
     }
+}
+
+/// A mesh whose stiffness under the load 1 is `stiffness` and whose static curve there is `curve`.
+fn under_one(stiffness: impl Fn(f64) -> f64, curve: impl Fn(f64) -> f64) -> ForceTable {
+    let compliance = |eta: f64| 1.0 / stiffness(eta);
+    table(128, 3.0, |eta| curve(eta) - compliance(eta), compliance)
+}
+
+#[test]
+fn a_resonance_is_forced_where_its_line_makes_it_and_parametric_where_the_stiffness_does() {
+    // The static curve has the order 1 alone. The stiffness is k = 1 + 0.1 cos θ, too little to pump with ζ = 0.05: it makes an order 2 of the order 1.
+    let stiffness = |eta: f64| 1.0 + 0.1 * (2.0 * PI * eta).cos();
+    let curve = |eta: f64| 0.02 * (2.0 * PI * eta).cos();
+    let speeds: Vec<f64> = (3..28).map(|i| 0.05 * f64::from(i) / (2.0 * PI)).collect();
+    let data = data(speeds, 1.0, &[1.0]);
+    let of = |table: &ForceTable| run_up(&data, table);
+    let found = of(&under_one(stiffness, curve));
+    let told = resonances(&found);
+    let order = |times: f64| {
+        let mut of_order = told.iter().filter(|each| each.0 == times);
+        let one = of_order.next().expect("told");
+        assert!(of_order.next().is_none(), "{times}: {told:?}");
+        *one
+    };
+    let (first, second) = (order(1.0), order(2.0));
+    assert_eq!(
+        (first.1, second.1),
+        (Excitation::Forced, Excitation::Parametric)
+    );
+    assert!((first.2 - 1.0).abs() < 0.01 && (second.2 - 0.5).abs() < 0.01);
+    // The tests that say so, of the run-ups of other tables.
+    let most = |found: &RunUp, order: Order| {
+        let place = found.orders.iter().position(|each| *each == order);
+        place.map_or(0.0, |_| {
+            at(found, order).iter().copied().fold(0.0, f64::max)
+        })
+    };
+    let [one, two] = [1, 2].map(|times| Order::new(times, 1));
+    let of_mean = of(&under_one(|_| 1.0, curve));
+    let of_flat = of(&under_one(stiffness, |_| 0.0));
+    assert!(most(&of_mean, one) > 0.95 * first.3 && most(&of_flat, one) < 1e-9);
+    assert!(most(&of_mean, two) < 1e-6 && second.3 > 1e-3);
+    // What carries more than a fiftieth of the motion is in the results, though nobody asked for it.
+    let branch = found.up.as_ref().expect("asked");
+    let parts = at(&found, two).iter().zip(&branch.rms);
+    assert!(
+        parts
+            .clone()
+            .any(|(amplitude, rms)| amplitude / (2.0_f64.sqrt() * rms) > 0.02)
+    );
+}
+
+#[test]
+fn a_stiffness_that_pumps_makes_a_resonance_at_half_an_order() {
+    // k = 1 + 0.4 cos θ is unstable about ω = 2 for ζ = 0.05, where flanks that part end the growth. The line of the static curve is there to begin with.
+    let stiffness = |eta: f64| 1.0 + 0.4 * (2.0 * PI * eta).cos();
+    let curve = |eta: f64| 1e-4 * (2.0 * PI * eta).cos();
+    let speeds = [1.5, 2.0, 2.5].map(|w| w / (2.0 * PI)).to_vec();
+    let found = run_up(&data(speeds, 1.0, &[1.0]), &under_one(stiffness, curve));
+    let (order, excited, speed, amplitude) = resonances(&found)[0];
+    assert_eq!((order, excited), (0.5, Excitation::Parametric));
+    assert!(
+        speed > 1.5 && speed < 2.2 && amplitude > 1.0,
+        "{speed} {amplitude}"
+    );
+    let half = at(&found, Order::new(1, 2));
+    assert!(half[1] > 0.5 && half[1] <= amplitude, "{half:?}");
 }

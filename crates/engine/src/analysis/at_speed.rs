@@ -6,7 +6,7 @@ use super::curve::Curve;
 use super::orders::Orders;
 use super::{AnalysisError, Case, OrderKind};
 use crate::dynamics::torsion::{Coupled, Ring, Rotor};
-use crate::dynamics::{ForceTable, RunUp, RunUpData};
+use crate::dynamics::{ForceTable, Order, Resonance, RunUp, RunUpData};
 use crate::gear::{GearPair, Member};
 use crate::run::Run;
 
@@ -42,11 +42,26 @@ pub struct CurveDynamics {
     pub speeds: Vec<f64>,
     /// The motion.
     pub run_up: RunUp,
-    /// The labels of the orders.
+    /// The labels of the orders whose amplitudes are known.
     pub labels: Vec<String>,
+    /// These orders per revolution of the driven gear.
+    pub orders: Vec<f64>,
+    /// The resonances, the largest amplitude first.
+    pub resonances: Vec<NamedResonance>,
     /// The natural frequency in Hz with the inertia of rims and teeth outside their webs, about; `None` where the inertia given
     /// is less than the gear's own.
     pub natural_frequency_of_rims: Option<f64>,
+}
+
+/// A resonance with the name of its order.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedResonance {
+    /// The name.
+    pub label: String,
+    /// The order per revolution of the driven gear.
+    pub order: f64,
+    /// Where it stands, how large it is, and what excites it.
+    pub resonance: Resonance,
 }
 
 /// The mass m_e on the line of action: 1/m_e = r_b1²/J_1 + r_b2²/J_2.
@@ -150,20 +165,33 @@ pub(super) fn usual_stiffness(pair: &GearPair) -> f64 {
     STIFFNESS * moduli[0].min(moduli[1]) * pair.common_face_width()
 }
 
-/// Seconds of one core that the run-ups of `case` take, about: as many as there are torques.
-pub(super) fn run_up_seconds(case: &Case, request: &DynamicsRequest) -> f64 {
+/// Seconds of one core that the run-ups of `case` take, about, as many as there are torques, and the bytes.
+pub(super) fn run_up_cost(case: &Case, request: &DynamicsRequest) -> (f64, u64) {
     let pair = &case.pair;
-    let data = RunUpData {
+    let orders = known(pair).into_iter().map(|(_, order)| order).collect();
+    let data = data(case, request, (0.0, usual_stiffness(pair)), orders);
+    let seconds = case.output_torques.len() as f64 * data.seconds(pair.period());
+    (seconds, data.memory(pair.period()))
+}
+
+/// The parameters of a run-up of `case` under a load, with a mean stiffness of the mesh.
+fn data(
+    case: &Case,
+    request: &DynamicsRequest,
+    (load, stiffness): (f64, f64),
+    orders: Vec<f64>,
+) -> RunUpData {
+    RunUpData {
         speeds: request.speeds.clone(),
-        tooth_count: pair.driving().tooth_count(),
-        load: 0.0,
+        tooth_count: case.pair.driving().tooth_count(),
+        load,
         mass: equivalent_mass(case, request.inertias),
         damping_ratio: request.damping_ratio,
-        stiffness: usual_stiffness(pair),
-        orders: known(pair).into_iter().map(|(_, order)| order).collect(),
+        stiffness,
+        orders,
+        most_orders: most_orders(&case.pair),
         sweeps: request.sweeps,
-    };
-    case.output_torques.len() as f64 * data.seconds(pair.period())
+    }
 }
 
 /// What the mesh of `table`, which is that of `case`, does at speed under the load of `curve`, which spans whole periods and whose load is not 0.
@@ -179,17 +207,10 @@ pub fn dynamics(
     run: &Run,
 ) -> Result<CurveDynamics, AnalysisError> {
     let pair = &case.pair;
-    let (labels, orders) = orders_at_speed(pair, curve).into_iter().unzip();
-    let data = RunUpData {
-        speeds: request.speeds.clone(),
-        tooth_count: pair.driving().tooth_count(),
-        load: curve.load,
-        mass: equivalent_mass(case, request.inertias),
-        damping_ratio: request.damping_ratio,
-        stiffness: curve.mesh_stiffness_tangent_statistics.mean,
-        orders,
-        sweeps: request.sweeps,
-    };
+    let orders = orders_at_speed(pair, curve);
+    let orders = orders.into_iter().map(|(_, order)| order).collect();
+    let stiffness = curve.mesh_stiffness_tangent_statistics.mean;
+    let data = data(case, request, (curve.load, stiffness), orders);
     let mut run_up = data.run_up(table, run)?;
     if data.speeds.first() == Some(&0.0) {
         // The curve as it stands in the results, at its own positions.
@@ -199,11 +220,25 @@ pub fn dynamics(
             branch.peak_to_peak[0] = still.peak_to_peak;
         }
     }
+    let names = Orders::of(pair);
+    let order_of = |order: Order| {
+        let mesh = f64::from(pair.driven().tooth_count());
+        order.per_true_period() * mesh / f64::from(pair.period())
+    };
+    let name = |order: Order| names.name(order_of(order), order.periods());
+    let resonances = run_up.resonances.iter();
+    let resonances = resonances.map(|resonance| NamedResonance {
+        label: name(resonance.order),
+        order: order_of(resonance.order),
+        resonance: *resonance,
+    });
     Ok(CurveDynamics {
+        labels: run_up.orders.iter().map(|order| name(*order)).collect(),
+        orders: run_up.orders.iter().map(|order| order_of(*order)).collect(),
+        resonances: resonances.collect(),
         equivalent_mass: data.mass,
         speeds: data.speeds.clone(),
         run_up,
-        labels,
         natural_frequency_of_rims: natural_frequency_of_rims(
             case,
             request.inertias,
@@ -221,6 +256,11 @@ fn known(pair: &GearPair) -> Vec<(String, f64)> {
         .collect()
 }
 
+/// The number of orders in the results, at most.
+fn most_orders(pair: &GearPair) -> usize {
+    ORDERS_A_PERIOD * pair.period() as usize
+}
+
 fn per_mesh_period(pair: &GearPair, order: f64) -> f64 {
     order / f64::from(pair.driven().tooth_count())
 }
@@ -228,7 +268,7 @@ fn per_mesh_period(pair: &GearPair, order: f64) -> f64 {
 /// The orders that are given: those that are known, and what else stands out of the static curve but for the mesh, as far as there is room.
 fn orders_at_speed(pair: &GearPair, curve: &Curve) -> Vec<(String, f64)> {
     let mut orders = known(pair);
-    let most = ORDERS_A_PERIOD * pair.period() as usize;
+    let most = most_orders(pair);
     let named = curve.spectrum.iter().flat_map(|spectrum| &spectrum.named);
     for line in named {
         let is_new = orders.iter().all(|(label, _)| *label != line.label);

@@ -27,8 +27,8 @@ pub use decomposition::{
 };
 pub use evidence::{Definition, ErrorEstimateDocument, EvidenceDocument};
 pub use forces::{
-    BranchDocument, CurveDynamicsDocument, DynamicErrorDocument, ForceTableDocument,
-    OrderAmplitudesDocument, ResonanceDocument, ResonanceKindName,
+    BranchDocument, CurveDynamicsDocument, DynamicErrorDocument, ExcitationName,
+    ForceTableDocument, OrderAmplitudesDocument, ResonanceDocument,
 };
 pub use largest_where::{PressureStatistics, WhereDocument};
 pub use spectrum::{NamedOrderDocument, OrderKindName, SpectrumDocument};
