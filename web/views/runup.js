@@ -480,7 +480,12 @@ export class RunUp {
         button("Look", () => this.#look(each.driving_speed_rpm), { ariaLabel: `Look at ${each.words}` }),
       ),
     );
-    const caption = `Resonances: natural frequencies ${this.#dynamics.natural_frequencies_hz.map((hz) => number(hz)).join(", ")} Hz, of ${number(this.#dynamics.equivalent_mass_kg, 3)} kg on the line of action`;
+    const frequencies = this.#dynamics.natural_frequencies_hz.map((hertz) => number(hertz));
+    const natural =
+      frequencies.length === 1
+        ? `the natural frequency is ${frequencies[0]} Hz`
+        : `the natural frequencies are ${frequencies.join(", ")} Hz`;
+    const caption = `Resonances: ${natural}, of ${number(this.#dynamics.equivalent_mass_kg, 3)} kg on the line of action`;
     const names = [
       "Speed rpm",
       "Order",

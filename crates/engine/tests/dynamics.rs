@@ -2,11 +2,11 @@
 
 use std::f64::consts::PI;
 
-use meshwright_engine::dynamics::orbit::{Scale, multipliers};
+use meshwright_engine::dynamics::orbit::{Repeating, Scale, multiplier};
 use meshwright_engine::dynamics::oscillator::Step;
 use meshwright_engine::dynamics::{
-    Excitation, FlankRows, ForceTable, Ladder, Laws, Orbit, Order, Oscillator, RunUp, RunUpData,
-    State,
+    Body, BodyMode, Coupled, Damping, Excitation, FlankRows, ForceTable, Ladder, Laws, Orbit,
+    Order, Oscillator, RunUp, RunUpData, State,
 };
 use meshwright_engine::run::Run;
 
@@ -39,7 +39,7 @@ fn rectangular(omega: f64, zeta: f64) -> f64 {
         steps: vec![step(0), step(1)],
     };
     let (_, m) = oscillator.after_period(State { u: 0.0, v: 0.0 }, |_| ());
-    multipliers(&m)[0]
+    multiplier(&[0, 1].map(|j| [m[0][j], m[1][j]].to_vec()).to_vec())
 }
 
 #[test]
@@ -84,11 +84,11 @@ fn with_backlash(laws: &Laws, w: f64) -> Oscillator<'_> {
 }
 
 /// Rms without mean, and whether contact is lost.
-fn seen(oscillator: &Oscillator<'_>, orbit: Orbit) -> (f64, bool) {
+fn seen(oscillator: &Oscillator<'_>, orbit: &Orbit) -> (f64, bool) {
     let (mut n, mut sum, mut squares, mut lost) = (0.0, 0.0, 0.0, false);
-    let mut state = orbit.state;
+    let mut state = orbit.state.clone();
     for _ in 0..orbit.periods {
-        (state, _) = oscillator.after_period(state, |seen| {
+        oscillator.over_period(&mut state, None, &mut |seen| {
             n += 1.0;
             sum += seen.u;
             squares += seen.u * seen.u;
@@ -103,18 +103,18 @@ fn an_oscillator_with_backlash_jumps_where_it_should() {
     let laws = Laws::new(vec![-1.0, 0.0, 0.0, 1.0], vec![-2.0, -1.0, 1.0, 2.0], 2);
     let scale = Scale { u: 0.1, v: 0.1 };
     let rest = Orbit {
-        state: State { u: 1.1, v: 0.0 },
+        state: vec![1.1, 0.0],
         ..AT_REST
     };
     let sweep = |from: i32, to: i32| -> Vec<(i32, f64, bool)> {
         let step = (to - from).signum();
-        let mut orbit = rest;
+        let mut orbit = rest.clone();
         (0..=(to - from).abs())
             .map(|k| {
                 let w = from + k * step;
                 let oscillator = with_backlash(&laws, f64::from(w) / 100.0);
-                orbit = oscillator.settled(orbit, scale);
-                let (rms, lost) = seen(&oscillator, orbit);
+                orbit = oscillator.settled(&orbit, scale);
+                let (rms, lost) = seen(&oscillator, &orbit);
                 (w, rms, lost)
             })
             .collect()
@@ -159,9 +159,9 @@ fn the_linear_response_loses_contact_where_its_amplitude_is_the_load() {
     ] {
         let oscillator = with_backlash(&laws, w);
         let orbit = oscillator
-            .periodic(State { u: 1.1, v: 0.0 }, 1, Scale { u: 0.1, v: 0.1 })
+            .periodic(&[1.1, 0.0], 1, Scale { u: 0.1, v: 0.1 })
             .expect("linear");
-        let (_, lost) = seen(&oscillator, orbit);
+        let (_, lost) = seen(&oscillator, &orbit);
         assert_eq!(lost, parts, "{w}");
     }
 }
@@ -208,7 +208,13 @@ fn data(speeds: Vec<f64>, load: f64, orders: &[f64]) -> RunUpData {
         tooth_count: 1,
         load,
         mass: 1.0,
+        bodies: [(); 2].map(|()| Body {
+            inertia: 2.0,
+            base_radius: 1.0,
+            modes: Vec::new(),
+        }),
         damping_ratio: 0.05,
+        body_damping_ratio: 0.02,
         stiffness: 1.0,
         orders: orders.to_vec(),
         most_orders: 1000,
@@ -483,4 +489,160 @@ fn a_stiffness_that_pumps_makes_a_resonance_at_half_an_order() {
     );
     let half = at(&found, Order::new(1, 2));
     assert!(half[1] > 0.5 && half[1] <= amplitude, "{half:?}");
+}
+
+/// A hub and a rim of these inertias on a base radius of 1, with a web of this stiffness between them.
+fn hub_and_rim(hub: f64, rim: f64, web: f64) -> Body {
+    Body {
+        inertia: hub + rim,
+        base_radius: 1.0,
+        modes: vec![BodyMode {
+            frequency: (web / rim).sqrt(),
+            at_mesh: 1.0 / rim.sqrt(),
+            turn: rim.sqrt(),
+        }],
+    }
+}
+
+/// Hub, rim and web of both gears, with 1 as mass on the line of action.
+const GEARS: [[f64; 3]; 2] = [[1.4, 0.6, 8.0], [1.2, 0.8, 10.0]];
+
+fn on_webs(speeds: Vec<f64>, orders: &[f64]) -> RunUpData {
+    RunUpData {
+        bodies: GEARS.map(|[hub, rim, web]| hub_and_rim(hub, rim, web)),
+        ..data(speeds, 1.0, orders)
+    }
+}
+
+#[test]
+fn gears_on_webs_move_as_hubs_and_rims_that_a_plain_integrator_moves() {
+    // The classical Runge-Kutta method on two hubs, two rims, and the table of the teeth alone: the webs yield 1/8 + 1/10 in the whole one.
+    let wave = |eta: f64| 0.3 * (2.0 * PI * eta).cos() + 0.1 * (4.0 * PI * eta + 0.4).cos();
+    let whole = |eta: f64| 1.0 + 0.2 * (2.0 * PI * eta).cos();
+    let yields: f64 = GEARS.iter().map(|[_, _, web]| 1.0 / web).sum();
+    let of_all = table(256, 4.0, wave, whole);
+    let of_teeth = table(256, 4.0, wave, |eta| whole(eta) - yields);
+    let omegas = [0.5, 0.85, 1.2, 2.8, 4.4];
+    let speeds = omegas.map(|w| w / (2.0 * PI)).to_vec();
+    let found = run_up(&on_webs(speeds, &[1.0]), &of_all).up.expect("asked");
+    assert!(found.contact_lost.contains(&true) && found.contact_lost.contains(&false));
+    for (place, omega) in omegas.into_iter().enumerate() {
+        let steps = 512;
+        let h = 2.0 * PI / omega / f64::from(steps);
+        let rate = |t: f64, state: [f64; 8]| -> [f64; 8] {
+            let (angles, speeds) = state.split_at(4);
+            let nearer = speeds[1] - speeds[3];
+            let eta = omega * t / (2.0 * PI);
+            let force = of_teeth.load(eta, angles[1] - angles[3]) + 0.1 * nearer;
+            let mut rates = [0.0; 8];
+            for (gear, sign) in [(0, 1.0), (1, -1.0)] {
+                let [hub, rim, web] = GEARS[gear];
+                let (h, r) = (2 * gear, 2 * gear + 1);
+                let twisted = web * (angles[r] - angles[h])
+                    + 2.0 * 0.02 * (web * rim).sqrt() * (speeds[r] - speeds[h]);
+                rates[h] = speeds[h];
+                rates[r] = speeds[r];
+                rates[4 + h] = (sign + twisted) / hub;
+                rates[4 + r] = (-sign * force - twisted) / rim;
+            }
+            rates
+        };
+        // At rest under the load, the webs wound up.
+        let rest = of_all.transmission_error(1.0)[0];
+        let mut state = [0.0; 8];
+        (state[0], state[1]) = (rest, rest - 1.0 / GEARS[0][2]);
+        state[3] = 1.0 / GEARS[1][2];
+        let (mut n, mut sum, mut squares) = (0.0, 0.0, 0.0);
+        let (mut least, mut most, mut largest) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
+        let (periods, watched) = (160, 40);
+        for i in 0..periods * steps {
+            let t = f64::from(i) * h;
+            let on = |by: f64, k: [f64; 8]| std::array::from_fn(|j| state[j] + by * h * k[j]);
+            let k1 = rate(t, state);
+            let k2 = rate(t + h / 2.0, on(0.5, k1));
+            let k3 = rate(t + h / 2.0, on(0.5, k2));
+            let k4 = rate(t + h, on(1.0, k3));
+            for j in 0..8 {
+                state[j] += h / 6.0 * (k1[j] + 2.0 * k2[j] + 2.0 * k3[j] + k4[j]);
+            }
+            if i >= (periods - watched) * steps {
+                let x = state[0] - state[2];
+                n += 1.0;
+                sum += x;
+                squares += x * x;
+                (least, most) = (least.min(x), most.max(x));
+                let force = of_teeth.load(omega * (t + h) / (2.0 * PI), state[1] - state[3]);
+                largest = largest.max(force);
+            }
+        }
+        let mean: f64 = sum / n;
+        let rms = (squares / n - mean * mean).sqrt();
+        for (told, expected) in [
+            (found.rms[place], rms),
+            (found.peak_to_peak[place], most - least),
+            (found.load_factor[place], largest),
+        ] {
+            let repeats = found.repeats[place];
+            assert!(
+                (told / expected - 1.0).abs() < 0.01,
+                "{omega}: {told} {expected} {repeats:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_linear_mesh_of_gears_on_webs_answers_by_its_direct_frequency_response() {
+    // Constant stiffness: at order 1 the hubs move by the gain of the dynamic stiffness times the static curve, at the speed 0 by the static curve.
+    let curve = |eta: f64| 0.02 * (2.0 * PI * eta).cos();
+    let table = table(256, 2.0, curve, |_| 1.0);
+    let speeds: Vec<f64> = (0..20).map(|i| 0.28 * f64::from(i) / (2.0 * PI)).collect();
+    let data = on_webs(speeds.clone(), &[1.0]);
+    let found = run_up(&data, &table);
+    let damping = Damping {
+        mesh: 0.1,
+        bodies: 0.02,
+    };
+    let coupled = Coupled::new(&data.bodies, 1.0 / (1.0 - 0.225), damping).expect("bodies");
+    assert_eq!(found.natural_frequencies, coupled.natural_frequencies());
+    let amplitudes = at(&found, Order::new(1, 1));
+    for (speed, amplitude) in speeds.iter().zip(amplitudes) {
+        let expected = 0.02 * coupled.gain(2.0 * PI * speed);
+        assert!(
+            (amplitude / expected - 1.0).abs() < 0.01,
+            "{speed}: {amplitude} {expected}"
+        );
+    }
+    assert!((amplitudes[0] / 0.02 - 1.0).abs() < 1e-6);
+    // Each largest gain is a resonance, and nothing else is.
+    let mut told: Vec<f64> = resonances(&found).iter().map(|each| each.2).collect();
+    told.sort_by(f64::total_cmp);
+    let gains: Vec<(f64, f64)> = (1..5320)
+        .map(|i| 1e-3 * f64::from(i))
+        .map(|omega| (omega, coupled.gain(omega)))
+        .collect();
+    let peaks = gains
+        .windows(3)
+        .filter(|three| three[1].1 > three[0].1.max(three[2].1));
+    let peaks: Vec<f64> = peaks.map(|three| three[1].0).collect();
+    assert_eq!(told.len(), peaks.len(), "{told:?} {peaks:?}");
+    for (told, peak) in told.iter().zip(&peaks) {
+        assert!((told / peak - 1.0).abs() < 0.01, "{told} {peak}");
+    }
+}
+
+#[test]
+fn a_slow_mesh_of_gears_on_webs_follows_its_static_curve() {
+    let wave = |eta: f64| 0.3 * (2.0 * PI * eta).cos() + 0.1 * (4.0 * PI * eta + 0.4).cos();
+    let table = table(64, 2.0, wave, |eta| 1.0 + 0.2 * (2.0 * PI * eta).cos());
+    let found = run_up(&on_webs(vec![0.0, 1e-7], &[1.0, 2.0]), &table);
+    for branch in [found.up.expect("asked"), found.down.expect("asked")] {
+        for [still, slow] in [
+            [branch.rms[0], branch.rms[1]],
+            [branch.peak_to_peak[0], branch.peak_to_peak[1]],
+            [branch.load_factor[0], branch.load_factor[1]],
+        ] {
+            assert!((slow / still - 1.0).abs() < 1e-6, "{slow} {still}");
+        }
+    }
 }

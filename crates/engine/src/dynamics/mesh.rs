@@ -3,8 +3,10 @@
 use std::borrow::Cow;
 use std::f64::consts::PI;
 
+use super::bodies::{Body, Coupled, Damping};
+use super::coupled::{CoupledMotion, Drift};
 use super::law::Laws;
-use super::orbit::{Orbit, Scale};
+use super::orbit::{Orbit, Repeating, Scale};
 use super::order::{Lines, Order};
 use super::oscillator::{Oscillator, Step};
 use super::table::ForceTable;
@@ -20,6 +22,9 @@ const LOOKS: f64 = 20.0;
 
 /// Looks in a step, at most: below the speeds that would need more, the motion is that of the static deflection.
 const MOST_LOOKS: f64 = 64.0;
+
+/// The part of the least compliance of a mesh that the modes of both bodies may yield: the rest is that of teeth and contact.
+const MOST_YIELD: f64 = 0.9;
 
 /// The part of the motion from which on an order is in the results.
 pub(super) const CARRIES: f64 = 0.02;
@@ -38,8 +43,12 @@ pub struct RunUpData {
     pub load: f64,
     /// m_e in kg.
     pub mass: f64,
+    /// The driving and the driven gear: without any modes they are m_e.
+    pub bodies: [Body; 2],
     /// ζ.
     pub damping_ratio: f64,
+    /// ζ of the modes of the bodies.
+    pub body_damping_ratio: f64,
     /// The mean mesh stiffness under F_0 in N/m.
     pub stiffness: f64,
     /// Orders per mesh period that are in the results whatever their amplitude.
@@ -56,7 +65,7 @@ impl RunUpData {
         (self.stiffness / self.mass).sqrt()
     }
 
-    fn damping(&self) -> f64 {
+    pub(super) fn damping(&self) -> f64 {
         2.0 * self.damping_ratio * (self.stiffness * self.mass).sqrt()
     }
 
@@ -67,10 +76,34 @@ impl RunUpData {
         known.map(|times| Order::new(times, 1))
     }
 
-    /// Looks in each of `per_period` steps of a mesh period at `speed`.
-    pub(super) fn looks(&self, speed: f64, per_period: f64) -> f64 {
+    /// The bodies on their mesh, where they have modes: as many of the lowest as yield less than the mesh does, whose least compliance is `least`.
+    ///
+    /// The mean stiffness of the mesh has the modes in it, that of the teeth has not.
+    pub(super) fn coupled(&self, least: f64) -> Option<Coupled> {
+        let mut bodies = self.bodies.clone();
+        loop {
+            let modes = || bodies.iter().flat_map(|body| &body.modes);
+            modes().next()?;
+            let yields: f64 = bodies.iter().map(Body::compliance).sum();
+            if yields < MOST_YIELD * least {
+                let damping = Damping {
+                    mesh: self.damping(),
+                    bodies: self.body_damping_ratio,
+                };
+                let teeth = 1.0 / (1.0 / self.stiffness - yields);
+                return Coupled::new(&bodies, teeth, damping);
+            }
+            let highest = modes().map(|mode| mode.frequency).fold(0.0, f64::max);
+            for body in &mut bodies {
+                body.modes.retain(|mode| mode.frequency < highest);
+            }
+        }
+    }
+
+    /// Looks in each of `per_period` steps of a mesh period at `speed`, of what moves at the circular frequency `natural`.
+    pub(super) fn looks(&self, speed: f64, per_period: f64, natural: f64) -> f64 {
         let step = 1.0 / (speed * f64::from(self.tooth_count) * per_period);
-        (LOOKS * step * self.natural() / (2.0 * PI))
+        (LOOKS * step * natural / (2.0 * PI))
             .ceil()
             .clamp(1.0, MOST_LOOKS)
     }
@@ -88,6 +121,10 @@ pub(super) struct Mesh<'a> {
     per_period: f64,
     /// δ_s under F_0 at the ends of steps.
     deflection: Vec<f64>,
+    /// The mean stiffness of the laws under F_0 in N/m.
+    stiffness: f64,
+    /// The bodies, where they have modes. The laws are those of the teeth alone then.
+    coupled: Option<Cow<'a, Coupled>>,
 }
 
 impl<'a> Mesh<'a> {
@@ -105,6 +142,15 @@ impl<'a> Mesh<'a> {
             .map(|load| -load)
             .chain(loads.iter().copied())
             .collect();
+        let coupled = data.coupled(table.least_compliance());
+        let yields = match &coupled {
+            Some(coupled) => 1.0 / data.stiffness - 1.0 / coupled.stiffness,
+            None => 0.0,
+        };
+        let yielded: Vec<f64> = forces
+            .iter()
+            .map(|force| yields * (force - data.load))
+            .collect();
         let count = table.positions();
         let mut knots = Vec::with_capacity(count * forces.len());
         for i in 0..count {
@@ -112,11 +158,8 @@ impl<'a> Mesh<'a> {
             let middle = |row: &[f64]| f64::midpoint(row[i], row[next]);
             let rest = middle(&deflection);
             let other = table.other().delta.iter().rev();
-            knots.extend(
-                other
-                    .chain(&table.loaded().delta)
-                    .map(|row| middle(row) - rest),
-            );
+            let rows = other.chain(&table.loaded().delta).zip(&yielded);
+            knots.extend(rows.map(|(row, yielded)| middle(row) - rest - yielded));
         }
         Self {
             data,
@@ -124,13 +167,17 @@ impl<'a> Mesh<'a> {
             period: table.period(),
             per_period: count as f64 / f64::from(table.period()),
             deflection,
+            stiffness: coupled
+                .as_ref()
+                .map_or(data.stiffness, |coupled| coupled.stiffness),
+            coupled: coupled.map(Cow::Owned),
         }
     }
 
     /// The same with one stiffness at every position, the mean one under F_0, and the static curve as it is.
     pub(super) fn of_mean_stiffness(&self) -> Mesh<'_> {
         Mesh {
-            laws: Cow::Owned(self.laws.mean(self.data.stiffness)),
+            laws: Cow::Owned(self.laws.mean(self.stiffness)),
             ..self.clone_borrowed()
         }
     }
@@ -162,22 +209,52 @@ impl<'a> Mesh<'a> {
     /// The same with the laws of this one.
     fn clone_borrowed(&self) -> Mesh<'_> {
         Mesh {
+            data: self.data,
             laws: Cow::Borrowed(&self.laws),
+            period: self.period,
+            per_period: self.per_period,
             deflection: self.deflection.clone(),
-            ..*self
+            stiffness: self.stiffness,
+            coupled: self.coupled.as_deref().map(Cow::Borrowed),
         }
     }
 
     /// The amplitudes of the stiffness under F_0 over its mean.
     pub(super) fn stiffness_lines(&self) -> Lines {
-        let stiffness = |step: usize| self.laws.stiffness(step, 0.0) / self.data.stiffness;
+        let stiffness = |step: usize| self.laws.stiffness(step, 0.0) / self.stiffness;
         let samples: Vec<f64> = (0..self.deflection.len()).map(stiffness).collect();
         Lines::of(&samples, 1)
     }
 
-    /// The natural frequency in Hz.
-    pub(super) fn natural_frequency(&self) -> f64 {
-        self.data.natural() / (2.0 * PI)
+    /// The natural frequencies in Hz, rising.
+    pub(super) fn natural_frequencies(&self) -> Vec<f64> {
+        match &self.coupled {
+            Some(coupled) => coupled.natural_frequencies(),
+            None => vec![self.data.natural() / (2.0 * PI)],
+        }
+    }
+
+    /// Those that the mesh excites.
+    pub(super) fn excited_frequencies(&self) -> Vec<f64> {
+        let all = self.natural_frequencies().into_iter().enumerate();
+        let is_excited = |j: usize| {
+            let coupled = self.coupled.as_ref();
+            coupled.is_none_or(|coupled| coupled.is_excited(j))
+        };
+        all.filter(|(j, _)| is_excited(*j))
+            .map(|(_, f)| f)
+            .collect()
+    }
+
+    /// The amplitude over that of the static curve at a `frequency` in Hz, with the mean stiffness at every position and flanks that do not part.
+    pub(super) fn gain(&self, frequency: f64) -> f64 {
+        let omega = 2.0 * PI * frequency;
+        if let Some(coupled) = &self.coupled {
+            return coupled.gain(omega);
+        }
+        let ratio = omega / self.data.natural();
+        let damping = 2.0 * self.data.damping_ratio * ratio;
+        1.0 / (1.0 - ratio * ratio).hypot(damping)
     }
 
     /// The frequency of `order` in Hz at `speed`.
@@ -186,9 +263,9 @@ impl<'a> Mesh<'a> {
         order.per_true_period() * turns
     }
 
-    /// The speed at which `order` meets the natural frequency.
-    pub(super) fn meets(&self, order: Order) -> f64 {
-        self.natural_frequency() / self.frequency(order, 1.0)
+    /// The speed at which `order` has this `frequency` in Hz.
+    pub(super) fn meets(&self, order: Order, frequency: f64) -> f64 {
+        frequency / self.frequency(order, 1.0)
     }
 
     /// δ_s' at `speed`, step by step.
@@ -199,9 +276,38 @@ impl<'a> Mesh<'a> {
             .collect()
     }
 
+    /// What moves at `speed`.
+    fn moving(&self, speed: f64) -> Box<dyn Repeating + '_> {
+        match &self.coupled {
+            Some(coupled) => Box::new(self.coupled_motion(coupled, speed)),
+            None => Box::new(self.oscillator(speed)),
+        }
+    }
+
+    /// The duration of a step at `speed`.
+    fn step(&self, speed: f64) -> f64 {
+        1.0 / (speed * f64::from(self.data.tooth_count) * self.per_period)
+    }
+
+    fn coupled_motion<'b>(&'b self, coupled: &'b Coupled, speed: f64) -> CoupledMotion<'b> {
+        let count = self.deflection.len();
+        let mean = self.deflection.iter().sum::<f64>() / count as f64;
+        let drift = |i: usize| Drift {
+            law: i % self.laws.count(),
+            deflection: [i, (i + 1) % count].map(|i| self.deflection[i] - mean),
+        };
+        let looks = self.data.looks(speed, self.per_period, coupled.at_teeth());
+        CoupledMotion::new(
+            (&self.laws, self.data.load),
+            coupled,
+            (self.step(speed), looks as u32),
+            (0..count).map(drift).collect(),
+        )
+    }
+
     fn oscillator(&self, speed: f64) -> Oscillator<'_> {
         let data = self.data;
-        let duration = 1.0 / (speed * f64::from(data.tooth_count) * self.per_period);
+        let duration = self.step(speed);
         let damping = data.damping();
         let drifts = self.drifts(duration);
         let count = drifts.len();
@@ -217,7 +323,7 @@ impl<'a> Mesh<'a> {
             mass: data.mass,
             damping,
             duration,
-            looks: data.looks(speed, self.per_period) as u32,
+            looks: data.looks(speed, self.per_period, data.natural()) as u32,
             steps,
         }
     }
@@ -236,19 +342,19 @@ impl<'a> Mesh<'a> {
     }
 
     /// The motion at `speed` to which one settles that was that of `from` before; at speed 0 the static curve.
-    pub(super) fn settled(&self, speed: f64, from: Orbit) -> Motion {
+    pub(super) fn settled(&self, speed: f64, from: &Orbit) -> Motion {
         if speed == 0.0 {
             return self.standing();
         }
         let scale = self.scale();
-        let oscillator = self.oscillator(speed);
-        let orbit = oscillator.settled(from, scale);
-        let mut watched = Watched::new(self, orbit);
-        let mut state = orbit.state;
+        let moving = self.moving(speed);
+        let orbit = moving.settled(from, scale);
+        let mut watched = Watched::new(self, &orbit);
+        let mut state = orbit.state.clone();
         let mut left = false;
         let count = self.deflection.len();
         for _ in 0..orbit.periods {
-            (state, _) = oscillator.after_period(state, |seen| {
+            moving.over_period(&mut state, None, &mut |seen| {
                 left |= scale.is_left_by(seen.u);
                 if left {
                     return;
@@ -270,7 +376,7 @@ impl<'a> Mesh<'a> {
 
     /// The static curve.
     pub(super) fn standing(&self) -> Motion {
-        let mut watched = Watched::new(self, Orbit::REST);
+        let mut watched = Watched::new(self, &Orbit::REST);
         for &x in &self.deflection {
             watched.take(x);
             watched.end_of_step(x);
@@ -331,7 +437,7 @@ struct Watched<'a> {
 }
 
 impl<'a> Watched<'a> {
-    fn new(mesh: &'a Mesh<'a>, orbit: Orbit) -> Self {
+    fn new(mesh: &'a Mesh<'a>, orbit: &Orbit) -> Self {
         let periods = orbit.repeats.unwrap_or(PERIODS_WITHOUT_END);
         Self {
             mesh,

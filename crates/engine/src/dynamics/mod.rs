@@ -22,6 +22,8 @@
 //! is, and from step to step u' takes up what δ_s' changes. Each piece has a closed form, so that a stiffness that is constant is met
 //! exactly, whatever the step; one that varies is met to second order.
 
+pub mod bodies;
+pub mod coupled;
 pub mod law;
 mod mesh;
 pub mod orbit;
@@ -32,6 +34,7 @@ pub mod run_up;
 pub mod table;
 pub mod torsion;
 
+pub use bodies::{Body, BodyMode, Coupled, Damping};
 pub use law::Laws;
 pub use mesh::RunUpData;
 pub use orbit::Orbit;

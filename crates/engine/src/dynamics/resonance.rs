@@ -13,17 +13,21 @@ use crate::run::{Run, Stopped};
 /// Speeds that are looked at for an order, about.
 pub(super) const LOOKED_AT: f64 = 8.0;
 
-/// The most orders whose resonances are sought, those with the largest amplitudes expected.
-const MOST_SOUGHT: usize = 160;
+/// The orders whose resonances are sought, those with the largest amplitudes expected: so many that their true periods have this many mesh periods together,
+/// within these bounds.
+const MOST_SOUGHT: (u32, [u32; 2]) = (2000, [8, 160]);
 
 /// The largest lines of the static curve that are expected to resonate.
 const MOST_LINES: usize = 400;
+
+/// The largest lines that make the rest of the motion that is expected.
+const MOST_BESIDE: usize = 64;
 
 /// The part of the motion that an order has to be expected to carry to be sought: some of them come to more.
 const EXPECTED: f64 = 0.5 * CARRIES;
 
 /// Steps of the search for the largest amplitude near a meeting.
-const MOST_STEPS: u32 = 12;
+const MOST_STEPS: u32 = 6;
 
 /// The first step over the speed, in damping ratios and within these bounds.
 const FIRST_STEP: (f64, [f64; 2]) = (0.5, [1e-3, 0.02]);
@@ -33,6 +37,9 @@ const NEAR: [f64; 3] = [0.1, 0.1, 0.5];
 
 /// The precision of the speed of the largest amplitude over the first step.
 const PRECISE: f64 = 0.05;
+
+/// Resonances of one order nearer to each other than this, over their speed, are one.
+const SAME: f64 = 0.01;
 
 /// A resonance of an order of the motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,6 +76,8 @@ pub(super) struct Pass {
 #[derive(Debug, Clone, Copy)]
 struct Meeting {
     order: Order,
+    /// The place of the natural frequency among those that are excited.
+    natural: usize,
     speed: f64,
     /// The amplitude expected there.
     expected: f64,
@@ -97,7 +106,17 @@ pub(super) fn search(
         let larger = b.amplitude.total_cmp(&a.amplitude);
         larger.then(a.speed.total_cmp(&b.speed))
     });
-    Ok(found)
+    // Two natural frequencies close to each other have one largest amplitude.
+    let mut apart: Vec<Resonance> = Vec::new();
+    for one in found {
+        let is_same = |other: &Resonance| {
+            other.order == one.order && (other.speed / one.speed - 1.0).abs() < SAME
+        };
+        if !apart.iter().any(is_same) {
+            apart.push(one);
+        }
+    }
+    Ok(apart)
 }
 
 /// The meetings at which an order may carry a part of the motion: of orders that are known, of half of those at which the stiffness varies enough to pump,
@@ -106,52 +125,58 @@ fn meetings(mesh: &Mesh<'_>, passes: &[Option<Pass>; 2]) -> Vec<Meeting> {
     let data = mesh.data;
     let speeds = &data.speeds;
     let statics = mesh.standing().lines;
-    let resonant = 1.0 / (2.0 * data.damping_ratio);
-    let mut found: HashMap<Order, Meeting> = HashMap::new();
-    let mut add = |order: Order, expected: f64| {
-        let speed = mesh.meets(order);
+    let mut found: HashMap<(Order, usize), Meeting> = HashMap::new();
+    let mut add = |(natural, frequency): (usize, f64), order: Order, expected: f64| {
+        let speed = mesh.meets(order, frequency);
         if data.reaches(speed) {
             let meeting = Meeting {
                 order,
+                natural,
                 speed,
                 expected,
             };
-            found.entry(order).or_insert(meeting);
+            found.entry((order, natural)).or_insert(meeting);
         }
     };
-    for order in data.known(mesh.period) {
-        add(order, resonant * statics.at(order));
-    }
-    // Mathieu's equation is unstable at twice the natural frequency from 4 ζ on.
-    let pumps = mesh.stiffness_lines();
-    let pumps = pumps
-        .all()
-        .filter(|(_, part)| *part > 2.0 * data.damping_ratio);
-    for (order, _) in pumps {
-        add(order.half(), f64::INFINITY);
-    }
     let mut lines: Vec<(Order, f64)> = statics.all().collect();
     lines.sort_by(|a, b| b.1.total_cmp(&a.1));
     lines.truncate(MOST_LINES);
-    for &(order, amplitude) in &lines {
-        let response = |&(other, amplitude): &(Order, f64)| {
-            let ratio = other.per_true_period() / order.per_true_period();
-            let square = (1.0 - ratio * ratio).powi(2) + (2.0 * data.damping_ratio * ratio).powi(2);
-            amplitude * amplitude / square
-        };
-        let all: f64 = lines.iter().map(response).sum();
-        if resonant * amplitude > EXPECTED * all.sqrt() {
-            add(order, resonant * amplitude);
+    let pumps = mesh.stiffness_lines();
+    for natural in mesh.excited_frequencies().into_iter().enumerate() {
+        let frequency = natural.1;
+        let resonant = mesh.gain(frequency);
+        for order in data.known(mesh.period) {
+            add(natural, order, resonant * statics.at(order));
         }
-    }
-    for pass in passes.iter().flatten() {
-        for (i, motion) in pass.motions.iter().enumerate() {
-            let low = speeds[i.saturating_sub(1)];
-            let high = speeds[(i + 1).min(speeds.len() - 1)];
-            let whole = SQRT_2 * motion.rms;
-            for (order, part) in motion.carriers() {
-                if (low..=high).contains(&mesh.meets(order)) {
-                    add(order, part * whole);
+        // Mathieu's equation is unstable at twice the natural frequency from 4 ζ on.
+        let pumps = pumps
+            .all()
+            .filter(|(_, part)| *part > 2.0 * data.damping_ratio);
+        for (order, _) in pumps {
+            add(natural, order.half(), f64::INFINITY);
+        }
+        for &(order, amplitude) in &lines {
+            let speed = mesh.meets(order, frequency);
+            if !data.reaches(speed) {
+                continue;
+            }
+            let response = |&(other, amplitude): &(Order, f64)| {
+                (amplitude * mesh.gain(mesh.frequency(other, speed))).powi(2)
+            };
+            let all: f64 = lines.iter().take(MOST_BESIDE).map(response).sum();
+            if resonant * amplitude > EXPECTED * all.sqrt() {
+                add(natural, order, resonant * amplitude);
+            }
+        }
+        for pass in passes.iter().flatten() {
+            for (i, motion) in pass.motions.iter().enumerate() {
+                let low = speeds[i.saturating_sub(1)];
+                let high = speeds[(i + 1).min(speeds.len() - 1)];
+                let whole = SQRT_2 * motion.rms;
+                for (order, part) in motion.carriers() {
+                    if (low..=high).contains(&mesh.meets(order, frequency)) {
+                        add(natural, order, part * whole);
+                    }
                 }
             }
         }
@@ -161,7 +186,8 @@ fn meetings(mesh: &Mesh<'_>, passes: &[Option<Pass>; 2]) -> Vec<Meeting> {
         let larger = b.expected.total_cmp(&a.expected);
         larger.then(a.speed.total_cmp(&b.speed))
     });
-    found.truncate(MOST_SOUGHT);
+    let (periods, [least, most]) = MOST_SOUGHT;
+    found.truncate((periods / mesh.period).clamp(least, most) as usize);
     found
 }
 
@@ -175,13 +201,21 @@ fn resonance(
     let mut largest: Option<Look> = None;
     for pass in passes.iter().flatten() {
         let mut trail = Trail::of(mesh, pass, meeting);
-        let larger = largest.filter(|seen| {
-            // Where flanks do not part there is one motion, whichever way speeds are run through.
+        // Where flanks do not part there is one motion, whichever way speeds are run through.
+        let is_alike = largest.as_ref().is_some_and(|seen| {
             let here = trail.at(seen.speed);
             !here.parts && (here.amplitude / seen.amplitude - 1.0).abs() < 1e-6
         });
-        let found = larger.or_else(|| trail.largest())?;
-        if largest.is_none_or(|seen| found.amplitude > seen.amplitude) {
+        if is_alike {
+            continue;
+        }
+        let Some(found) = trail.largest() else {
+            continue;
+        };
+        if largest
+            .as_ref()
+            .is_none_or(|seen| found.amplitude > seen.amplitude)
+        {
             largest = Some(found);
         }
     }
@@ -192,7 +226,7 @@ fn resonance(
         ..
     } = largest.filter(|seen| seen.carries)?;
     let order = meeting.order;
-    let with = |mesh: &Mesh<'_>| mesh.settled(speed, orbit).lines.at(order);
+    let with = |mesh: &Mesh<'_>| mesh.settled(speed, &orbit).lines.at(order);
     // A broken order has no line to leave out.
     let without = if order.is_whole() {
         with(&mesh.without(order))
@@ -214,7 +248,7 @@ fn resonance(
 }
 
 /// An order at one speed of a pass.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 struct Look {
     speed: f64,
     amplitude: f64,
@@ -236,7 +270,7 @@ struct Trail<'a> {
 
 impl<'a> Trail<'a> {
     fn of(mesh: &'a Mesh<'a>, pass: &'a Pass, meeting: &'a Meeting) -> Self {
-        let orbits = pass.motions.iter().map(|motion| motion.orbit);
+        let orbits = pass.motions.iter().map(|motion| motion.orbit.clone());
         Self {
             mesh,
             pass,
@@ -252,7 +286,7 @@ impl<'a> Trail<'a> {
             amplitude,
             carries: amplitude > CARRIES * SQRT_2 * motion.rms,
             parts: motion.contact_lost,
-            orbit: motion.orbit,
+            orbit: motion.orbit.clone(),
         }
     }
 
@@ -264,7 +298,7 @@ impl<'a> Trail<'a> {
         } else {
             place - 1
         };
-        let motion = self.mesh.settled(speed, self.known[before].1);
+        let motion = self.mesh.settled(speed, &self.known[before].1);
         let look = self.look(speed, &motion);
         self.known.insert(place, (speed, motion.orbit));
         look
@@ -324,14 +358,15 @@ impl<'a> Trail<'a> {
     /// Near a resonance 1/A² is a parabola of the speed. Where the motion jumps the amplitude is the largest that was seen.
     fn largest(&mut self) -> Option<Look> {
         let met = self.at(self.meeting.speed);
+        let carries = met.carries;
         let begin = self.risen().filter(|risen| risen.amplitude > met.amplitude);
         let mut best = begin.unwrap_or(met);
-        if !(met.carries || best.carries) {
+        if !(carries || best.carries) {
             return None;
         }
         let (in_damping, [least, most]) = FIRST_STEP;
         let step = (in_damping * self.mesh.data.damping_ratio).clamp(least, most) * best.speed;
-        let mut seen = vec![best];
+        let mut seen = vec![best.clone()];
         let mut wanted = vec![best.speed - step, best.speed + step];
         for _ in 0..MOST_STEPS {
             let [low, high] = self.bounds(best.parts);
@@ -347,16 +382,24 @@ impl<'a> Trail<'a> {
                 continue;
             }
             let look = self.at(speed);
+            if look.amplitude > best.amplitude {
+                best = look.clone();
+            }
             let place = seen.partition_point(|known| known.speed < speed);
             seen.insert(place, look);
-            if look.amplitude > best.amplitude {
-                best = look;
-            }
             if wanted.is_empty() {
                 wanted.extend(next(&seen, step));
             }
         }
-        Some(best)
+        // A higher natural frequency with nothing of its own lies on the slope of another one.
+        let [low, high] = self.bounds(best.parts);
+        let is_slope = [low, high].contains(&best.speed) && !self.is_end(best.speed);
+        (self.meeting.natural == 0 || !is_slope).then_some(best)
+    }
+
+    fn is_end(&self, speed: f64) -> bool {
+        let speeds = &self.mesh.data.speeds;
+        [speeds.first(), speeds.last()].contains(&Some(&speed))
     }
 }
 

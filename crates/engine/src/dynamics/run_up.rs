@@ -13,6 +13,9 @@ use crate::run::{Run, Stopped};
 /// Seconds of one core that a look takes.
 const SECONDS_A_LOOK: f64 = 60e-9;
 
+/// Seconds of a look with common modes of bodies over those without, divided by the square of their number.
+const A_MODE: f64 = 0.6;
+
 /// How often a period is gone through at each speed, about; where the motion jumps, more often.
 const LOOKED_THROUGH: f64 = 8.0;
 
@@ -60,7 +63,7 @@ impl Branch {
 /// The motion over speed under one load.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunUp {
-    /// The natural frequencies in Hz, rising. The first is √(k/m_e)/2π.
+    /// The natural frequencies in Hz of the bodies on the mean stiffness of their mesh, rising; without modes of the bodies √(k/m_e)/2π.
     pub natural_frequencies: Vec<f64>,
     /// The orders whose amplitudes are known, rising.
     pub orders: Vec<Order>,
@@ -75,19 +78,26 @@ pub struct RunUp {
 impl RunUpData {
     /// Seconds of one core that the run-up through a mesh that repeats after `period` mesh periods takes, about.
     pub fn seconds(&self, period: u32) -> f64 {
+        let coupled = self.coupled(1.0 / self.stiffness);
+        // Of a system of several masses each look carries a state and its derivative.
+        let (moves, each) = match &coupled {
+            Some(coupled) => {
+                let count = coupled.count() as f64;
+                (coupled.at_teeth(), A_MODE * count * count)
+            }
+            None => (self.natural(), 1.0),
+        };
         let natural = self.natural() / (2.0 * PI);
         let steps = STEPS_A_PERIOD as f64 * f64::from(period);
-        let looks = |speed: f64| self.looks(speed, STEPS_A_PERIOD as f64);
-        let meetings = self
-            .orders
-            .iter()
-            .map(|order| natural / (order * f64::from(self.tooth_count)));
+        let looks = |speed: f64| self.looks(speed, STEPS_A_PERIOD as f64, moves);
+        let teeth = f64::from(self.tooth_count);
+        let meetings = self.orders.iter().map(|order| natural / (order * teeth));
         let meetings = meetings.filter(|speed| self.reaches(*speed));
         let swept: f64 = self.speeds.iter().copied().map(looks).sum();
         let resonant: f64 = meetings.map(looks).sum();
         let sweeps = self.sweeps.iter().filter(|asked| **asked).count() as f64;
         let all = sweeps * swept + LOOKED_AT * resonant;
-        SECONDS_A_LOOK * LOOKED_THROUGH * steps * all
+        each * SECONDS_A_LOOK * LOOKED_THROUGH * steps * all
     }
 
     /// Bytes that the run-up takes, about: the amplitudes of all motions, from which orders are chosen.
@@ -124,7 +134,7 @@ impl RunUpData {
         };
         let [up, down] = passes.each_ref().map(branch);
         Ok(RunUp {
-            natural_frequencies: vec![mesh.natural_frequency()],
+            natural_frequencies: mesh.natural_frequencies(),
             orders,
             up,
             down,
@@ -140,11 +150,11 @@ impl Mesh<'_> {
         let mut orbit = Orbit::REST;
         let mut motion = |speed: &f64| {
             run.check()?;
-            let motion = self.settled(*speed, orbit);
+            let motion = self.settled(*speed, &orbit);
             orbit = if motion.orbit.runs_away {
                 Orbit::REST
             } else {
-                motion.orbit
+                motion.orbit.clone()
             };
             Ok(motion)
         };

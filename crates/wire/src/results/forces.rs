@@ -71,7 +71,8 @@ document! {
         /// Run down from the highest speed; absent if not asked for.
         down?: BranchDocument = run_up.down.as_ref().map(branch),
         /// The resonances within the speeds, the largest amplitude first: each order that meets a natural frequency and carries more than 2 % of the motion
-        /// there, once. Of more than 160 candidates, those with the largest expected amplitudes are searched.
+        /// there, once. The candidates with the largest expected amplitudes are searched: at most 160, at
+        /// most 40 where the true period has 50 mesh periods, and at least 8.
         resonances: Vec<ResonanceDocument> = all(&dynamics.resonances, ResonanceDocument::of),
     }
 }
