@@ -85,7 +85,7 @@ document! {
         dynamic_transmission_error_um: DynamicErrorDocument = DynamicErrorDocument::of(branch),
         /// The largest force between the gears over the static load.
         dynamic_load_factor: Vec<f64> = branch.load_factor.clone(),
-        /// Whether the loaded flanks part.
+        /// True where the loaded flanks separate.
         contact_lost: Vec<bool> = branch.contact_lost.clone(),
         /// True periods after which the motion repeats; 0 where it was not found to.
         period_multiple: Vec<u32> = all(&branch.repeats, |repeats| repeats.unwrap_or(0)),
