@@ -10,7 +10,7 @@ use meshwright_plot::{
 };
 
 use meshwright_wire::results::{
-    CurveDocument, HolePhaseDocument, ResonanceDocument, ResonanceKindName,
+    CurveDocument, ExcitationName, HolePhaseDocument, ResonanceDocument,
 };
 
 /// Width and height of a picture in pixels.
@@ -348,7 +348,7 @@ fn resonances(curves: &[&CurveDocument]) -> Vec<Mark> {
     let found = curves.iter().find_map(|curve| curve.dynamics.as_ref());
     let resonances = found.iter().flat_map(|dynamics| &dynamics.resonances);
     let shown = resonances.filter(|resonance| {
-        resonance.kind == ResonanceKindName::Forced
+        resonance.excited == ExcitationName::Forced
             && ["H_N", "H_N1", "H_N2", "H_Z2", "H_2Z2", "H_3Z2"].contains(&&*resonance.label)
     });
     let mark = |resonance: &ResonanceDocument| Mark {
@@ -433,7 +433,7 @@ mod tests {
                     "dynamic_load_factor": [], "contact_lost": [], "period_multiple": [], "orders": [] })
         };
         let dynamics = json!({ "natural_frequency_hz": 1.0, "equivalent_mass_kg": 1.0, "driving_speed_rpm": [0.0, 500.0, 1000.0],
-            "resonances": [{ "driving_speed_rpm": 500.0, "label": "H_Z2", "kind": "forced" }], "up": branch(9.0), "down": branch(8.0) });
+            "resonances": [{ "driving_speed_rpm": 500.0, "label": "H_Z2", "excited": "forced" }], "up": branch(9.0), "down": branch(8.0) });
         curve.dynamics = Some(serde_json::from_value(dynamics).expect("a run-up"));
         curve
     }

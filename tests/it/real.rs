@@ -188,7 +188,16 @@ async fn a_run_up_comes_back_with_its_table_and_in_the_forms_of_other_programs()
         .unwrap();
     let mass = dynamics["equivalent_mass_kg"].as_f64().unwrap();
     let natural = dynamics["natural_frequency_hz"].as_f64().unwrap();
-    assert!((natural / ((mean / mass).sqrt() / std::f64::consts::TAU) - 1.0).abs() < 1e-9);
+    // Rims and teeth stand outside their hubs.
+    let on_hubs = (mean / mass).sqrt() / std::f64::consts::TAU;
+    assert!(
+        (1.05..1.3).contains(&(natural / on_hubs)),
+        "{natural} {on_hubs}"
+    );
+    assert_eq!(
+        dynamics["natural_frequencies_hz"][0],
+        dynamics["natural_frequency_hz"]
+    );
     let of = |gear: &str| {
         let gear = &results["pair"][gear];
         let radius = gear["base_radius_mm"].as_f64().unwrap() * 1e-3;
@@ -220,7 +229,7 @@ async fn a_run_up_comes_back_with_its_table_and_in_the_forms_of_other_programs()
         );
     }
     let unseen = results["evidence"]["does_not_see"].to_string();
-    assert!(unseen.contains("shafts, bearings, housing"), "{unseen}");
+    assert!(unseen.contains("shafts, bearings and housing"), "{unseen}");
 
     let get = async |file: &str| bench.get(&format!("{path}/results/{file}")).answer().await;
     let run_up = get("run-up.csv").await.whole_text().await;

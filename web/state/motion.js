@@ -83,17 +83,3 @@ export function motionAt(results, curve, { rpm, teeth, damping = 0.05, from = nu
   const state = [x, v];
   return { state, span, approach, factor };
 }
-
-/** A resonance is as wide as this part of its speed to either side, with the usual damping. */
-const WIDTH = 0.05;
-
-/**
- * The largest of `values`, which are known at `speeds`, near a resonance at `speed`: within its width, and at the
- * speeds beside it at least.
- *
- * @type {(speeds: number[], values: number[], speed: number) => number}
- */
-export function largestNear(speeds, values, speed) {
-  const step = speeds.length > 1 ? Math.abs(speeds[1] - speeds[0]) : Infinity;
-  return Math.max(...values.filter((_, i) => Math.abs(speeds[i] - speed) <= Math.max(WIDTH * speed, step)));
-}

@@ -19,7 +19,7 @@ import {
 } from "../draw/dom.js";
 import { figure, ticks } from "../draw/figure.js";
 import { Tones } from "../draw/sound.js";
-import { largestNear, motionAt } from "../state/motion.js";
+import { motionAt } from "../state/motion.js";
 import { fixed, number } from "../state/numbers.js";
 import { wordsOf } from "../state/orders.js";
 
@@ -55,9 +55,15 @@ const BETTER_FREQUENCY = "rim_inertia_on_hub";
 /** @type {(value: number) => string} */
 const rpm = (value) => `${Math.round(value).toLocaleString("en")} rpm`;
 
+/** @type {(named: NamedOrder[], label: string) => string} */
+const inWords = (named, label) => {
+  const known = named.find((order) => order.label === label);
+  return known ? wordsOf(known) : label;
+};
+
 const WAYS = /** @type {Way[]} */ (Object.keys(BRANCHES));
 
-/** @typedef {NamedOrder & { amplitude: number[] }} Ridge */
+/** @typedef {{ label: string, order: number, words: string, amplitude: number[] }} Ridge */
 
 /**
  * What a run-up needs of the page: `ask` puts one into the design, `asked` says whether it has one, `refused` why that
@@ -365,7 +371,7 @@ export class RunUp {
   }
 
   /**
-   * The named orders of the run-up with their numbers, rising: those that move most.
+   * The orders of the run-up with their words, rising: those that move most.
    *
    * @returns {Ridge[]}
    */
@@ -374,10 +380,7 @@ export class RunUp {
     /** @type {(order: Ridge) => number} */
     const most = ({ amplitude }) => Math.max(...amplitude);
     return this.#run.orders
-      .flatMap((each) => {
-        const known = named.find(({ label }) => label === each.label);
-        return known ? [{ ...known, amplitude: each.amplitude_um }] : [];
-      })
+      .map(({ label, order, amplitude_um: amplitude }) => ({ label, order, words: inWords(named, label), amplitude }))
       .sort((a, b) => most(b) - most(a))
       .slice(0, MOST_RIDGES)
       .sort((a, b) => a.order - b.order);
@@ -411,7 +414,7 @@ export class RunUp {
     });
     /** @type {(words: string, attributes: Attributes) => SVGTextElement} */
     const text = (words, attributes) => Object.assign(s("text", attributes), { textContent: words });
-    this.ridges.textContent = `Orders over speed, ${BRANCHES[this.#branch]}; the highest ridge is ${number(most, 3)} µm. ◆ marks where an order meets the natural frequency, ◇ where it meets twice that.`;
+    this.ridges.textContent = `Orders over speed, ${BRANCHES[this.#branch]}; the highest ridge is ${number(most, 3)} µm. ◆ marks a resonance that its own line in the static curve makes, ◇ one that the varying stiffness makes.`;
     for (const value of ticks(first, last))
       svg.append(
         s("line", { x1: px(value), x2: px(value), y1: FRAME.top - ROW, y2: height - FRAME.bottom, class: "grid" }),
@@ -437,7 +440,7 @@ export class RunUp {
     for (const resonance of this.#named()) {
       const i = orders.findIndex(({ label }) => label === resonance.label);
       const mark = s("path", {
-        class: `resonance ${resonance.kind}`,
+        class: `resonance ${resonance.excited}`,
         d: `M${px(resonance.driving_speed_rpm)} ${foot(i) - 5}l5 5l-5 5l-5 -5Z`,
       });
       mark.append(Object.assign(s("title"), { textContent: resonance.words }));
@@ -454,49 +457,45 @@ export class RunUp {
     return Object.assign(svg, { frame });
   }
 
-  /** The resonances within the speeds, each as a sentence would name it. */
+  /** The resonances of the orders shown, each as a sentence would name it. */
   #named() {
-    const speeds = this.#dynamics.driving_speed_rpm;
     const orders = this.#orders();
-    return this.#dynamics.resonances
-      .filter(
-        ({ driving_speed_rpm: speed, label }) =>
-          speed >= speeds[0] && speed <= speeds[speeds.length - 1] && orders.some((order) => order.label === label),
-      )
-      .map((each) => {
-        const order = orders.find(({ label }) => label === each.label);
-        const what = order ? wordsOf(order) : each.label;
-        return {
-          ...each,
-          what,
-          words: `${what}, at ${rpm(each.driving_speed_rpm)}${each.kind === "parametric" ? ", at twice the natural frequency" : ""}`,
-        };
-      });
+    return this.#dynamics.resonances.flatMap((each) => {
+      const order = orders.find(({ label }) => label === each.label);
+      if (!order) return [];
+      const cause = each.excited === "parametric" ? ", by the varying stiffness" : "";
+      return [{ ...each, what: order.words, words: `${order.words}, at ${rpm(each.driving_speed_rpm)}${cause}` }];
+    });
   }
 
   #tableOf() {
-    const speeds = this.#dynamics.driving_speed_rpm;
-    const values = this.#run.dynamic_transmission_error_um.peak_to_peak;
     const rows = this.#named().map((each) =>
       tableRow(
         Math.round(each.driving_speed_rpm).toLocaleString("en"),
         each.label,
         each.what,
-        each.kind === "forced" ? "once: forced" : "twice: parametric",
-        fixed(largestNear(speeds, values, each.driving_speed_rpm), 2),
+        each.excited === "forced" ? "its own line: forced" : "the stiffness: parametric",
+        number(each.frequency_hz),
+        fixed(each.amplitude_um, 2),
         button("Look", () => this.#look(each.driving_speed_rpm), { ariaLabel: `Look at ${each.words}` }),
       ),
     );
-    const caption = `Resonances: the natural frequency is ${number(this.#dynamics.natural_frequency_hz)} Hz, of ${number(this.#dynamics.equivalent_mass_kg, 3)} kg on the line of action`;
+    const frequencies = this.#dynamics.natural_frequencies_hz.map((hertz) => number(hertz));
+    const natural =
+      frequencies.length === 1
+        ? `the natural frequency is ${frequencies[0]} Hz`
+        : `the natural frequencies are ${frequencies.join(", ")} Hz`;
+    const caption = `Resonances: ${natural}, of ${number(this.#dynamics.equivalent_mass_kg, 3)} kg on the line of action`;
     const names = [
       "Speed rpm",
       "Order",
-      "What meets",
-      "the natural frequency",
-      "Largest STE p-p near it µm",
+      "What it is",
+      "Excited by",
+      "Frequency Hz",
+      "Amplitude µm",
       unseen("Actions"),
     ];
-    const none = h("tr", {}, h("td", { colSpan: 6 }, "None at these speeds."));
+    const none = h("tr", {}, h("td", { colSpan: 7 }, "None at these speeds."));
     const found = table(names, rows.length ? rows : [none], caption);
     // A better number than that of the caption stands beside it.
     const better = this.live.results.warnings.filter(({ code }) => code === BETTER_FREQUENCY);
@@ -532,7 +531,7 @@ export class RunUp {
     );
     this.readout.replaceChildren(
       `${BRANCHES[this.#branch].replace(/^./, (letter) => letter.toUpperCase())} at ${rpm(this.#speed)}: ${fixed(run.dynamic_transmission_error_um.peak_to_peak[i], 2)} µm peak-to-peak, up to ${fixed(run.dynamic_load_factor[i], 2)} times the load`,
-      strongest ? `, most at ${strongest.label} (${wordsOf(strongest)}), ${number(strongest.amplitude[i], 3)} µm` : "",
+      strongest ? `, most at ${strongest.label} (${strongest.words}), ${number(strongest.amplitude[i], 3)} µm` : "",
       ". ",
       lost ? h("strong", { className: "parted" }, "The flanks part. ") : "",
       multiple === 0

@@ -258,6 +258,8 @@ fn forces(criterion: &mut Criterion) {
             .collect(),
         damping_ratio: 0.05,
         inertias: [None; 2],
+        blank_modes: None,
+        blank_damping_ratio: 0.02,
         sweeps: [true, true],
     };
     let mut group = group(criterion, "forces", 3);
@@ -267,8 +269,14 @@ fn forces(criterion: &mut Criterion) {
     let table = table();
     group.bench_function("case 2, 400 speeds to 20,000 rpm, up and down", |bencher| {
         bencher.iter(|| {
-            black_box(dynamics(&case, &analysis.curves[0], &table, &speeds, &run))
-                .expect("nobody stops it")
+            black_box(dynamics(
+                &case,
+                &analysis.curves[0],
+                &table,
+                (&speeds, [None; 2]),
+                &run,
+            ))
+            .expect("nobody stops it")
         });
     });
     group.finish();

@@ -78,6 +78,7 @@ pub mod contact;
 pub mod dynamics;
 pub mod fem;
 pub mod flank;
+pub mod fourier;
 pub mod gear;
 pub mod grid;
 pub mod library;

@@ -2,10 +2,11 @@
 
 use std::f64::consts::PI;
 
-use meshwright_engine::dynamics::orbit::{Scale, multipliers};
+use meshwright_engine::dynamics::orbit::{Repeating, Scale, multiplier};
 use meshwright_engine::dynamics::oscillator::Step;
 use meshwright_engine::dynamics::{
-    FlankRows, ForceTable, Ladder, Laws, Orbit, Oscillator, ResonanceKind, RunUp, RunUpData, State,
+    Body, BodyMode, Coupled, Damping, Excitation, FlankRows, ForceTable, Ladder, Laws, Orbit,
+    Order, Oscillator, RunUp, RunUpData, State,
 };
 use meshwright_engine::run::Run;
 
@@ -38,7 +39,7 @@ fn rectangular(omega: f64, zeta: f64) -> f64 {
         steps: vec![step(0), step(1)],
     };
     let (_, m) = oscillator.after_period(State { u: 0.0, v: 0.0 }, |_| ());
-    multipliers(&m)[0]
+    multiplier(&[0, 1].map(|j| [m[0][j], m[1][j]].to_vec()).to_vec())
 }
 
 #[test]
@@ -83,11 +84,11 @@ fn with_backlash(laws: &Laws, w: f64) -> Oscillator<'_> {
 }
 
 /// Rms without mean, and whether contact is lost.
-fn seen(oscillator: &Oscillator<'_>, orbit: Orbit) -> (f64, bool) {
+fn seen(oscillator: &Oscillator<'_>, orbit: &Orbit) -> (f64, bool) {
     let (mut n, mut sum, mut squares, mut lost) = (0.0, 0.0, 0.0, false);
-    let mut state = orbit.state;
+    let mut state = orbit.state.clone();
     for _ in 0..orbit.periods {
-        (state, _) = oscillator.after_period(state, |seen| {
+        oscillator.over_period(&mut state, None, &mut |seen| {
             n += 1.0;
             sum += seen.u;
             squares += seen.u * seen.u;
@@ -102,18 +103,18 @@ fn an_oscillator_with_backlash_jumps_where_it_should() {
     let laws = Laws::new(vec![-1.0, 0.0, 0.0, 1.0], vec![-2.0, -1.0, 1.0, 2.0], 2);
     let scale = Scale { u: 0.1, v: 0.1 };
     let rest = Orbit {
-        state: State { u: 1.1, v: 0.0 },
+        state: vec![1.1, 0.0],
         ..AT_REST
     };
     let sweep = |from: i32, to: i32| -> Vec<(i32, f64, bool)> {
         let step = (to - from).signum();
-        let mut orbit = rest;
+        let mut orbit = rest.clone();
         (0..=(to - from).abs())
             .map(|k| {
                 let w = from + k * step;
                 let oscillator = with_backlash(&laws, f64::from(w) / 100.0);
-                orbit = oscillator.settled(orbit, scale);
-                let (rms, lost) = seen(&oscillator, orbit);
+                orbit = oscillator.settled(&orbit, scale);
+                let (rms, lost) = seen(&oscillator, &orbit);
                 (w, rms, lost)
             })
             .collect()
@@ -158,9 +159,9 @@ fn the_linear_response_loses_contact_where_its_amplitude_is_the_load() {
     ] {
         let oscillator = with_backlash(&laws, w);
         let orbit = oscillator
-            .periodic(State { u: 1.1, v: 0.0 }, 1, Scale { u: 0.1, v: 0.1 })
+            .periodic(&[1.1, 0.0], 1, Scale { u: 0.1, v: 0.1 })
             .expect("linear");
-        let (_, lost) = seen(&oscillator, orbit);
+        let (_, lost) = seen(&oscillator, &orbit);
         assert_eq!(lost, parts, "{w}");
     }
 }
@@ -207,9 +208,16 @@ fn data(speeds: Vec<f64>, load: f64, orders: &[f64]) -> RunUpData {
         tooth_count: 1,
         load,
         mass: 1.0,
+        bodies: [(); 2].map(|()| Body {
+            inertia: 2.0,
+            base_radius: 1.0,
+            modes: Vec::new(),
+        }),
         damping_ratio: 0.05,
+        body_damping_ratio: 0.02,
         stiffness: 1.0,
         orders: orders.to_vec(),
+        most_orders: 1000,
         sweeps: [true, true],
     }
 }
@@ -230,11 +238,17 @@ fn a_linear_mesh_answers_each_harmonic_as_a_forced_oscillator() {
             .map(|w| w / (2.0 * PI))
             .collect();
         let found = run_up(&data(speeds.clone(), 1.0, &[1.0, 3.0]), &table);
-        let (up, down) = (found.up.expect("asked"), found.down.expect("asked"));
+        let [up, down] = [&found.up, &found.down].map(|branch| branch.as_ref().expect("asked"));
         let mut worst = 0.0_f64;
         for (i, speed) in speeds.iter().enumerate() {
             let mut squares = 0.0;
-            for (k, (order, amplitude)) in [(1.0, 0.02), (3.0, 0.01)].into_iter().enumerate() {
+            for (order, amplitude) in [(1_u32, 0.02), (3, 0.01)] {
+                let k = found
+                    .orders
+                    .iter()
+                    .position(|each| *each == Order::new(order, 1));
+                let k = k.expect("in the results");
+                let order = f64::from(order);
                 let r = order * speed * 2.0 * PI;
                 let expected = amplitude / ((1.0 - r * r).powi(2) + (0.1 * r).powi(2)).sqrt();
                 worst = worst.max((up.orders[k][i] / expected - 1.0).abs());
@@ -364,30 +378,271 @@ fn a_nonlinear_mesh_moves_as_a_plain_integrator_has_it() {
     }
 }
 
+/// The amplitudes of a branch of `found` at the order `times` in `periods`.
+fn at(found: &RunUp, order: Order) -> &[f64] {
+    let place = found.orders.iter().position(|each| *each == order);
+    let branch = found.up.as_ref().expect("asked");
+    &branch.orders[place.expect("it is in the results")]
+}
+
+/// The resonances of `found`: how often the order comes in a true period, what excites it, the circular frequency of the mesh and the amplitude.
+fn resonances(found: &RunUp) -> Vec<(f64, Excitation, f64, f64)> {
+    let all = found.resonances.iter();
+    all.map(|each| {
+        let order = each.order.per_true_period();
+        assert!((each.frequency / (order * each.speed) - 1.0).abs() < 1e-12);
+        (order, each.excited, 2.0 * PI * each.speed, each.amplitude)
+    })
+    .collect()
+}
+
 #[test]
-fn resonances_stand_where_orders_meet_the_natural_frequency_or_twice_it_by_what_they_do_there() {
-    // A linear mesh under 0.02 cos θ + 0.01 cos 3θ: at its resonance an order is 1/(2ζ) = 10 times its static amplitude, and nothing pumps. Twice the
-    // natural frequency meets the first order beyond the range.
+fn a_resonance_stands_once_at_its_largest_amplitude_however_few_the_speeds() {
+    // A linear mesh under 0.02 cos θ + 0.01 cos 3θ: at r² = 1 − 2ζ² an order is 1/(2ζ √(1 − ζ²)) times its static amplitude, and nothing pumps.
     let wave = |eta: f64| 0.02 * (2.0 * PI * eta).cos() + 0.01 * (6.0 * PI * eta).cos();
-    let table = table(128, 2.0, wave, |_| 1.0);
-    let speeds = [0.1, 0.5, 1.9].map(|w| w / (2.0 * PI)).to_vec();
-    let found = run_up(&data(speeds, 1.0, &[1.0, 3.0]), &table);
-    let told: Vec<_> = found
-        .resonances
-        .iter()
-        .map(|each| (each.order, each.kind, 2.0 * PI * each.speed, each.amplitude))
+    let table = table(256, 2.0, wave, |_| 1.0);
+    for speeds in [&[0.1, 0.5, 1.9][..], &[0.2, 0.97, 1.01, 1.5]] {
+        let speeds: Vec<f64> = speeds.iter().map(|w| w / (2.0 * PI)).collect();
+        let found = resonances(&run_up(&data(speeds, 1.0, &[1.0, 3.0]), &table));
+        let (place, gain) = ((1.0_f64 - 0.005).sqrt(), 10.0 / (1.0_f64 - 0.0025).sqrt());
+        let expected = [(1.0, place, 0.02 * gain), (3.0, place / 3.0, 0.01 * gain)];
+        assert_eq!(found.len(), expected.len(), "{found:?}");
+        for ((order, excited, speed, amplitude), expected) in found.into_iter().zip(expected) {
+            assert_eq!((order, excited), (expected.0, Excitation::Forced));
+            // Amplitude and parabola in the speed are of second order there.
+            assert!(
+                (speed / expected.1 - 1.0).abs() < 1e-3,
+                "{speed} {}",
+                expected.1
+            );
+            assert!(
+                (amplitude / expected.2 - 1.0).abs() < 2e-3,
+                "{amplitude} {}",
+                expected.2
+            );
+        }
+    }
+}
+
+/// A mesh whose stiffness under the load 1 is `stiffness` and whose static curve there is `curve`.
+fn under_one(stiffness: impl Fn(f64) -> f64, curve: impl Fn(f64) -> f64) -> ForceTable {
+    let compliance = |eta: f64| 1.0 / stiffness(eta);
+    table(128, 3.0, |eta| curve(eta) - compliance(eta), compliance)
+}
+
+#[test]
+fn a_resonance_is_forced_where_its_line_makes_it_and_parametric_where_the_stiffness_does() {
+    // The static curve has the order 1 alone. The stiffness is k = 1 + 0.1 cos θ, too little to pump with ζ = 0.05: it makes an order 2 of the order 1.
+    let stiffness = |eta: f64| 1.0 + 0.1 * (2.0 * PI * eta).cos();
+    let curve = |eta: f64| 0.02 * (2.0 * PI * eta).cos();
+    let speeds: Vec<f64> = (3..28).map(|i| 0.05 * f64::from(i) / (2.0 * PI)).collect();
+    let data = data(speeds, 1.0, &[1.0]);
+    let of = |table: &ForceTable| run_up(&data, table);
+    let found = of(&under_one(stiffness, curve));
+    let told = resonances(&found);
+    let order = |times: f64| {
+        let mut of_order = told.iter().filter(|each| each.0 == times);
+        let one = of_order.next().expect("told");
+        assert!(of_order.next().is_none(), "{times}: {told:?}");
+        *one
+    };
+    let (first, second) = (order(1.0), order(2.0));
+    assert_eq!(
+        (first.1, second.1),
+        (Excitation::Forced, Excitation::Parametric)
+    );
+    assert!((first.2 - 1.0).abs() < 0.01 && (second.2 - 0.5).abs() < 0.01);
+    // The tests that say so, of the run-ups of other tables.
+    let most = |found: &RunUp, order: Order| {
+        let place = found.orders.iter().position(|each| *each == order);
+        place.map_or(0.0, |_| {
+            at(found, order).iter().copied().fold(0.0, f64::max)
+        })
+    };
+    let [one, two] = [1, 2].map(|times| Order::new(times, 1));
+    let of_mean = of(&under_one(|_| 1.0, curve));
+    let of_flat = of(&under_one(stiffness, |_| 0.0));
+    assert!(most(&of_mean, one) > 0.95 * first.3 && most(&of_flat, one) < 1e-9);
+    assert!(most(&of_mean, two) < 1e-6 && second.3 > 1e-3);
+    // What carries more than a fiftieth of the motion is in the results, though nobody asked for it.
+    let branch = found.up.as_ref().expect("asked");
+    let parts = at(&found, two).iter().zip(&branch.rms);
+    assert!(
+        parts
+            .clone()
+            .any(|(amplitude, rms)| amplitude / (2.0_f64.sqrt() * rms) > 0.02)
+    );
+}
+
+#[test]
+fn a_stiffness_that_pumps_makes_a_resonance_at_half_an_order() {
+    // k = 1 + 0.4 cos θ is unstable about ω = 2 for ζ = 0.05, where flanks that part end the growth. The line of the static curve is there to begin with.
+    let stiffness = |eta: f64| 1.0 + 0.4 * (2.0 * PI * eta).cos();
+    let curve = |eta: f64| 1e-4 * (2.0 * PI * eta).cos();
+    let speeds = [1.5, 2.0, 2.5].map(|w| w / (2.0 * PI)).to_vec();
+    let found = run_up(&data(speeds, 1.0, &[1.0]), &under_one(stiffness, curve));
+    let (order, excited, speed, amplitude) = resonances(&found)[0];
+    assert_eq!((order, excited), (0.5, Excitation::Parametric));
+    assert!(
+        speed > 1.5 && speed < 2.2 && amplitude > 1.0,
+        "{speed} {amplitude}"
+    );
+    let half = at(&found, Order::new(1, 2));
+    assert!(half[1] > 0.5 && half[1] <= amplitude, "{half:?}");
+}
+
+/// A hub and a rim of these inertias on a base radius of 1, with a web of this stiffness between them.
+fn hub_and_rim(hub: f64, rim: f64, web: f64) -> Body {
+    Body {
+        inertia: hub + rim,
+        base_radius: 1.0,
+        modes: vec![BodyMode {
+            frequency: (web / rim).sqrt(),
+            at_mesh: 1.0 / rim.sqrt(),
+            turn: rim.sqrt(),
+        }],
+    }
+}
+
+/// Hub, rim and web of both gears, with 1 as mass on the line of action.
+const GEARS: [[f64; 3]; 2] = [[1.4, 0.6, 8.0], [1.2, 0.8, 10.0]];
+
+fn on_webs(speeds: Vec<f64>, orders: &[f64]) -> RunUpData {
+    RunUpData {
+        bodies: GEARS.map(|[hub, rim, web]| hub_and_rim(hub, rim, web)),
+        ..data(speeds, 1.0, orders)
+    }
+}
+
+#[test]
+fn gears_on_webs_move_as_hubs_and_rims_that_a_plain_integrator_moves() {
+    // The classical Runge-Kutta method on two hubs, two rims, and the table of the teeth alone: the webs yield 1/8 + 1/10 in the whole one.
+    let wave = |eta: f64| 0.3 * (2.0 * PI * eta).cos() + 0.1 * (4.0 * PI * eta + 0.4).cos();
+    let whole = |eta: f64| 1.0 + 0.2 * (2.0 * PI * eta).cos();
+    let yields: f64 = GEARS.iter().map(|[_, _, web]| 1.0 / web).sum();
+    let of_all = table(256, 4.0, wave, whole);
+    let of_teeth = table(256, 4.0, wave, |eta| whole(eta) - yields);
+    let omegas = [0.5, 0.85, 1.2, 2.8, 4.4];
+    let speeds = omegas.map(|w| w / (2.0 * PI)).to_vec();
+    let found = run_up(&on_webs(speeds, &[1.0]), &of_all).up.expect("asked");
+    assert!(found.contact_lost.contains(&true) && found.contact_lost.contains(&false));
+    for (place, omega) in omegas.into_iter().enumerate() {
+        let steps = 512;
+        let h = 2.0 * PI / omega / f64::from(steps);
+        let rate = |t: f64, state: [f64; 8]| -> [f64; 8] {
+            let (angles, speeds) = state.split_at(4);
+            let nearer = speeds[1] - speeds[3];
+            let eta = omega * t / (2.0 * PI);
+            let force = of_teeth.load(eta, angles[1] - angles[3]) + 0.1 * nearer;
+            let mut rates = [0.0; 8];
+            for (gear, sign) in [(0, 1.0), (1, -1.0)] {
+                let [hub, rim, web] = GEARS[gear];
+                let (h, r) = (2 * gear, 2 * gear + 1);
+                let twisted = web * (angles[r] - angles[h])
+                    + 2.0 * 0.02 * (web * rim).sqrt() * (speeds[r] - speeds[h]);
+                rates[h] = speeds[h];
+                rates[r] = speeds[r];
+                rates[4 + h] = (sign + twisted) / hub;
+                rates[4 + r] = (-sign * force - twisted) / rim;
+            }
+            rates
+        };
+        // At rest under the load, the webs wound up.
+        let rest = of_all.transmission_error(1.0)[0];
+        let mut state = [0.0; 8];
+        (state[0], state[1]) = (rest, rest - 1.0 / GEARS[0][2]);
+        state[3] = 1.0 / GEARS[1][2];
+        let (mut n, mut sum, mut squares) = (0.0, 0.0, 0.0);
+        let (mut least, mut most, mut largest) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
+        let (periods, watched) = (160, 40);
+        for i in 0..periods * steps {
+            let t = f64::from(i) * h;
+            let on = |by: f64, k: [f64; 8]| std::array::from_fn(|j| state[j] + by * h * k[j]);
+            let k1 = rate(t, state);
+            let k2 = rate(t + h / 2.0, on(0.5, k1));
+            let k3 = rate(t + h / 2.0, on(0.5, k2));
+            let k4 = rate(t + h, on(1.0, k3));
+            for j in 0..8 {
+                state[j] += h / 6.0 * (k1[j] + 2.0 * k2[j] + 2.0 * k3[j] + k4[j]);
+            }
+            if i >= (periods - watched) * steps {
+                let x = state[0] - state[2];
+                n += 1.0;
+                sum += x;
+                squares += x * x;
+                (least, most) = (least.min(x), most.max(x));
+                let force = of_teeth.load(omega * (t + h) / (2.0 * PI), state[1] - state[3]);
+                largest = largest.max(force);
+            }
+        }
+        let mean: f64 = sum / n;
+        let rms = (squares / n - mean * mean).sqrt();
+        for (told, expected) in [
+            (found.rms[place], rms),
+            (found.peak_to_peak[place], most - least),
+            (found.load_factor[place], largest),
+        ] {
+            let repeats = found.repeats[place];
+            assert!(
+                (told / expected - 1.0).abs() < 0.01,
+                "{omega}: {told} {expected} {repeats:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_linear_mesh_of_gears_on_webs_answers_by_its_direct_frequency_response() {
+    // Constant stiffness: at order 1 the hubs move by the gain of the dynamic stiffness times the static curve, at the speed 0 by the static curve.
+    let curve = |eta: f64| 0.02 * (2.0 * PI * eta).cos();
+    let table = table(256, 2.0, curve, |_| 1.0);
+    let speeds: Vec<f64> = (0..20).map(|i| 0.28 * f64::from(i) / (2.0 * PI)).collect();
+    let data = on_webs(speeds.clone(), &[1.0]);
+    let found = run_up(&data, &table);
+    let damping = Damping {
+        mesh: 0.1,
+        bodies: 0.02,
+    };
+    let coupled = Coupled::new(&data.bodies, 1.0 / (1.0 - 0.225), damping).expect("bodies");
+    assert_eq!(found.natural_frequencies, coupled.natural_frequencies());
+    let amplitudes = at(&found, Order::new(1, 1));
+    for (speed, amplitude) in speeds.iter().zip(amplitudes) {
+        let expected = 0.02 * coupled.gain(2.0 * PI * speed);
+        assert!(
+            (amplitude / expected - 1.0).abs() < 0.01,
+            "{speed}: {amplitude} {expected}"
+        );
+    }
+    assert!((amplitudes[0] / 0.02 - 1.0).abs() < 1e-6);
+    // Each largest gain is a resonance, and nothing else is.
+    let mut told: Vec<f64> = resonances(&found).iter().map(|each| each.2).collect();
+    told.sort_by(f64::total_cmp);
+    let gains: Vec<(f64, f64)> = (1..5320)
+        .map(|i| 1e-3 * f64::from(i))
+        .map(|omega| (omega, coupled.gain(omega)))
         .collect();
-    use ResonanceKind::{Forced, Parametric};
-    let expected = [
-        (0, Forced, 1.0, 0.2),
-        (1, Forced, 1.0 / 3.0, 0.1),
-        (1, Parametric, 2.0 / 3.0, 0.0),
-    ];
-    assert_eq!(told.len(), expected.len(), "{told:?}");
-    for ((order, kind, speed, amplitude), expected) in told.into_iter().zip(expected) {
-        assert_eq!((order, kind), (expected.0, expected.1));
-        assert!((speed / expected.2 - 1.0).abs() < 1e-12);
-        // Steps of a 128th of a period, second order.
-        assert!((amplitude - expected.3).abs() < 2e-3 * 0.2, "{amplitude}");
+    let peaks = gains
+        .windows(3)
+        .filter(|three| three[1].1 > three[0].1.max(three[2].1));
+    let peaks: Vec<f64> = peaks.map(|three| three[1].0).collect();
+    assert_eq!(told.len(), peaks.len(), "{told:?} {peaks:?}");
+    for (told, peak) in told.iter().zip(&peaks) {
+        assert!((told / peak - 1.0).abs() < 0.01, "{told} {peak}");
+    }
+}
+
+#[test]
+fn a_slow_mesh_of_gears_on_webs_follows_its_static_curve() {
+    let wave = |eta: f64| 0.3 * (2.0 * PI * eta).cos() + 0.1 * (4.0 * PI * eta + 0.4).cos();
+    let table = table(64, 2.0, wave, |eta| 1.0 + 0.2 * (2.0 * PI * eta).cos());
+    let found = run_up(&on_webs(vec![0.0, 1e-7], &[1.0, 2.0]), &table);
+    for branch in [found.up.expect("asked"), found.down.expect("asked")] {
+        for [still, slow] in [
+            [branch.rms[0], branch.rms[1]],
+            [branch.peak_to_peak[0], branch.peak_to_peak[1]],
+            [branch.load_factor[0], branch.load_factor[1]],
+        ] {
+            assert!((slow / still - 1.0).abs() < 1e-6, "{slow} {still}");
+        }
     }
 }

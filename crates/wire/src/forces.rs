@@ -1,6 +1,6 @@
 //! Requests beside the curves: a table of force, and the motion over speed.
 
-use meshwright_engine::analysis::at_speed::DynamicsRequest;
+use meshwright_engine::analysis::at_speed::{DynamicsRequest, MOST_MODES};
 use meshwright_engine::analysis::forces::ForceTableRequest;
 
 use serde::Serializer;
@@ -54,22 +54,30 @@ impl ForceTableQuestion {
 }
 
 document! {
-    /// The motion of the gears over speed: one torsional degree of freedom on the line of action, with backlash.
+    /// The motion of the gears over speed: torsion on the line of action, with backlash, of gears whose bodies turn in themselves.
     pub struct DynamicsQuestion as "DynamicsRequest", "Dynamics request" {
         /// The speeds of the driving gear, or the only one.
         pub(super) driving_speed_rpm: Speeds = (),
         /// The damping over the critical one, of the mean mesh stiffness; it acts out of contact too.
         damping_ratio: f64 = number("Damping ratio", "1", 1e-3, 1.0).or(0.05),
-        /// The polar inertia of all that turns with the driving gear.
+        /// The polar inertia of all that turns with the driving gear. What exceeds its own is at the bore.
         driving_inertia_kg_m2: Option<f64> = absent(
             number("Driving inertia", "kg m^2", 1e-9, 1e6),
             "that of the gear as drawn",
         ),
-        /// The polar inertia of all that turns with the driven gear.
+        /// The polar inertia of all that turns with the driven gear. What exceeds its own is at the bore.
         driven_inertia_kg_m2: Option<f64> = absent(
             number("Driven inertia", "kg m^2", 1e-9, 1e6),
             "that of the gear as drawn",
         ),
+        /// The number of modes in which each gear body turns in itself between bore and teeth, which are outside its web. 0: rims and teeth turn with the hubs.
+        /// A gear that is to have less inertia than it has as drawn has none, and neither have gears by the method `load_distribution`.
+        blank_modes: Option<u32> = absent(
+            number("Blank modes", "1", 0.0, MOST_MODES as f64),
+            "as many as lie below twice the highest mesh frequency, and at least one",
+        ),
+        /// The damping of these modes over the critical one.
+        blank_damping_ratio: f64 = number("Blank damping ratio", "1", 0.0, 1.0).or(0.02),
         /// Which way the speeds are run through.
         sweep: Sweep = word("Sweep").or(Sweep::Both),
     }
@@ -168,6 +176,8 @@ impl DynamicsQuestion {
                 .collect(),
             damping_ratio: self.damping_ratio,
             inertias: [self.driving_inertia_kg_m2, self.driven_inertia_kg_m2],
+            blank_modes: self.blank_modes,
+            blank_damping_ratio: self.blank_damping_ratio,
             sweeps: [self.sweep != Sweep::Down, self.sweep != Sweep::Up],
         }
     }

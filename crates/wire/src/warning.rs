@@ -57,6 +57,8 @@ pub enum WarningCode {
     WebOutsidePlaneModel,
     /// The motion grows without bound at some speeds.
     MotionUnbounded,
+    /// The motion is largest at the lowest or the highest speed asked for: beyond it may be more.
+    MotionAtEndOfSpeeds,
     /// The motion loads the mesh beyond the force table, which goes on straight there.
     LoadBeyondForceTable,
     /// Rims and teeth have inertia outside the webs that carry them, which the motion takes to stand on the hubs.
@@ -210,6 +212,25 @@ impl WarningDocument {
                     "Between {low} and {high} 1/min the motion grows without bound: the mesh stiffness pumps it more than damping takes from it. It is told until it is a thousand times the static deflection. More damping, more relief or some backlash limits it."
                 );
                 (Code::MotionUnbounded, None, None, detail)
+            }
+            Warning::MotionAtEndOfSpeeds {
+                speed,
+                is_lowest,
+                peak_to_peak,
+            } => {
+                let at = plain((60.0 * speed).round());
+                let end = if is_lowest { "lowest" } else { "highest" };
+                let largest = to_um(peak_to_peak);
+                let detail = format!(
+                    "The motion is largest at {at} 1/min, the {end} speed asked for: {} um peak to peak. Beyond it may be more; ask for speeds on the other side of it.",
+                    plain(significant(largest, 3))
+                );
+                (
+                    Code::MotionAtEndOfSpeeds,
+                    None,
+                    Some((largest, "um")),
+                    detail,
+                )
             }
             Warning::LoadBeyondForceTable {
                 speeds,
@@ -417,9 +438,10 @@ impl WarningCode {
     fn guide(self) -> Option<&'static str> {
         match self {
             Self::WebOutsidePlaneModel => Some("/guides/is-my-thin-web-all-right"),
-            Self::MotionUnbounded | Self::LoadBeyondForceTable | Self::RimInertiaOnHub => {
-                Some("/guides/will-it-rattle-or-whine")
-            }
+            Self::MotionUnbounded
+            | Self::MotionAtEndOfSpeeds
+            | Self::LoadBeyondForceTable
+            | Self::RimInertiaOnHub => Some("/guides/will-it-rattle-or-whine"),
             Self::FitComesLoose => Some("/guides/what-speed-does-to-my-holes"),
             _ => None,
         }
@@ -605,7 +627,14 @@ mod tests {
             (Some(5251.56), Some("Hz"))
         );
         assert!(rims.detail.contains("is 3976 Hz") && rims.detail.contains("about 5252 Hz"));
-        for warning in [beyond, rims] {
+        let end = WarningDocument::of(&Warning::MotionAtEndOfSpeeds {
+            speed: 8000.0 / 60.0,
+            is_lowest: false,
+            peak_to_peak: 40.751e-6,
+        });
+        let said = "largest at 8000 1/min, the highest speed asked for: 40.8 um";
+        assert!(end.detail.contains(said), "{}", end.detail);
+        for warning in [beyond, rims, end] {
             assert_eq!(
                 warning.guide.as_deref(),
                 Some("/guides/will-it-rattle-or-whine")

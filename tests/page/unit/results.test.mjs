@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { cellsOf, cured, faceOf, rampAt, wordsOfCure } from "../../../web/draw/face.js";
-import { forceAt, largestNear } from "../../../web/state/motion.js";
+import { forceAt } from "../../../web/state/motion.js";
 import { wordsOf } from "../../../web/state/orders.js";
 import { calledOf, inRow, inUnit, inWords, quantityOf, shown, worstInRow } from "../../../web/state/quantities.js";
 import { linesOf, namesOf, ordersOf, PANELS, partialSpectrum, placedNames, spanOf } from "../../../web/state/series.js";
@@ -236,15 +236,4 @@ test("a table has decimal commas and semicolons where that is chosen, and its te
     [115, null, 'say "1.5"'],
   ];
   assert.equal(withCommas(csvOf(lines)), 'name;"a, b";"a;b"\r\n10×r7.5@34;0,25;-1,5e-7\r\n115;;"say ""1.5"""\r\n');
-});
-
-test("near a resonance stands the largest motion there, however the speeds lie about it", () => {
-  // The motion of one degree of freedom with a damping of 0.05 is at most 1/(2 D sqrt(1 - D^2)) = 10.01 times the static.
-  const amplitude = (speed) => 1 / Math.hypot(1 - (speed / 3700) ** 2, (0.1 * speed) / 3700);
-  for (const step of [60, 70, 110]) {
-    const speeds = Array.from({ length: 100 }, (_, i) => 300 + i * step);
-    const found = largestNear(speeds, speeds.map(amplitude), 3700);
-    assert.ok(Math.abs(found / 10.01 - 1) < 0.03, `${found} with steps of ${step}`);
-  }
-  assert.equal(largestNear([3000], [7], 3700), 7, "one speed is the nearest that there is");
 });

@@ -4,9 +4,9 @@ use std::f64::consts::PI;
 
 use super::curve::Curve;
 use super::orders::Orders;
+use super::rotors::{self, Twists};
 use super::{AnalysisError, Case, OrderKind};
-use crate::dynamics::torsion::{Coupled, Ring, Rotor};
-use crate::dynamics::{ForceTable, RunUp, RunUpData};
+use crate::dynamics::{Body, Coupled, Damping, ForceTable, Order, Resonance, RunUp, RunUpData};
 use crate::gear::{GearPair, Member};
 use crate::run::Run;
 
@@ -14,8 +14,8 @@ use crate::run::Run;
 /// results of a run-up. Those that are known are never more.
 const ORDERS_A_PERIOD: usize = 12;
 
-/// Rings into which the band of a hole is divided.
-const BANDS: u32 = 8;
+/// Modes of a gear body, at most.
+pub const MOST_MODES: usize = 8;
 
 /// The stiffness of a mesh over E b of its softer gear, about: 0.03 with large holes under a heavy load, 0.04 in the paper's case 2.
 const STIFFNESS: f64 = 0.035;
@@ -29,6 +29,10 @@ pub struct DynamicsRequest {
     pub damping_ratio: f64,
     /// Polar inertias in kg m², driving and driven; `None` for the gear's own.
     pub inertias: [Option<f64>; 2],
+    /// The number of modes in which each gear body turns in itself; `None` for as many as lie below twice the highest mesh frequency, and at least one.
+    pub blank_modes: Option<u32>,
+    /// ζ of these modes.
+    pub blank_damping_ratio: f64,
     /// Whether to run up, and whether to run down.
     pub sweeps: [bool; 2],
 }
@@ -42,106 +46,74 @@ pub struct CurveDynamics {
     pub speeds: Vec<f64>,
     /// The motion.
     pub run_up: RunUp,
-    /// The labels of the orders.
+    /// The labels of the orders whose amplitudes are known.
     pub labels: Vec<String>,
-    /// The natural frequency in Hz with the inertia of rims and teeth outside their webs, about; `None` where the inertia given
-    /// is less than the gear's own.
+    /// These orders per revolution of the driven gear.
+    pub orders: Vec<f64>,
+    /// The resonances, the largest amplitude first.
+    pub resonances: Vec<NamedResonance>,
+    /// The lowest natural frequency in Hz with the inertia of rims and teeth outside their webs, where the motion has it on the hubs.
     pub natural_frequency_of_rims: Option<f64>,
+}
+
+/// A resonance with the name of its order.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedResonance {
+    /// The name.
+    pub label: String,
+    /// The order per revolution of the driven gear.
+    pub order: f64,
+    /// Where it stands, how large it is, and what excites it.
+    pub resonance: Resonance,
 }
 
 /// The mass m_e on the line of action: 1/m_e = r_b1²/J_1 + r_b2²/J_2.
 pub fn equivalent_mass(case: &Case, inertias: [Option<f64>; 2]) -> f64 {
     let of = |member: Member| {
-        let inertia = inertias[member.index()].unwrap_or_else(|| own_inertia(case, member));
+        let inertia = inertias[member.index()].unwrap_or_else(|| rotors::own_inertia(case, member));
         case.pair.gear(member).base_radius().powi(2) / inertia
     };
     1.0 / (of(Member::Driving) + of(Member::Driven))
 }
 
-/// The polar inertia of a gear as drawn, in kg m².
-fn own_inertia(case: &Case, member: Member) -> f64 {
-    match case.faces() {
-        Some(faces) => faces.pair.gear(member).polar_inertia(),
-        None => case.pair.gear(member).polar_inertia(),
-    }
+/// The bodies of `case` with so many modes at most, of those up to twice the highest mesh frequency where nothing is said.
+fn bodies(
+    case: &Case,
+    request: &DynamicsRequest,
+    (modes, twists): (Option<u32>, Twists),
+) -> [Body; 2] {
+    let fastest = request.speeds.last().copied().unwrap_or(0.0);
+    let mesh = 2.0 * PI * fastest * f64::from(case.pair.driving().tooth_count());
+    let limits = match modes {
+        Some(count) => (f64::INFINITY, count as usize),
+        None => (2.0 * mesh, MOST_MODES),
+    };
+    Member::BOTH.map(|member| {
+        let inertia = request.inertias[member.index()];
+        rotors::body(case, member, inertia, twists[member.index()], limits)
+    })
 }
 
-/// The lowest natural frequency in Hz of the gears of `case` on a mesh whose mean stiffness is `stiffness` with the bores held: their blanks turn in
-/// themselves, and what turns with a gear beside its own inertia stands at its bore.
+/// The lowest natural frequency in Hz of the bodies of `case` with their modes, where none are asked for, on a mesh whose mean stiffness is `stiffness` with the
+/// bores held.
 fn natural_frequency_of_rims(
     case: &Case,
-    inertias: [Option<f64>; 2],
+    request: &DynamicsRequest,
+    twists: Twists,
     stiffness: f64,
 ) -> Option<f64> {
-    let rotor = |member: Member| {
-        let own = own_inertia(case, member);
-        let beside = inertias[member.index()].map_or(0.0, |given| given - own);
-        rotor(case, member, own, beside)
-    };
-    let coupled = Coupled {
-        rotors: [rotor(Member::Driving), rotor(Member::Driven)],
-        radii: Member::BOTH.map(|member| case.pair.gear(member).base_radius()),
-        stiffness,
-    };
-    coupled.natural_frequency()
-}
-
-/// The rings of a blank between bore and root circle, with what of a ring its holes leave, the teeth on the last of them, and what turns `beside` at
-/// the bore.
-fn rotor(case: &Case, member: Member, own: f64, beside: f64) -> Rotor {
-    let gear = case.pair.gear(member);
-    let blank = &gear.data().blank;
-    let hub = case.faces().and_then(|of| of.pair.gear(member).hub());
-    let (bore, root) = (blank.bore_radius, gear.root_radius());
-    let mut edges = vec![bore, root];
-    edges.extend(
-        blank
-            .web
-            .iter()
-            .flat_map(|web| [web.inner_radius, web.outer_radius]),
-    );
-    edges.extend(hub.map(|hub| hub.outer_radius));
-    for hole in &blank.holes {
-        let [inner, outer] = [hole.inner_reach(), hole.outer_reach()];
-        edges
-            .extend((0..=BANDS).map(|i| inner + (outer - inner) * f64::from(i) / f64::from(BANDS)));
+    if request.blank_modes != Some(0) {
+        return None;
     }
-    edges.retain(|edge| (bore..=root).contains(edge));
-    edges.sort_by(f64::total_cmp);
-    edges.dedup();
-    let open = |radius: f64| -> f64 {
-        let areas = blank
-            .holes
-            .iter()
-            .map(|hole| hole.moments_within(radius).area);
-        areas.sum()
+    let bodies = bodies(case, request, (Some(MOST_MODES as u32), twists));
+    let yields: f64 = bodies.iter().map(Body::compliance).sum();
+    let teeth = 1.0 / stiffness - yields;
+    let undamped = Damping {
+        mesh: 0.0,
+        bodies: 0.0,
     };
-    let rings = edges.windows(2).map(|ends| {
-        let [inner, outer] = [ends[0], ends[1]];
-        let middle = f64::midpoint(inner, outer);
-        let thickness = match hub {
-            Some(hub) if middle < hub.outer_radius => hub.width,
-            _ => blank.thickness_at(middle, gear.face_width()),
-        };
-        let share = (open(outer) - open(inner)) / (PI * (outer * outer - inner * inner));
-        Ring {
-            radii: [inner, outer],
-            thickness: thickness * (1.0 - share),
-        }
-    });
-    let material = gear.material();
-    let rotor = Rotor {
-        rings: rings.collect(),
-        shear_modulus: material.shear_modulus(),
-        density: material.density,
-        inner: beside,
-        outer: 0.0,
-    };
-    let teeth = own - rotor.inertia_of_rings();
-    Rotor {
-        outer: teeth,
-        ..rotor
-    }
+    let coupled = (teeth > 0.0).then(|| Coupled::new(&bodies, 1.0 / teeth, undamped));
+    coupled??.natural_frequencies().first().copied()
 }
 
 /// The mean stiffness of a mesh in N/m, about.
@@ -150,23 +122,46 @@ pub(super) fn usual_stiffness(pair: &GearPair) -> f64 {
     STIFFNESS * moduli[0].min(moduli[1]) * pair.common_face_width()
 }
 
-/// Seconds of one core that the run-ups of `case` take, about: as many as there are torques.
-pub(super) fn run_up_seconds(case: &Case, request: &DynamicsRequest) -> f64 {
+/// Seconds of one core that the run-ups of `case` take, about, as many as there are torques, and the bytes.
+pub(super) fn run_up_cost(case: &Case, request: &DynamicsRequest) -> (f64, u64) {
     let pair = &case.pair;
-    let data = RunUpData {
-        speeds: request.speeds.clone(),
-        tooth_count: pair.driving().tooth_count(),
-        load: 0.0,
-        mass: equivalent_mass(case, request.inertias),
-        damping_ratio: request.damping_ratio,
-        stiffness: usual_stiffness(pair),
-        orders: known(pair).into_iter().map(|(_, order)| order).collect(),
-        sweeps: request.sweeps,
-    };
-    case.output_torques.len() as f64 * data.seconds(pair.period())
+    let orders = known(pair).into_iter().map(|(_, order)| order).collect();
+    let data = data(
+        case,
+        request,
+        [None; 2],
+        (0.0, usual_stiffness(pair)),
+        orders,
+    );
+    let seconds = case.output_torques.len() as f64 * data.seconds(pair.period());
+    (seconds, data.memory(pair.period()))
 }
 
-/// What the mesh of `table`, which is that of `case`, does at speed under the load of `curve`, which spans whole periods and whose load is not 0.
+/// The parameters of a run-up of `case` under a load, with a mean stiffness of the mesh.
+fn data(
+    case: &Case,
+    request: &DynamicsRequest,
+    twists: Twists,
+    (load, stiffness): (f64, f64),
+    orders: Vec<f64>,
+) -> RunUpData {
+    RunUpData {
+        speeds: request.speeds.clone(),
+        tooth_count: case.pair.driving().tooth_count(),
+        load,
+        mass: equivalent_mass(case, request.inertias),
+        bodies: bodies(case, request, (request.blank_modes, twists)),
+        damping_ratio: request.damping_ratio,
+        body_damping_ratio: request.blank_damping_ratio,
+        stiffness,
+        orders,
+        most_orders: most_orders(&case.pair),
+        sweeps: request.sweeps,
+    }
+}
+
+/// The motion at speed in the mesh of `table`, which is that of `case`, under the load of `curve`, which spans whole periods and whose load is not 0.
+/// The blanks twist as [`twists`](super::rotors::twists) has it.
 ///
 /// # Errors
 ///
@@ -175,21 +170,14 @@ pub fn dynamics(
     case: &Case,
     curve: &Curve,
     table: &ForceTable,
-    request: &DynamicsRequest,
+    (request, twists): (&DynamicsRequest, Twists),
     run: &Run,
 ) -> Result<CurveDynamics, AnalysisError> {
     let pair = &case.pair;
-    let (labels, orders) = orders_at_speed(pair, curve).into_iter().unzip();
-    let data = RunUpData {
-        speeds: request.speeds.clone(),
-        tooth_count: pair.driving().tooth_count(),
-        load: curve.load,
-        mass: equivalent_mass(case, request.inertias),
-        damping_ratio: request.damping_ratio,
-        stiffness: curve.mesh_stiffness_tangent_statistics.mean,
-        orders,
-        sweeps: request.sweeps,
-    };
+    let orders = orders_at_speed(pair, curve);
+    let orders = orders.into_iter().map(|(_, order)| order).collect();
+    let stiffness = curve.mesh_stiffness_tangent_statistics.mean;
+    let data = data(case, request, twists, (curve.load, stiffness), orders);
     let mut run_up = data.run_up(table, run)?;
     if data.speeds.first() == Some(&0.0) {
         // The curve as it stands in the results, at its own positions.
@@ -199,16 +187,26 @@ pub fn dynamics(
             branch.peak_to_peak[0] = still.peak_to_peak;
         }
     }
+    let names = Orders::of(pair);
+    let order_of = |order: Order| {
+        let mesh = f64::from(pair.driven().tooth_count());
+        order.per_true_period() * mesh / f64::from(pair.period())
+    };
+    let name = |order: Order| names.name(order_of(order), order.periods());
+    let resonances = run_up.resonances.iter();
+    let resonances = resonances.map(|resonance| NamedResonance {
+        label: name(resonance.order),
+        order: order_of(resonance.order),
+        resonance: *resonance,
+    });
     Ok(CurveDynamics {
+        labels: run_up.orders.iter().map(|order| name(*order)).collect(),
+        orders: run_up.orders.iter().map(|order| order_of(*order)).collect(),
+        resonances: resonances.collect(),
         equivalent_mass: data.mass,
         speeds: data.speeds.clone(),
         run_up,
-        labels,
-        natural_frequency_of_rims: natural_frequency_of_rims(
-            case,
-            request.inertias,
-            data.stiffness,
-        ),
+        natural_frequency_of_rims: natural_frequency_of_rims(case, request, twists, data.stiffness),
     })
 }
 
@@ -221,6 +219,11 @@ fn known(pair: &GearPair) -> Vec<(String, f64)> {
         .collect()
 }
 
+/// The number of orders in the results, at most.
+fn most_orders(pair: &GearPair) -> usize {
+    ORDERS_A_PERIOD * pair.period() as usize
+}
+
 fn per_mesh_period(pair: &GearPair, order: f64) -> f64 {
     order / f64::from(pair.driven().tooth_count())
 }
@@ -228,7 +231,7 @@ fn per_mesh_period(pair: &GearPair, order: f64) -> f64 {
 /// The orders that are given: those that are known, and what else stands out of the static curve but for the mesh, as far as there is room.
 fn orders_at_speed(pair: &GearPair, curve: &Curve) -> Vec<(String, f64)> {
     let mut orders = known(pair);
-    let most = ORDERS_A_PERIOD * pair.period() as usize;
+    let most = most_orders(pair);
     let named = curve.spectrum.iter().flat_map(|spectrum| &spectrum.named);
     for line in named {
         let is_new = orders.iter().all(|(label, _)| *label != line.label);

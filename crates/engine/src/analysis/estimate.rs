@@ -1,6 +1,6 @@
 //! What a case will cost, known before it is computed.
 
-use super::at_speed::{run_up_seconds, usual_stiffness};
+use super::at_speed::{run_up_cost, usual_stiffness};
 use super::case::Model;
 use super::case::{Case, Faces};
 use super::forces::{ForcesRequest, TablePlan};
@@ -77,8 +77,11 @@ pub fn estimate(case: &Case, forces: Option<&ForcesRequest>) -> Estimate {
         for plan in TablePlan::of(case, forces.table).plans() {
             add_contacts(&mut estimate, plan);
         }
-        let run_ups = forces.dynamics.as_ref();
-        estimate.seconds += run_ups.map_or(0.0, |request| run_up_seconds(case, request));
+        if let Some(request) = &forces.dynamics {
+            let (seconds, memory) = run_up_cost(case, request);
+            estimate.seconds += seconds;
+            estimate.memory += memory;
+        }
     }
     estimate
 }

@@ -5,6 +5,7 @@ use super::at_speed::{CurveDynamics, DynamicsRequest, dynamics};
 use super::case::Model;
 use super::curve::Curve;
 use super::plan::Plan;
+use super::rotors::twists;
 use super::warning::warn_of_motions;
 use super::{Analysis, AnalysisError, Case, StiffnessRule};
 use crate::assembly::Parts;
@@ -76,8 +77,12 @@ pub fn analyze_with_forces(
         let curves = analysis.curves.iter();
         curves.map(move |curve| (dynamics, curve))
     });
+    let twists = match &request.dynamics {
+        Some(_) => twists(case, parts, run)?,
+        None => [None; 2],
+    };
     let dynamics = curves
-        .map(|(request, curve)| dynamics(case, curve, &table, request, run))
+        .map(|(request, curve)| dynamics(case, curve, &table, (request, twists), run))
         .collect::<Result<Vec<_>, _>>()?;
     let driven = case.pair.driven().base_radius();
     warn_of_motions(&mut analysis.warnings, &dynamics, (&table, driven));

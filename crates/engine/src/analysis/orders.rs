@@ -150,6 +150,21 @@ impl Orders {
             .or_else(|| of(&self.revolutions))
     }
 
+    /// The name of any order. One that is a broken multiple of what turns in the pair is called by what it is a part of: half of the mesh order H_Z2/2.
+    pub(super) fn name(&self, order: f64, parts: u32) -> String {
+        let whole = order * f64::from(parts);
+        let mut known = self.known().into_iter();
+        let known = known.find(|known| (known.order - whole).abs() < SAME);
+        let Some(known) = known.or_else(|| self.describe(whole)) else {
+            return format!("H_{order}");
+        };
+        if parts == 1 {
+            known.label
+        } else {
+            format!("{}/{parts}", known.label)
+        }
+    }
+
     fn near_mesh(&self, order: f64) -> Option<KnownOrder> {
         let k = (order / self.mesh).round();
         if k < 1.0 {
@@ -319,6 +334,24 @@ mod tests {
             None,
             "the driving gear does not deviate"
         );
+    }
+
+    #[test]
+    fn a_part_of_an_order_is_called_by_it_and_a_sideband_as_in_the_spectrum() {
+        let mut holed = eccentric(50);
+        holed.deviations.eccentricity = None;
+        holed.blank.holes = HolePattern {
+            count: 10,
+            circle_radius: 34e-3,
+            radius: 7.5e-3,
+            phase: 0.0,
+        }
+        .holes();
+        let orders = orders(paper_gear(50), holed, 100.5e-3);
+        let named = [(25.0, 2), (75.0, 2), (5.0, 2), (40.0, 1), (30.0, 1)];
+        let names = named.map(|(order, parts)| orders.name(order, parts));
+        assert_eq!(names, ["H_Z2/2", "H_3Z2/2", "H_N/2", "H_Z2-N", "H_Z2-2N"]);
+        assert_eq!(orders.name(7.0, 1), "H_7");
     }
 
     #[test]

@@ -88,6 +88,15 @@ pub enum Warning {
         /// The lowest and the highest of these speeds of the driving gear, in revolutions per second.
         speeds: [f64; 2],
     },
+    /// The motion is largest at the first or the last of the speeds asked for: beyond it may be more.
+    MotionAtEndOfSpeeds {
+        /// The speed of the driving gear, in revolutions per second.
+        speed: f64,
+        /// Whether it is the lowest one.
+        is_lowest: bool,
+        /// The largest less the smallest transmission error there, in m.
+        peak_to_peak: f64,
+    },
     /// The motion loads the mesh beyond the force table, which goes on straight there.
     LoadBeyondForceTable {
         /// The lowest and the highest of these speeds of the driving gear, in revolutions per second.
@@ -465,9 +474,20 @@ pub(super) fn warn_of_motions(
         ratio: beyond().filter_map(|(_, ratio)| *ratio).fold(0.0, f64::max),
         largest_output_torque: largest * driven,
     }));
+    let at_end = dynamics.iter().filter_map(largest_at_end);
+    let most = at_end.max_by(|a, b| a.2.total_cmp(&b.2));
+    warnings.extend(most.map(
+        |(speed, is_lowest, peak_to_peak)| Warning::MotionAtEndOfSpeeds {
+            speed,
+            is_lowest,
+            peak_to_peak,
+        },
+    ));
     let off = dynamics.iter().filter_map(|of| {
-        let (natural_frequency, of_rims) =
-            (of.run_up.natural_frequency, of.natural_frequency_of_rims?);
+        let (natural_frequency, of_rims) = (
+            of.run_up.natural_frequencies[0],
+            of.natural_frequency_of_rims?,
+        );
         let off = (of_rims / natural_frequency - 1.0).abs();
         (off > RIMS_MATTER).then_some((off, natural_frequency, of_rims))
     });
@@ -478,6 +498,19 @@ pub(super) fn warn_of_motions(
             of_rims,
         }),
     );
+}
+
+/// The first or the last of several speeds, if the motion is largest there: whether it is the first, and the peak-to-peak value. Below standstill is nothing.
+fn largest_at_end(of: &CurveDynamics) -> Option<(f64, bool, f64)> {
+    let [first, .., last] = of.speeds[..] else {
+        return None;
+    };
+    let branches = [&of.run_up.up, &of.run_up.down].into_iter().flatten();
+    let all = branches.flat_map(|branch| of.speeds.iter().zip(&branch.peak_to_peak));
+    let (speed, peak_to_peak) = all.max_by(|a, b| a.1.total_cmp(b.1))?;
+    let is_lowest = *speed == first;
+    let is_end = is_lowest && first > 0.0 || *speed == last;
+    is_end.then_some((*speed, is_lowest, *peak_to_peak))
 }
 
 /// The lowest and the highest of `speeds`.

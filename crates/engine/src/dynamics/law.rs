@@ -103,6 +103,26 @@ impl Laws {
         self.piece(law, place).force(u)
     }
 
+    /// The stiffness of `law` at `u`.
+    pub(super) fn stiffness(&self, law: usize, u: f64) -> f64 {
+        let place = self.place(law, u, true, self.touch + 1);
+        self.piece(law, place).stiffness
+    }
+
+    /// One law whose knots are the means of those of all, stretched about 0 to have the `stiffness` there.
+    pub(super) fn mean(&self, stiffness: f64) -> Self {
+        let (count, laws) = (self.forces.len(), self.count() as f64);
+        let mean = |j: usize| self.knots.iter().skip(j).step_by(count).sum::<f64>() / laws;
+        let mean = Self::new(
+            self.forces.clone(),
+            (0..count).map(mean).collect(),
+            self.touch,
+        );
+        let stretched = mean.stiffness(0, 0.0) / stiffness;
+        let knots = mean.knots.iter().map(|knot| stretched * knot).collect();
+        Self::new(self.forces.clone(), knots, self.touch)
+    }
+
     /// Whether the loaded flanks are apart in the pieces at `place`.
     pub(super) fn is_apart(&self, place: usize) -> bool {
         place <= self.touch

@@ -11,6 +11,9 @@
 //! - [`law`]: piecewise linear laws of force, and the motion under one of their pieces in closed form,
 //! - [`oscillator`]: motion over a period as a chain of such pieces, with its derivative to the state at the beginning,
 //! - [`orbit`]: periodic motions by Newton's method on that derivative, their multipliers, and where a motion settles,
+//! - [`order`]: orders of a motion, and its amplitudes at them,
+//! - `mesh`: a table at the steps of a run-up, and the motion in it at any speed,
+//! - [`resonance`]: where orders of the motion resonate, and what excites them,
 //! - [`run_up`]: both branches over speed, and their amplitudes,
 //! - [`torsion`]: bodies that turn in themselves, and their lowest natural frequency on the mesh.
 //!
@@ -19,15 +22,24 @@
 //! is, and from step to step u' takes up what δ_s' changes. Each piece has a closed form, so that a stiffness that is constant is met
 //! exactly, whatever the step; one that varies is met to second order.
 
+pub mod bodies;
+pub mod coupled;
 pub mod law;
+mod mesh;
 pub mod orbit;
+pub mod order;
 pub mod oscillator;
+pub mod resonance;
 pub mod run_up;
 pub mod table;
 pub mod torsion;
 
+pub use bodies::{Body, BodyMode, Coupled, Damping};
 pub use law::Laws;
+pub use mesh::RunUpData;
 pub use orbit::Orbit;
+pub use order::Order;
 pub use oscillator::{Oscillator, State};
-pub use run_up::{Branch, Resonance, ResonanceKind, RunUp, RunUpData};
+pub use resonance::{Excitation, Resonance};
+pub use run_up::{Branch, RunUp};
 pub use table::{FallingRow, FlankRows, ForceTable, Ladder};

@@ -1,6 +1,9 @@
 //! Periodic motions: Newton's method on the state after a period, stability by multipliers, and where a motion settles.
 
-use super::oscillator::{Monodromy, Oscillator, State};
+use nalgebra::{DMatrix, DVector, Schur};
+
+use super::coupled::CoupledMotion;
+use super::oscillator::{Oscillator, Seen, State};
 
 /// Newton steps before there is taken to be no periodic motion near.
 const MOST_STEPS: u32 = 16;
@@ -29,11 +32,14 @@ const ASTRAY: f64 = 3.0 * NEAR;
 /// A motion that is so many times the scale has run away: the mesh pumps it more than damping takes from it.
 const RUN_AWAY: f64 = 1e3;
 
+/// Steps of the search for the multipliers of a system of several masses.
+const MOST_SCHUR_STEPS: usize = 1000;
+
 /// Where a motion has come to.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Orbit {
-    /// The state at the beginning of a period.
-    pub state: State,
+    /// The state at the beginning of a period; an empty one is at rest.
+    pub state: Vec<f64>,
     /// The periods after which the motion repeats; `None` where it was not found to.
     pub repeats: Option<u32>,
     /// The periods to look at.
@@ -47,7 +53,7 @@ pub struct Orbit {
 impl Orbit {
     /// At rest.
     pub const REST: Self = Self {
-        state: State { u: 0.0, v: 0.0 },
+        state: Vec::new(),
         repeats: Some(1),
         periods: 1,
         multiplier: 0.0,
@@ -69,45 +75,56 @@ impl Scale {
     pub fn is_left_by(&self, u: f64) -> bool {
         u.is_nan() || u.abs() > RUN_AWAY * self.u
     }
-
-    fn distance(&self, a: State, b: State) -> f64 {
-        ((a.u - b.u) / self.u)
-            .abs()
-            .max(((a.v - b.v) / self.v).abs())
-    }
 }
 
-/// The moduli of the multipliers of a derivative, the larger first.
-pub fn multipliers(m: &Monodromy) -> [f64; 2] {
+/// The derivative of a state to an earlier one, column by column.
+pub type Derivative = Vec<Vec<f64>>;
+
+/// The modulus of the largest multiplier of a derivative.
+pub fn multiplier(derivative: &Derivative) -> f64 {
+    let size = derivative.len();
+    if size > 2 {
+        let matrix = DMatrix::from_fn(size, size, |i, j| derivative[j][i]);
+        let schur = Schur::try_new(matrix, f64::EPSILON, MOST_SCHUR_STEPS);
+        return schur.map_or(f64::INFINITY, |schur| {
+            let all = schur.complex_eigenvalues();
+            all.iter().map(|value| value.norm()).fold(0.0, f64::max)
+        });
+    }
+    let m = derivative;
     let (trace, determinant) = (m[0][0] + m[1][1], m[0][0] * m[1][1] - m[0][1] * m[1][0]);
     let under = trace * trace / 4.0 - determinant;
     if under < 0.0 {
-        return [determinant.sqrt(); 2];
-    }
-    let large = trace.abs() / 2.0 + under.sqrt();
-    let small = if large > 0.0 {
-        determinant.abs() / large
+        determinant.sqrt()
     } else {
-        0.0
-    };
-    [large, small]
+        trace.abs() / 2.0 + under.sqrt()
+    }
 }
 
-impl Oscillator<'_> {
-    /// The state `periods` after `state`, and its derivative to it.
-    fn after(&self, state: State, periods: u32) -> (State, Monodromy) {
-        let mut state = state;
-        let mut all = [[1.0, 0.0], [0.0, 1.0]];
-        for _ in 0..periods {
-            let (next, m) = self.after_period(state, |_| ());
-            state = next;
-            all = [0, 1].map(|i| [0, 1].map(|j| m[i][0] * all[0][j] + m[i][1] * all[1][j]));
-        }
-        (state, all)
-    }
+/// Something that moves by laws which repeat after a period.
+pub trait Repeating {
+    /// The number of its displacements and velocities.
+    fn size(&self) -> usize;
+
+    /// How large each of them is where the approach of the gears and its velocity are as large as `scale`.
+    fn scales(&self, scale: Scale) -> Vec<f64>;
+
+    /// The time in s in which free motion falls by a factor e.
+    fn decay(&self) -> f64;
+
+    /// The period in s, and the looks in it.
+    fn period(&self) -> (f64, f64);
+
+    /// Carries `state` over a period, and each column of `derivative` as a small difference of it; `see` is called with what is seen on the way.
+    fn over_period(
+        &self,
+        state: &mut Vec<f64>,
+        derivative: Option<&mut Derivative>,
+        see: &mut dyn FnMut(Seen),
+    );
 
     /// The motion near `start` that repeats after `repeats` periods, stable or not.
-    pub fn periodic(&self, start: State, repeats: u32, scale: Scale) -> Option<Orbit> {
+    fn periodic(&self, start: &[f64], repeats: u32, scale: Scale) -> Option<Orbit> {
         self.periodic_within(f64::INFINITY, start, repeats, scale)
     }
 
@@ -115,41 +132,41 @@ impl Oscillator<'_> {
     fn periodic_within(
         &self,
         reach: f64,
-        start: State,
+        start: &[f64],
         repeats: u32,
         scale: Scale,
     ) -> Option<Orbit> {
-        let mut state = start;
+        let size = self.size();
+        let scales = self.scales(scale);
+        let mut state = start.to_vec();
         for _ in 0..MOST_STEPS {
-            let (end, m) = self.after(state, repeats);
-            let missed = State {
-                u: end.u - state.u,
-                v: end.v - state.v,
-            };
+            let mut end = state.clone();
+            let mut derivative = identity(size);
+            for _ in 0..repeats {
+                self.over_period(&mut end, Some(&mut derivative), &mut |_| ());
+            }
+            let missed = DVector::from_fn(size, |i, _| end[i] - state[i]);
             // (1 − M) step = what is missed.
-            let (a, b, c, d) = (1.0 - m[0][0], -m[0][1], -m[1][0], 1.0 - m[1][1]);
-            let determinant = a * d - b * c;
-            let step = State {
-                u: (d * missed.u - b * missed.v) / determinant,
-                v: (a * missed.v - c * missed.u) / determinant,
-            };
-            if !(step.u.is_finite() && step.v.is_finite()) {
+            let matrix = DMatrix::from_fn(size, size, |i, j| {
+                f64::from(u8::from(i == j)) - derivative[j][i]
+            });
+            let step = matrix.lu().solve(&missed)?;
+            if !step.iter().all(|value| value.is_finite()) {
                 return None;
             }
-            if scale.distance(step, State { u: 0.0, v: 0.0 }) < CLOSED {
+            if farthest(step.iter().copied(), &scales) < CLOSED {
                 return Some(Orbit {
                     state,
                     repeats: Some(repeats),
                     periods: repeats,
-                    multiplier: multipliers(&m)[0],
+                    multiplier: multiplier(&derivative),
                     runs_away: false,
                 });
             }
-            state = State {
-                u: state.u + step.u,
-                v: state.v + step.v,
-            };
-            if scale.distance(state, start) > reach {
+            for (value, step) in state.iter_mut().zip(&step) {
+                *value += step;
+            }
+            if distance(&state, start, &scales) > reach {
                 return None;
             }
         }
@@ -158,15 +175,18 @@ impl Oscillator<'_> {
 
     /// Where a motion that is at `from` settles: the stable periodic motion that continues `from` if there is one, else what it comes to in
     /// time.
-    pub fn settled(&self, from: Orbit, scale: Scale) -> Orbit {
-        let continues = |near: State, repeats: u32| {
+    fn settled(&self, from: &Orbit, scale: Scale) -> Orbit {
+        let scales = self.scales(scale);
+        let mut state = from.state.clone();
+        state.resize(self.size(), 0.0);
+        let continues = |near: &[f64], repeats: u32| {
             let orbit = self.periodic_within(ASTRAY, near, repeats, scale)?;
-            (orbit.multiplier < 1.0 && scale.distance(orbit.state, near) < NEAR).then_some(orbit)
+            let is_near = distance(&orbit.state, near, &scales) < NEAR;
+            (orbit.multiplier < 1.0 && is_near).then_some(orbit)
         };
-        if let Some(orbit) = continues(from.state, from.repeats.unwrap_or(1)) {
+        if let Some(orbit) = continues(&state, from.repeats.unwrap_or(1)) {
             return orbit;
         }
-        let mut state = from.state;
         // One that goes on from a motion that does not repeat has nothing old to forget.
         let settled = match from.repeats {
             Some(_) => &SETTLED[..],
@@ -174,27 +194,28 @@ impl Oscillator<'_> {
         };
         for &constants in settled {
             for _ in 0..self.periods_of(constants) {
-                let (next, _) = self.after(state, 1);
-                if scale.is_left_by(next.u) {
+                let before = state.clone();
+                let mut last = 0.0;
+                self.over_period(&mut state, None, &mut |seen| last = seen.u);
+                if scale.is_left_by(last) {
                     return Orbit {
-                        state,
+                        state: before,
                         repeats: None,
                         multiplier: f64::INFINITY,
                         runs_away: true,
                         ..Orbit::REST
                     };
                 }
-                state = next;
             }
             let most = MOST_PERIODS.min(self.periods_in_looks(MOST_LOOKS / 16.0));
-            let mut later = state;
+            let mut later = state.clone();
             for repeats in 1..=most {
-                (later, _) = self.after(later, 1);
+                self.over_period(&mut later, None, &mut |_| ());
                 // What has settled comes back to where it was, and what has not is not looked for in vain.
-                if scale.distance(later, state) > ASTRAY {
+                if distance(&later, &state, &scales) > ASTRAY {
                     continue;
                 }
-                if let Some(orbit) = continues(state, repeats) {
+                if let Some(orbit) = continues(&state, repeats) {
                     return orbit;
                 }
             }
@@ -208,16 +229,100 @@ impl Oscillator<'_> {
         }
     }
 
-    /// Periods in so many time constants 2m/c of free motion.
+    /// Periods in so many time constants of free motion.
     fn periods_of(&self, constants: f64) -> u32 {
-        let period = self.duration * self.steps.len() as f64;
-        let periods = constants * 2.0 * self.mass / self.damping / period;
+        let periods = constants * self.decay() / self.period().0;
         (periods.ceil().max(1.0) as u32).min(self.periods_in_looks(MOST_LOOKS))
     }
 
     /// Whole periods in so many looks, one at least.
     fn periods_in_looks(&self, looks: f64) -> u32 {
-        let period = self.steps.len() as f64 * f64::from(self.looks);
-        (looks / period).max(1.0) as u32
+        (looks / self.period().1).max(1.0) as u32
+    }
+}
+
+fn identity(size: usize) -> Derivative {
+    let column = |i: usize| {
+        let mut column = vec![0.0; size];
+        column[i] = 1.0;
+        column
+    };
+    (0..size).map(column).collect()
+}
+
+/// The largest of `values`, each over its scale.
+fn farthest(values: impl Iterator<Item = f64>, scales: &[f64]) -> f64 {
+    let each = values
+        .zip(scales)
+        .map(|(value, scale)| (value / scale).abs());
+    each.fold(0.0, f64::max)
+}
+
+fn distance(a: &[f64], b: &[f64], scales: &[f64]) -> f64 {
+    farthest(a.iter().zip(b).map(|(a, b)| a - b), scales)
+}
+
+impl Repeating for Oscillator<'_> {
+    fn size(&self) -> usize {
+        2
+    }
+
+    fn scales(&self, scale: Scale) -> Vec<f64> {
+        vec![scale.u, scale.v]
+    }
+
+    fn decay(&self) -> f64 {
+        2.0 * self.mass / self.damping
+    }
+
+    fn period(&self) -> (f64, f64) {
+        let steps = self.steps.len() as f64;
+        (self.duration * steps, f64::from(self.looks) * steps)
+    }
+
+    fn over_period(
+        &self,
+        state: &mut Vec<f64>,
+        derivative: Option<&mut Derivative>,
+        see: &mut dyn FnMut(Seen),
+    ) {
+        let begin = State {
+            u: state[0],
+            v: state[1],
+        };
+        let (end, m) = self.after_period(begin, see);
+        (state[0], state[1]) = (end.u, end.v);
+        for column in derivative.into_iter().flatten() {
+            let [a, b] = [column[0], column[1]];
+            *column = m.iter().map(|row| row[0] * a + row[1] * b).collect();
+        }
+    }
+}
+
+impl Repeating for CoupledMotion<'_> {
+    fn size(&self) -> usize {
+        2 * self.bodies().count()
+    }
+
+    fn scales(&self, scale: Scale) -> Vec<f64> {
+        self.bodies().scales(scale.u)
+    }
+
+    fn decay(&self) -> f64 {
+        self.bodies().decay()
+    }
+
+    fn period(&self) -> (f64, f64) {
+        let steps = self.steps.len() as f64;
+        (self.duration * steps, f64::from(self.looks) * steps)
+    }
+
+    fn over_period(
+        &self,
+        state: &mut Vec<f64>,
+        derivative: Option<&mut Derivative>,
+        see: &mut dyn FnMut(Seen),
+    ) {
+        self.carry_over_period(state, derivative, see);
     }
 }

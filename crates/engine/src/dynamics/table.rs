@@ -201,6 +201,18 @@ impl ForceTable {
             .collect()
     }
 
+    /// The least compliance from row to row of either flank, in m/N.
+    pub(super) fn least_compliance(&self) -> f64 {
+        let flanks = [&self.loaded, &self.other].into_iter();
+        let rows = flanks.flat_map(|flank| flank.delta.windows(2).zip(self.loads.windows(2)));
+        let rises = rows.flat_map(|(rows, loads)| {
+            let rise = loads[1] - loads[0];
+            let both = rows[0].iter().zip(&rows[1]);
+            both.map(move |(low, high)| (high - low).abs() / rise)
+        });
+        rises.fold(f64::INFINITY, f64::min)
+    }
+
     /// The last row but one at which `reached` holds.
     fn row_below(&self, reached: impl Fn(usize) -> bool) -> usize {
         let (mut low, mut high) = (0, self.loads.len() - 1);

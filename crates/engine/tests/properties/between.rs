@@ -1,11 +1,11 @@
 //! What is told of a curve between its positions, held to a solution at very many of them.
 
-use meshwright_engine::analysis::spectrum::harmonics;
 use meshwright_engine::analysis::{Case, Curve, pair_model};
 use meshwright_engine::assembly::{FaceResolution, MakeAll};
 use meshwright_engine::contact::MeshContact;
 use meshwright_engine::contact::face::SLICES;
 use meshwright_engine::contact::positions::contacts;
+use meshwright_engine::fourier::harmonics;
 use meshwright_engine::gear::{GearData, GearPair, Member, SpurGear};
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;

@@ -1,7 +1,7 @@
 //! The table of force, and the motion over speed.
 
-use meshwright_engine::analysis::at_speed::CurveDynamics;
-use meshwright_engine::dynamics::{Branch, FlankRows, ForceTable, Resonance, ResonanceKind};
+use meshwright_engine::analysis::at_speed::{CurveDynamics, NamedResonance};
+use meshwright_engine::dynamics::{Branch, Excitation, FlankRows, ForceTable};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -53,11 +53,15 @@ document! {
     /// The motion of the gears over speed under one torque. All lists run over the same speeds.
     pub struct CurveDynamicsDocument as Dynamics, "Dynamics"
     answer of (dynamics: &CurveDynamics) with {
-        let CurveDynamics { run_up, labels, .. } = dynamics;
-        let branch = |branch: &Branch| BranchDocument::of(branch, labels);
+        let run_up = &dynamics.run_up;
+        let branch = |branch: &Branch| BranchDocument::of(branch, dynamics);
     } {
-        /// The natural frequency of the mean mesh stiffness and the equivalent mass, in Hz.
-        natural_frequency_hz: f64 = run_up.natural_frequency,
+        /// The first of `natural_frequencies_hz`.
+        natural_frequency_hz: f64 = run_up.natural_frequencies[0],
+        /// The natural frequencies of the gears on their mean mesh stiffness, in Hz, rising.
+        #[serde(default)]
+        #[schema(required)]
+        natural_frequencies_hz: Vec<f64> = run_up.natural_frequencies.clone(),
         /// The mass on the line of action, in kg: 1/m = R_b1^2/J_1 + R_b2^2/J_2.
         equivalent_mass_kg: f64 = dynamics.equivalent_mass,
         /// The speed of the driving gear, in 1/min.
@@ -66,17 +70,17 @@ document! {
         up?: BranchDocument = run_up.up.as_ref().map(branch),
         /// Run down from the highest speed; absent if not asked for.
         down?: BranchDocument = run_up.down.as_ref().map(branch),
-        /// The speeds at which an order meets the natural frequency, or twice it: the one with the largest amplitude first.
-        resonances: Vec<ResonanceDocument> = all(&run_up.resonances, |found| {
-            ResonanceDocument::of(found, labels)
-        }),
+        /// The resonances within the speeds, the largest amplitude first: each order that meets a natural frequency and carries more than 2 % of the motion
+        /// there, once. The candidates with the largest expected amplitudes are searched: at most 160, at
+        /// most 40 where the true period has 50 mesh periods, and at least 8.
+        resonances: Vec<ResonanceDocument> = all(&dynamics.resonances, ResonanceDocument::of),
     }
 }
 
 document! {
     /// The motion over speed, run through one way.
     pub struct BranchDocument as RunUpBranch, "Branch of a run-up"
-    answer of (branch: &Branch, labels: &[String]) {
+    answer of (branch: &Branch, dynamics: &CurveDynamics) {
         /// The dynamic transmission error, in um.
         dynamic_transmission_error_um: DynamicErrorDocument = DynamicErrorDocument::of(branch),
         /// The largest force between the gears over the static load.
@@ -85,12 +89,15 @@ document! {
         contact_lost: Vec<bool> = branch.contact_lost.clone(),
         /// True periods after which the motion repeats; 0 where it was not found to.
         period_multiple: Vec<u32> = all(&branch.repeats, |repeats| repeats.unwrap_or(0)),
-        /// The amplitudes at the orders of the mesh to the tenth, of holes, of the first revolutions of gears that deviate, at the sidebands of both, and at
-        /// others that stand out.
-        orders: Vec<OrderAmplitudesDocument> = labels
+        /// The amplitudes at the orders of the mesh to the tenth, of holes, of the first revolutions of gears that deviate, at the sidebands of both, at those
+        /// that stand out of the static curve, and at every other one that carries more than 2 % of the motion at any speed: its amplitude over the root
+        /// mean square times the square root of 2. There are at most 12 for each mesh period of the true period; those that carry least are left out.
+        orders: Vec<OrderAmplitudesDocument> = dynamics
+            .labels
             .iter()
+            .zip(&dynamics.orders)
             .zip(&branch.orders)
-            .map(|(label, found)| OrderAmplitudesDocument::of(label, found))
+            .map(|((label, order), found)| OrderAmplitudesDocument::of(label, *order, found))
             .collect(),
     }
 }
@@ -109,50 +116,66 @@ document! {
 document! {
     /// The amplitude at one order over speed.
     pub struct OrderAmplitudesDocument as OrderAmplitudes, "Amplitudes of an order"
-    answer of (label: &str, amplitudes: &[f64]) {
-        /// Its name, as in the spectrum.
+    answer of (label: &str, order: f64, amplitudes: &[f64]) {
+        /// Its name, as in the spectrum. `H_Z2/2` is half of the mesh order.
         #[schema(example = "H_Z2")]
         label: String = label.to_owned(),
+        /// The order, for each revolution of the driven gear.
+        #[serde(default)]
+        #[schema(required)]
+        order: f64 = order,
         /// Its amplitude, in um.
         amplitude_um: Vec<f64> = each(amplitudes, to_um),
     }
 }
 
 document! {
-    /// A speed at which an order resonates.
+    /// A resonance of an order of the motion.
     pub struct ResonanceDocument as Resonance, "Resonance"
-    answer of (resonance: &Resonance, labels: &[String]) {
-        /// The speed of the driving gear, in 1/min.
-        driving_speed_rpm: f64 = to_rpm(resonance.speed),
-        /// The name of the order.
+    answer of (found: &NamedResonance) with {
+        let resonance = &found.resonance;
+    } {
+        /// The name of the order of the motion. `H_Z2/2` is a motion at half of the mesh order.
         #[schema(example = "H_Z2")]
-        label: String = labels[resonance.order].clone(),
-        /// Cause: forced or parametric.
-        kind: ResonanceKindName = resonance.kind.into(),
-        /// The amplitude of the motion at the natural frequency at this speed, in um, on the branch where it is larger. A parametric resonance that does not
-        /// pump has 0.
+        label: String = found.label.clone(),
+        /// The order, for each revolution of the driven gear.
+        #[serde(default)]
+        #[schema(required)]
+        order: f64 = found.order,
+        /// Whether its own line in the static curve makes it, or the varying stiffness.
+        #[serde(default, alias = "kind")]
+        #[schema(required)]
+        excited: ExcitationName = resonance.excited.into(),
+        /// The speed of the driving gear at which its amplitude is largest, in 1/min.
+        driving_speed_rpm: f64 = to_rpm(resonance.speed),
+        /// Its frequency there, in Hz.
+        #[serde(default)]
+        #[schema(required)]
+        frequency_hz: f64 = resonance.frequency,
+        /// Its amplitude there, in um, on the branch where it is larger.
         #[serde(default)]
         #[schema(required)]
         amplitude_um: f64 = to_um(resonance.amplitude),
     }
 }
 
-/// Why an order resonates.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+/// The cause of a resonance.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
-#[schema(as = ResonanceKind, title = "Kind of a resonance")]
-pub enum ResonanceKindName {
-    /// The order meets the natural frequency.
+#[schema(as = Excitation, title = "Cause of a resonance")]
+pub enum ExcitationName {
+    /// Its own line in the static curve: more of it vanishes without this line than with the mean stiffness at every position.
+    #[default]
     Forced,
-    /// It meets twice the natural frequency; its part of the stiffness excites parametrically.
+    /// The varying stiffness: more of it vanishes with the mean stiffness at every position than without its own line in the static curve.
     Parametric,
 }
 
-impl From<ResonanceKind> for ResonanceKindName {
-    fn from(kind: ResonanceKind) -> Self {
-        match kind {
-            ResonanceKind::Forced => Self::Forced,
-            ResonanceKind::Parametric => Self::Parametric,
+impl From<Excitation> for ExcitationName {
+    fn from(excited: Excitation) -> Self {
+        match excited {
+            Excitation::Forced => Self::Forced,
+            Excitation::Parametric => Self::Parametric,
         }
     }
 }

@@ -28,8 +28,8 @@ pub use decomposition::{
 };
 pub use evidence::{Definition, ErrorEstimateDocument, EvidenceDocument};
 pub use forces::{
-    BranchDocument, CurveDynamicsDocument, DynamicErrorDocument, ForceTableDocument,
-    OrderAmplitudesDocument, ResonanceDocument, ResonanceKindName,
+    BranchDocument, CurveDynamicsDocument, DynamicErrorDocument, ExcitationName,
+    ForceTableDocument, OrderAmplitudesDocument, ResonanceDocument,
 };
 pub use hole_phase::{HolePhaseDocument, OverTurnDocument};
 pub use largest_where::{PressureStatistics, WhereDocument};

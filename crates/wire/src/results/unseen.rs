@@ -65,7 +65,7 @@ fn forces_do_not_see(forces: Option<&ForcesRequest>) -> Vec<&'static str> {
         unseen.push("the holes under the other flanks where they are, and slopes of single teeth on them: those flanks carry as the mirror image of the loaded ones");
     }
     if forces.is_some_and(|forces| forces.dynamics.is_some()) {
-        unseen.push("beyond one torsional degree of freedom: in the dynamics, shafts, bearings, housing and the vibrations of the gear bodies");
+        unseen.push("in the dynamics, shafts, bearings and housing, and vibrations of the gear bodies other than in torsion");
         unseen.push("in the dynamics, that the gears turn unevenly: the mesh position follows the mean speed; the damping is one number, in contact and out of it");
     }
     unseen

@@ -1,7 +1,7 @@
 //! Figs. 6 to 8: STE and stiffness of the test cases over a revolution, closer, and as spectra.
 
 use meshwright_engine::analysis::Curve;
-use meshwright_engine::analysis::spectrum::harmonics;
+use meshwright_engine::fourier::harmonics;
 use meshwright_plot::Color;
 
 use super::super::computed::{METHODS, TestCase, line, name_of};

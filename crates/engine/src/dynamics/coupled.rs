@@ -1,0 +1,298 @@
+//! Motion over a period of gears whose bodies vibrate.
+//!
+//! About the static deflection under F_0 the state s = (p, p') of the common modes obeys s' = A s + B f. The matrix A has the spring of the mesh at
+//! its mean stiffness k, and f = k Z·p − G(u) is the rest of the law of force: u = Z·p − w, with w the fluctuation of the static curve. In a look f is
+//! linear in time, which the exponential of A takes exactly. The end of f depends on u there, by a piecewise linear equation. A stiffness that is
+//! constant is met exactly; one that varies, and flanks that part, to second order.
+
+use nalgebra::DMatrix;
+
+use super::bodies::Coupled;
+use super::law::Laws;
+use super::oscillator::Seen;
+
+/// Pieces of a law that are tried for the end of a look before it is taken to lie at a knot.
+const MOST_PIECES: usize = 256;
+
+/// A step of a period.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Drift {
+    /// The place of its law.
+    pub law: usize,
+    /// w at its beginning and at its end.
+    pub deflection: [f64; 2],
+}
+
+/// Coupled bodies on laws of force that change from step to step, over and over.
+#[derive(Debug, Clone)]
+pub struct CoupledMotion<'a> {
+    laws: &'a Laws,
+    bodies: &'a Coupled,
+    /// F_0.
+    load: f64,
+    /// How long a step takes.
+    pub(super) duration: f64,
+    /// Looks in a step.
+    pub(super) looks: u32,
+    /// The steps of a period.
+    pub(super) steps: Vec<Drift>,
+    /// e^{A h}, row by row.
+    carried: Vec<f64>,
+    /// The shares of f at the beginning and at the end of a look.
+    pushed: [Vec<f64>; 2],
+}
+
+/// A place on a law.
+#[derive(Debug, Clone, Copy)]
+struct Touch {
+    /// f.
+    rest: f64,
+    /// df/d(Z·p).
+    slope: f64,
+    /// The force of the law.
+    force: f64,
+    /// The place of the piece.
+    place: usize,
+}
+
+impl<'a> CoupledMotion<'a> {
+    /// `steps` of `duration` with so many `looks` in each, of `bodies` on `laws` under the load `load`.
+    pub fn new(
+        (laws, load): (&'a Laws, f64),
+        bodies: &'a Coupled,
+        (duration, looks): (f64, u32),
+        steps: Vec<Drift>,
+    ) -> Self {
+        let size = 2 * bodies.count();
+        let look = duration / f64::from(looks);
+        // The exponential of (A B 0; 0 0 1/h; 0 0 0) h has ∫ e^{A(h − t)} B dt and the same with t/h beside e^{A h}.
+        let mut whole = DMatrix::zeros(size + 2, size + 2);
+        whole
+            .view_mut((0, 0), (size, size))
+            .copy_from(&(look * bodies.rate()));
+        for (j, z) in bodies.teeth.iter().enumerate() {
+            whole[(size / 2 + j, size)] = look * z;
+        }
+        whole[(size, size + 1)] = 1.0;
+        let whole = whole.exp();
+        let rising: Vec<f64> = (0..size).map(|i| whole[(i, size + 1)]).collect();
+        let falling = (0..size).map(|i| whole[(i, size)] - rising[i]).collect();
+        Self {
+            laws,
+            bodies,
+            load,
+            duration,
+            looks,
+            steps,
+            carried: (0..size * size)
+                .map(|k| whole[(k / size, k % size)])
+                .collect(),
+            pushed: [falling, rising],
+        }
+    }
+
+    pub(super) fn bodies(&self) -> &Coupled {
+        self.bodies
+    }
+
+    fn nearer(&self, state: &[f64]) -> f64 {
+        let teeth = self.bodies.teeth.iter().zip(state);
+        teeth.map(|(z, p)| z * p).sum()
+    }
+
+    /// The rest of `law` where the teeth are nearer by `nearer` than at rest and w is `deflection`.
+    fn touch(&self, law: usize, nearer: f64, deflection: f64, near: usize) -> Touch {
+        let u = nearer - deflection;
+        let place = self.laws.place(law, u, true, near);
+        let piece = self.laws.piece(law, place);
+        let force = piece.force(u);
+        Touch {
+            rest: self.bodies.stiffness * nearer - (force - self.load),
+            slope: self.bodies.stiffness - piece.stiffness,
+            force,
+            place,
+        }
+    }
+
+    /// By how much the teeth are nearer at the end of a look, at which they would be by `free` without f there, and by `share` times f with it.
+    fn end(&self, law: usize, (free, share): (f64, f64), deflection: f64, near: usize) -> Touch {
+        let k = self.bodies.stiffness;
+        let mut place = near;
+        for _ in 0..MOST_PIECES {
+            let piece = self.laws.piece(law, place);
+            // u = free − w + share (k (u + w) + F_0 − F(0) − κ u).
+            let at_zero = piece.force(0.0);
+            let u = (free - deflection + share * (k * deflection + self.load - at_zero))
+                / (1.0 - share * (k - piece.stiffness));
+            if u > piece.high {
+                place += 1;
+            } else if u < piece.low {
+                place -= 1;
+            } else {
+                let force = piece.force(u);
+                return Touch {
+                    rest: k * (u + deflection) - (force - self.load),
+                    slope: k - piece.stiffness,
+                    force,
+                    place,
+                };
+            }
+        }
+        self.touch(law, free, deflection, near)
+    }
+
+    /// Carries `state` and, where asked for, its `derivative`, whose columns are carried alike, over a period.
+    pub(super) fn carry_over_period(
+        &self,
+        state: &mut Vec<f64>,
+        mut derivative: Option<&mut Vec<Vec<f64>>>,
+        see: &mut dyn FnMut(Seen),
+    ) {
+        let size = state.len();
+        let half = size / 2;
+        let rising = &self.pushed[1];
+        let share = self.nearer(rising);
+        let mut next = vec![0.0; size];
+        let mut place = 0;
+        for (index, step) in self.steps.iter().enumerate() {
+            let [from, to] = step.deflection;
+            let mut touch = self.touch(step.law, self.nearer(state), from, place);
+            for looked in 1..=self.looks {
+                let part = f64::from(looked) / f64::from(self.looks);
+                let deflection = from + part * (to - from);
+                self.carry(state, touch.rest, &mut next);
+                let free = self.nearer(&next);
+                let end = self.end(step.law, (free, share), deflection, touch.place);
+                for (value, rising) in next.iter_mut().zip(rising) {
+                    *value += rising * end.rest;
+                }
+                std::mem::swap(state, &mut next);
+                for column in derivative.iter_mut().flat_map(|columns| columns.iter_mut()) {
+                    let begin = touch.slope * self.nearer(column);
+                    self.carry(column, begin, &mut next);
+                    let moved = self.nearer(&next) / (1.0 - share * end.slope);
+                    for (value, rising) in next.iter_mut().zip(rising) {
+                        *value += rising * end.slope * moved;
+                    }
+                    std::mem::swap(column, &mut next);
+                }
+                let hubs = self.bodies.hubs.iter().zip(&state[..half]);
+                see(Seen {
+                    step: index,
+                    part,
+                    u: hubs.map(|(h, p)| h * p).sum::<f64>() - deflection,
+                    force: end.force,
+                    apart: self.laws.is_apart(touch.place.min(end.place)),
+                });
+                touch = end;
+            }
+            place = touch.place;
+        }
+    }
+
+    /// e^{A h} `state` and the share of `rest` at the beginning.
+    fn carry(&self, state: &[f64], rest: f64, next: &mut [f64]) {
+        let rows = self.carried.chunks_exact(state.len());
+        for ((value, row), falling) in next.iter_mut().zip(rows).zip(&self.pushed[0]) {
+            let sum: f64 = row.iter().zip(state).map(|(a, s)| a * s).sum();
+            *value = sum + falling * rest;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::bodies::{Body, BodyMode, Damping};
+    use super::*;
+
+    #[test]
+    fn without_damping_a_cycle_leaves_the_energy_as_it_was() {
+        // Rims on webs with a constant stiffness between them: ½ p'² + ½ Ω² p² in every mode, whatever the steps.
+        let mode = BodyMode {
+            frequency: 3.0,
+            at_mesh: 1.2,
+            turn: 0.7,
+        };
+        let body = Body {
+            inertia: 2.0,
+            base_radius: 1.0,
+            modes: vec![mode],
+        };
+        let damping = Damping {
+            mesh: 0.0,
+            bodies: 0.0,
+        };
+        let bodies = Coupled::new(&[body.clone(), body], 1.5, damping).expect("bodies");
+        let laws = Laws::new(vec![-3.0, 3.0], vec![-4.0 / 1.5, 2.0 / 1.5], 0);
+        let drift = Drift {
+            law: 0,
+            deflection: [0.0; 2],
+        };
+        let energy = |state: &[f64]| -> f64 {
+            let (p, v) = state.split_at(bodies.count());
+            let each = p.iter().zip(v).zip(&bodies.frequencies);
+            each.map(|((p, v), omega)| 0.5 * (v * v + (omega * p).powi(2)))
+                .sum()
+        };
+        let motion = CoupledMotion::new((&laws, 1.0), &bodies, (0.13, 2), vec![drift; 64]);
+        let mut state: Vec<f64> = (1..=2 * bodies.count()).map(|i| 0.1 / i as f64).collect();
+        let before = energy(&state);
+        motion.carry_over_period(&mut state, None, &mut |_| ());
+        assert!((energy(&state) / before - 1.0).abs() < 1e-8);
+    }
+
+    #[test]
+    fn the_derivative_is_that_of_the_motion_through_contact_backlash_and_the_other_flank() {
+        let mode = BodyMode {
+            frequency: 2.0,
+            at_mesh: 1.2,
+            turn: 0.7,
+        };
+        let body = Body {
+            inertia: 2.0,
+            base_radius: 1.0,
+            modes: vec![mode],
+        };
+        let damping = Damping {
+            mesh: 0.1,
+            bodies: 0.02,
+        };
+        let bodies = Coupled::new(&[body.clone(), body], 1.0, damping).expect("bodies");
+        let laws = Laws::new(vec![-1.0, 0.0, 0.0, 1.0], vec![-2.3, -1.3, -0.3, 0.7], 2);
+        let wave = |i: usize| 2.0 * (i as f64 * 0.157).cos();
+        let steps = (0..40).map(|i| Drift {
+            law: 0,
+            deflection: [wave(i), wave(i + 1)],
+        });
+        let motion = CoupledMotion::new((&laws, 0.3), &bodies, (0.2, 3), steps.collect());
+        let size = 2 * bodies.count();
+        let start: Vec<f64> = (0..size).map(|i| 0.3 * (1.0 + i as f64).sin()).collect();
+        let mut derivative: Vec<Vec<f64>> = (0..size)
+            .map(|i| (0..size).map(|j| f64::from(u8::from(i == j))).collect())
+            .collect();
+        let mut met = (false, false);
+        motion.carry_over_period(&mut start.clone(), Some(&mut derivative), &mut |seen| {
+            met.0 |= seen.apart;
+            met.1 |= seen.force < 0.0;
+        });
+        assert!(met.0 && met.1, "both flanks are met");
+        let h = 1e-6;
+        for (column, exact) in derivative.iter().enumerate() {
+            let moved = |by: f64| {
+                let mut state = start.clone();
+                state[column] += by;
+                motion.carry_over_period(&mut state, None, &mut |_| ());
+                state
+            };
+            let (ahead, behind) = (moved(h), moved(-h));
+            for (row, exact) in exact.iter().enumerate() {
+                let difference = (ahead[row] - behind[row]) / (2.0 * h);
+                let error = (exact - difference).abs();
+                assert!(
+                    error < 1e-6 * (1.0 + exact.abs()),
+                    "{row} {column}: {exact} {difference}"
+                );
+            }
+        }
+    }
+}
