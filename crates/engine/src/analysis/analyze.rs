@@ -53,7 +53,7 @@ pub(super) fn answered(
     }
     if let Some(phase) = &plan.hole_phase {
         let (case, level) = (&plan.case, plan.case.resolution.grid);
-        analysis.hole_phase = coupled_as_needed(case, level, parts, run, |setup| {
+        analysis.hole_phase = coupled_as_needed((case, None), level, parts, run, |setup| {
             phase.solve(setup, &analysis.curves)
         })?;
     }

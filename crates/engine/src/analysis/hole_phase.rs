@@ -17,10 +17,10 @@ use super::case::Case;
 use super::curve::Curve;
 use super::projected::{round_average, yielded};
 use super::setup::Setup;
-use super::spectrum::harmonics;
 use crate::assembly::Blanks;
 use crate::contact::positions::{contacts, contacts_keeping};
 use crate::contact::{ContactCells, ContactSolution, PairLoads};
+use crate::fourier::harmonics;
 use crate::gear::{GearPair, Member};
 
 /// Places of a hole pitch, at least, at which the term of the driving holes is known: as many as show five harmonics of the hole order.

@@ -6,7 +6,7 @@ use super::between::Sections;
 use super::case::Case;
 use super::curve::LoadShare;
 use super::pair_springs::PairSprings;
-use super::spectrum::harmonics;
+use crate::fourier::harmonics;
 
 /// Places in a mesh period at which the wave is known.
 const PLACES: usize = 400;
