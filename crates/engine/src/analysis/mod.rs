@@ -9,12 +9,13 @@
 //! - [`stress`] (at roots and holes; along faces `face_stress`), [`fields`] (everywhere; along faces [`face_fields`]), [`contact_pattern`] (over the flanks);
 //! - `between` (a curve between its positions), `curve_parts` and [`curve`] with its `statistics`, [`largest_where`] (where its largest values stand), [`pressures`] (what they come to),
 //!   [`spectrum`] and [`single_flank`];
-//! - [`evidence`], [`warning`], [`error`] and `answer` (all that comes out); [`forces`] (tables of force), [`at_speed`] (motion).
+//! - [`evidence`], [`warning`], [`error`] and `answer` (all that comes out); [`forces`] (tables of force), [`at_speed`] (motion), [`blank_modes`] (the natural modes of both gears).
 
 mod analyze;
 mod answer;
 pub mod at_speed;
 mod between;
+pub mod blank_modes;
 pub mod case;
 mod checks;
 pub mod contact_pattern;
