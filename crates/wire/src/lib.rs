@@ -1,7 +1,7 @@
 //! The JSON documents of the interface as types, in the units of those who read them.
 //!
 //! Read in this order: [`problem`] (what goes wrong), [`submission`] with its parts [`pair`], [`gear`] and
-//! [`resolution`], [`forces`] (what is asked), [`geometry`], [`outline`], [`edges`], [`contact_pattern`], [`warning`], [`results`] and `rexs` (what is answered), [`solve`](mod@solve)
+//! [`resolution`], [`forces`], [`modes`] (what is asked), [`geometry`], [`outline`], [`edges`], [`contact_pattern`], [`warning`], [`results`] and `rexs` (what is answered), [`solve`](mod@solve)
 //! (what leads from the one to the other) and [`examples`](mod@examples); [`preview`], a submission that is answered at
 //! once; [`draw`], teeth at random. [`declare`], [`units`], [`size`], `edit` and [`mod@pointer`] carry them: the one declaration of each object, conversions, how
 //! much is read at all, changes in place, and places in a submission. Many submissions at once are the crate `studies`, which knows this one.
@@ -24,6 +24,7 @@ pub mod status;
 pub mod forces;
 pub mod gear;
 mod interface;
+pub mod modes;
 pub mod pair;
 pub mod resolution;
 pub mod submission;

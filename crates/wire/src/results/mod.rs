@@ -6,6 +6,7 @@ mod evidence;
 mod exchanged;
 mod forces;
 mod largest_where;
+mod modes;
 mod spectrum;
 mod stress;
 mod unseen;
@@ -16,6 +17,7 @@ mod tests;
 use std::borrow::Cow;
 
 use meshwright_engine::analysis::Analysis;
+use meshwright_engine::analysis::blank_modes::MetMode;
 use meshwright_engine::analysis::forces::Forces;
 
 pub use curve::{
@@ -31,6 +33,7 @@ pub use forces::{
     OrderAmplitudesDocument, ResonanceDocument, ResonanceKindName,
 };
 pub use largest_where::{PressureStatistics, WhereDocument};
+pub use modes::{CrossingDocument, ModeDirection, ModeDocument, ModesDocument, WaveName};
 pub use spectrum::{NamedOrderDocument, OrderKindName, SpectrumDocument};
 pub use stress::{
     GearPeakStress, GearStressDocument, GearStressWhere, PeakStressDocument, StressDocument,
@@ -41,7 +44,7 @@ use super::geometry::{Frequencies, PairGeometry};
 use super::problem::{Code, Problem};
 use super::submission::Submission;
 use super::units::{known, rounded_json};
-use super::warning::WarningDocument;
+use super::warning::{GearName, WarningDocument};
 
 document! {
     /// What a submission comes to. It is bit-identical for the same input and version.
@@ -70,6 +73,8 @@ document! {
         /// The force over mesh position and approach; absent unless the submission asks for it.
         force_table?: ForceTableDocument =
             forces.map(|forces| ForceTableDocument::of(&forces.table)),
+        /// The natural modes of both gears; absent unless the submission asks for them.
+        modes?: ModesDocument = None,
         /// How good the numbers are, and what they mean.
         evidence: EvidenceDocument = EvidenceDocument::of(submission, analysis),
     }
@@ -83,6 +88,22 @@ impl Results {
     /// A text that is not JSON, or lacks what every version told.
     pub fn read(document: &str) -> serde_json::Result<Self> {
         serde_json::from_str(document)
+    }
+
+    /// The same with the natural modes of both gears, and a warning that names where the mesh meets them within the speeds asked.
+    pub(crate) fn with_modes(mut self, submission: &Submission, modes: &[Vec<MetMode>; 2]) -> Self {
+        let modes = ModesDocument::of(modes);
+        if submission
+            .modes()
+            .is_some_and(|request| request.speeds.is_some())
+        {
+            for gear in [GearName::Driving, GearName::Driven] {
+                self.warnings
+                    .extend(WarningDocument::of_crossings(gear, modes.of_gear(gear)));
+            }
+        }
+        self.modes = Some(modes);
+        self
     }
 
     /// The document as JSON, its numbers rounded to ten significant digits.

@@ -142,7 +142,7 @@ fn a_submission_with_other_fields_or_words_has_another_version() {
         (DOCUMENT_VERSION, sha256_hex(told.join("\n")).as_str()),
         (
             4,
-            "0212399678f1d021a36861b11b8c77326e155bed94a3d505c4d00b411887410a"
+            "82672c09efec4af133778a7805eb2d0cb2430958cd379064d04b9be5327c31f3"
         ),
         "{told:#?}"
     );
