@@ -11,7 +11,8 @@ words! {
     /// How the bore carries a gear that vibrates.
     pub enum BoreWord {
         Held = "held": "the bore does not move",
-        FreeToTurn = "free_to_turn": "the bore turns about its axis as a rigid ring, and is held otherwise; the rigid turn is no mode",
+        FreeToTurn = "free_to_turn":
+            "the bore turns about its axis as a rigid ring, and is held otherwise; the rigid turn is no mode",
     }
 }
 
