@@ -1,4 +1,4 @@
-//! The guides as they are read in a browser: headings can be linked to, and links lead to what is served.
+//! The guides as HTML: headings have anchors, and links lead to served files.
 
 use std::error::Error;
 use std::fmt::Write;
@@ -42,7 +42,7 @@ const FIGURES: [&str; 12] = [
     "validity-pairs.svg",
 ];
 
-/// The list of the guides, each guide, and their figures: by the names under which they are served, and what they are.
+/// The list of the guides, each guide, and their figures: names under which they are served, and contents.
 pub(crate) fn files() -> Result<Vec<Named>, Box<dyn Error>> {
     let (mut files, mut list) = (Vec::new(), String::new());
     for name in GUIDES {
@@ -102,7 +102,7 @@ fn as_html(text: &str) -> String {
     });
     let mut page = String::new();
     html::push_html(&mut page, shown);
-    // What is wider than the page scrolls by itself, by keys too.
+    // Content wider than the page scrolls by itself, by keys too.
     page.replace(
         "<table>",
         "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"Table\"><table>",

@@ -11,7 +11,7 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use zip::ZipArchive;
 
-/// What the page of the documentation is made of, beside its beginning in `src/http/docs.js`.
+/// Parts of the page of the documentation, beside its beginning in `src/http/docs.js`.
 const DOCS: [&str; 7] = [
     "favicon-16x16.png",
     "favicon-32x32.png",

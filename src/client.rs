@@ -6,7 +6,7 @@ use std::time::Duration;
 use reqwest::redirect::Policy;
 use reqwest::{Client, ClientBuilder};
 
-/// What this program is called in its requests.
+/// User agent of the program's own requests.
 pub(crate) const AGENT: &str = concat!("Meshwright/", env!("CARGO_PKG_VERSION"));
 
 /// A client to be set up. Its encryption is ring's; somebody who embeds the service may have chosen another before.

@@ -1,4 +1,4 @@
-//! What the command line and the environment decide.
+//! Configuration from the command line and the environment.
 
 use std::net::SocketAddr;
 use std::num::NonZeroUsize;
@@ -38,7 +38,7 @@ pub struct Config {
     #[arg(long, value_parser = migrate(), default_value = "auto")]
     pub migrate: Migrate,
 
-    /// What this process does. Several on one PostgreSQL may divide the work.
+    /// Tasks of this process. Several on one PostgreSQL may divide the work.
     #[arg(long, value_enum, default_value = "all")]
     pub role: Part,
 
@@ -72,8 +72,7 @@ pub struct Config {
           value_parser = value_parser!(u32).range(0..=1 << 20))]
     pub cache_mb: u32,
 
-    /// Memory for everything that is computed or read at the same time, in MB; what does not fit waits [default: half of the
-    /// machine's].
+    /// Memory for everything that is computed or read at the same time, in MB; further work waits [default: half of the machine's].
     #[arg(long, value_name = "MB", value_parser = value_parser!(u64).range(64..=1 << 24))]
     pub memory_mb: Option<u64>,
 
@@ -97,7 +96,7 @@ pub struct Config {
           value_parser = value_parser!(u64).range(1..=60))]
     pub preview_time_limit_seconds: u64,
 
-    /// What is kept, and how long.
+    /// Retention of results.
     #[command(flatten)]
     pub keep: KeepOptions,
 
@@ -110,30 +109,30 @@ pub struct Config {
     pub oidc: OidcOptions,
 }
 
-/// What a process does, of what the service does.
+/// Tasks of a process.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Part {
     /// Everything.
     All,
-    /// Answer requests, deliver messages and remove what is old; compute previews, but no jobs.
+    /// Answer requests, deliver messages and remove old results; compute previews, but no jobs.
     Api,
     /// Compute jobs. Nothing listens, but for --metrics-listen.
     Worker,
 }
 
 impl Part {
-    /// Whether it answers requests.
+    /// True if the process answers requests.
     pub fn answers(self) -> bool {
         self != Self::Worker
     }
 
-    /// Whether it computes jobs.
+    /// True if the process computes jobs.
     pub fn computes(self) -> bool {
         self != Self::Api
     }
 }
 
-/// What is kept, and how long.
+/// Retention of results.
 #[derive(Debug, Clone, clap::Args)]
 pub struct KeepOptions {
     /// Time that jobs and studies are kept after their end, such as 30d or 12h; 0 keeps them for good.
@@ -144,7 +143,7 @@ pub struct KeepOptions {
     #[arg(long, default_value_t = 10.0, value_name = "GB")]
     pub keep_gb: f64,
 
-    /// Time between two looks at what is old.
+    /// Time between two removals of old results.
     #[arg(long, default_value = "5m", value_parser = lasting, value_name = "TIME", hide = true)]
     pub keep_every: Duration,
 }
@@ -160,8 +159,8 @@ pub struct AdmissionOptions {
     #[arg(long, value_name = "ADDRESS")]
     pub metrics_listen: Option<SocketAddr>,
 
-    /// Whether requests need keys [default: as soon as there is one, and wherever others than this machine may be at the other
-    /// end: beyond the loopback, with a public or allowed name, behind a proxy].
+    /// Whether requests need keys [default: once there is a key, and wherever other machines can reach the service: beyond the loopback, with a public or
+    /// allowed name, behind a proxy].
     #[arg(long, value_enum, hide_default_value = true)]
     pub keys: Option<KeysRule>,
 
@@ -215,7 +214,7 @@ pub struct OidcOptions {
     #[arg(long, value_name = "URL", requires = "oidc_audience")]
     pub oidc_issuer: Option<IssuerUrl>,
 
-    /// What its tokens for this service have under aud.
+    /// The audience (aud) of its tokens for this service.
     #[arg(long, value_name = "NAME", requires = "oidc_issuer")]
     pub oidc_audience: Option<String>,
 
@@ -241,7 +240,7 @@ pub struct OidcOptions {
 }
 
 impl OidcOptions {
-    /// What tokens have to be; none where nobody makes any.
+    /// Rules for tokens; `None` without an issuer.
     pub fn rules(&self) -> Option<TokenRules> {
         Some(TokenRules {
             issuer: self.oidc_issuer.clone()?,
@@ -281,7 +280,7 @@ impl Config {
     pub fn memory(&self) -> Memory {
         /// Documents are read one after the other, so that more would not make it faster.
         const MOST_FOR_READING: u64 = 256;
-        /// Answers wait for those who read them. What is large is sent in pieces.
+        /// Answers wait for those who read them. Large ones are sent in pieces.
         const MOST_FOR_ANSWERS: u64 = 256;
         let all = self.memory_mb.unwrap_or_else(|| machine::memory_mb() / 2);
         let reading = (all / 4).clamp(1, MOST_FOR_READING);
@@ -293,7 +292,7 @@ impl Config {
         }
     }
 
-    /// What previews are allowed.
+    /// Limits of previews.
     pub fn preview_rules(&self) -> PreviewRules {
         PreviewRules {
             at_once: self.previews as usize,
@@ -304,7 +303,7 @@ impl Config {
 }
 
 impl Config {
-    /// What the queue allows.
+    /// Limits of the queue.
     pub fn rules(&self) -> Rules {
         Rules {
             queue_limit: self.queue_limit,
@@ -314,13 +313,13 @@ impl Config {
                 .unwrap_or(self.queue_limit.div_ceil(2)),
             user_queue_limit: self.admission.user_queue_limit,
             client_design_limit: self.admission.client_design_limit,
-            // What is larger than all that there is could only be computed by taking more.
+            // A larger job could only be computed beyond the memory of the process.
             job_memory_mb: self.job_memory_mb.min(self.memory().computing),
             memory_mb: self.memory().computing,
         }
     }
 
-    /// What is kept, and how long.
+    /// Retention of results.
     pub fn keep(&self) -> Keep {
         let options = &self.keep;
         let bytes = options.keep_gb * 1e9;
@@ -334,7 +333,7 @@ impl Config {
         }
     }
 
-    /// What is allowed to whom.
+    /// Rules of access.
     pub fn access_rules(&self) -> AccessRules {
         let public = self.public_url.iter().filter_map(|url| {
             let uri: Uri = url.parse().ok()?;
@@ -377,15 +376,15 @@ impl Config {
 /// How the memory of `--memory-mb` is divided, in MB.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Memory {
-    /// For what is sent to the service, while it is read.
+    /// For documents sent to the service, while it reads them.
     pub reading: u64,
     /// For answers, until they have left.
     pub answers: u64,
-    /// For what is computed.
+    /// For computations.
     pub computing: u64,
 }
 
-/// The first look at what is old comes no sooner after the start: a clock that was wrong then is right by then.
+/// The first removal of old results comes no sooner after the start. A clock that was wrong at the start is right by then.
 const FIRST_LOOK: Duration = Duration::from_secs(600);
 
 /// A client that takes nothing of its answer is given at least so long: its system may have taken two megabytes at once, which it reads at
@@ -415,7 +414,7 @@ fn migrate() -> impl TypedValueParser<Value = Migrate> {
     })
 }
 
-/// So many connections have descriptors, of those that the system grants the process.
+/// Number of connections for which the system grants the process descriptors.
 fn descriptors_for_connections() -> usize {
     #[cfg(unix)]
     {
@@ -454,7 +453,7 @@ fn span(text: &str) -> Result<Duration, String> {
 ///
 /// # Errors
 ///
-/// What was expected.
+/// The expected form.
 pub fn lasting(text: &str) -> Result<Duration, String> {
     let wrong = || "0 is too short; 1s is the least".to_owned();
     span(text).and_then(|span| Some(span).filter(|span| !span.is_zero()).ok_or_else(wrong))

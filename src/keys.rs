@@ -8,10 +8,10 @@ use subtle::ConstantTimeEq;
 
 use crate::jobs::{KeyRecord, Store, StoreError};
 
-/// What every key begins with, so that programs that look for leaked secrets know it.
+/// Prefix of every key, by which scanners for leaked secrets know it.
 const PREFIX: &str = "mw";
 
-/// Whether a text is meant to be a key.
+/// True if a text has the prefix of a key.
 pub fn has_prefix(text: &str) -> bool {
     text.strip_prefix(PREFIX)
         .is_some_and(|rest| rest.starts_with('_'))
@@ -72,8 +72,7 @@ impl Key {
         &self.id
     }
 
-    /// What is kept of its secret part. The secret has 256 bits of chance: nobody finds it from the hash by trying, so that
-    /// a slow hash would only be slow.
+    /// The hash that is stored of the secret part. The secret has 256 random bits: nobody finds it from the hash by trying, and a slow hash would add nothing.
     pub fn secret_hash(&self) -> String {
         sha256_hex(&self.secret)
     }
@@ -105,12 +104,12 @@ impl Key {
     }
 }
 
-/// Whether a client may be called so, whoever says it: 1 to 100 characters, none of them a control character.
+/// True for a valid name of a client: 1 to 100 characters, none of them a control character.
 pub fn is_client_name(text: &str) -> bool {
     (1..=100).contains(&text.chars().count()) && !text.chars().any(char::is_control)
 }
 
-/// Whether a user of a client may be called so: 1 to 128 visible ASCII characters.
+/// True for a valid name of a user of a client: 1 to 128 visible ASCII characters.
 pub fn is_user_name(text: &str) -> bool {
     (1..=128).contains(&text.len()) && text.bytes().all(|byte| byte.is_ascii_graphic())
 }

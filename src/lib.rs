@@ -1,6 +1,6 @@
 //! The service around the mechanics: documents, jobs and HTTP.
 //!
-//! The parts, in the order to read them; each knows only those above it; `serve` puts them together, and `commands` is what the program does.
+//! The parts, in reading order; each knows only those above it. `serve` puts them together, and `commands` has the commands of the program.
 
 mod client;
 mod machine;

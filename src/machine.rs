@@ -1,4 +1,4 @@
-//! What the machine has, or what a container leaves of it.
+//! Resources of the machine, or those that a container grants.
 
 use std::fs;
 
@@ -17,7 +17,7 @@ pub(crate) fn memory_mb() -> u64 {
     )
 }
 
-/// What the system says, unless a limit is lower.
+/// The value of the system, or a lower limit.
 fn of(system: &str, limits: &[String]) -> u64 {
     let total = system
         .lines()

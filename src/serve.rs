@@ -35,11 +35,11 @@ const CLOSING: Duration = Duration::from_secs(1);
 pub type Compute =
     Arc<dyn Fn(&Submission, &Library, &Run) -> Result<Results, Problem> + Send + Sync>;
 
-/// What the service has from outside, beside its configuration.
+/// Surroundings of the service beside its configuration.
 pub struct World {
     /// How a submission is computed.
     pub compute: Compute,
-    /// What time it is.
+    /// The clock.
     pub clock: Clock,
     /// Where messages may be sent.
     pub hooks: HookRules,
@@ -72,7 +72,7 @@ pub struct UnusableDatabase {
 }
 
 impl UnusableDatabase {
-    /// Whether it is worth starting again: a disk may be emptied, another program may end, and a server that is not there may come.
+    /// True if another start may succeed: a disk may be emptied, another program may end, a server may come up.
     pub fn may_pass(&self) -> bool {
         match self.cause {
             OpenError::Full | OpenError::Locked => true,
@@ -299,7 +299,7 @@ impl Service {
         if !(answers && numbers) {
             warn!("some answers did not end in time");
         }
-        // What is still said to run was not lost by a crash.
+        // A job that still counts as running was not lost by a crash.
         if let Some(lock) = &self.lock {
             lock.end_in_order();
         }

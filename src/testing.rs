@@ -1,4 +1,4 @@
-//! What unit tests of the service share.
+//! Common parts of the service's unit tests.
 
 use meshwright_wire::{Submission, examples};
 

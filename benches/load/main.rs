@@ -1,4 +1,4 @@
-//! The service under load: wrk asks from a process and a core of its own, and a table tells what came of it.
+//! The service under load: wrk sends requests from a process and a core of its own, and a table shows the results.
 //!
 //! `./load` runs all of it; `./load latency polls` some. The service keeps its log, its metrics and its database on the
 //! disk as in production. Where the overhead of the service is measured, its engine is replaced by one that has the
@@ -39,8 +39,7 @@ const SPAN: Duration = Duration::from_secs(10);
 const OVERLOAD_SPAN: Duration = Duration::from_secs(60);
 /// A thousand waiting jobs, each looked at once a second as `Retry-After` says.
 const POLLS_PER_SECOND: f64 = 1000.0;
-/// So many times what was served before is submitted in the overload: three times are to be shown, and what is served
-/// while it lasts may be more.
+/// Multiple of the earlier rate that is submitted in the overload: three is to be shown, and the rate may rise meanwhile.
 const SURPLUS: f64 = 5.0;
 const SCENARIOS: [&str; 6] = [
     "latency",
@@ -53,7 +52,7 @@ const SCENARIOS: [&str; 6] = [
 
 #[derive(Parser)]
 struct Arguments {
-    /// What to measure; everything if nothing is named.
+    /// Scenarios to measure; all of them by default.
     #[arg(value_parser = SCENARIOS)]
     scenarios: Vec<String>,
     /// Seconds of overload.
@@ -109,7 +108,7 @@ fn main() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Tells what is measured on, and how much else it has to do: figures of a busy machine are upper bounds.
+/// Prints the machine and its load: figures of a busy machine are upper bounds.
 fn describe_machine() -> anyhow::Result<()> {
     let processor = fs::read_to_string("/proc/cpuinfo")?;
     let model = processor
@@ -134,7 +133,7 @@ struct Bench {
 
 impl Bench {
     fn new() -> anyhow::Result<Self> {
-        // Beside what is built: the folder for temporary files may be in memory, and a disk is to be measured.
+        // Beside the build: the folder for temporary files may be in memory, and a disk is to be measured.
         let folder = tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR"))?;
         let mut document: Value = serde_json::from_str(SUBMISSION)?;
         document["output_torques_n_m"] = json!(["@torque@"]);
@@ -152,7 +151,7 @@ impl Bench {
         self.folder.path().join(name)
     }
 
-    /// Tells how long the disk takes for what every commit waits for.
+    /// Prints the time of the disk for the sync that every commit waits for.
     fn describe_disk(&self) -> anyhow::Result<()> {
         let mut file = File::create(self.path("disk"))?;
         file.write_all(&vec![0; 4 << 20])?;
@@ -283,7 +282,7 @@ impl Bench {
         let service = self.program("overload")?;
         let taken = self.path("taken-overload");
 
-        // The queue is filled, and what is served is counted.
+        // The queue is filled, and the served requests are counted.
         let fill = Load {
             taken: Some(&taken),
             core: None,

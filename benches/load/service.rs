@@ -1,4 +1,4 @@
-//! A service in a process of its own, and what it and the system tell of it.
+//! A service in a process of its own, with its own figures and those of the system.
 
 use std::fs;
 use std::process::{Child, Command};

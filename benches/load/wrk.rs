@@ -1,4 +1,4 @@
-//! wrk: what it is to do, and what it saw.
+//! wrk: its load and its results.
 
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -14,7 +14,7 @@ const SCRIPTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/load");
 const CLIENT_CORE: &str = "1";
 const CONNECTIONS: u32 = 32;
 
-/// What wrk is to do.
+/// Load that wrk produces.
 pub(crate) struct Load<'a> {
     pub(crate) script: &'a str,
     pub(crate) connections: u32,
@@ -29,7 +29,7 @@ pub(crate) struct Load<'a> {
     pub(crate) core: Option<&'a str>,
 }
 
-/// What wrk saw. Latencies are in microseconds; a round is a submission with all looks at its job.
+/// Results of wrk. Latencies are in microseconds; a round is a submission with all looks at its job.
 #[derive(Debug, Deserialize)]
 pub(crate) struct Seen {
     pub(crate) requests: u64,

@@ -15,8 +15,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(fs::write(out.join("fmu.rs"), fmu(&out)?)?)
 }
 
-/// Compiles the program of the FMU for Linux, where that is what is built for, and for Windows, where its compiler is there. Without a
-/// compiler there is none.
+/// Compiles the program of the FMU for Linux, if that is the target, and for Windows, if its compiler is installed. Without a compiler the FMU has no program.
 fn fmu(out: &Path) -> Result<String, Box<dyn Error>> {
     let target = std::env::var("TARGET")?;
     let is_linux = target.starts_with("x86_64-") && target.contains("-linux-");

@@ -11,7 +11,7 @@ use super::chart::line_chart;
 /// The submission of the demo.
 const TEST_CASE_2: &str = include_str!("../../api/examples/test-case-2.json");
 
-/// Submits the case to the service at `address`, follows its events, and prints what comes out.
+/// Submits the case to the service at `address`, follows its events, and prints the results.
 pub(super) async fn run(address: SocketAddr) -> anyhow::Result<()> {
     let base = format!("http://{address}");
     let client = crate::client().build().context("no client can be set up")?;

@@ -43,7 +43,7 @@ fn unmarked(document: Vec<u8>) -> Vec<u8> {
     without_mark(&document).to_vec()
 }
 
-/// Whether a path stands for standard input or output.
+/// True if a path stands for standard input or output.
 pub(super) fn is_dash(path: &Path) -> bool {
     path.as_os_str() == "-"
 }

@@ -37,20 +37,20 @@ enum What {
     List,
     /// Revoke a key at once; its jobs stay.
     Revoke {
-        /// The public part of the key: what stands between the underscores.
+        /// The public part of the key, between the underscores.
         id: String,
     },
 }
 
 #[derive(Debug, clap::Args)]
 struct Create {
-    /// What you call the key.
+    /// Your name for the key.
     name: String,
     /// Whose jobs it makes and sees; several keys may have one client. "anonymous" has the jobs from before there were keys
     /// [default: the name].
     #[arg(long, value_name = "NAME")]
     client: Option<String>,
-    /// What its bearer may do.
+    /// Rights of the bearer.
     #[arg(long, value_parser = role(), default_value = "client")]
     role: Role,
     /// How long it is accepted, such as 90d or 12h [default: until it is revoked].

@@ -53,11 +53,11 @@ enum Command {
     Health(health::Health),
 }
 
-/// Runs what the command line asks for.
+/// Runs the command of the command line.
 ///
 /// # Errors
 ///
-/// What the command ends with, other than by an exit code of its own.
+/// The error of a command that has no exit code of its own for it.
 pub fn run() -> anyhow::Result<ExitCode> {
     let ended = match Arguments::parse().command {
         Command::Serve(serve) => serve.run(),

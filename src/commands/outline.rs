@@ -12,7 +12,7 @@ use super::document::{EXIT_PROBLEM, read, write};
 pub(crate) struct Outline {
     /// The drawing, DXF as text; - reads standard input.
     drawing: PathBuf,
-    /// Take only what is on this layer; may be given several times.
+    /// Reads this layer only; may be given several times.
     #[arg(long, value_name = "NAME")]
     layer: Vec<String>,
     /// The place of the axis of the gear, in the unit of the drawing; without it, the origin.
@@ -30,11 +30,11 @@ pub(crate) struct Outline {
 }
 
 impl Outline {
-    /// Runs the command. What was assumed and left out is printed.
+    /// Runs the command and prints the assumptions and the entities left out.
     ///
     /// # Errors
     ///
-    /// If a file cannot be read or written. What is wrong with the drawing is printed, and is exit code 2.
+    /// A file that cannot be read or written. Faults of the drawing are printed and end with exit code 2.
     pub(crate) fn run(&self) -> anyhow::Result<ExitCode> {
         let choices = Choices {
             layers: self.layer.clone(),

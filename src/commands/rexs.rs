@@ -36,7 +36,7 @@ pub(crate) enum Rexs {
     },
 }
 
-/// What a REXS model leaves open.
+/// Choices that a REXS model leaves open.
 #[derive(Debug, clap::Args)]
 pub(crate) struct ModelChoices {
     /// Of a REXS model: the id of the cylindrical stage, where there are several.
@@ -53,7 +53,7 @@ pub(crate) struct ModelChoices {
     /// Of a REXS model: the method; flexible if neither this nor the model says one.
     #[arg(long)]
     method: Option<String>,
-    /// Of a REXS model: the bore radius of both gears, or of the driving and the driven one, instead of what it says.
+    /// REXS model: the bore radius of both gears, or of the driving and the driven one, in place of the model's.
     #[arg(long, value_name = "MM", value_delimiter = ',')]
     bore_radius: Vec<f64>,
     /// Of a REXS model: the flanks of both gears that are loaded, instead of those that it says.
@@ -75,7 +75,7 @@ impl ModelChoices {
         .find_map(|(given, name)| given.then_some(name))
     }
 
-    /// The submission that a pair of a model comes to. What is assumed, not read or wrong is printed.
+    /// The submission of one pair of a model. Prints what it assumes, what it does not read, and faults.
     pub(super) fn submission(&self, model: &[u8]) -> Option<Submission> {
         let choices = Choices {
             stage: self.stage,
@@ -111,7 +111,7 @@ impl Rexs {
     ///
     /// # Errors
     ///
-    /// If a file cannot be read or written. What is wrong with a document is printed, and is exit code 2.
+    /// A file that cannot be read or written. Faults of a document are printed and end with exit code 2.
     pub(crate) fn run(&self) -> anyhow::Result<ExitCode> {
         match self {
             Self::Import {

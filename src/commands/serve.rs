@@ -25,7 +25,7 @@ use crate::webhooks::HookRules;
 pub(crate) struct Serve {
     #[command(flatten)]
     config: Config,
-    /// Submit test case 2 of the paper to the service once it runs, show what comes of it, and go on serving.
+    /// Submit test case 2 of the paper once the service runs, print its results, and go on serving.
     #[arg(long)]
     demo: bool,
     /// Collector of OpenTelemetry that takes a span of each request and each job, by OTLP over HTTP: http://localhost:4318 [default:
@@ -127,8 +127,8 @@ fn endpoint(text: &str) -> Result<String, String> {
     Ok(text.to_owned())
 }
 
-/// Ends the process when its shutdown has taken too long, even where no thread of the runtime is left to notice that. What was
-/// answered is on the disk; jobs that ran are found at the next start.
+/// Ends the process when its shutdown takes too long, even if no thread of the runtime runs any more. Answered requests are on the disk. The next start finds
+/// the jobs that ran.
 fn end_in_any_case() {
     std::thread::spawn(|| {
         std::thread::sleep(END + Duration::from_millis(500));

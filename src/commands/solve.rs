@@ -15,7 +15,7 @@ use meshwright_wire::{Problem, Submission, solve};
 use super::document::{EXIT_PROBLEM, is_dash, read, text_of, write};
 use super::rexs::ModelChoices;
 
-/// What the substructures of one submission may take; it is never reached by one pair.
+/// Limit of the memory of the substructures of one submission, in bytes; one pair never reaches it.
 const LIBRARY_BYTES: usize = 512 << 20;
 
 /// Compute one submission, or one pair of a REXS model.
@@ -66,7 +66,7 @@ impl Solve {
         Ok(ExitCode::SUCCESS)
     }
 
-    /// The submission, out of a model if the document is one. What is wrong is printed.
+    /// The submission, read out of a model if the document is one. Prints faults.
     fn submission(&self, document: &[u8]) -> Option<Submission> {
         if is_model(document) {
             return self.model.submission(document);

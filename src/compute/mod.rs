@@ -1,4 +1,4 @@
-//! What runs the engine: threads of its own, and computations that are no jobs.
+//! Threads that run the engine, and computations outside of jobs.
 //!
 //! In reading order: the [`Cores`] of the machine and the threads on them; and [`Previews`], for each of
 //! which a request waits, and of which nothing is kept. Jobs are computed by their workers in the same way.
@@ -22,7 +22,7 @@ pub(crate) use threads::{Work, engine_threads};
 /// The computation of a submission: long work that fills a core, reports to the run and obeys its stop.
 pub type Solve = Arc<dyn Fn(&Submission, &Run) -> Result<Results, Problem> + Send + Sync>;
 
-/// What a panic of the engine says.
+/// The message of a panic of the engine.
 pub(crate) fn message_of(panic: &(dyn Any + Send)) -> &str {
     panic
         .downcast_ref::<&str>()

@@ -26,10 +26,10 @@ use super::{Solve, message_of};
 /// Rooms that there are at least, so that a newer preview begins while the one that it replaces winds down.
 const FEWEST_ROOMS: usize = 2;
 
-/// What previews are allowed.
+/// Limits of previews.
 #[derive(Debug, Clone, Copy)]
 pub struct PreviewRules {
-    /// So many requests may wait for theirs at the same time.
+    /// Maximum number of requests that wait for a preview at the same time.
     pub at_once: usize,
     /// Positions times torques of one, at most.
     pub most_positions: u64,
@@ -51,7 +51,7 @@ pub struct Previewed {
 /// Something else that was computed while a request waited.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Computed<T> {
-    /// What came of it.
+    /// The result of the work.
     pub answer: T,
     /// How long it waited for threads.
     pub waited: Duration,
@@ -68,7 +68,7 @@ pub enum PreviewError {
     /// A newer one took its place.
     #[error("a newer preview took the place of this one")]
     Superseded,
-    /// It took too long.
+    /// The preview passed its time limit.
     #[error("the preview took longer than {0:?}")]
     TimeLimit(Duration),
     /// The service is shutting down.
@@ -123,8 +123,7 @@ impl Wanted {
         tickets.iter().find(same).cloned()
     }
 
-    /// What gives its place to a client that has so many: the newest one of the client that has most, if they then still have as
-    /// many as each other.
+    /// The preview that gives way when a client has `than` of them: the newest of the client that has most, if the two clients then have equally many.
     fn too_many(&self, than: usize) -> Option<Arc<Ticket>> {
         let most = self.0.values().max_by_key(|tickets| tickets.len())?;
         most.last().filter(|_| most.len() > than + 1).cloned()
@@ -135,11 +134,11 @@ impl Wanted {
 #[derive(Debug)]
 struct Ticket {
     client: String,
-    /// What the client calls the series that it belongs to.
+    /// The client's name for the series of this preview.
     id: Option<String>,
     /// Comes when another one has taken its place.
     replaced: CancellationToken,
-    /// Whether that was one of another client.
+    /// True if a preview of another client took its place.
     crowded_out: AtomicBool,
     /// Tells the engine to stop.
     stop: Arc<AtomicBool>,
@@ -190,7 +189,7 @@ impl Previews {
         })))
     }
 
-    /// What they are allowed.
+    /// Limits of previews.
     pub fn rules(&self) -> PreviewRules {
         self.0.rules
     }
@@ -352,7 +351,7 @@ impl Admitted {
         }
     }
 
-    /// What `work` gives, unless the preview is over before.
+    /// The result of `work`, unless the preview ends before it.
     async fn unless_over<T>(
         &self,
         deadline: Instant,

@@ -9,8 +9,7 @@ use tracing::warn;
 /// One computation uses so many cores at most: its serial parts leave more of them idle.
 const MOST_FOR_ONE: usize = 8;
 
-/// So many threads of workers are there for each core. More than one, so that a computation in a serial part leaves its
-/// cores to others.
+/// Threads of workers for each core. More than one, so that a computation in a serial part leaves its cores to others.
 const THREADS_A_CORE: usize = 4;
 
 /// How the cores of the machine are divided among computations.
@@ -20,12 +19,12 @@ pub struct Cores {
 }
 
 impl Cores {
-    /// Those of this machine.
+    /// The threads of this machine.
     pub fn here() -> Self {
         Self::of(thread::available_parallelism().map_or(1, usize::from))
     }
 
-    /// So many.
+    /// The threads of a machine with `available` cores.
     pub fn of(available: usize) -> Self {
         Self {
             available: available.max(1),
@@ -60,7 +59,7 @@ impl Cores {
 #[error("the engine's threads cannot be started")]
 pub struct NoThreads(#[source] ThreadPoolBuildError);
 
-/// What threads compute, by who waits for it.
+/// Kinds of computation, by who waits for the result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Work {
     /// A preview: somebody drags a hole and waits.
@@ -70,8 +69,7 @@ pub(crate) enum Work {
 }
 
 impl Work {
-    /// So much nicer are the threads than those that answer requests: while others want the processor, they take a third
-    /// or a tenth of a share.
+    /// The nice value of the threads above those that answer requests. While others want the processor, they get a third or a tenth of a share.
     fn niceness(self) -> i32 {
         match self {
             Self::Preview => 5,
@@ -85,10 +83,9 @@ impl Work {
 /// Computations do not share them. In a pool that several share, a thread that waits for a part of its own may take up
 /// another whole one, and the first ends only when that does.
 ///
-/// The system serves other threads first. A request needs a core for a fraction of a millisecond, a computation all of
-/// them for as long as it lasts. With equal priority a request waits for the end of a time slice of every engine's
-/// thread. Under full load that is longer than everything else that it waits for. The computation loses what requests
-/// take, no more.
+/// The system serves other threads first. A request needs a core for a fraction of a millisecond. A computation needs all of them until it ends. With equal
+/// priority a request waits for the end of a time slice of every engine thread. Under full load this wait is longer than all others together. The computation
+/// loses only the time that requests use.
 pub(crate) fn engine_threads(
     name: impl Fn(usize) -> String + 'static,
     work: Work,

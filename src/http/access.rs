@@ -26,13 +26,13 @@ use super::problem::{Refusal, overloaded};
 /// A client may send so many times its requests of a second at once.
 const BURST_SECONDS: NonZeroU32 = NonZeroU32::new(2).unwrap();
 
-/// Requests a second for what one link opens. A page takes five.
+/// Limit of the requests that one link opens, per second. A page makes five.
 const REQUESTS_OF_SHARE: NonZeroU32 = NonZeroU32::new(20).unwrap();
 
-/// Requests a second for what links open, of one address.
+/// Limit of the requests that links open, per second and address.
 const LOOKS_AT_SHARES: NonZeroU32 = NonZeroU32::new(100).unwrap();
 
-/// Whether requests need keys.
+/// Rule for keys.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
 pub enum KeysRule {
     /// As soon as there is one, and wherever others than this machine may be at the other end: beyond the loopback, under a
@@ -46,24 +46,24 @@ pub enum KeysRule {
     None,
 }
 
-/// What is allowed to whom.
+/// Rules of access.
 #[derive(Debug, Clone)]
 pub struct AccessRules {
-    /// Whether requests need keys.
+    /// Rule for keys.
     pub keys: KeysRule,
-    /// Whether only this machine reaches the service, as far as its configuration says.
+    /// True if only this machine reaches the service, as far as its configuration says.
     pub local: bool,
     /// Names under which the service may be called, beside this machine's own and all addresses.
     pub hosts: Vec<String>,
-    /// Whether a name that is not among them is refused. Where keys are needed a foreign name does no harm.
+    /// True if a name that is not among them is refused. Where keys are needed a foreign name does no harm.
     pub strict_hosts: bool,
     /// Requests a second of one client; 0: any number.
     pub requests_per_second: u32,
     /// Requests a second without a key that is known, of one address; 0: any number.
     pub unauthenticated_per_second: u32,
-    /// So many requests of one client may wait for something to happen: streams of events, and `Prefer: wait`.
+    /// Maximum number of requests of one client that wait for an event: streams of events, and `Prefer: wait`.
     pub waiting_per_client: u64,
-    /// So many of all clients together.
+    /// Maximum number of such requests of all clients together.
     pub waiting: u64,
 }
 
@@ -76,10 +76,10 @@ pub struct Access {
     rates: Rates<(String, NonZeroU32)>,
     /// Requests that wait for something to happen.
     waiting: Budget,
-    /// Requests for what links open, by link, and by the address that they come from.
+    /// Requests that links open, by link and by address.
     shares: Rates<Uuid>,
     looks_at_shares: Rates<Address>,
-    /// Whether a key was seen to be there: one that was ever made never vanishes.
+    /// True once the process has seen a key. Keys never vanish.
     has_keys: AtomicBool,
     unauthenticated: Option<Unauthenticated>,
 }
@@ -102,7 +102,7 @@ impl Access {
         }
     }
 
-    /// Whether a request with these headers needs a key; `None` if that depends on whether there is one.
+    /// True if a request with these headers needs a key; `None` if that depends on whether a key exists.
     pub(super) fn asks_for_keys(&self, headers: &HeaderMap) -> Option<bool> {
         match self.rules.keys {
             KeysRule::Required => Some(true),
@@ -116,7 +116,7 @@ impl Access {
         }
     }
 
-    /// Whether every request needs a key, even while there is none.
+    /// True if every request needs a key, even while there is none.
     pub fn always_asks_for_keys(&self) -> bool {
         self.asks_for_keys(&HeaderMap::new()) == Some(true)
     }
@@ -209,7 +209,7 @@ impl Access {
         self.rates.count(key, quota, burst, Instant::now())
     }
 
-    /// Counts a request for what a link opens, whether there is such a link or not.
+    /// Counts a request by a link's secret, valid or not.
     ///
     /// # Errors
     ///
@@ -220,7 +220,7 @@ impl Access {
             .count(address, LOOKS_AT_SHARES, burst, Instant::now())
     }
 
-    /// Counts a request for what this link opens.
+    /// Counts a request that this link opens.
     ///
     /// # Errors
     ///
@@ -237,12 +237,12 @@ impl Access {
     }
 }
 
-/// Whether a request asks for the health of the service.
+/// True for a request for the health of the service.
 fn is_health(uri: &Uri) -> bool {
     uri.path().starts_with("/health/")
 }
 
-/// Whether somebody has passed the request on: then who sent it is not on this machine, whatever the address says.
+/// True if a proxy has passed the request on. Its sender is then not on this machine, whatever the address says.
 fn came_through_a_proxy(headers: &HeaderMap) -> bool {
     let passed_on = |name: &HeaderName| {
         let name = name.as_str();
@@ -291,7 +291,7 @@ pub(super) async fn limit_active(request: Request, next: Next) -> Response {
     let response = next.run(request).await;
     match active.count_for_address() {
         Ok(()) => response,
-        // It was not asked for its key, or had none that is known.
+        // The request needed no key, or had an unknown one.
         Err(error) => refused(error),
     }
 }

@@ -1,4 +1,4 @@
-//! What answers are made of.
+//! Parts of answers.
 
 use axum::http::StatusCode;
 use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE, HeaderValue, LOCATION, RETRY_AFTER};
@@ -21,7 +21,7 @@ pub(super) fn file(media_type: &str, name: &str, body: impl IntoResponse) -> Res
     (headers, body).into_response()
 }
 
-/// What a submission came to, which stands at `address`: 200 where it has ended and the client `expects_end`, 202 otherwise.
+/// The answer to a submission, whose result stands at `address`: 200 if it has ended and the client `expects_end`, 202 otherwise.
 pub(super) fn submitted(
     view: impl IntoResponse,
     address: &str,

@@ -1,4 +1,4 @@
-//! What handlers work with.
+//! Shared state of the handlers.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
@@ -16,7 +16,7 @@ use crate::times::Times;
 use crate::tokens::Tokens;
 use crate::webhooks::Webhooks;
 
-/// What handlers work with.
+/// Shared state of the handlers.
 #[derive(Clone)]
 pub struct App {
     /// The jobs.
@@ -35,13 +35,13 @@ pub struct App {
     pub access: Arc<Access>,
     /// How the service looks from outside.
     pub edge: Arc<Edge>,
-    /// Whether this process computes jobs.
+    /// True if this process computes jobs.
     pub computes: bool,
     /// The memory for the bodies of requests and answers.
     pub bodies: BodyMemory,
-    /// What has to be known of the tables that are being read.
+    /// Outlines of the tables that are being read.
     pub outlines: Outlines,
-    /// What the last look at the database said.
+    /// Result of the last look at the database.
     pub readings: Arc<Readings>,
     /// Timeouts of requests.
     pub times: Times,

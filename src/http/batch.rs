@@ -37,7 +37,7 @@ pub(super) struct Batch<'a> {
     submissions: Vec<&'a RawValue>,
 }
 
-/// What came of the submissions of a batch, in their order.
+/// Outcomes of the submissions of a batch, in their order.
 #[derive(Serialize, ToSchema)]
 #[schema(title = "BatchAnswer")]
 pub(super) struct BatchAnswer<'a> {
@@ -49,7 +49,7 @@ pub(super) struct BatchAnswer<'a> {
     items: Vec<BatchItem<'a>>,
 }
 
-/// What came of one submission: a job, or a problem.
+/// Outcome of one submission: a job, or a problem.
 #[derive(Serialize, ToSchema)]
 #[schema(title = "BatchItem")]
 pub(super) struct BatchItem<'a> {
@@ -62,10 +62,9 @@ pub(super) struct BatchItem<'a> {
 
 /// Submit a batch of jobs
 ///
-/// Up to 100 submissions at once. Each is taken or refused by itself, as if it had been sent alone. The answer has an item for each, in their
-/// order. A batch of which nothing is taken is refused as a whole: as a single job where the queue has no room or nothing can be stored, with
-/// `Retry-After`, and else with the errors of its submissions. With an `Idempotency-Key` the batch may be repeated: what was taken is not
-/// taken twice.
+/// Up to 100 submissions at once. Each is taken or refused by itself, as if it had been sent alone. The answer has an item for each, in their order. A batch of
+/// which no submission is taken is refused as a whole: as a single job where the queue has no room or nothing can be stored, with `Retry-After`, and otherwise
+/// with the errors of its submissions. With an `Idempotency-Key` the batch may be repeated: no submission is taken twice.
 #[utoipa::path(
     post, path = "/v1/jobs/batch", tag = "Jobs", operation_id = "submit_batch",
     request_body(content = Batch, content_type = "application/json", description = "The submissions."),

@@ -8,8 +8,8 @@ use meshwright_wire::{Code, Problem};
 
 use super::problem::internal;
 
-/// So many tables are read at the same time: each takes a connection to the database, of which there are twice as many, so that
-/// short questions never wait for long ones.
+/// Maximum number of tables read at the same time. Each takes a connection to the database. There are twice as many connections, so that short queries never
+/// wait for long ones.
 static READERS: LazyLock<Budget> = LazyLock::new(|| Budget::of(2));
 
 /// The turn of `client` to read some of a table.

@@ -27,15 +27,15 @@ use super::memory::{weight, weight_of_lines};
 use super::problem::Refusal;
 use crate::mark::without_mark;
 
-/// So many times the limit is read and thrown away, because a client that is still sending does not see the answer.
+/// Multiple of the limit that is read and discarded, because a client that is still sending does not see the answer.
 const DRAINED: usize = 64;
 
-/// The bytes of a request's JSON document, so many MiB at most. The largest submission, with every table full, has a few hundred thousand bytes.
-/// And the memory that it and what is made of it take: a document does not come in, and is not read, before there is some, and who
-/// has many read shares it with the others.
+/// The bytes of a request's JSON document, at most `MIB` MiB, and the memory reserved for them and for the values parsed from them. The largest submission,
+/// with every table full, has a few hundred thousand bytes. A document is received and parsed only once its memory is reserved; a client with many documents
+/// shares its memory among them.
 pub(super) struct JsonBody<const MIB: usize = 1>(pub(super) Bytes, pub(super) Memory);
 
-/// The memory of a document: of its bytes, and of what is made of them.
+/// The memory of a document: for its bytes, and for the values parsed from them.
 pub(super) type Memory = [Option<Part>; 2];
 
 impl<const MIB: usize> FromRequest<App> for JsonBody<MIB> {
@@ -62,7 +62,7 @@ impl<const MIB: usize> IntoResponses for JsonBody<MIB> {
     }
 }
 
-/// What may be wrong with a body before it is read: its status, and a sentence.
+/// Faults of a body that show before it is read: status and sentence.
 fn refusals(mib: usize, kind: &str) -> [(&'static str, String); 2] {
     [
         ("413", format!("The body has more than {mib} MiB.")),
@@ -140,7 +140,7 @@ impl FromRequest<App> for ModelBody {
         if !is_packed(&body) {
             return Ok(Self(body, memory));
         }
-        // What comes out of an archive takes the memory that it would take had it been sent so.
+        // Unpacked content of an archive takes as much memory as the same content sent unpacked.
         let limit = MODEL_MIB * 1024 * 1024;
         let bytes = app.bodies.for_bytes(&client, limit).await?;
         let unpack = move |_: &Run| unpacked(&body, limit).map(Cow::into_owned);
@@ -201,7 +201,7 @@ impl IntoResponses for OutlineBody {
 /// A drawing may have so many MiB.
 const DRAWING_MIB: usize = 4;
 
-/// Whether the body is declared as one of `kinds`, by whichever of its names.
+/// Checks that the body is declared as one of `kinds`, by any of its names.
 fn check_media_type(headers: &HeaderMap, kinds: &[&str]) -> Result<(), Problem> {
     let refuse = |detail: String| Err(Problem::new(Code::UnsupportedMediaType, detail));
     if headers
@@ -230,7 +230,7 @@ fn check_media_type(headers: &HeaderMap, kinds: &[&str]) -> Result<(), Problem> 
         Some(name) => {
             name == *kind
                 || name.ends_with(&format!("+{kind}"))
-                // What browsers call an archive, and a file whose name they do not know.
+                // Names that browsers give to an archive, and to a file of an unknown kind.
                 || (*kind == "zip" && ["x-zip-compressed", "octet-stream"].contains(&name))
                 || (*kind == "dxf" && ["x-dxf", "octet-stream"].contains(&name))
         }

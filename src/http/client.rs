@@ -29,11 +29,11 @@ pub(super) struct Client {
     pub(super) pass: Pass,
 }
 
-/// The name of the client of a request, for what is done before its handler.
+/// The name of the client of a request, for layers that run before its handler.
 #[derive(Debug, Clone)]
 pub(super) struct ClientName(pub(super) Arc<str>);
 
-/// What a request got in by.
+/// The right by which a request was admitted.
 pub(super) enum Pass {
     /// Its key.
     Key(Key),
@@ -44,7 +44,7 @@ pub(super) enum Pass {
 }
 
 impl Pass {
-    /// Whether it would get in now. What cannot be looked up is not held against it.
+    /// True if the request would be admitted now. A failed lookup counts as true.
     pub(super) async fn holds(&self, app: &App) -> bool {
         let now = app.jobs.clock().now();
         match self {
@@ -153,7 +153,7 @@ impl FromRequestParts<App> for Administrator {
     }
 }
 
-/// Who sent a request, and in what part.
+/// The sender of a request and its role.
 struct Caller {
     member: Member,
     role: Role,
@@ -209,7 +209,7 @@ impl Caller {
     async fn with_key(app: &App, key: Key, headers: &HeaderMap) -> Result<Self, Problem> {
         let record = recognize(app, &key).await?;
         app.access.found_keys();
-        // What the log says of the request, it says of its key: who did what, and with what answer.
+        // The log entry of a request names its key: who did it, and with which answer.
         tracing::Span::current().record("key", &record.id);
         Ok(Self {
             member: Member {
@@ -257,7 +257,7 @@ async fn recognize(app: &App, key: &Key) -> Result<KeyRecord, Problem> {
     found.ok_or_else(|| unauthorized("The key is not known here, was revoked or has expired."))
 }
 
-/// Whether a request needs a key.
+/// True if a request needs a key.
 async fn asks_for_keys(app: &App, headers: &HeaderMap) -> Result<bool, Problem> {
     if let Some(asks) = app.access.asks_for_keys(headers) {
         return Ok(asks);

@@ -40,7 +40,7 @@ fn list_tables(document: &mut Value) {
     *paths = listed;
 }
 
-/// What is checked is a submission or a study.
+/// The checked document is a submission or a study.
 fn take_studies(document: &mut Value) {
     let schema = "/paths/~1v1~1validate/post/requestBody/content/application~1json/schema";
     if let Some(schema) = document.pointer_mut(schema) {
@@ -121,7 +121,7 @@ fn open_the_list_of_codes(document: &mut Value) {
     }
 }
 
-/// What is sent to webhooks.
+/// Messages to webhooks.
 fn describe_messages(document: &mut Value) {
     let status = document.pointer("/components/schemas/Status").is_some();
     let status = match status {

@@ -1,4 +1,4 @@
-//! What a request has with it to get in by.
+//! Credentials of a request.
 
 use axum::http::HeaderMap;
 use axum::http::header::AUTHORIZATION;
@@ -8,7 +8,7 @@ use meshwright_wire::{Code, Problem};
 use crate::keys::{self, Key};
 use crate::tokens;
 
-/// What a request has with it to get in by.
+/// A credential of a request.
 pub(super) enum Credential {
     /// A key of the service.
     Key(Key),
@@ -17,7 +17,7 @@ pub(super) enum Credential {
 }
 
 impl Credential {
-    /// What distinguishes it from others and does not reveal it.
+    /// Text that distinguishes the credential from others without revealing it.
     pub(super) fn fingerprint(&self) -> String {
         match self {
             Self::Key(key) => key.secret_hash(),
@@ -26,7 +26,7 @@ impl Credential {
     }
 }
 
-/// What a request has with it to get in by. What a proxy may have left there for itself is none.
+/// The bearer credential of a request. An empty one, as a proxy may leave it, counts as none.
 pub(super) fn bearer(headers: &HeaderMap) -> Result<Option<Credential>, Problem> {
     let mut found = None;
     for header in headers.get_all(AUTHORIZATION) {

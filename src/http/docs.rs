@@ -24,7 +24,7 @@ use super::problem::Refusal;
 use super::static_files::{Folder, StaticFile, files};
 use super::studies::StudyProgressView;
 
-/// What stands before the paths.
+/// The part of the document before the paths.
 #[derive(utoipa::OpenApi)]
 #[openapi(
     info(
@@ -65,13 +65,13 @@ pub(super) fn introduction() -> OpenApi {
     openapi
 }
 
-/// A submission, a study, a model and a drawing that operations show as what may be sent to them: they work as they stand.
+/// Working examples for operations: a submission, a study, a model and a drawing.
 const SUBMISSION: &str = include_str!("../../api/examples/standard-pair.json");
 const STUDY: &str = include_str!("../../api/examples/study-section-5.json");
 const MODEL: &str = include_str!("../../api/examples/test-case-2.rexs");
 const DRAWING: &str = include_str!("../../api/examples/openings.dxf");
 
-/// What may be sent to the operation at `path`, where it takes a body.
+/// An example of the body of the operation at `path`, if it takes one.
 fn example_of(path: &str) -> Option<Value> {
     let read = |text: &str| serde_json::from_str::<Value>(text).ok();
     Some(match path {
@@ -88,7 +88,7 @@ fn example_of(path: &str) -> Option<Value> {
     })
 }
 
-/// Adds what may be sent to the operation at `path`. A body that is no JSON is bytes, which is what generators of clients send it as.
+/// Adds the example of the body to the operation at `path`. A body that is not JSON is bytes, as generators of clients send it.
 fn show_body(path: &str, operation: &mut Operation) {
     let Some(RefOr::T(body)) = &mut operation.request_body else {
         return;
@@ -113,8 +113,7 @@ fn show_body(path: &str, operation: &mut Operation) {
     }
 }
 
-/// Adds to every operation what may be answered whatever it is: by who asks, by its bounds, by the state of the service. Whatever
-/// is refused is refused with a problem.
+/// Adds to every operation the answers that all have in common: for missing rights, for limits, for the state of the service. Each refusal is a problem.
 pub(super) fn add_common_answers(openapi: &mut OpenApi) {
     const WITH_KEY: [(&str, &str); 3] = [
         (
@@ -280,7 +279,7 @@ fn name_lists(value: &mut Value) {
     }
 }
 
-/// The document with the schemas of what is declared, of which utoipa knows the names alone.
+/// The document with the schemas of the declared types, of which utoipa knows only the names.
 pub(super) fn finished(openapi: &OpenApi) -> Value {
     fn put_declared(value: &mut Value) {
         if let Some(declared) = value.get_mut("x-declared").map(Value::take) {

@@ -5,14 +5,14 @@ use axum::http::header::HeaderValue;
 /// How the service looks from outside.
 #[derive(Debug, Clone, Default)]
 pub struct Edge {
-    /// What stands before the path in every link: nothing, or the public address without a slash at its end.
+    /// Prefix of the path in every link: empty, or the public address without a slash at its end.
     pub public_url: String,
     /// The origins whose pages may call the service; `*` for all.
     pub cors_origins: Vec<HeaderValue>,
-    /// Whether keys are needed from the start, for the OpenAPI document.
+    /// True if keys are needed from the start, for the OpenAPI document.
     pub asks_for_keys: bool,
     /// Whose tokens are accepted beside keys, for the same.
     pub issuer: Option<String>,
-    /// Whether the numbers of the service are served beside everything else.
+    /// True if the metrics are served at the same address as everything else.
     pub metrics_here: bool,
 }

@@ -54,7 +54,7 @@ pub(super) struct WatchEvent {
 #[derive(Clone, Copy, ToSchema)]
 #[schema(title = "EventName", rename_all = "snake_case")]
 pub(super) enum EventName {
-    /// What is watched, as it stands.
+    /// The watched state.
     Status,
     /// How far it has come.
     Progress,
@@ -89,7 +89,7 @@ pub(super) async fn events(client: Client, JobId(id): JobId) -> Result<Response,
     resource::watch::<Job>(client, id).await
 }
 
-/// What an event tells: its name, and its data as JSON.
+/// An event: its name, and its data as JSON.
 pub(super) type NamedData = (EventName, String);
 
 /// The event `name` with this data.
@@ -114,8 +114,7 @@ pub(super) fn place(app: &App, client: &str) -> Result<Part, Problem> {
     })
 }
 
-/// The answer that streams what `watch` sees, and keeps its place as long as that lasts: until there is no more to see, or who
-/// watches would not get in any more.
+/// The answer that streams the events of `watch`. It keeps its place until the events end, or until the watcher would not be admitted any more.
 pub(super) fn answer(app: App, watch: impl Watching, pass: Pass, place: Part) -> Response {
     let events = stream::unfold(
         (app, watch, pass, place, 1_u64),
@@ -160,7 +159,7 @@ pub(super) struct Watch {
     client: String,
     id: Uuid,
     news: News,
-    /// What the client knows.
+    /// The state that the client knows.
     status: Option<Status>,
     progress: Option<Progress>,
 }

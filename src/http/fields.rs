@@ -33,18 +33,18 @@ use super::problem::{Refusal, internal, of_missing_results};
 use crate::compute::PreviewError;
 use crate::jobs::{Job, Resource as _};
 
-/// How long it may take, in times of a preview, and at most: nobody drags what is looked at here, and volumes of both gears take seconds.
+/// Time limit in multiples of that of a preview: nobody drags these pictures, and volumes of both gears take seconds.
 const PREVIEWS_LONG: u32 = 4;
 const LONGEST: Duration = Duration::from_secs(60);
 
-/// What takes longer by the estimate of the job, or took it longer, may take so many times of that here: all of its positions are solved again.
+/// Time limit in multiples of the job's estimate or of its time, if that is longer than the limit of a preview: all of its positions are solved again.
 const JOBS_LONG: f64 = 4.0;
 
-/// What volumes of both gears take until they are written, in bytes for each tooth, and what their file has at most, packed.
+/// Bytes that volumes of both gears take until they are written, for each tooth, and the largest size of their packed file.
 const VOLUME_BYTES: [u64; 2] = [4 << 20, 1 << 20];
 
-/// The same of plates, for each unknown of the estimate. Pairs of 50/50 and of 300/300 teeth were seen to take 70 beside what the estimate says, while both
-/// gears are solved, and 23 in the file.
+/// The same for plates, for each unknown of the estimate. Pairs of 50/50 and of 300/300 teeth took 70 beside the estimate, while both gears are solved, and 23
+/// in the file.
 const PLATE_BYTES: [u64; 2] = [80, 30];
 
 /// Where to look.
@@ -96,11 +96,10 @@ pub(super) async fn vtu(
 
 /// Get the edges of both gears under load at a mesh position
 ///
-/// What a drawing of the deformed pair needs of `fields.vtu`: where the gears end, how far each node there moves against the hub of its
-/// gear, and its von Mises stress; and the transmission error, by which the driven gear is to be turned back for the flanks to touch. Of
-/// gears that are seen along their faces it is a section through the middle of the common face, and of a part that ends before it, its end. It is
-/// computed by the method that `fields.vtu` has while the request waits. It is bounded as previews
-/// are, but may take four times as long as they, or as the job: by its estimate, or as it was.
+/// The part of `fields.vtu` that a drawing of the deformed pair needs: the boundaries of the gears, the displacement of each node there against the hub of its
+/// gear, and its von Mises stress; and the transmission error, by which the driven gear is to be turned back for the flanks to touch. For pairs along their
+/// faces it is a section through the middle of the common face; of a part that ends before it, its end. It is computed by the method of `fields.vtu` while the
+/// request waits. Its time limit is four times that of a preview, or four times the job's estimate or time.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/results/edges.json", tag = "Results", operation_id = "get_edges",
     params(FieldParameters, IfNoneMatch),
@@ -159,11 +158,11 @@ pub(super) enum NoLook {
     Busy,
 }
 
-/// How an answer is called and what it is.
+/// Name and media type of an answer.
 pub(super) struct File {
     pub(super) name: &'static str,
     pub(super) media_type: &'static str,
-    /// Whether it has both gears whole, which is large: it is packed as it is made, and a browser saves it rather than shows it.
+    /// True if it holds both gears whole. The file is large: it is packed while it is made, and a browser saves it.
     pub(super) has_grids: bool,
 }
 
@@ -186,7 +185,7 @@ impl File {
     }
 }
 
-/// What `work` makes of job `id` at a torque and a mesh position of it, `place`.
+/// The file that `work` makes of job `id` at `place`, a torque and a mesh position.
 async fn answer(
     client: &Client,
     id: Uuid,
@@ -206,7 +205,7 @@ async fn answer(
     done.look(client, (file, &form), request, look).await
 }
 
-/// A job that has results, whose submission is computed once more for what they do not hold.
+/// A job with results whose submission is computed again for fields that the results do not hold.
 pub(super) struct Done {
     job: Job,
     hash: String,
@@ -251,7 +250,7 @@ impl Done {
             has_grids,
         } = file;
         let case = submission.case().clone();
-        // It is solved by the whole method of the plane or of faces, whichever the job had.
+        // The full method of the plane or of faces solves it, whichever the job had.
         let whole = Case {
             model: match &case.model {
                 Model::Faces(faces, _) => Model::Faces(faces.clone(), FaceHoles::Whole),
@@ -294,7 +293,7 @@ impl Done {
                 ([(CONTENT_TYPE, media_type)], body).into_response()
             })
         };
-        // What this version of the solver says of the job; another one that answers under the same address may say it otherwise.
+        // The answer of this version of the solver; another version may answer otherwise at the same address.
         let mut response = tag_of_parts(&[&hash, name, form, SOLVER_VERSION])
             .answer(Keep::AskAgain, request, made)
             .await?;
@@ -325,8 +324,7 @@ fn of_look(error: PreviewError) -> Problem {
     }
 }
 
-/// The bytes that displacements and stresses all through both gears take until what is asked of them is written, and those of the packed file of
-/// both, if that is asked.
+/// Bytes that displacements and stresses of both gears take until the file is written, and those of the packed file of both, if the request asks for it.
 fn field_bytes(case: &Case, degrees_of_freedom: u64, has_grids: bool) -> [u64; 2] {
     let [made, sent] = if case.faces().is_some() {
         if !has_grids {

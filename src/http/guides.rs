@@ -1,5 +1,4 @@
-//! The guides, which are part of the program: what a field, a warning or a number means, a click from where it is asked. They are made of their
-//! text in `docs` when the program is built.
+//! The guides, part of the program: explanations of fields, warnings and numbers, a click away from each. The build makes them from the texts in `docs`.
 
 use std::sync::LazyLock;
 
@@ -53,7 +52,7 @@ async fn answer(
 mod tests {
     use super::*;
 
-    /// What stands between `before` and a quotation mark, wherever it does.
+    /// All texts between `before` and the next quotation mark.
     fn all_between<'a>(text: &'a str, before: &str) -> Vec<&'a str> {
         let parts = text.split(before).skip(1);
         parts.filter_map(|part| part.split('"').next()).collect()
@@ -98,7 +97,7 @@ mod tests {
 
     #[test]
     fn what_is_linked_and_not_served_stays_as_words() {
-        // It is linked to a file of the tree.
+        // The guide links to a file of the tree.
         let theory = page("theory").unwrap();
         assert!(theory.contains(" differences"), "the words stay");
         assert!(!theory.contains(">differences</a>"));

@@ -1,4 +1,4 @@
-//! Headers that every answer bears: what a browser may not do with it, and under what name it stands in the log.
+//! Headers of every answer: what browsers may not do with it, and its name in the log.
 
 use std::time::SystemTime;
 
@@ -14,7 +14,7 @@ use uuid::Uuid;
 use crate::jobs::{Clock, without_secrets};
 use crate::spans::{self, Place, Span, Value};
 
-/// What is no page runs nothing. The page runs its own files and talks to its own service; the documentation brings scripts of its own.
+/// Content other than the page runs nothing. The page runs its own files and connects to its own service. The documentation brings scripts of its own.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 const POLICY_OF_PAGE: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 const POLICY_OF_DOCS: &str = "default-src 'self'; script-src 'self' 'unsafe-inline'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
@@ -28,7 +28,7 @@ const RESOURCE_POLICY: HeaderName = HeaderName::from_static("cross-origin-resour
 /// The most characters of a request's id that a client gives.
 const LONGEST_ID: usize = 128;
 
-/// Says what browsers may not do with answers, and that what is private is not to be kept by others.
+/// Adds the headers that restrict browsers, and forbids caches to keep private answers.
 pub(super) async fn secure(
     State(public_url_is_https): State<bool>,
     request: Request,
@@ -105,7 +105,7 @@ pub(super) async fn name(mut request: Request, next: Next) -> Response {
 }
 
 fn is_id(id: &HeaderValue) -> bool {
-    // What stands in a log is not to look like another line of it.
+    // A text in a log must not look like another line of it.
     let is_plain = |byte: &u8| byte.is_ascii_alphanumeric() || b"-_.:/+=".contains(byte);
     (1..=LONGEST_ID).contains(&id.len()) && id.as_bytes().iter().all(is_plain)
 }
@@ -118,7 +118,7 @@ fn value(text: &str) -> HeaderValue {
 #[derive(Clone)]
 pub(super) struct Made(pub(super) Vec<Uuid>);
 
-/// Tells the span of a request, to the head of its answer, and what it has made.
+/// Records status and route in the span of a request.
 pub(super) async fn tell(request: Request, next: Next) -> Response {
     /// The most characters of a path that are exported.
     const LONGEST_PATH: usize = 200;
@@ -133,7 +133,7 @@ pub(super) async fn tell(request: Request, next: Next) -> Response {
     };
     let begin = SystemTime::now();
     let method = super::metrics::known(request.method());
-    // The pattern, not the address: what is alike has one name.
+    // The pattern, not the address: requests of one kind have one name.
     let route = request.extensions().get::<MatchedPath>();
     let route = route.map_or("none", MatchedPath::as_str).to_owned();
     let id = request.headers().get(REQUEST_ID);
@@ -232,7 +232,7 @@ impl Trace {
         }
     }
 
-    /// Whether spans are exported, and whoever began the trace wants that.
+    /// True if spans are exported and the parent span is sampled.
     fn is_exported(&self) -> bool {
         let flags = u8::from_str_radix(&self.flags, 16).unwrap_or(0);
         spans::are_exported() && flags & 1 == 1

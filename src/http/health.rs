@@ -1,4 +1,4 @@
-//! Whether the service lives, and whether it can work.
+//! Health and readiness of the service.
 
 use std::sync::atomic::Ordering;
 
@@ -12,16 +12,16 @@ use utoipa::ToSchema;
 use super::app::App;
 use super::problem::Plain;
 
-/// Whether the service can work.
+/// Readiness of the service.
 #[derive(Serialize, ToSchema)]
 pub(super) struct Readiness {
-    /// Whether new jobs will be computed.
+    /// True if new jobs will be computed.
     ready: bool,
-    /// Whether the database takes writes.
+    /// True if the database takes writes.
     database: bool,
     /// The number of workers that live.
     workers: usize,
-    /// Whether the service is on its way down.
+    /// True during shutdown.
     shutting_down: bool,
 }
 

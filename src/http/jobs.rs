@@ -23,7 +23,7 @@ use super::resource::{self, Shown};
 use super::view::JobView;
 use crate::jobs::{Filter, Job, JobError, Jobs, Membership, Status};
 
-/// What to list.
+/// Filter of a list.
 #[derive(Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
@@ -57,7 +57,7 @@ pub(super) struct ListParameters {
     /// Jobs before the first one that was submitted at this instant or later (RFC 3339).
     #[param(format = DateTime, example = "2100-01-01T00:00:00Z")]
     submitted_before: Option<String>,
-    /// So many jobs at most.
+    /// Maximum number of jobs.
     #[param(minimum = 1, maximum = 200, default = 50, example = 20)]
     limit: Option<u32>,
     /// Where to go on: `next` of the list before.
@@ -119,7 +119,7 @@ impl ListParameters {
         })
     }
 
-    /// What the address of the next page has in common with this one's.
+    /// Parameters that the address of the next page shares with this one.
     fn pairs(&self) -> [(&'static str, Option<&str>); 7] {
         [
             ("status", self.status.as_deref()),

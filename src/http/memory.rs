@@ -1,4 +1,4 @@
-//! The memory for the bodies of requests and answers, as long as they are here, and for what is made of them.
+//! The memory for the bodies of requests and answers, while they exist, and for the values made of them.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -14,20 +14,20 @@ use tokio::time::timeout;
 
 use super::problem::{Refusal, internal};
 
-/// So long a request waits for memory, at most.
+/// Longest time that a request waits for memory.
 const LONGEST_WAIT: Duration = Duration::from_secs(90);
 
-/// A document of no more bytes waits for no memory. What comes of it is bounded by the connections, which have buffers of that size
-/// anyway, and what is made of it by the few that are read at the same time.
+/// A document of at most this many bytes waits for no memory. Its answer is bounded by the connections, which have buffers of that size anyway. The memory of
+/// its values is bounded by the number of documents parsed at the same time.
 pub(super) const SMALL: usize = 64 << 10;
 
 /// An answer of no more bytes is bounded by the connections as well.
 pub(super) const SMALL_ANSWER: usize = 16 << 10;
 
-/// What is made of a document takes so many times its size beside it, for its texts.
+/// Memory of the texts of a document, beside its bytes, in multiples of its size.
 const TIMES_ITS_SIZE: u64 = 3;
 
-/// And so many bytes for each of its values, with what a study makes of them.
+/// Bytes for each value of a document, including those that a study makes of it.
 const FOR_A_VALUE: u64 = 150;
 
 /// A line of a drawing takes so many bytes, in lists that grow twofold, beside its share of the lines and arcs.
@@ -44,7 +44,7 @@ pub struct BodyMemory {
 }
 
 impl BodyMemory {
-    /// So many bytes in all for what is sent, and so many for answers.
+    /// Limits in bytes: `sent` for requests, `answers` for answers.
     pub fn of(sent: u64, answers: u64) -> Self {
         let bytes = sent / 4;
         Self {
@@ -70,7 +70,7 @@ impl BodyMemory {
         part(&self.sent, client, length as u64).await
     }
 
-    /// The memory for what is made of `document`, by its weight; none where it is small.
+    /// The memory for the values of `document`, by its weight; `None` for a small one.
     ///
     /// # Errors
     ///
@@ -185,7 +185,7 @@ impl IntoResponse for Held {
     }
 }
 
-/// Marks an answer whose body needs no memory, or holds what it needs.
+/// Marks an answer whose body needs no memory or holds its own.
 #[derive(Debug, Clone)]
 pub(super) struct Counted;
 
@@ -212,16 +212,15 @@ pub(super) async fn hold(
     held.unwrap_or_else(IntoResponse::into_response)
 }
 
-/// What is made of a document takes so many bytes, about. Every value of JSON but the first stands behind one of three signs, and every
-/// element of XML behind a fourth, so their number is known without reading them. Texts that contain such signs count as larger than
-/// they are.
+/// Estimate in bytes of the memory for the values of a document. Every value of JSON but the first follows one of three characters, and every element of XML
+/// follows a fourth. Their number is known without parsing. Texts with such characters are overestimated.
 pub(super) fn weight(document: &[u8]) -> u64 {
     let is_sign = |byte: &&u8| matches!(byte, b',' | b'[' | b'{' | b'<');
     let values = document.iter().filter(is_sign).count() as u64;
     TIMES_ITS_SIZE * document.len() as u64 + FOR_A_VALUE * values
 }
 
-/// What is made of a drawing takes so many bytes, about: each two lines are a group.
+/// Estimate in bytes of the memory for the groups of a drawing: two lines each.
 pub(super) fn weight_of_lines(document: &[u8]) -> u64 {
     let lines = document.iter().filter(|byte| **byte == b'\n').count() as u64;
     TIMES_ITS_SIZE * document.len() as u64 + FOR_A_LINE * lines

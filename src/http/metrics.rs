@@ -20,7 +20,7 @@ use crate::jobs::JobError;
 use crate::machine;
 use crate::tokens::Tokens;
 
-/// Declares numbers: their names, and what they are.
+/// Declares metrics: names and descriptions.
 macro_rules! numbers {
     ($($name:literal: $about:literal,)*) => {
         &[$(($name, $about)),*]
@@ -37,7 +37,7 @@ const COUNTERS: &[(&str, &str)] = numbers! {
     "meshwright_cache_evictions_total": "Substructures that found no room or had to make room.",
 };
 
-/// What is rare is exported from the beginning, so that an alert sees its first time as a growth.
+/// Rare events exist as counters from the start, with the value 0, so that an alert sees the first one as an increase.
 const RARE: &[(&str, &str)] = numbers! {
     "meshwright_connections_evicted_total": "Connections that gave way to new ones: idle, or reading nothing of their answer.",
     "meshwright_strangers_refused_total": "Requests without a known key that were refused because too many came.",
@@ -217,7 +217,7 @@ async fn set_storage(app: &App) -> Result<(), Problem> {
     Ok(())
 }
 
-/// What the process is, and what it stands on.
+/// Metrics of the process and its version.
 fn set_process(app: &App) {
     metrics::gauge!("meshwright_build_info", "version" => env!("CARGO_PKG_VERSION")).set(1.0);
     if let Some(bytes) = machine::occupied_bytes() {
@@ -231,7 +231,7 @@ fn set_process(app: &App) {
     metrics::gauge!("meshwright_identity_provider_answers").set(f64::from(u8::from(answers)));
 }
 
-/// The cache counts for itself; what it has counted is copied when somebody looks.
+/// The cache counts for itself; its counters are copied at each scrape.
 fn set_cache(library: &Library) {
     for (shelf, usage) in library.usage() {
         metrics::gauge!("meshwright_cache_bytes", "shelf" => shelf).set(usage.bytes as f64);

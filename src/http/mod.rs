@@ -1,7 +1,7 @@
 //! The jobs over HTTP. A handler takes a document, hands it on, and answers; all work is done below.
 //!
-//! In reading order: what handlers work with; the router and its layers; who gets in; how errors become problem documents; what requests are made of (body, client,
-//! parameters, preferences); what answers are made of (bodies and headers, entity tags, packing, pages, the view of a job); the handlers.
+//! In reading order: the shared state of handlers; the router and its layers; authentication; problem documents; parts of requests (body, client, parameters,
+//! preferences); parts of answers (bodies and headers, entity tags, compression, pages, the view of a job); the handlers.
 
 #![warn(clippy::disallowed_methods)]
 

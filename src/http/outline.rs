@@ -19,10 +19,10 @@ use super::parameters::{Parameters, invalid};
 use super::pictures;
 use super::problem::{Refusal, internal};
 
-/// The media type of what a drawing comes to.
+/// Media type of the outline of a drawing.
 const DRAWN: &str = "application/vnd.meshwright.outline+json";
 
-/// What a drawing leaves open; a submission leaves nothing of it.
+/// Choices that a drawing leaves open; a submission leaves none.
 #[derive(Debug, Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
@@ -45,7 +45,7 @@ pub(super) struct DrawingParameters {
 }
 
 impl DrawingParameters {
-    /// What they choose.
+    /// The choices of the parameters.
     ///
     /// # Errors
     ///
@@ -81,7 +81,7 @@ impl DrawingParameters {
     }
 }
 
-/// What a drawing comes to.
+/// The outline of a drawing.
 #[derive(Serialize, ToSchema)]
 #[schema(as = DrawnOutline, title = "Outline of a drawing")]
 pub(super) struct DrawnOutline {
@@ -90,7 +90,7 @@ pub(super) struct DrawnOutline {
     outline: Vec<Vec<Value>>,
     /// The radius of the bore, in mm: that of the request, or that of the smallest circle about the axis; null where there is neither.
     bore_radius_mm: Option<f64>,
-    /// What was assumed, joined and left out, a sentence each.
+    /// Assumptions, joined ends and entities left out, a sentence each.
     remarks: Vec<String>,
 }
 
@@ -160,7 +160,7 @@ fn drawn(drawing: &[u8], choices: &Choices) -> Result<Response, Refusal> {
     Ok(response)
 }
 
-/// Whether the client asks for a picture by its name.
+/// True if the client asks for a picture by its media type.
 fn wants_picture(request: &HeaderMap) -> bool {
     let mut accepted = request.get_all(ACCEPT).iter();
     accepted.any(|value| {

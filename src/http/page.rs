@@ -58,7 +58,7 @@ pub(super) fn span(since: Option<&str>, until: Option<&str>) -> Result<Span, Pro
     })
 }
 
-/// The answer: the page of what was `found`, and a link to the next one at `path` with the same parameters.
+/// The answer: one page of `found`, and a link to the next one at `path` with the same parameters.
 pub(super) fn answer<'a, T, V: Serialize>(
     edge: &Edge,
     path: &str,

@@ -1,4 +1,4 @@
-//! What a request says beside its body: path, query and headers.
+//! Parts of a request beside its body: path, query and headers.
 
 use axum::extract::{FromRequestParts, Path, Query};
 use axum::http::HeaderMap;
@@ -110,7 +110,7 @@ impl User {
     }
 }
 
-/// The header of a conditional request; what it asks for is answered with an `ETag`, or 304.
+/// The header of a conditional request. The answer has an `ETag`, or is 304.
 #[derive(IntoParams)]
 #[into_params(parameter_in = Header)]
 #[expect(dead_code, reason = "the document alone reads it")]
@@ -129,7 +129,7 @@ struct Named {
 /// Declares the ids that stand in paths.
 macro_rules! ids {
     ($($Id:ident, $missing:ident: $sentence:literal;)*) => {$(
-        /// The id in a path. What is no id names nothing.
+        /// The id in a path. A text that is no id is answered as an unknown id.
         pub(super) struct $Id(pub(super) Uuid);
 
         impl $Id {

@@ -15,7 +15,7 @@ use super::client::Client;
 /// Nobody waits longer than this, in seconds.
 pub(super) const LONGEST_WAIT_S: u64 = 60;
 
-/// So long a client would wait for the end of a job.
+/// Time that a client would wait for the end of a job.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, IntoParams)]
 #[into_params(names("Prefer"), parameter_in = Header)]
 pub(super) struct Wait(
@@ -24,7 +24,7 @@ pub(super) struct Wait(
     Option<u64>,
 );
 
-/// So long it may wait, and its place among those who do. Who finds no place is answered at once.
+/// The granted time and the place among the waiting requests. A request without a place is answered at once.
 #[derive(Debug)]
 pub(super) struct Granted {
     seconds: Option<u64>,
@@ -32,7 +32,7 @@ pub(super) struct Granted {
 }
 
 impl Wait {
-    /// What is granted to `client`.
+    /// The time granted to `client`.
     pub(super) fn grant(self, client: &Client) -> Granted {
         let access = &client.app.access;
         let place = self.0.and_then(|_| access.place_to_wait(client.name()));
@@ -64,7 +64,7 @@ impl Granted {
         self.seconds.map(Duration::from_secs)
     }
 
-    /// Says in an answer what was granted.
+    /// Adds the granted preference to an answer.
     pub(super) fn acknowledge(&self, headers: &mut HeaderMap) {
         if let Some(seconds) = self.seconds {
             let value = HeaderValue::from_str(&format!("wait={seconds}"));

@@ -1,4 +1,4 @@
-//! What a problem's `type` links to: a page for each kind of problem.
+//! The pages to which a problem's `type` links, one for each kind of problem.
 
 use axum::extract::Path;
 use axum::response::Html;

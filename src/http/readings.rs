@@ -1,4 +1,4 @@
-//! Whether the database takes writes, as it was seen last.
+//! The last reading of whether the database takes writes.
 
 use std::time::Duration;
 
@@ -15,7 +15,7 @@ const GOOD_FOR: Duration = Duration::from_secs(1);
 pub struct Readings(Mutex<Option<Instant>>);
 
 impl Readings {
-    /// Whether the database takes writes. Those who ask at the same time share one look.
+    /// True if the database takes writes. Simultaneous requests share one look.
     pub(super) async fn database_works(&self, jobs: &Jobs) -> bool {
         let mut last = self.0.lock().await;
         if jobs.store().fault().is_some() {

@@ -1,4 +1,4 @@
-//! What a client can know without a job: whether a submission would do, examples, and limits.
+//! Answers that need no job: checks of submissions, examples, and limits.
 
 use std::sync::LazyLock;
 
@@ -28,7 +28,7 @@ use crate::compute::PreviewRules;
 use crate::jobs::{LONGEST_LINK_DAYS, MOST_LINKS, Rules};
 use crate::webhooks::most_webhooks;
 
-/// The answer to what can be computed.
+/// The answer for a document that can be computed.
 #[derive(Serialize, ToSchema)]
 #[serde(untagged)]
 #[schema(title = "Validated")]
@@ -47,11 +47,11 @@ pub(super) struct StudyValidation {
     valid: bool,
     /// Designs in all; of a search, the most that it may come to.
     total: usize,
-    /// What the computation will cost; null where none of the designs that were looked at can be built.
+    /// Estimated cost of the computation; null if none of the sampled designs can be built.
     estimate: Option<StudyEstimate>,
 }
 
-/// What the computation of a study will cost, by a few of its designs.
+/// Estimated cost of a study, from a few of its designs.
 #[derive(Serialize, ToSchema)]
 #[schema(title = "StudyEstimate")]
 pub(super) struct StudyEstimate {
@@ -91,14 +91,14 @@ impl StudyValidation {
     }
 }
 
-/// So many designs of a study are estimated: each estimate divides two gears into elements.
+/// Number of designs of a study that are estimated. Each estimate divides two gears into elements.
 const SAMPLES: usize = 3;
 
 fn stopped() -> Problem {
     Problem::new(Code::Stopped, "The work was stopped before it was done.")
 }
 
-/// Whether a document is meant for a study: it has a field that no submission has.
+/// True if a document is meant for a study: it has a field that no submission has.
 fn is_study(document: &[u8]) -> bool {
     #[derive(Deserialize)]
     struct OfStudies {
@@ -117,9 +117,9 @@ fn is_study(document: &[u8]) -> bool {
 
 /// Check a submission or a study
 ///
-/// Makes no job. A submission is answered as it would be computed, with the pair's derived geometry, warnings, and an estimate of size and
-/// time; a study, population or search with the number of its designs and an estimate of what they take. What cannot be computed is answered
-/// with the problem that it would meet. Made to be called on every edit of a form.
+/// Makes no job. The answer to a submission is the submission with every default, the pair's derived geometry, warnings, and an estimate of size and time. The
+/// answer to a study, population or search is the number of its designs and their estimated cost. A document that cannot be computed is answered with the
+/// problem of its submission. Made to be called on every edit of a form.
 #[utoipa::path(
     post, path = "/v1/validate", tag = "Reference", operation_id = "validate",
     request_body(content = Submission, content_type = "application/json", description = "The submission, or the study."),
@@ -152,9 +152,9 @@ document! {
     pub(super) struct Example as Example view of (example: &meshwright_wire::Example) {
         /// A short name.
         name: &'static str = example.name,
-        /// What it shows.
+        /// Description of the example.
         description: &'static str = example.description,
-        /// Whether it can be computed. One cannot, on purpose: it shows what a refusal looks like.
+        /// False for the one example that shows a refusal.
         valid: bool = example.valid,
         /// The submission, ready for `POST /v1/jobs`.
         #[schema(value_type = Submission)]
@@ -198,8 +198,8 @@ pub(super) struct Quantities {
 
 /// Get quantities
 ///
-/// The numbers by which designs are told: columns of tables, goals and bounds of searches, and what populations tell have these names. Each says what it
-/// is called, its unit, which way it is better, and which submissions tell it.
+/// The quantities of a design. Columns of tables, goals and bounds of searches, and results of populations use these names. Each has a title, its unit, the
+/// better direction, and the submissions that have it.
 #[utoipa::path(
     get, path = "/v1/quantities", tag = "Reference", operation_id = "get_quantities",
     security(()),
@@ -219,15 +219,15 @@ document! {
     pub(super) struct ServiceLimits as ServiceLimits, "Limits" view of (app: &App) {
         #[serde(flatten)]
         submission: Limits = Limits::of(MOST_DESIGNS),
-        /// What previews are allowed.
+        /// Limits of previews.
         previews: PreviewLimits = PreviewLimits::of(app.previews.rules()),
-        /// What one client is allowed.
+        /// Limits of one client.
         client: ClientLimits = ClientLimits::of(app.jobs.rules()),
     }
 }
 
 document! {
-    /// What one client is allowed, unless its key says otherwise.
+    /// Limits of one client, unless its key says otherwise.
     pub(super) struct ClientLimits as ClientLimits, "ClientLimits" view of (rules: &Rules) {
         /// The most jobs that may wait, those of studies aside.
         jobs_waiting: u32 = rules.client_queue_limit,
@@ -249,7 +249,7 @@ document! {
 }
 
 document! {
-    /// What previews are allowed.
+    /// Limits of previews.
     pub(super) struct PreviewLimits as PreviewLimits, "PreviewLimits"
     view of (rules: PreviewRules) {
         /// The most positions times torques of one.

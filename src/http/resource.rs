@@ -25,7 +25,7 @@ pub(super) trait Shown: Resource {
     /// Where all of them are listed.
     const PATH: &'static str;
 
-    /// What follows the events of one.
+    /// The stream of the events of one.
     type Watch: Watching;
 
     /// Its view.
@@ -78,7 +78,7 @@ pub(super) async fn show<R: Shown>(
         }
         None => R::find(jobs, client.name(), id).await?,
     };
-    // What was sent never changes, and is not read where the state has not changed.
+    // The submission never changes, and is not read if the state has not changed.
     let whole = async { Ok::<_, Refusal>(json(found.whole_view(jobs, edge).await?)) };
     let tag = found.tag(edge);
     let mut response = tag.answer(Keep::AskAgain, &request, whole).await?;
@@ -131,7 +131,7 @@ async fn whose<R: Shown>(client: &Client, id: Uuid) -> Result<(String, By), JobE
     Ok(other.map_or(own, |owner| (owner, By::Administrator)))
 }
 
-/// Logs what an administrator has done to another client's job or study. The span of the request says who that is.
+/// Logs an administrator's action on another client's job or study. The span of the request names the administrator.
 fn note(client: &Client, by: By, done: &str, path: &str, id: Uuid, owner: &str) {
     if by == By::Administrator {
         let administrator = client.name();

@@ -25,7 +25,7 @@ use crate::jobs::{Job, JobError, Resource as _};
 /// Stages beyond this number are not looked at.
 const MOST_STAGES: usize = 20;
 
-/// What a model leaves open.
+/// Choices that a model leaves open.
 #[derive(Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
@@ -65,16 +65,16 @@ impl FlankParameter {
     }
 }
 
-/// What a model comes to.
+/// The submissions of a model.
 #[derive(Default, Serialize, ToSchema)]
 #[schema(as = RexsModel, title = "Model")]
 pub(super) struct ModelView {
     /// A submission for each cylindrical stage that is a pair of external gears, every default filled in.
     #[schema(value_type = Vec<Submission>)]
     submissions: Vec<Submission>,
-    /// What the model says and was read for none of them.
+    /// Parts of the model that none of the stages read.
     not_read: Vec<NotReadView>,
-    /// What the model does not say and was assumed, a sentence each.
+    /// Assumptions where the model is silent, a sentence each.
     assumed: Vec<String>,
     /// Why the other stages cannot be taken.
     refused: Vec<RefusedView>,
@@ -95,15 +95,15 @@ document! {
     pub(super) struct RefusedView as RefusedPlace, "RefusedPlace" view of (fault: Fault) {
         /// The component and its attribute, or the line, or the file.
         place: String = fault.place,
-        /// What is wrong there, and what would do.
+        /// The fault, and the nearest value that would do.
         detail: String = fault.detail,
     }
 }
 
 /// Read a model of a gearbox
 ///
-/// Takes a REXS model, version 1.0 to 2 as XML, as JSON or as either in a zip archive, and answers with the submission that each of its
-/// cylindrical stages comes to, and with what was not read. Makes no job.
+/// Takes a REXS model, version 1.0 to 2 as XML, as JSON or as either in a zip archive. The answer has the submission of each of its cylindrical stages, and a
+/// list of the parts that were not read. Makes no job.
 #[utoipa::path(
     post, path = "/v1/rexs", tag = "Reference", operation_id = "read_model",
     request_body(
@@ -178,10 +178,10 @@ fn model_view(model: &[u8], parameters: &ModelParameters, run: &Run) -> Result<M
     Ok(view)
 }
 
-/// What is wrong with a model at a place of it, and with the field of the submission that would come of it.
+/// A fault at a place of the model, and the same for the field of its submission.
 type Wrong = (Fault, FieldError);
 
-/// What is wrong with a model itself: no field of a submission is.
+/// A fault of the model itself, without a field of a submission.
 fn of_model(stage: Option<i64>, fault: Fault) -> Wrong {
     let error = FieldError::new("", Code::ModelRefused, "");
     wrong(stage, fault, error)
@@ -204,7 +204,7 @@ fn refusal(wrong: Vec<Wrong>) -> Problem {
     }
 }
 
-/// The submission, if it can be computed; what is wrong is reported at its place in the model.
+/// The submission, if it can be computed; faults are reported at their places in the model.
 fn checked(stage: Option<i64>, import: &Import) -> Result<Submission, Vec<Wrong>> {
     let parsed = Submission::parse(import.submission.to_string().as_bytes());
     parsed.map_err(|problem| {
@@ -221,7 +221,7 @@ fn checked(stage: Option<i64>, import: &Import) -> Result<Submission, Vec<Wrong>
     })
 }
 
-/// The text of the results, what is read of it, and the model take so many times its bytes together.
+/// Memory of the results' text, its values and the model together, in multiples of the text's size.
 const TIMES_THE_RESULTS: u64 = 8;
 
 /// Get a job as a model of a gearbox

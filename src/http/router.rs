@@ -224,8 +224,8 @@ fn cors(origins: &[HeaderValue]) -> CorsLayer {
         .max_age(Duration::from_secs(3600))
 }
 
-/// What stands in the log beside a request: never its query or headers, which may hold secrets, nor the secret of a link; of a key its
-/// public part, of a token what its issuer calls it and its bearer.
+/// Fields of a request in the log: never its query or headers, which may hold secrets, nor the secret of a link; of a key its public part, of a token its
+/// issuer's name for it and for its bearer.
 fn span(request: &Request) -> tracing::Span {
     let id = request
         .headers()

@@ -1,7 +1,7 @@
-//! Links to results for somebody without a key: made and ended by who has one, and what they open.
+//! Links to results for readers without a key: their creation and end, and the answers that they open.
 //!
-//! The address of a link has a secret, which stands in no log. A link opens what is stored of one job, and only to be read: results, their
-//! tables and pictures, and a page of them. It opens neither the submission nor what is computed anew.
+//! The address of a link has a secret, which appears in no log. A link opens the stored results of one job to read: results, their tables and pictures, and a
+//! page of them. It opens neither the submission nor recomputed files.
 
 use std::fmt::Write as _;
 use std::sync::Arc;
@@ -63,9 +63,8 @@ pub(super) struct ShareList {
 
 /// Share the results of a job
 ///
-/// Makes a link by which somebody without a key reads the stored results of the job, their tables and pictures, and a page of them; neither the
-/// submission, nor what is computed anew, nor any other job. It ends at `ends_at`, with the job, and with the key that made it. A job may have
-/// 20 at a time.
+/// Makes a link by which a reader without a key sees the stored results of the job, their tables and pictures, and a page of them; neither the submission, nor
+/// recomputed files, nor any other job. It ends at `ends_at`, with the job, and with the key that made it. A job may have 20 at a time.
 #[utoipa::path(
     post, path = "/v1/jobs/{id}/shares", tag = "Results", operation_id = "share_job",
     request_body(content = NewShare, content_type = "application/json", description = "When the link ends."),
@@ -95,7 +94,7 @@ pub(super) async fn make(
 
 /// List the links to the results of a job
 ///
-/// Those that are open, without their addresses.
+/// The open links of the job, without their addresses.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/shares", tag = "Results", operation_id = "list_shares",
     responses((status = 200, description = "The links.", body = ShareList)),
@@ -140,7 +139,7 @@ impl From<LinkError> for Problem {
     }
 }
 
-/// What a request with the secret of an open link may read: a job, of whichever client.
+/// The job that the secret of an open link reads, of whichever client.
 pub(super) struct Shared {
     app: App,
     link: LinkRecord,
@@ -188,7 +187,7 @@ impl FromRequestParts<App> for Shared {
 
 /// Get shared results
 ///
-/// What `GET /v1/jobs/{id}/results` gives, to who has the link. Nobody keeps it on the way.
+/// The answer of `GET /v1/jobs/{id}/results`, for readers with the link. Caches do not keep it.
 #[utoipa::path(
     get, path = "/shared/{secret}/results", tag = "Results", operation_id = "get_shared_results",
     params(("secret" = String, Path, description = "The last part of the address of the link.")),
@@ -207,7 +206,7 @@ pub(super) async fn results(shared: Shared, request: HeaderMap) -> Result<Respon
 
 /// Get one shared table or picture
 ///
-/// What `GET /v1/jobs/{id}/results/{table}` gives, to who has the link. Nobody keeps it on the way.
+/// The answer of `GET /v1/jobs/{id}/results/{table}`, for readers with the link. Caches do not keep it.
 #[utoipa::path(
     get, path = "/shared/{secret}/results/{table}", tag = "Results", operation_id = "get_shared_table",
     params(

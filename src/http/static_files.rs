@@ -61,7 +61,7 @@ impl StaticFile {
     }
 }
 
-/// A file of the program: its name, what it is, and the same packed when the program was built.
+/// A file of the program: its name, its content, and its content packed by the build.
 pub(super) type File = (&'static str, &'static [u8], &'static [u8]);
 
 /// A folder of files.

@@ -45,7 +45,7 @@ pub(super) async fn submit(
     wait: Wait,
     JsonBody(document, memory): JsonBody,
 ) -> Result<Response, Refusal> {
-    // What was read is small then, and its client may wait for long.
+    // The document is small then, and its client may wait for long.
     let read = move |_: &Run| {
         let submission = Submission::parse(&document);
         drop((document, memory));

@@ -27,13 +27,13 @@ use super::pictures::{self, Picture};
 use super::problem::{Refusal, internal, of_missing_results};
 use crate::jobs::{Document, Job, JobError, Resource as _};
 
-/// The text of the results, what is read of it, and the table take so many times its bytes together.
+/// Memory of the results' text, its values and the table together, in multiples of the text's size.
 const TIMES_THE_RESULTS: u64 = 4;
 
 /// The FMU, whose table is finer, takes so many times their bytes.
 const TIMES_FOR_AN_FMU: u64 = 16;
 
-/// What a table shows.
+/// Content of a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Table {
     TransmissionError,
@@ -121,7 +121,7 @@ columns! {
     peak_to_peak_um: f64,
     /// The largest force between the gears over the static load.
     dynamic_load_factor: f64,
-    /// Whether the loaded flanks part.
+    /// True if the loaded flanks separate.
     contact_lost: bool,
     /// True periods after which the motion repeats; 0 where it was not found to.
     period_multiple: u32,
@@ -377,7 +377,7 @@ fn no_forces() -> Problem {
     Problem::new(Code::NotFound, detail)
 }
 
-/// The force table as an FMU. What it was computed from tells it from others.
+/// The force table as an FMU. Its GUID is made of the submission.
 fn packed(results: &Results, name: &str) -> Result<Response, Refusal> {
     let forces = results.mesh_forces().ok_or_else(no_forces)?;
     let bytes = fmu(&forces, &results.evidence.input_hash).map_err(|error| {
@@ -403,7 +403,7 @@ enum Form {
     Csv,
 }
 
-/// What a file name asks for.
+/// Format of a file name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum File {
     Table(Table, Form),

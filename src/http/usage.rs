@@ -13,12 +13,12 @@ use super::parameters::Parameters;
 use super::problem::Refusal;
 use crate::jobs::{ClientUsage, UserUsage};
 
-/// What to list.
+/// Filter of a list.
 #[derive(Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 pub(super) struct UsageParameters {
-    /// So many clients at most.
+    /// Maximum number of clients.
     #[param(minimum = 1, maximum = 200, default = 50, example = 20)]
     limit: Option<u32>,
     /// Where to go on: `next` of the list before.
@@ -49,7 +49,7 @@ document! {
 document! {
     /// The use of the service by a user of a client. It has ids, and neither submissions nor results.
     pub(super) struct UserUsageView as UserUsage, "UserUsage" view of (usage: UserUsage) {
-        /// The user (`Meshwright-User`); null for what was submitted without one.
+        /// The user (`Meshwright-User`); null for submissions without one.
         user: Option<String> = usage.user,
         /// Jobs that wait, designs of studies among them.
         waiting: i64 = usage.waiting,

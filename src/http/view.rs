@@ -12,7 +12,7 @@ use super::edge::Edge;
 use crate::jobs::{Job, shown_kept, shown_status};
 
 document! {
-    /// A job: one submission, where it stands, and where to find what belongs to it.
+    /// A job: one submission, its state, and links to its parts.
     pub(super) struct JobView<'a> as Job view of (job: &'a Job, edge: &Edge) {
         /// The id of the job.
         id: Uuid = job.id,
@@ -40,7 +40,7 @@ document! {
         started_at: Option<Timestamp> = job.started_at,
         /// When the job ended (UTC); null until then.
         finished_at: Option<Timestamp> = job.finished_at,
-        /// What the computation took, in seconds; null until the job has ended.
+        /// Time of the computation in seconds; null until the job has ended.
         wall_time_seconds: Option<f64> = job.elapsed.map(|time| time.as_secs_f64()),
         /// `statistics` where the study of the job keeps no more of its results; absent where they are kept whole. They can be
         /// had by submitting the design alone.
@@ -67,7 +67,7 @@ document! {
 }
 
 document! {
-    /// Where to find what belongs to a job.
+    /// Links of a job.
     pub(super) struct Links as Links view of (job: &Job, edge: &Edge) with {
         let address = edge.job(job.id);
     } {
@@ -91,7 +91,7 @@ impl<'a> JobView<'a> {
     /// The whole view, with the submission, which is JSON.
     pub(super) fn whole(job: &'a Job, submission: &'a str, edge: &Edge) -> Self {
         Self {
-            // It is JSON as it stands: a look at a job need not take it apart and put it together again.
+            // The text is JSON as it stands; a look at a job need not parse and write it.
             submission: serde_json::from_str(submission).ok(),
             ..Self::of(job, edge)
         }

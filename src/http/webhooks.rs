@@ -17,7 +17,7 @@ use super::parameters::{IdempotencyKey, WebhookId};
 use super::problem::Refusal;
 use crate::jobs::EventKind as Kind;
 
-/// What can be told.
+/// Kinds of events.
 #[derive(Clone, Copy, PartialEq, Serialize, Deserialize, ToSchema)]
 enum EventKind {
     /// A job that stands alone has ended.
@@ -64,7 +64,7 @@ pub(super) struct NewWebhookDocument {
     /// Where messages are sent: an address that the operator of the service allows.
     #[schema(format = "uri", example = "https://hooks.example.com/meshwright")]
     url: String,
-    /// What is told; everything unless it is said.
+    /// Kinds of events to send; all of them by default.
     #[serde(default = "all_events")]
     #[schema(min_items = 1, default = all_events)]
     events: Vec<EventKind>,
@@ -82,7 +82,7 @@ document! {
         id: Uuid = webhook.id,
         /// Where messages are sent.
         url: String = webhook.url,
-        /// What is told.
+        /// Kinds of events to send.
         events: Vec<EventKind> = webhook.events.into_iter().map(EventKind::from).collect(),
         /// When it was made (UTC).
         created_at: Timestamp = webhook.created_at,
@@ -94,7 +94,7 @@ document! {
         retry_at: Option<Timestamp> = webhook.retry_at.filter(|_| webhook.disabled_at.is_none()),
         /// Why the last message that was not taken was not.
         problem: Option<String> = webhook.problem,
-        /// What messages are signed with: HMAC-SHA-256 as Standard Webhooks has it. Told once, when the webhook is made or gets another one.
+        /// Key of the signatures of messages: HMAC-SHA-256 as Standard Webhooks has it. Shown once, when the webhook is made or gets another one.
         secret?: String = secret,
     }
 }
@@ -108,11 +108,11 @@ pub(super) struct WebhookListView {
 }
 
 document! {
-    /// A message to a webhook, and what has come of it so far.
+    /// A message to a webhook, and its state.
     pub(super) struct DeliveryView as Delivery, "Delivery" view of (delivery: Delivery) {
         /// The id of the message, which its header `webhook-id` bears at every attempt.
         id: Uuid = delivery.id,
-        /// What it tells: `job.ended`, `study.ended`, `job.deleted`, `study.deleted`, or `webhook.ping`, which tells nothing.
+        /// Type: `job.ended`, `study.ended`, `job.deleted`, `study.deleted`, or `webhook.ping`, which reports no event.
         #[serde(rename = "type")]
         kind: String = delivery.kind,
         /// Whose end it tells: the id of a job or a study; of a ping that of the webhook.
@@ -122,13 +122,13 @@ document! {
             Some(_) => DeliveryStatus::Arrived,
             None => DeliveryStatus::Waiting,
         },
-        /// When what it tells happened (UTC).
+        /// Time of the event (UTC).
         created_at: Timestamp = delivery.created_at,
         /// Attempts so far.
         attempts: u32 = delivery.attempts,
         /// When it was last sent (UTC).
         attempted_at: Option<Timestamp> = delivery.attempted_at,
-        /// What the receiver answered last, an HTTP status; null if it gave no answer.
+        /// The last HTTP status of the receiver; null if it gave no answer.
         answered: Option<u32> = delivery.answered,
         /// Why it was not taken.
         problem: Option<String> = delivery.problem,
@@ -139,9 +139,9 @@ document! {
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum DeliveryStatus {
-    /// It is sent when its turn comes.
+    /// The message waits for its turn.
     Waiting,
-    /// It was answered with 2xx.
+    /// The receiver answered with 2xx.
     Arrived,
 }
 
@@ -155,11 +155,10 @@ pub(super) struct DeliveryListView {
 
 /// Make a webhook
 ///
-/// From now on a message is sent to the address when a job that stands alone, or a study, has ended: a POST with a small
-/// JSON body `{"type", "timestamp", "data": {"id", "status"}}`, signed as Standard Webhooks has it (`webhook-id`,
-/// `webhook-timestamp`, `webhook-signature`). A message that is not answered with 2xx is sent again, for a day and a half;
-/// then the webhook is given up, and what waits is kept for a week from when it was told. Several messages may be under way at once, so
-/// that they need not come in their order. Off unless the operator of the service allows hosts to send to.
+/// From now on a message is sent to the address when a job that stands alone, or a study, has ended: a POST with a small JSON body `{"type", "timestamp",
+/// "data": {"id", "status"}}`, signed as Standard Webhooks has it (`webhook-id`, `webhook-timestamp`, `webhook-signature`). A message that is not answered with
+/// 2xx is sent again, for a day and a half. Then the webhook is disabled, and waiting messages are kept for a week from their event. Several messages may be
+/// sent at the same time, so their order may change. Off unless the operator of the service allows hosts to send to.
 #[utoipa::path(
     post, path = "/v1/webhooks", tag = "Webhooks", operation_id = "make_webhook",
     request_body(content = NewWebhookDocument, content_type = "application/json", description = "The webhook."),
@@ -204,7 +203,7 @@ pub(super) async fn make(
 
 /// List webhooks
 ///
-/// Those of the client, the oldest first, without their secrets.
+/// The webhooks of the client, the oldest first, without their secrets.
 #[utoipa::path(
     get, path = "/v1/webhooks", tag = "Webhooks", operation_id = "list_webhooks",
     responses((status = 200, description = "The webhooks.", body = WebhookListView)),
@@ -220,7 +219,7 @@ pub(super) async fn list(client: Client) -> Result<Json<WebhookListView>, Refusa
 
 /// Delete a webhook
 ///
-/// Nothing is sent any more, not even what waited to be sent.
+/// No further message is sent, not even a waiting one.
 #[utoipa::path(
     delete, path = "/v1/webhooks/{id}", tag = "Webhooks", operation_id = "delete_webhook",
     responses(
@@ -254,7 +253,7 @@ pub(super) async fn show(
 
 /// Ping a webhook
 ///
-/// A message of the type `webhook.ping` is sent to it now, and whatever else waits with it. The deliveries tell what came of it.
+/// A message of the type `webhook.ping` is sent to it now, with all waiting messages. The deliveries show the result.
 #[utoipa::path(
     post, path = "/v1/webhooks/{id}/ping", tag = "Webhooks", operation_id = "ping_webhook",
     responses(
@@ -269,7 +268,7 @@ pub(super) async fn ping(client: Client, WebhookId(id): WebhookId) -> Result<Res
 
 /// List deliveries
 ///
-/// The latest hundred messages to a webhook, the newest first, and what has come of each. They are kept for a week.
+/// The latest hundred messages to a webhook, the newest first, with the state of each. They are kept for a week.
 #[utoipa::path(
     get, path = "/v1/webhooks/{id}/deliveries", tag = "Webhooks", operation_id = "list_deliveries",
     responses(
@@ -287,8 +286,8 @@ pub(super) async fn deliveries(
 
 /// Enable a webhook
 ///
-/// One that was given up is taken up again, and one that is to be tried later is tried now: what has waited is sent. What happened while it
-/// was given up is not told.
+/// A disabled webhook is enabled again, and one that waits for a retry is tried now: the waiting messages are sent. Events during the time in which it was
+/// disabled are not sent.
 #[utoipa::path(
     post, path = "/v1/webhooks/{id}/enable", tag = "Webhooks", operation_id = "enable_webhook",
     responses(

@@ -1,5 +1,4 @@
-//! An attempt at a job, or at several small ones: they are computed on their worker's threads, watched over, and what comes of them is
-//! written down.
+//! An attempt at a job, or at several small ones: their computation on the threads of their worker, supervision, and the writing of results.
 
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -26,13 +25,13 @@ use super::worker_context::{Threads, WorkerContext};
 use crate::compute::{Solve, message_of};
 use crate::spans::{self, Place, Span};
 
-/// What a computation leaves: the results document or its name, and what the tables of studies show of it.
+/// Output of a computation: the results document or its name, and the values for the tables of studies.
 struct Solved {
     document: Packed,
     summary: String,
 }
 
-/// What an attempt came to.
+/// Outcome of an attempt.
 type Outcome = Result<Solved, Problem>;
 
 /// An attempt that is under way.
@@ -52,10 +51,10 @@ struct Done {
 /// Attempts that go on, by their places among those that were begun together.
 type Held = BTreeMap<usize, Attempt>;
 
-/// What the engine's threads report: the attempt by its place, what it came to, and what it took.
+/// Report of the engine's threads: index of the attempt, outcome, and time.
 type Reached = (usize, Outcome, SignedDuration);
 
-/// After so long it is looked up whether the claims still hold. What is computed by then is not worth the look.
+/// Time after which the claims are checked. Shorter computations are not worth the look.
 const LOOK_AFTER: Duration = Duration::from_millis(50);
 
 impl Attempt {
@@ -83,7 +82,7 @@ impl WorkerContext {
     pub(super) async fn compute(&self, started: Vec<Started>, threads: &Threads) -> u64 {
         let mut rung = self.jobs.live.rung();
         let mut work = Vec::with_capacity(started.len());
-        // Those whose rows are theirs, as far as is known. What the engine still gives of others is not asked for.
+        // Attempts whose rows are still claimed, as far as is known. The engine's results for others are dropped.
         let mut held = Held::new();
         for (place, Started { job, submission }) in started.into_iter().enumerate() {
             let attempt = Attempt::of(self, job);
@@ -98,7 +97,7 @@ impl WorkerContext {
         }
         let mut outcomes = self.launch(work, threads);
         let mut reached: Vec<Reached> = Vec::with_capacity(held.len());
-        // What is to be written, at that time at the latest.
+        // Results to be written, at that time at the latest.
         let mut done = Vec::with_capacity(held.len());
         let mut written = pin!(sleep(Duration::ZERO));
         // The first one that has come to nothing is being computed, since then at the latest.
@@ -236,7 +235,7 @@ impl WorkerContext {
         receiver
     }
 
-    /// Writes down what came of attempts in one commit, and notifies those who wait. Gives back how often a worker had been notified of jobs before.
+    /// Writes the outcomes of attempts in one commit, and notifies waiting requests. Returns how often a worker had been notified of jobs before.
     async fn settle(&self, done: Vec<Done>) -> u64 {
         let problems: Vec<String> = done
             .iter()
@@ -282,8 +281,8 @@ impl WorkerContext {
         rung
     }
 
-    /// Has something written. While nothing can be stored it waits: what was computed is not given up for the disk's sake, nor is the job.
-    /// A store that does not answer is asked again while the lease lasts, each time with more patience: it may just be slow.
+    /// Repeats a write. While the disk is full it waits, so that neither the results nor the job are lost. A store that does not answer is asked again while
+    /// the lease lasts, each time with a longer timeout: it may just be slow.
     async fn written<T, F: Future<Output = Result<T, StoreError>>>(
         &self,
         write: impl Fn() -> F,
@@ -318,7 +317,7 @@ impl WorkerContext {
 
     /// Gives a job back to the queue.
     async fn release(&self, claim: Claim) {
-        /// So often, in a shutdown that has little time.
+        /// Number of tries in a shutdown that has little time.
         const TRIES: u32 = 3;
         for _ in 0..TRIES {
             match self.jobs.store.release(claim).await {
@@ -350,8 +349,8 @@ impl WorkerContext {
 
     /// Reports progress and renews leases. For each attempt, false if its claim holds no more.
     ///
-    /// Where other processes take over what has not been reported for a lease, `reported` is when it last was, and
-    /// attempts that cannot report for so long are over: they would be computed twice.
+    /// Where other processes take over a job that has not been reported for a lease, `reported` is the time of the last report. Attempts that cannot report for
+    /// that long end: they would be computed twice.
     async fn report(&self, held: &Held, reported: &mut Instant) -> Vec<bool> {
         let store = &self.jobs.store;
         let reports: Vec<(Claim, Progress)> = held
@@ -411,7 +410,7 @@ fn give_up(held: &mut Held, holds: &[bool]) {
     });
 }
 
-/// Computes a job: reads it, solves it when there is memory for its client, and packs what it leaves.
+/// Computes a job: reads it, solves it when there is memory for its client, and packs its output.
 fn solved(
     solve: &Solve,
     (memory, client): (&Budget, &str),

@@ -1,4 +1,4 @@
-//! The designs of a study: the jobs that they become, and the rows in which they stand with what has come of them.
+//! Designs of a study: their jobs, and their rows with the outcomes.
 
 use std::time::{Duration, Instant};
 
@@ -14,7 +14,7 @@ use super::error::JobError;
 use super::queue::{Jobs, new_job, rough_cost};
 use super::shown::{kept_by, shown_status};
 
-/// So many designs are expanded and written in one transaction. Others write in between.
+/// Designs expanded and written in one transaction. Others write in between.
 pub(super) const CHUNK: usize = 500;
 
 /// Designs are written after so long, however few: somebody may wait for the first of them.
@@ -27,11 +27,11 @@ pub(super) struct Owner {
     /// The user of the client.
     user: Option<String>,
     submitted_at: Timestamp,
-    /// So much memory may a design take.
+    /// Limit of the memory of a design, in MB.
     memory_mb: u64,
     /// How much of their results is kept.
     keep: Kept,
-    /// Whether they are members of a population, whose drawn pair is known from the first of them.
+    /// True for members of a population, whose drawn pair is known from the first of them.
     is_population: bool,
 }
 
@@ -84,8 +84,7 @@ impl Jobs {
         }
     }
 
-    /// At most so many rows of a study that was found, behind the first `after` ones, with what has come of each so far. None left:
-    /// the table is at its end.
+    /// Up to a given number of rows of a study, behind the first `after` ones, with their outcomes so far. An empty list means the end of the table.
     ///
     /// # Errors
     ///
@@ -193,7 +192,7 @@ pub(super) fn not_done(error: JoinError) -> JobError {
     }
 }
 
-/// Whether a design differs from the base by what its teeth deviate by, and has gears drawn alike.
+/// True if a design differs from the base only by the deviations of its teeth and has gears drawn alike.
 fn is_drawn_as_the_base(design: &Design) -> bool {
     let changes = &design.changes;
     !changes.is_empty()

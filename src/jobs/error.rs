@@ -8,26 +8,26 @@ use uuid::Uuid;
 /// Why something cannot be done with a job or a study.
 #[derive(Debug, Clone, thiserror::Error)]
 pub enum JobError {
-    /// So many jobs wait that no more are taken.
+    /// The limit of waiting jobs is reached.
     #[error("{waiting} jobs wait, which is the limit")]
     QueueFull {
         /// Jobs that wait.
         waiting: i64,
     },
-    /// So many jobs of this client wait that no more are taken from it.
+    /// The limit of waiting jobs of this client is reached.
     #[error("{waiting} jobs of yours wait; at most {limit} may")]
     ClientQueueFull {
         /// Jobs of the client that wait.
         waiting: i64,
-        /// So many may.
+        /// The limit.
         limit: i64,
     },
-    /// So many jobs of this user of the client wait that no more are taken from it.
+    /// The limit of waiting jobs of this user of the client is reached.
     #[error("{waiting} jobs of this user wait; at most {limit} may")]
     UserQueueFull {
         /// Jobs of the user that wait.
         waiting: i64,
-        /// So many may.
+        /// The limit.
         limit: i64,
     },
     /// The computation would take more memory than a job may.
@@ -74,7 +74,7 @@ pub enum JobError {
     /// The database did not do its part.
     #[error("the database failed")]
     Database(#[source] StoreError),
-    /// What was stored is not what was read.
+    /// A stored document cannot be read.
     #[error(transparent)]
     Damaged(#[from] Damaged),
 }

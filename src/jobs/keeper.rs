@@ -1,4 +1,4 @@
-//! The keeper: removes what has been kept long enough, gives space back, and keeps the journal short.
+//! The keeper: removes results at the end of their retention, returns space, and keeps the journal short.
 
 use std::time::Duration;
 
@@ -20,12 +20,12 @@ const BREATH: Duration = Duration::from_millis(5);
 /// Messages to webhooks are kept so long, for the list of deliveries and for receivers that are away.
 const MESSAGES_FOR: SignedDuration = SignedDuration::from_hours(7 * 24);
 
-/// What is kept, and how often it is looked after.
+/// Retention of results and the interval of removals.
 #[derive(Debug, Clone, Copy)]
 pub struct Keep {
     /// Jobs and studies are kept so long after their end; without, for good.
     pub results_for: Option<SignedDuration>,
-    /// The file may hold so many bytes; beyond that, what ended first is removed. Without, any number.
+    /// Limit of the file in bytes; beyond it the jobs that ended first are removed. `None`: no limit.
     pub bytes: Option<u64>,
     /// The first look comes so long after the start: by then a clock that was wrong at the start is mostly right.
     pub first: Duration,
@@ -33,11 +33,11 @@ pub struct Keep {
     pub every: Duration,
 }
 
-/// The task that looks after what is kept.
+/// The task that enforces the retention.
 pub struct Keeper(JoinHandle<()>);
 
 impl Keeper {
-    /// Starts to look after what `jobs` keeps, until their stop comes.
+    /// Starts the task that enforces the retention of `jobs`, until their stop.
     pub fn start(jobs: Jobs, keep: Keep) -> Self {
         Self(spawn(async move {
             let mut tick = interval_at(Instant::now() + keep.first, keep.every);
@@ -55,13 +55,13 @@ impl Keeper {
 
     /// Comes back when it has ended.
     pub async fn ended(self) {
-        // It neither panics nor is aborted.
+        // The task neither panics nor is aborted.
         let _ = self.0.await;
     }
 }
 
 impl Jobs {
-    /// Removes what has been kept long enough or does not fit, and gives the space back.
+    /// Removes results that are past their retention or beyond the limit, and returns the space.
     ///
     /// # Errors
     ///
@@ -71,7 +71,7 @@ impl Jobs {
             let removed = self.remove_while(before, None).await?;
             tell("kept long enough", removed);
         }
-        // What a server occupies does not shrink when something is removed: it would never be little enough.
+        // The size of a server's database does not shrink when rows are removed: it would never fall below the limit.
         if keep.bytes.is_some() && !self.store.is_shared() {
             let removed = self.remove_while(Timestamp::MAX, keep.bytes).await?;
             tell("no room for it", removed);
@@ -94,14 +94,14 @@ impl Jobs {
         self.store.forget_messages(before).await
     }
 
-    /// What ended before this is old. The earlier of the two clocks decides: one that was set forward by mistake, at the
-    /// start or later, removes nothing as long as the other one is right.
+    /// Jobs that ended before this time are old. The earlier of the two clocks decides: one that was set forward by mistake, at the start or later, removes
+    /// nothing as long as the other one is right.
     fn kept_since(&self, keep: Keep) -> Option<Timestamp> {
         let now = self.clock.now().min(self.clock.steady());
         now.checked_sub(keep.results_for?).ok()
     }
 
-    /// Removes what ended before a time, the oldest first, as long as the file holds more than so many bytes.
+    /// Removes jobs that ended before a time, the oldest first, as long as the file is larger than the limit.
     async fn remove_while(
         &self,
         before: Timestamp,

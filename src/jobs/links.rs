@@ -11,13 +11,13 @@ use super::error::JobError;
 use super::queue::Jobs;
 use super::resource::Resource as _;
 
-/// So many links to the results of one job may be open.
+/// Maximum number of open links to the results of one job.
 pub const MOST_LINKS: i64 = 20;
 
 /// The longest time that a link is open, in days.
 pub const LONGEST_LINK_DAYS: i64 = 90;
 
-/// What the secret of every link begins with, so that programs that look for leaked secrets know it, and logs leave it out.
+/// Prefix of the secret of every link, by which scanners for leaked secrets know it, and logs leave it out.
 const PREFIX: &str = "mws_";
 
 const SECRET_BYTES: usize = 32;
@@ -72,7 +72,7 @@ pub fn without_secrets(text: &str) -> String {
 /// Why there is no link.
 #[derive(Debug, Clone, thiserror::Error)]
 pub enum LinkError {
-    /// It would have ended before it begins, or would be open for too long.
+    /// The end lies in the past or too far ahead.
     #[error("ends_at has to lie within the next {LONGEST_LINK_DAYS} days")]
     Time,
     /// As many links to the results of the job are open as may be.

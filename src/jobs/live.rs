@@ -1,4 +1,4 @@
-//! What of a job lives in memory only: the progress and the stop of the running ones, and news for those who wait.
+//! State of a job in memory: progress and stop of running jobs, and notifications.
 
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -15,7 +15,7 @@ const ANYTHING: Uuid = Uuid::nil();
 /// Something that has happened.
 #[derive(Debug, Clone)]
 pub(super) enum Change {
-    /// To a job or a study, or to [`ANYTHING`]: whoever wants to know what has to look.
+    /// A change of a job or a study, or of [`ANYTHING`]: every watcher has to look.
     Of(Uuid),
     /// To a job that has not ended.
     Going(Uuid),
@@ -50,7 +50,7 @@ impl Running {
         let progress = Arc::clone(&self.progress);
         Run::new(Arc::clone(&self.stop), move |done, total| {
             progress.send_if_modified(|now| {
-                // Threads report past each other; what is shown never goes back.
+                // Threads report out of order; the shown progress never decreases.
                 let next = Progress {
                     done: done.max(now.done),
                     total: if total == 0 { now.total } else { total },
@@ -182,7 +182,7 @@ impl Drop for Entered {
     }
 }
 
-/// What happens to all jobs and studies, from a time on.
+/// Changes of all jobs and studies, from a time on.
 pub struct Changes(broadcast::Receiver<Change>);
 
 impl Changes {
@@ -212,7 +212,7 @@ impl Changes {
     }
 }
 
-/// What happens to one job.
+/// Changes of one job.
 pub struct News {
     pub(super) id: Uuid,
     pub(super) live: Arc<Live>,

@@ -1,8 +1,8 @@
 //! A job's life: from the queue to its results.
 //!
-//! In reading order: the two [`Clock`]s; the records of the store in the words of documents (`shown`, `study`); what of a running job lives in memory
-//! only (`live`); the [`Jobs`] that handlers speak to (`queue`, `studies`, and in `resource` what both have in common); the [`Workers`] that
-//! compute; and the keeper that removes what is old. Jobs and studies are kept, and change their states, in [`meshwright_store`].
+//! In reading order: the two [`Clock`]s; the records of the store in the words of documents (`shown`, `study`); the state of running jobs in memory (`live`);
+//! the [`Jobs`] that handlers use (`queue`, `studies`, and in `resource` the common part of both); the [`Workers`] that compute; and the keeper that removes
+//! old results. The states of jobs and studies are kept, and change, in [`meshwright_store`].
 
 #![warn(clippy::disallowed_methods)]
 

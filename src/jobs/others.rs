@@ -1,4 +1,4 @@
-//! Other processes on the same database: what they report reaches those who wait here, and what is cancelled there stops here.
+//! Other processes on the same database: their reports reach the requests that wait here, and jobs cancelled there stop here.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -10,7 +10,7 @@ use tracing::warn;
 
 use super::live::Live;
 
-/// So often everybody looks, also without news: a notice may be lost, and progress is not notified at all.
+/// Interval at which every process looks even without a notification: one may be lost, and progress is never notified.
 const LOOK: Duration = Duration::from_secs(2);
 
 /// Before it is tried to listen again.

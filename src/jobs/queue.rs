@@ -25,22 +25,22 @@ use super::others;
 use super::resource::{Listed, Resource, Submitted};
 use crate::machine;
 
-/// So long a repeated request is recognized by its key.
+/// Time for which a repeated request is recognized by its key.
 pub(crate) const KEY_LIFETIME: jiff::SignedDuration = jiff::SignedDuration::from_hours(24);
 
-/// So many submissions share one commit at most.
+/// Maximum number of submissions in one commit.
 const BATCH: usize = 64;
 
-/// What the queue allows.
+/// Limits of the queue.
 #[derive(Debug, Clone, Copy)]
 pub struct Rules {
-    /// So many jobs may wait, not counting those of studies.
+    /// Maximum number of waiting jobs, not counting those of studies.
     pub queue_limit: u32,
-    /// So many of them may be of one client.
+    /// Maximum number of waiting jobs of one client.
     pub client_queue_limit: u32,
-    /// So many of them may be of one user of a client; half of what the client may have, if it is not given.
+    /// Maximum number of waiting jobs of one user of a client; by default half of the client's.
     pub user_queue_limit: Option<u32>,
-    /// So many designs of studies of one client may wait.
+    /// Maximum number of waiting designs of studies of one client.
     pub client_design_limit: i64,
     /// A job whose computation is estimated to take more memory is refused, in MB.
     pub job_memory_mb: u64,
@@ -49,7 +49,7 @@ pub struct Rules {
 }
 
 impl Rules {
-    /// For one who has the machine alone: what it can compute at all.
+    /// Limits of a single user of the machine: everything that it can compute.
     pub fn of_machine() -> Self {
         let memory_mb = machine::memory_mb();
         Self {
@@ -62,21 +62,21 @@ impl Rules {
         }
     }
 
-    /// So many jobs of one user of a client may wait, of which `client_limit` may.
+    /// Maximum number of waiting jobs of one user of a client that may have `client_limit`.
     pub fn user_limit(&self, client_limit: u32) -> u32 {
         let usual = client_limit.div_ceil(2);
         self.user_queue_limit.unwrap_or(usual).min(client_limit)
     }
 }
 
-/// Who submits, and what it may.
+/// The submitter and its limits.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Member {
     /// The name that its jobs bear.
     pub client: String,
-    /// The user of the client, if it says. Of what it submits, all of the client see everything.
+    /// The user of the client, if given. All users of a client see all of its submissions.
     pub user: Option<String>,
-    /// So many jobs of it may wait, where that is not the usual number.
+    /// Its own limit of waiting jobs, if it differs from the usual one.
     pub queue_limit: Option<u32>,
 }
 
@@ -91,7 +91,7 @@ impl Member {
     }
 }
 
-/// All jobs: the store, and what of the running ones lives in memory.
+/// All jobs: the store, and the state of running jobs in memory.
 #[derive(Clone)]
 pub struct Jobs {
     pub(super) store: Store,
@@ -142,7 +142,7 @@ impl Jobs {
         }
     }
 
-    /// The memory for what is computed, in MB.
+    /// The memory for computations, in MB.
     pub fn memory(&self) -> &Budget {
         &self.memory
     }
@@ -218,7 +218,7 @@ impl Jobs {
         }
     }
 
-    /// Refuses what would take more memory than a job may. What counting leaves open is computed for `client` where it holds nobody up.
+    /// Refuses a job that needs more memory than a job may have. The exact count, where it is needed, runs for `client` on a thread that delays nobody.
     ///
     /// # Errors
     ///
@@ -244,7 +244,7 @@ impl Jobs {
         }
     }
 
-    /// What new rows are measured against.
+    /// Limits for new rows.
     pub(super) fn bounds(&self) -> QueueBounds<'static> {
         bounds(&self.rules, &self.clock)
     }
@@ -335,7 +335,7 @@ impl Jobs {
     ///
     /// # Errors
     ///
-    /// Those of [`Jobs::stored`].
+    /// The documents of [`Jobs::stored`].
     pub async fn document(&self, job: &Job) -> Result<Document, JobError> {
         let stored = self.stored(job).await?;
         self.document_of(job, &stored).await
@@ -369,7 +369,7 @@ impl Jobs {
         Ok(self.store.usage(after, limit, self.clock.now()).await?)
     }
 
-    /// Whether the database takes writes: what it said last, or what it says now.
+    /// True if the database takes writes, by its last answer or by one asked for now.
     ///
     /// # Errors
     ///
@@ -396,12 +396,12 @@ impl Jobs {
         &self.clock
     }
 
-    /// What the queue allows.
+    /// Limits of the queue.
     pub fn rules(&self) -> &Rules {
         &self.rules
     }
 
-    /// What happens to a job from now on.
+    /// Changes of a job from now on.
     pub fn news(&self, id: Uuid) -> News {
         News {
             id,
@@ -528,8 +528,8 @@ pub(super) fn new_job(submission: &Submission, client: &str, now: Timestamp) -> 
     }
 }
 
-/// What a submission takes of a core, in microseconds, estimated from its size; less where the pair as drawn is known from others. The
-/// engine's own estimate is better, and takes a tenth of a job; for fair shares the order of magnitude is enough.
+/// Processor time of a submission in microseconds, estimated from its size; less where the pair as drawn is known from others. The engine's own estimate is
+/// better, but takes a tenth of a job. For fair shares the order of magnitude is enough.
 pub(super) fn rough_cost(submission: &Submission, is_known_as_drawn: bool) -> u64 {
     // The closed form of the load distribution needs no grid.
     let (as_drawn, per_position) = match submission.case().method() {

@@ -1,4 +1,4 @@
-//! What jobs and studies have in common as things that a client submits and lists.
+//! Common interface of jobs and studies, which a client submits and lists.
 
 use std::time::Duration;
 
@@ -16,14 +16,14 @@ pub trait Resource: Sized + Send + Sync {
     /// Which of them to list.
     type Filter: Sync;
 
-    /// It as it stands now.
+    /// The item in its present state.
     fn find(
         jobs: &Jobs,
         client: &str,
         id: Uuid,
     ) -> impl Future<Output = Result<Self, JobError>> + Send;
 
-    /// It once it has ended, or as it stands after `patience`.
+    /// The item once it has ended, or after `patience`.
     fn wait(
         jobs: &Jobs,
         client: &str,
@@ -45,7 +45,7 @@ pub trait Resource: Sized + Send + Sync {
         id: Uuid,
     ) -> impl Future<Output = Result<Option<String>, JobError>> + Send;
 
-    /// Ends it: what waits or runs of it is dismissed, and what has results keeps them. One that was cancelled before stays so.
+    /// Ends the item: waiting and running parts are dismissed, finished ones keep their results. A cancelled one stays cancelled.
     ///
     /// # Errors
     ///
@@ -78,7 +78,7 @@ pub trait Resource: Sized + Send + Sync {
 pub struct Submitted<T> {
     /// As it stands now.
     pub record: T,
-    /// Whether an earlier request with the same key made it.
+    /// True if an earlier request with the same key made it.
     pub repeated: bool,
 }
 
@@ -92,7 +92,7 @@ pub struct Listed<T> {
 }
 
 impl<T> Listed<T> {
-    /// The first `limit` of what was `found`, of which one more was asked for: it tells whether the list goes on.
+    /// The first `limit` of `found`, which holds one more than asked for if the list goes on.
     pub(super) fn first(mut found: Vec<T>, limit: u32, sequence: impl Fn(&T) -> i64) -> Self {
         let goes_on = found.len() > limit as usize;
         found.truncate(limit as usize);

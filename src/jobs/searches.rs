@@ -1,4 +1,4 @@
-//! Searches: studies whose rows are chosen generation by generation, each by what came of those before.
+//! Searches: studies that choose their rows generation by generation, from the outcomes of earlier ones.
 //!
 //! A search is a function of its document and of its rows. Who takes one over, after a crash or in another process, is given the rows that stand
 //! and goes on; two that did so at once would write the same rows, of which the table takes one.
@@ -76,7 +76,7 @@ impl Jobs {
         self.confirm(search, &owner).await
     }
 
-    /// Tells a search what came of its rows up to `end`.
+    /// Reports the outcomes of the rows up to `end` to a search.
     async fn tell(
         &self,
         mut search: Searching,
@@ -105,7 +105,7 @@ impl Jobs {
         if confirmation.is_some() {
             let first = end;
             end += 1;
-            // One row more than there are: a study ends with its last one, and this one shows what came of it.
+            // One row beyond the last: a study ends with its last row, and this one shows its outcome.
             let step = step_of(&shared, Some(end + 1));
             let wanted = Wanted {
                 first,
@@ -159,7 +159,7 @@ impl Jobs {
                         .await?
                     }
                 };
-                // Whether it has been written shows the next look.
+                // The next look shows whether it was written.
                 self.write(owner, record.expanded, &rows, step).await?;
                 self.live.ring();
                 self.live.changed(owner.study);
@@ -176,7 +176,7 @@ impl Jobs {
         }
     }
 
-    /// Adds rows behind the first `expanded` ones; what the disk does not take now it takes later.
+    /// Adds rows behind the first `expanded` ones; what a full disk refuses is added later.
     async fn write(
         &self,
         owner: &Owner,
@@ -214,7 +214,7 @@ impl Jobs {
         Ok(found.filter(|study| study.cancelled_at.is_none()))
     }
 
-    /// Whether the best design is being computed once more: its row stands behind the first `rows` ones.
+    /// True while the best design is computed again: its row stands behind the first `rows` ones.
     async fn is_confirmed(&self, owner: &Owner, rows: u64) -> Result<bool, JobError> {
         let next = self.rows_between(owner, rows, rows + 1).await?;
         Ok(next

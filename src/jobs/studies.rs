@@ -65,7 +65,7 @@ impl Jobs {
             StudyOutcome::Taken => {
                 info!(study = %new.id, client = new.client, designs = new.total, "study taken");
                 self.live.ring();
-                // It may have ended with its beginning.
+                // The study may end as soon as it begins.
                 self.live.changed(new.id);
                 if rows.len() < study.total() {
                     self.continue_in_background(study, rows.len(), owner);
@@ -118,7 +118,7 @@ impl Jobs {
                     let expanded = usize::try_from(record.expanded).unwrap_or(usize::MAX);
                     self.continue_in_background(study, expanded, owner);
                 }
-                // An earlier version took it; what it has of rows is kept.
+                // An earlier version accepted it; its rows are kept.
                 Err(problem) => {
                     error!(study = %id, %problem, "a study is no longer understood, and cancelled");
                     let now = self.clock.now();
@@ -167,7 +167,7 @@ impl Jobs {
                     self.bounds(),
                 )
                 .await;
-            // What the disk does not take now it takes later; the study is not given up for that.
+            // A write that a full disk refuses is repeated; the study goes on.
             let stands = match stands {
                 Err(error) if error.may_pass() => {
                     self.wait_for_storage().await;
@@ -176,7 +176,7 @@ impl Jobs {
                 stands => stands?,
             };
             if !stands {
-                // It is cancelled or deleted; or a commit has lasted that was said to have failed.
+                // The study is cancelled or deleted; or a commit that was reported as failed has lasted.
                 let now = self.store.find_study(&owner.client, owner.study).await?;
                 let now = now.filter(|study| study.cancelled_at.is_none());
                 let stored = now.map_or(0, |study| study.expanded as usize);
@@ -223,8 +223,7 @@ impl Jobs {
         Ok(self.store.study_text(id, most).await?.transpose()?)
     }
 
-    /// Dismisses what waits or runs of a study that was cancelled, some jobs at a time. What a process leaves of it the next
-    /// one does.
+    /// Dismisses the waiting and running jobs of a cancelled study, some at a time. The next process goes on where this one stops.
     async fn dismiss_designs(&self, id: Uuid) -> Result<(), StoreError> {
         loop {
             let (dismissed, more) = self.store.dismiss_designs(id, self.clock.now()).await?;

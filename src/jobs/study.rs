@@ -1,4 +1,4 @@
-//! What the record of a study says in the words of documents.
+//! The record of a study in the words of documents.
 
 use meshwright_store::{Status, StudyRecord};
 use meshwright_studies::SearchState;

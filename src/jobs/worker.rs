@@ -15,9 +15,8 @@ use super::queue::Jobs;
 use super::worker_context::{Pace, Threads, WorkerContext};
 use crate::compute::{Cores, NoThreads, Solve};
 
-/// So much of a core is claimed at once, in microseconds by the rough estimate: many jobs of a millisecond, some members of a
-/// population, or one ordinary design, of which two would keep others waiting. While a claim and an end are written their worker
-/// computes nothing.
+/// Work claimed at once, in microseconds of a core by the rough estimate: many jobs of a millisecond, some members of a population, or one ordinary design, of
+/// which two would keep others waiting. While a claim and an end are written their worker computes nothing.
 const AT_ONCE: i64 = 80_000;
 
 /// The workers of this process.
@@ -50,7 +49,7 @@ impl Workers {
             Lost::Process
         };
         let lost = if context.jobs.store.is_shared() {
-            // What another process runs is its own as long as it reports.
+            // A job that another process runs belongs to it while it reports.
             context.over(&[])
         } else {
             lost
@@ -162,7 +161,7 @@ impl WorkerContext {
                             self.jobs.live.changed_job(job);
                         }
                         let rung_since = self.compute(started, threads).await;
-                        // What had to wait for this one may begin, be it for a worker of its own. What came since then finds it ended.
+                        // Jobs that had to wait for this one may begin, also one for a worker of its own. Later jobs find it ended.
                         if !drained || rung_since != rung {
                             self.jobs.live.work.notify_one();
                         }
@@ -233,7 +232,7 @@ impl WorkerContext {
         }
     }
 
-    /// Between two looks at what others have left.
+    /// Interval between two looks for jobs that other processes have left.
     fn watch(&self) -> Duration {
         if self.jobs.store.is_shared() {
             // Of several processes each may be the one that is left.
@@ -312,7 +311,7 @@ mod tests {
         Submission::parse(document.to_string().as_bytes()).unwrap()
     }
 
-    /// What an engine gives at once; for each torque it is another document.
+    /// Results that an engine gives at once; each torque makes another document.
     fn results(torque: f64) -> Results {
         let mut results = Results::read(RESULTS).unwrap();
         results.curves[0].output_torque_n_m = torque;

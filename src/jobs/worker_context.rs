@@ -1,4 +1,4 @@
-//! What the workers of a process have in common.
+//! Common state of the workers of a process.
 
 use std::time::Duration;
 
@@ -14,13 +14,13 @@ use crate::compute::{NoThreads, Solve, Work, engine_threads};
 pub struct Pace {
     /// A worker that has not reported for so long is taken for lost.
     pub lease: Duration,
-    /// So often a worker reports.
+    /// Interval of a worker's reports.
     pub heartbeat: Duration,
     /// A job that takes longer fails.
     pub time_limit: Duration,
     /// A job that has lost so many workers fails.
     pub attempts_limit: u32,
-    /// What came of one job waits so long at most for the others that were claimed with it, to be written with them in one commit.
+    /// Longest time that the outcome of one job waits for others of the same claim, to be written in one commit.
     pub gather: Duration,
 }
 
@@ -42,7 +42,7 @@ impl Pace {
     }
 }
 
-/// What every worker has in common.
+/// Common state of all workers.
 pub(super) struct WorkerContext {
     pub(super) jobs: Jobs,
     pub(super) solve: Solve,
@@ -68,7 +68,7 @@ pub(super) struct Threads {
 }
 
 impl Threads {
-    /// Those of a worker by this number, so many.
+    /// The cores of worker number `worker` of `count`.
     pub(super) fn of(worker: usize, count: usize) -> Result<Self, NoThreads> {
         let name = move |index| format!("engine-{worker}-{index}");
         let apart = (0..count)

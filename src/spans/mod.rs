@@ -14,7 +14,7 @@ mod otlp;
 #[cfg(feature = "otlp")]
 pub use otlp::Spans;
 
-/// Whether there is a collector.
+/// True if there is a collector.
 pub(crate) fn are_exported() -> bool {
     #[cfg(feature = "otlp")]
     return otlp::is_started();
@@ -83,7 +83,7 @@ pub(crate) struct Span {
     pub(crate) place: Place,
     /// The span of which this one is a part; `None` at the beginning of a trace.
     pub(crate) parent: Option<[u8; 8]>,
-    /// Whether its parent is another program's.
+    /// True if its parent belongs to another program.
     pub(crate) is_entry: bool,
     pub(crate) name: Cow<'static, str>,
     pub(crate) begin: SystemTime,

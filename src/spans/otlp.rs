@@ -22,17 +22,17 @@ use tracing::{info, warn};
 use super::{Place, Span, Value};
 use crate::client::bounded;
 
-/// So many spans wait to be taken; further ones are dropped.
+/// Maximum number of spans that wait for export; further ones are dropped.
 const MOST_WAITING: usize = 8192;
 
-/// So many go in one message, and so long it is waited for more of them.
+/// Maximum number of spans in one message, and the time to wait for more of them.
 const AT_ONCE: usize = 512;
 const GATHERING: Duration = Duration::from_secs(1);
 
 /// A collector takes a message in so much time.
 const TIME_OUT: Duration = Duration::from_secs(5);
 
-/// At the end it has so much time for what is left: with all of [`END`](crate::serve::END) before it, less than ten seconds.
+/// Time for the remaining spans at the end: with all of [`END`](crate::serve::END) before it, less than ten seconds.
 const LAST: Duration = Duration::from_millis(400);
 
 /// Where spans wait for their export. Like the numbers of the process, they are of the process.
@@ -71,7 +71,7 @@ impl Spans {
         Ok(Self { end, exporting })
     }
 
-    /// Exports what is left, as far as the collector takes it soon.
+    /// Exports the remaining spans, as far as the collector takes them in time.
     pub async fn end(self) {
         self.end.cancel();
         if timeout(LAST, self.exporting).await.is_err() {
@@ -116,7 +116,7 @@ async fn export_all(
     }
 }
 
-/// Whether the export has begun.
+/// True once the export has begun.
 pub(super) fn is_started() -> bool {
     QUEUE.get().is_some()
 }

@@ -1,8 +1,8 @@
 //! Tokens of an identity provider, beside the service's own keys: JSON Web Tokens that say who a request is from, signed by one whom
 //! the operator trusts (OpenID Connect).
 //!
-//! What a token may say is fixed beforehand: its issuer, its audience, the algorithm. Nothing that stands in it decides how it is
-//! checked, but for the name of the key, which is one of those that the issuer has.
+//! Configuration fixes the issuer, the audience and the algorithm of a token. Nothing in the token decides how it is checked, except the name of the key, which
+//! is one of the issuer's.
 
 mod provider;
 mod ring;
@@ -28,10 +28,10 @@ const LEEWAY: SignedDuration = SignedDuration::from_secs(30);
 /// The longest token that is looked at, in bytes.
 const LONGEST: usize = 16 << 10;
 
-/// The most characters of what the log says of a token.
+/// Maximum number of characters of a token's claim in the log.
 const LONGEST_LOGGED: usize = 200;
 
-/// Those who make tokens, and what these have to be.
+/// Issuers of tokens, and the rules for these.
 #[derive(Clone)]
 pub struct Tokens {
     rules: Arc<TokenRules>,
@@ -46,23 +46,23 @@ pub struct Bearer {
     pub client: String,
     /// Which user of the client he is.
     pub user: Option<String>,
-    /// What he may do.
+    /// The role of the bearer.
     pub role: Role,
     /// From when on the token opens nothing.
     pub until: Timestamp,
-    /// What the provider calls him, for the log.
+    /// The provider's name for the bearer, for the log.
     pub subject: Option<String>,
-    /// What the provider calls the token, for the log.
+    /// The provider's name for the token, for the log.
     pub id: Option<String>,
 }
 
 /// Why a token opens nothing.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum TokenError {
-    /// It is not one that is trusted.
+    /// The token is not trusted.
     #[error("{0}")]
     Refused(String),
-    /// It cannot be known now.
+    /// The token cannot be checked now.
     #[error("The identity provider gives no keys now, so that tokens cannot be checked.")]
     Unreachable,
 }
@@ -71,7 +71,7 @@ fn refused(why: impl Into<String>) -> TokenError {
     TokenError::Refused(why.into())
 }
 
-/// Whether a text has the form of a token: three parts in the alphabet of base64url.
+/// True if a text has the form of a token: three parts in the alphabet of base64url.
 pub fn has_form(text: &str) -> bool {
     let in_alphabet = |part: &str| {
         part.bytes()
@@ -111,7 +111,7 @@ impl Tokens {
         &self.rules.issuer.text
     }
 
-    /// Whether the provider gave its keys when it was last asked.
+    /// True if the provider gave its keys at the last request.
     pub fn has_provider(&self) -> bool {
         self.provider.answers()
     }
@@ -160,7 +160,7 @@ impl TokenRules {
                 "The token asks for extensions (crit); none is known here.",
             ));
         }
-        // What a provider signs for other ends, to log a user out for instance, has a type of its own.
+        // Tokens that a provider signs for other purposes, for instance to log a user out, have a type of their own.
         let kind = header.typ.as_deref().unwrap_or("JWT").to_ascii_lowercase();
         let kind = kind.strip_prefix("application/").unwrap_or(&kind);
         if !matches!(kind, "jwt" | "at+jwt") {
@@ -174,7 +174,7 @@ impl TokenRules {
         Ok(header)
     }
 
-    /// What a token says, checked by the key that it names.
+    /// The claims of a token, checked by the key that it names.
     fn read(
         &self,
         token: &str,

@@ -26,7 +26,7 @@ const MOST_BYTES: usize = 256 << 10;
 /// Between two fetches lies at least so much time, whatever keys tokens name.
 const BETWEEN: SignedDuration = SignedDuration::from_secs(5);
 
-/// So many requests wait for the fetch under way. A provider that answers nothing holds no more than these, whoever sends them.
+/// Maximum number of requests that wait for one fetch. A provider that does not answer holds no more than these, whoever sends them.
 const MOST_WAITING: usize = 64;
 
 /// After so long the keys are asked for anew: one that was withdrawn opens nothing then.
@@ -52,7 +52,7 @@ struct State {
     fetch: Option<Arc<Fetch>>,
     /// When the last one ended.
     fetched: Option<Timestamp>,
-    /// Whether the last answer was none.
+    /// True if the last answer failed.
     failed: bool,
 }
 
@@ -75,7 +75,7 @@ struct Known {
     key: DecodingKey,
 }
 
-/// What is known of a key.
+/// Result of a lookup of a key.
 pub(super) enum Found {
     Key(DecodingKey),
     /// The provider has no such key.
@@ -104,8 +104,8 @@ impl Provider {
         let _ = self.fetch();
     }
 
-    /// The key of this name. Where there is none, or what is known is old, the keys are fetched, and not too often. Those who need them
-    /// wait for one fetch, and take its answer; a name that nobody waits for is unknown once keys were had.
+    /// The key of this name. If it is unknown or old, the keys are fetched, with a limit on the rate. Waiting requests share one fetch and its answer. A name
+    /// without a waiting request is unknown once the keys are there.
     pub(super) async fn key(self: &Arc<Self>, id: &str, algorithm: Algorithm) -> Found {
         let (found, is_fresh) = self.look(id, algorithm);
         let is_known = matches!(found, Found::Key(_));
@@ -122,7 +122,7 @@ impl Provider {
         }
         fetch.ended.cancelled().await;
         match self.look(id, algorithm).0 {
-            // It could not be looked for.
+            // The lookup failed.
             Found::Unknown if self.state().failed => Found::Unreachable,
             found => found,
         }
@@ -153,7 +153,7 @@ impl Provider {
         Some((fetch, true))
     }
 
-    /// Whether the last answer was one.
+    /// True if the last answer was valid.
     pub(super) fn answers(&self) -> bool {
         !self.state().failed
     }
@@ -183,7 +183,7 @@ impl Provider {
         }
     }
 
-    /// What is known of a key, and whether that is fresh.
+    /// A key as it is known, and true if that is fresh.
     fn look(&self, id: &str, algorithm: Algorithm) -> (Found, bool) {
         let now = self.clock.steady();
         let state = self.state();
@@ -248,7 +248,7 @@ impl Provider {
     }
 }
 
-/// What is needed of a discovery document.
+/// The fields of a discovery document that the service reads.
 #[derive(Deserialize)]
 struct Discovered {
     issuer: String,

@@ -6,11 +6,11 @@ use jsonwebtoken::signature::{Error, Verifier};
 use jsonwebtoken::{Algorithm, DecodingKey, DecodingKeyKind};
 use ring::signature::{self, RsaParameters, RsaPublicKeyComponents, UnparsedPublicKey};
 
-/// It checks what others have signed with a private key, and nothing else: no secret that is shared makes a token here.
+/// The provider checks signatures by private keys of others, and nothing else: no shared secret makes a token here.
 static RING: CryptoProvider = CryptoProvider {
     signer_factory: |_, _| Err(new_error(ErrorKind::UnsupportedAlgorithm)),
     verifier_factory: |algorithm, key| Ok(Box::new(Check::new(*algorithm, key)?)),
-    // For what makes keys and thumbprints.
+    // Operations on keys and thumbprints.
     key_utils: KeyUtils::new_unimplemented(),
 };
 
@@ -40,7 +40,7 @@ fn kind(algorithm: Algorithm) -> Option<Kind> {
     })
 }
 
-/// Whether tokens may be signed so.
+/// True if tokens may be signed by this algorithm.
 pub(super) fn is_known(algorithm: Algorithm) -> bool {
     kind(algorithm).is_some()
 }

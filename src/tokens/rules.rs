@@ -1,4 +1,4 @@
-//! What tokens have to be, as the operator says it.
+//! Rules for tokens, from the operator's configuration.
 
 use std::net::IpAddr;
 use std::str::FromStr;
@@ -12,7 +12,7 @@ use super::ring::is_known;
 /// The claims of a token.
 pub(super) type Claims = Map<String, Value>;
 
-/// What tokens have to be, and what is read of them.
+/// Rules for tokens, and the claims that are read.
 #[derive(Debug, Clone)]
 pub struct TokenRules {
     /// Who makes them.
@@ -25,9 +25,9 @@ pub struct TokenRules {
     pub client: Claim,
     /// The claim that names the user of the client; a token without it names none.
     pub user: Option<Claim>,
-    /// What makes an operator; without it no token does.
+    /// The claim that makes an operator; without it no token does.
     pub operator: Option<ClaimValue>,
-    /// What makes an administrator; without it no token does. Of a token that makes both it is this.
+    /// The claim that makes an administrator; without it no token does. It wins over `operator`.
     pub administrator: Option<ClaimValue>,
 }
 
@@ -45,7 +45,7 @@ impl IssuerUrl {
         format!("{base}/.well-known/openid-configuration")
     }
 
-    /// Whether keys that are found at `url` are this issuer's: nobody between here and there could have put his own.
+    /// True if keys found at `url` are this issuer's: nobody on the way could have replaced them.
     pub(super) fn may_have_keys_at(&self, url: &Url) -> bool {
         url.scheme() == "https" || (self.url.scheme() == "http" && is_here(url))
     }
@@ -72,7 +72,7 @@ impl FromStr for IssuerUrl {
     }
 }
 
-/// Whether `url` is on this machine, so that what is there needs no encryption on its way.
+/// True if `url` is on this machine, so that its traffic needs no encryption.
 fn is_here(url: &Url) -> bool {
     let host = url.host_str().unwrap_or_default();
     let literal = host.trim_start_matches('[').trim_end_matches(']');
@@ -82,7 +82,7 @@ fn is_here(url: &Url) -> bool {
             .is_ok_and(|address: IpAddr| address.is_loopback())
 }
 
-/// A claim: its name, or a JSON pointer to what is inside of one, such as /realm_access/roles.
+/// A claim: its name, or a JSON pointer into it, such as /realm_access/roles.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Claim(String);
 
@@ -153,7 +153,8 @@ impl FromStr for ClaimValue {
 ///
 /// # Errors
 ///
-/// What was expected. One with a secret that both sides know is none: the service would have to keep what makes tokens.
+/// The algorithm of a name, or a sentence about the expected ones. Algorithms with a shared secret are refused: the service would have to keep the key that
+/// makes tokens.
 pub fn algorithm(text: &str) -> Result<Algorithm, String> {
     let algorithm = text.parse().ok().filter(|it| is_known(*it));
     algorithm.ok_or_else(|| {

@@ -12,12 +12,11 @@ use reqwest::Url;
 pub struct HookRules {
     /// The hosts; none: webhooks are off.
     pub allowed: Vec<HookTarget>,
-    /// Whether a host may be connected to at an address, after its name has been looked up. Only tests have another answer than that of
-    /// [`HookRules::to_named`].
+    /// Check of whether a host may be connected to at an address, after its name was looked up. Only tests replace [`HookRules::to_named`].
     pub reachable: Reachable,
 }
 
-/// Whether a host, as a URL has it, may be connected to at an address.
+/// Check of whether a host, as a URL has it, may be connected to at an address.
 pub(super) type Reachable = Arc<dyn Fn(&str, IpAddr) -> bool + Send + Sync>;
 
 impl HookRules {
@@ -34,7 +33,7 @@ impl HookRules {
         }
     }
 
-    /// Whether messages may be sent to `url`.
+    /// Checks that messages may be sent to `url`.
     ///
     /// # Errors
     ///
@@ -88,7 +87,7 @@ pub struct HookTarget {
 }
 
 impl HookTarget {
-    /// Whether this names `host` so that it may be at `address`, which is not public.
+    /// True if this names `host` at `address`, which is not public.
     fn names(&self, host: &str, address: IpAddr) -> bool {
         if self.any_below || self.host != host {
             return false;
@@ -139,7 +138,7 @@ impl FromStr for HookTarget {
     }
 }
 
-/// Whether an address is one of a private network.
+/// True for an address of a private network.
 fn is_private(address: IpAddr) -> bool {
     match address {
         IpAddr::V4(address) => address.is_private(),
@@ -147,7 +146,7 @@ fn is_private(address: IpAddr) -> bool {
     }
 }
 
-/// Whether an address is one of this machine or of its link.
+/// True for an address of this machine or of its link.
 fn is_here(address: IpAddr) -> bool {
     match address {
         IpAddr::V4(address) => address.is_loopback() || address.is_link_local(),
@@ -155,8 +154,7 @@ fn is_here(address: IpAddr) -> bool {
     }
 }
 
-/// Whether an address is one of the public internet: not this host, not its network, not one that is set aside (IANA's
-/// registries of special-purpose addresses).
+/// True for an address of the public internet: not this host, not its network, not one of IANA's registries of special-purpose addresses.
 fn is_public(address: IpAddr) -> bool {
     match address {
         IpAddr::V4(address) => is_public_v4(address),

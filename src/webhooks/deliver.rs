@@ -1,8 +1,8 @@
 //! The messages on their way: signed as Standard Webhooks asks, tried again with growing patience, and never sent to an address that
 //! is not public, whatever a name means by the time it is looked up.
 //!
-//! Each webhook is patient by itself, and each client has its share of what is under way, so that receivers that hang keep nobody
-//! waiting but who named them. However many clients name such receivers, those that answer have half of the places for themselves.
+//! Each webhook has its own retries, and each client its share of the messages being sent. Receivers that hang delay only the client that named them. However
+//! many clients name such receivers, receivers that answer have half of the places for themselves.
 
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -26,17 +26,17 @@ use super::hooks::Webhooks;
 use super::send::Sender;
 use crate::jobs::StoreError;
 
-/// So many messages are on their way at the same time, so many of them of one client, and so many to one webhook.
+/// Maximum number of messages being sent at the same time, of one client, and to one webhook.
 const AT_ONCE: u64 = 32;
 const OF_CLIENT: u64 = 8;
 const TO_WEBHOOK: u64 = 4;
 
-/// So many of these, and so many of them of one client, go to webhooks that may hang: their last message did not arrive, or none was
-/// sent by this process. Such a one is tried with one message.
+/// Maximum number of messages, and of one client, to webhooks that may hang: their last message did not arrive, or this process has sent none. Such a webhook
+/// is tried with one message.
 const DOUBTFUL: u64 = 16;
 const DOUBTFUL_OF_CLIENT: u64 = 2;
 
-/// So many webhooks that answer are remembered before all of them are in doubt again.
+/// Number of webhooks that are remembered as answering; beyond it all of them count as unknown again.
 const MOST_REMEMBERED: usize = 10_000;
 
 /// Without any news the messages are looked at so often.
@@ -64,7 +64,7 @@ impl Deliveries {
 
     /// Comes back when the last attempt has ended.
     pub async fn ended(self) {
-        // It neither panics nor is aborted.
+        // The task neither panics nor is aborted.
         let _ = self.0.await;
     }
 }
@@ -87,7 +87,7 @@ struct Places {
     answering: HashSet<Uuid>,
 }
 
-/// What one message under way holds.
+/// Resources of one message being sent.
 type Held = Vec<Part>;
 
 impl Places {
@@ -129,7 +129,7 @@ impl Places {
         while let Some(next) = (0..open.len()).min_by_key(|at| under_way(&open[*at])) {
             match self.take(open[next].0) {
                 Some(held) => open[next].1.push(held),
-                // What is under way only grows meanwhile.
+                // The number of messages being sent only grows meanwhile.
                 None => shares.push(open.remove(next)),
             }
         }
@@ -137,7 +137,7 @@ impl Places {
         shares
     }
 
-    /// What came of the last message to `webhook`.
+    /// Records the outcome of the last message to `webhook`.
     fn note(&mut self, webhook: Uuid, has_arrived: bool) {
         if !has_arrived {
             self.answering.remove(&webhook);
@@ -186,7 +186,7 @@ impl Courier {
         attempts.shutdown().await;
     }
 
-    /// Begins what may begin. Gives back how long to wait if nothing happens.
+    /// Starts all messages that may start. Returns the time to wait if nothing happens.
     async fn begin(
         self: &Arc<Self>,
         places: &Places,
@@ -210,7 +210,7 @@ impl Courier {
                     });
                 }
             }
-            // What one had no use for another one may have.
+            // Another webhook may have the place that one did not use.
             if !begun {
                 let patience = waiting.iter().filter_map(|webhook| {
                     let patience = webhook.patience;
@@ -224,7 +224,7 @@ impl Courier {
         }
     }
 
-    /// Sends a message, and writes down what came of it. True if it has arrived.
+    /// Sends a message, and writes the outcome. True if it has arrived.
     async fn attempt(&self, message: &Message) -> bool {
         let attempt = self.send(message).await;
         let result = match &attempt.refusal {
@@ -401,7 +401,7 @@ mod tests {
         );
         assert!(places.shares(&hanging).is_empty());
         assert_eq!(of("answers, always", &places.shares(&answers)), OF_CLIENT);
-        // What has answered once is beyond doubt until it does so no more.
+        // A webhook that has answered counts as answering until it fails.
         let first = &hanging[31..32];
         places.note(first[0].webhook, true);
         assert_eq!(of("hh", &places.shares(first)), TO_WEBHOOK);

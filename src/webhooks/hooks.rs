@@ -10,13 +10,13 @@ use uuid::Uuid;
 use super::addresses::HookRules;
 use crate::jobs::{EventKind, JobError, Jobs, KEY_LIFETIME, StoreError};
 
-/// So many webhooks may a client have.
+/// Maximum number of webhooks of a client.
 const MOST: i64 = 16;
 
-/// So many bytes has the key of the signatures, as Standard Webhooks asks (24 to 64).
+/// Bytes of the key of the signatures; Standard Webhooks asks for 24 to 64.
 const SECRET_BYTES: usize = 32;
 
-/// So many webhooks may a client have.
+/// Maximum number of webhooks of a client.
 pub fn most_webhooks() -> i64 {
     MOST
 }
@@ -33,10 +33,10 @@ pub enum WebhookError {
     /// Webhooks are not served here, or not to this address.
     #[error("{0}")]
     Refused(String),
-    /// It was given up, and is sent nothing.
+    /// The webhook is disabled and gets no messages.
     #[error("the webhook was given up")]
     Disabled,
-    /// What concerns jobs, too.
+    /// Errors of jobs.
     #[error(transparent)]
     Job(#[from] JobError),
 }
@@ -52,9 +52,9 @@ impl From<StoreError> for WebhookError {
 pub struct Made {
     /// The webhook.
     pub webhook: Webhook,
-    /// What its messages are signed with: `whsec_` and base64.
+    /// Key of the signatures of its messages: `whsec_` and base64.
     pub secret: String,
-    /// Whether an earlier request with the same key made it.
+    /// True if an earlier request with the same key made it.
     pub repeated: bool,
 }
 
@@ -168,7 +168,7 @@ impl Webhooks {
         delivery.ok_or(WebhookError::NotFound(id))
     }
 
-    /// The latest messages to a webhook, the newest first, and what came of them.
+    /// The latest messages to a webhook, the newest first, with their outcomes.
     ///
     /// # Errors
     ///
@@ -178,7 +178,7 @@ impl Webhooks {
         Ok(self.jobs.store().deliveries(id, None).await?)
     }
 
-    /// Takes up a webhook again that was given up, or that is to be tried before its time: what waits is sent at once.
+    /// Enables a webhook that was disabled, or that waits for a retry: waiting messages are sent at once.
     ///
     /// # Errors
     ///

@@ -1,8 +1,7 @@
 //! Webhooks: messages to a client that its jobs and studies have ended.
 //!
-//! In reading order: where messages may go ([`addresses`](HookRules)); what handlers do with
-//! [`Webhooks`] (`hooks`); how one is sent (`send`); and the task that delivers them (`deliver`). What is kept of them, and the messages, which are written
-//! with the change that they report, are the store's.
+//! In reading order: allowed addresses ([`addresses`](HookRules)); the [`Webhooks`] that handlers use (`hooks`); sending of one message (`send`); and the task
+//! that delivers them (`deliver`). The store keeps webhooks and messages; a message is written with the change that it reports.
 
 mod addresses;
 mod deliver;

@@ -121,7 +121,7 @@ mod tests {
 
     use super::*;
 
-    /// What is said of a receiver that says `first` once and `again` for ever.
+    /// The outcome for a receiver that answers `first` once and `again` from then on.
     async fn outcome_of(first: &'static str, again: &'static str) -> Result<StatusCode, String> {
         let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
         let address = listener.local_addr().unwrap();

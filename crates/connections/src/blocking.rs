@@ -8,14 +8,14 @@ use tokio::task::{JoinError, spawn_blocking};
 
 use super::budget::Budget;
 
-/// So many pieces of such work are done at the same time; others wait for their turn, which clients take one after the other.
-/// It is the cores that are short. Some takes seconds, so one client never has all places.
+/// Pieces of such work at the same time; others wait for their turn, which clients take one after the other. The cores are the bottleneck. Some work takes
+/// seconds, so one client never has all places.
 static PLACES: LazyLock<Budget> = LazyLock::new(|| {
     let cores = thread::available_parallelism().map_or(1, usize::from);
     Budget::leaving_as_much(2 * cores as u64)
 });
 
-/// Does work for `client` where it holds nobody up. The work is given what becomes true when nobody waits for it any more: then it stops.
+/// Does work for `client` on a thread that delays no other request. The work gets a flag that becomes true when nobody waits for it any more: then it stops.
 ///
 /// # Errors
 ///

@@ -20,7 +20,7 @@ struct Shared {
     most: u64,
     /// One client holds no more than this.
     most_of_client: u64,
-    /// Whether a client that holds some takes no more than it leaves.
+    /// True if a client that holds some gets at most as much as it leaves.
     leaves_as_much: bool,
     state: Mutex<State>,
 }
@@ -29,7 +29,7 @@ struct Shared {
 struct State {
     free: u64,
     held: HashMap<Arc<str>, u64>,
-    /// Those who wait, by their order of arrival.
+    /// Waiting clients, by their order of arrival.
     waiting: BTreeMap<u64, Waiting>,
     arrived: u64,
 }
@@ -38,7 +38,7 @@ struct State {
 struct Waiting {
     client: Arc<str>,
     amount: u64,
-    /// So much may pass it yet.
+    /// Amount that may still pass it.
     yields: u64,
     answer: oneshot::Sender<Part>,
 }
@@ -62,8 +62,8 @@ impl Budget {
         Self::new(most, most_of_client, false)
     }
 
-    /// A budget of which a client that has some gets no more than it leaves: for what lasts as long as a client likes, or so long that
-    /// nobody should wait for it. Whatever one client asks for, the next one finds something.
+    /// A budget of which a client that has some gets at most as much as it leaves: for work that lasts as long as a client likes, or so long that nobody should
+    /// wait for it. Whatever one client asks for, the next one finds something.
     pub fn leaving_as_much(most: u64) -> Self {
         Self::new(most, most, true)
     }
@@ -82,7 +82,7 @@ impl Budget {
         }))
     }
 
-    /// A part for `client`, once there is one. What asks for more than there is gets all of it, when nobody else has any.
+    /// A part for `client`, once there is one. A request for more than the whole gets all of it, when nobody else has any.
     pub async fn take(&self, client: &str, amount: u64) -> Part {
         let (_place, part) = self.queue(client, amount);
         part.await.expect("who waits is answered")
@@ -115,7 +115,7 @@ impl Budget {
         }
     }
 
-    /// Waits for a part: a place among those who do, and what is answered.
+    /// Waits for a part: a place in the queue, and the channel of the answer.
     fn queue(&self, client: &str, amount: u64) -> (Queued, oneshot::Receiver<Part>) {
         let (answer, part) = oneshot::channel();
         let amount = amount.min(self.0.most).min(self.0.most_of_client);

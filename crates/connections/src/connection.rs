@@ -1,4 +1,4 @@
-//! What is known of a connection, and the requests on it that are being answered.
+//! A connection, and the requests on it that are being answered.
 
 use std::net::{IpAddr, Ipv6Addr};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -40,9 +40,9 @@ impl From<IpAddr> for Address {
 /// Who sends requests on a connection.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 enum Identity {
-    /// It was accepted at this time, and has had no request.
+    /// Accepted at this time, without a request so far.
     New(Instant),
-    /// It has had requests, none of them with a key that is known.
+    /// It has had requests, none of them with a known key.
     Unauthenticated,
     /// The last key on it that is known is this client's.
     Client(Arc<str>),
@@ -101,7 +101,7 @@ impl Connection {
         *self.identity() = Identity::Client(Arc::clone(client));
     }
 
-    /// Whether nobody would miss it: no request is being answered, or its client sends nothing of it, or reads nothing of the answer.
+    /// True if it may be evicted: no request is being answered, or its client sends nothing of it, or reads nothing of the answer.
     pub(super) fn is_idle(&self, now: Instant) -> bool {
         let patience = match *self.identity() {
             Identity::Client(_) => STALLED,
@@ -114,7 +114,7 @@ impl Connection {
             || longer(self.writes.stalled_for(now), patience)
     }
 
-    /// Whether a request is being answered, or its answer is not written.
+    /// True if a request is being answered, or its answer is not yet written.
     pub(super) fn is_busy(&self) -> bool {
         self.active.load(Ordering::Relaxed) > 0 || !self.writes.is_empty()
     }
@@ -152,7 +152,7 @@ impl Connection {
 #[derive(Debug)]
 pub struct ActiveRequest {
     pub(super) connection: Arc<Connection>,
-    /// Its part of what its client, or its address, may have active.
+    /// Its part of the active connections of its client or of its address.
     part: Mutex<Option<Part>>,
 }
 
@@ -191,7 +191,7 @@ impl ActiveRequest {
         self.count_for(&Owner::Address(self.connection.address))
     }
 
-    /// It has a key of this client, for which it counts from now on.
+    /// Counts the connection for this client, whose key it has, from now on.
     ///
     /// # Errors
     ///

@@ -1,10 +1,9 @@
-//! Connections of HTTP: how many there are, which of them a client may use, and how they end. It knows requests and clients, and nothing of
-//! what is asked and answered.
+//! Connections of HTTP: their number, the share of a client, and their end. It knows requests and clients, but not the content of requests and answers.
 //!
-//! In reading order: the [`Budget`] of what clients share; what is known of a [`Connection`] and its requests; the [limit](Overloaded) of
-//! connections, the eviction of idle ones and the limit for one client; reads and writes that stall; the [`Rates`] of requests, and those
-//! [without a key](Unauthenticated); the [`Server`] that accepts connections and serves them. Then what answers are made with: tasks that can be
-//! [measured](measure_polls), work that holds no other request up ([`blocking`]), packing, and entity [tags](Tag).
+//! In reading order: the [`Budget`] that clients share; a [`Connection`] and its requests; the [limit](Overloaded) of connections, the eviction of idle ones
+//! and the limit for one client; reads and writes that stall; the [`Rates`] of requests, and those [without a key](Unauthenticated); the [`Server`] that
+//! accepts connections and serves them. Then parts of answers: tasks that can be [measured](measure_polls), work that delays no other request ([`blocking`]),
+//! packing, and entity [tags](Tag).
 
 mod accepts;
 mod blocking;

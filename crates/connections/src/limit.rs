@@ -14,11 +14,10 @@ use super::connection::{Address, Connection, NEW, Owner};
 /// One client, or one address without a key, has so large a part of the connections busy at most.
 const OF_CLIENT: usize = 4;
 
-/// So many connections are accepted beyond the limit: for health checks, which are answered on them at once, and for others until a regular
-/// place is free.
+/// Connections accepted beyond the limit: for health checks, which are answered on them at once, and for others until a regular place is free.
 const RESERVE: usize = 64;
 
-/// So long a request waits in the reserve for a regular place.
+/// Longest time that a request waits in the reserve for a regular place.
 const LONGEST_WAIT: Duration = Duration::from_secs(2);
 
 /// A new connection is spared from eviction as long as no more than one in so many is new, and for a tenth of the time as long as no more
@@ -34,7 +33,7 @@ pub enum Overloaded {
     /// Its client, or its address, has as many as it may have.
     #[error("as many requests of yours are being answered as one client may have at the same time")]
     Client,
-    /// It came on a connection of the reserve, and no regular place became free.
+    /// The request came on a connection of the reserve, and no regular place became free.
     #[error("all connections are busy")]
     Connections,
 }
@@ -402,7 +401,7 @@ mod tests {
             .iter()
             .filter(|request| request.count_for_address().is_ok());
         assert_eq!(of_address.count(), 4);
-        // Those that turn out to have a key count for its client, and no more for the address.
+        // Connections with a key count for its client, and no more for the address.
         let of = |client: &str| {
             let client = client.into();
             requests

@@ -16,14 +16,14 @@ use tower::BoxError;
 use super::blocking::blocking;
 use super::tag::tag_as_packed;
 
-/// What is smaller fits in a packet or two, and packing it would only take time.
+/// Smaller answers fit in a packet or two, and packing would only take time.
 const LEAST: u64 = 4 << 10;
 
 /// Whose turn it is to have something packed is not asked: it takes a millisecond for a megabyte.
 const NOBODY: &str = "";
 
-/// Whether an answer with these headers and of that size gains by being packed: text of some length that is not packed yet. A stream of
-/// events has to arrive event by event.
+/// True if an answer with these headers and of that size is worth packing: text of some length that is not packed yet. A stream of events has to arrive event
+/// by event.
 pub fn gains_by_packing(headers: &HeaderMap, size: &SizeHint) -> bool {
     let media_type = headers
         .get(CONTENT_TYPE)
@@ -53,7 +53,7 @@ pub async fn packed_whole(bytes: Bytes) -> Result<io::Result<Bytes>, JoinError> 
     blocking(NOBODY, move |_| packed(&bytes, Compression::fast())).await
 }
 
-/// What `bytes` come to, packed.
+/// The packed form of `bytes`.
 ///
 /// # Errors
 ///
@@ -83,7 +83,7 @@ where
     })
 }
 
-/// The next bytes of a packed stream, and what is left of it.
+/// The next bytes of a packed stream, and its rest.
 async fn next_piece<S, E>(
     mut stream: S,
     mut encoder: Encoder,

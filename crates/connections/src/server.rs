@@ -41,13 +41,13 @@ const LARGEST_HEAD: usize = 32 << 10;
 /// A head has no more fields than this.
 const MOST_FIELDS: usize = 64;
 
-/// At a shutdown, an idle connection gets so long for what may be on its way.
+/// Time that an idle connection gets at a shutdown for a request that may be on its way.
 const LAST_BREATH: Duration = Duration::from_millis(300);
 
 /// How connections are bounded.
 #[derive(Debug, Clone, Copy)]
 pub struct Bounds {
-    /// So many at the same time.
+    /// Maximum number at the same time.
     pub connections: usize,
     /// The head of a request is here so long after the connection began or the last answer ended.
     pub head: Duration,
@@ -60,7 +60,7 @@ pub trait AnswerBody: Body<Data = Bytes, Error: Into<BoxError>> + Send + Unpin +
 
 impl<B: Body<Data = Bytes, Error: Into<BoxError>> + Send + Unpin + 'static> AnswerBody for B {}
 
-/// What answers every request, such as a router.
+/// A handler of every request, such as a router.
 pub trait Answer<B>:
     Service<Request<WatchedBody>, Response = Response<B>, Error = Infallible, Future: Send>
     + Clone
@@ -118,7 +118,7 @@ impl Server {
     /// later than `grace`. False if some had to be cut off.
     pub async fn ended(self, grace: Duration) -> bool {
         let all = async {
-            // It neither panics nor is aborted.
+            // The task neither panics nor is aborted.
             let _ = self.task.await;
             self.connections.close();
             self.connections.wait().await;
@@ -135,7 +135,7 @@ impl Server {
     }
 }
 
-/// What accepts connections.
+/// Acceptor of connections.
 struct Accepting<S> {
     service: S,
     bounds: Bounds,
@@ -320,7 +320,7 @@ mod tests {
 
     const PATIENCE: Duration = Duration::from_secs(20);
 
-    /// A connection that is served, its client's end, and how many answers were made. What is on its way holds `room` bytes.
+    /// A connection that is served, its client's end, and the number of answers. The network holds `room` bytes.
     fn connect(
         room: usize,
         answer: usize,
@@ -357,7 +357,7 @@ mod tests {
 
     #[tokio::test]
     async fn of_many_pipelined_requests_one_answer_is_in_memory_at_a_time() {
-        // The answers are larger than what may be on its way, and much smaller than what is buffered for one.
+        // The answers are larger than the buffer of the network, and much smaller than the buffer of an answer.
         let (_, mut client, made) = connect(1 << 10, 2 << 10, PATIENCE);
         let requests = REQUEST.repeat(20);
         client.write_all(requests.as_bytes()).await.unwrap();

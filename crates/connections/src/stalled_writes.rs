@@ -34,7 +34,7 @@ impl Writes {
         self.state().unsent = true;
     }
 
-    /// Whether everything was written.
+    /// True if everything was written.
     pub(super) fn is_empty(&self) -> bool {
         !self.state().unsent
     }
@@ -94,7 +94,7 @@ impl<S> WatchedStream<S> {
         }
     }
 
-    /// Notes what came of a write.
+    /// Records the result of a write.
     fn note(
         &mut self,
         context: &mut Context<'_>,

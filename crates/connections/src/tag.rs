@@ -8,9 +8,9 @@ use super::accepts::takes_gzip;
 /// How long an answer may be kept by who asked for it.
 #[derive(Debug, Clone, Copy)]
 pub enum Keep {
-    /// It may change: ask again, with the tag.
+    /// The content may change: ask again, with the tag.
     AskAgain,
-    /// It never changes under its address.
+    /// The content never changes under its address.
     ForGood,
 }
 
@@ -28,7 +28,7 @@ impl Keep {
 pub struct Tag(String);
 
 impl Tag {
-    /// The tag of what a hash stands for, in one of its forms.
+    /// The tag of one form of the content with this hash.
     pub fn of_hash(hash: &str, form: &str) -> Self {
         Self(format!("\"{hash}{form}\""))
     }
@@ -56,11 +56,11 @@ impl Tag {
         })
     }
 
-    /// The answer: that the client has it already, or what `make` gives, with the tag on it.
+    /// The answer: 304 if the client has it already, or the result of `make`, with the tag on it.
     ///
     /// # Errors
     ///
-    /// What `make` meets.
+    /// Errors of `make`.
     pub async fn answer<B: Default, E>(
         &self,
         keep: Keep,

@@ -1,4 +1,4 @@
-//! Tasks on the threads that answer requests, and what each takes of them at a time.
+//! Tasks on the threads that answer requests, and the time of each of their polls.
 
 use std::future::poll_fn;
 use std::pin::pin;
@@ -14,7 +14,7 @@ static GAUGE: OnceLock<Gauge> = OnceLock::new();
 pub struct Gauge {
     /// The processor time that the thread has had so far.
     pub time: fn() -> Duration,
-    /// Is told what a poll has taken of it.
+    /// Hears the duration of each poll.
     pub polled: fn(Duration),
 }
 
@@ -76,7 +76,7 @@ mod tests {
         });
         let mut task = pin!(task);
         while futures_util::poll!(&mut task).is_pending() {
-            // What other tasks of the thread take.
+            // The time of other tasks of the thread.
             work(1000);
         }
         assert_eq!(TAKEN.load(Ordering::Relaxed), 5);

@@ -18,7 +18,7 @@ const ADDRESSES: NonZeroU32 = NonZeroU32::new(20).unwrap();
 /// However many others send, an address may send so many a second, and a page's worth at once.
 const LEAST: (u32, u32) = (5, 40);
 
-/// So many keys are remembered.
+/// Maximum number of remembered keys.
 const MOST_REMEMBERED: usize = 10_000;
 
 /// An address, and whether the request has something that may be a key: a flood without one does not keep others from showing theirs.
@@ -36,7 +36,7 @@ pub struct Unauthenticated {
 }
 
 impl Unauthenticated {
-    /// So many requests a second of one address.
+    /// Limits requests per second of one address.
     pub fn new(rate: NonZeroU32) -> Self {
         Self {
             rate,

@@ -1,6 +1,6 @@
 //! Numbers in as many digits as they have.
 
-/// `value` rounded to `digits` significant decimal digits, half to even of what it is exactly; a negative zero loses its sign.
+/// `value` rounded to `digits` significant decimal digits, half to even of its exact value; a negative zero loses its sign.
 pub fn significant(value: f64, digits: usize) -> f64 {
     if value == 0.0 || !value.is_finite() {
         return value + 0.0;
@@ -52,7 +52,7 @@ const POWERS: [f64; 23] = [
 mod tests {
     use super::*;
 
-    /// What a text says.
+    /// The rounding by text.
     fn by_text(value: f64, digits: usize) -> f64 {
         format!("{value:.*e}", digits - 1).parse().unwrap()
     }
@@ -67,7 +67,7 @@ mod tests {
                 .wrapping_add(1);
             let digits = 1 + (state >> 60) as usize;
             let exponent = (state >> 40) as i32 % 40 - 20;
-            // Any number, numbers of few digits and their neighbours, and what lies half between two of them.
+            // Any number, numbers of few digits and their neighbors, and numbers half between two of them.
             let mantissa = (state >> 11) as f64 / (1_u64 << 53) as f64;
             let few = (mantissa * 1e4).floor();
             let value = match round % 4 {

@@ -1,7 +1,7 @@
 //! The force table of a pair as an FMU 2.0, for Model Exchange and Co-Simulation.
 //!
-//! The program of the FMU is the same for all jobs: a C file in `fmu`, compiled when this program is built where a C compiler is there. What
-//! is of the job is the table, a resource that it reads.
+//! The program of the FMU is the same for all jobs: a C file in `fmu`, compiled when this program is built where a C compiler is installed. The part of the job
+//! is the table, a resource that it reads.
 
 use std::io::{Cursor, Write};
 

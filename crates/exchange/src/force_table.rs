@@ -1,5 +1,4 @@
-//! The force table of a pair as other programs read it: rows for a spreadsheet, tables over angle and approach for
-//! Modelica, and what an FMU reads.
+//! The force table of a pair for other programs: rows for a spreadsheet, tables over angle and approach for Modelica, and the resource of an FMU.
 //!
 //! Angles are those of the gears, each growing in the sense in which its gear turns; the approach is r_b1 θ_1 − r_b2 θ_2. The force has
 //! an energy V(θ_1, δ), and the mesh exerts −r_b1 F − ∂V/∂θ_1 on the driving and r_b2 F on the driven gear: without the second term, which is
@@ -44,7 +43,7 @@ pub enum Form {
     Modelica,
 }
 
-/// The force table of a pair, with what turns it into torques.
+/// The force table of a pair, with the lever arms that turn it into torques.
 pub struct MeshForces {
     /// The table.
     pub table: ForceTable,

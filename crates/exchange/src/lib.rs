@@ -1,8 +1,8 @@
-//! What other programs read and write: look-up tables and tables of force for rotor dynamics and multibody codes, models of gearboxes in REXS, drawings in
-//! DXF, fields for viewers.
+//! Files for other programs: look-up tables and tables of force for rotor dynamics and multibody codes, models of gearboxes in REXS, drawings in DXF, fields
+//! for viewers.
 //!
-//! Fields and tables are made of what the engine computes. A model becomes a submission, and a submission a model, and a drawing the outline of a blank: of
-//! that document this crate knows the names.
+//! Fields and tables are made from the engine's results. A model becomes a submission, a submission a model, and a drawing the outline of a blank: this crate
+//! knows the names of that document's fields.
 
 mod digits;
 pub mod dxf;

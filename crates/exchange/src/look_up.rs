@@ -10,7 +10,7 @@ use serde_json::json;
 pub enum Form {
     /// Commas, remarks after `#`: NumPy, pandas, ROSS.
     Csv,
-    /// Spaces, remarks after `%`: the spreadsheet form of COMSOL, and what multibody codes import.
+    /// Spaces, remarks after `%`: the spreadsheet form of COMSOL, and the import of multibody codes.
     Text,
 }
 

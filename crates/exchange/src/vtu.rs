@@ -79,7 +79,7 @@ impl<'a> Piece<'a> {
         stress / 1e6
     }
 
-    /// What VTK calls the shape of a cell, and its points.
+    /// VTK's number of the shape of a cell, and its points.
     fn cell(self, number: usize) -> (u8, &'a [u32]) {
         match self {
             Self::Plate(gear) => {
@@ -123,7 +123,7 @@ const QUADRATIC_WEDGE: u8 = 26;
 ///
 /// # Errors
 ///
-/// Those of `out`.
+/// Errors of `out`.
 pub fn write(gears: [Piece<'_>; 2], out: impl Write) -> io::Result<()> {
     let [driving, driven] = gears;
     let of_points = || {

@@ -1,5 +1,5 @@
-//! Bytes as a submission, a preview, a study, a REXS model and a drawing: whatever they are, reading ends in a document or a problem, and what was
-//! read is read again from its echo, or from the model that it is written as.
+//! Bytes as a submission, a preview, a study, a REXS model and a drawing: for any bytes, reading ends in a document or a problem, and a document is read again
+//! from its echo, or from the model that it is written as.
 
 use meshwright_engine::run::Run;
 use meshwright_exchange::dxf::{Choices as Drawn, outline};
@@ -7,7 +7,7 @@ use meshwright_exchange::rexs::{Choices, import, is_model};
 use meshwright_studies::{Searching, Study};
 use meshwright_wire::{Preview, Problem, Submission, model_of};
 
-/// So many designs of a study are expanded.
+/// Designs of a study that are expanded.
 const DESIGNS: usize = 8;
 
 /// Reads `bytes` as all that they might be.
@@ -39,7 +39,7 @@ pub fn check(bytes: &[u8]) {
     }
 }
 
-/// Takes a model, and writes what it comes to as one that can be taken again.
+/// Reads a model, and writes its submission as a model that can be read again.
 fn check_model(bytes: &[u8]) {
     let Ok(imported) = import(bytes, &Choices::default()) else {
         return;

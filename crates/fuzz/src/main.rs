@@ -1,4 +1,4 @@
-//! Bytes as all that they might be (`check`), guided by what they reach in the code (libFuzzer); `crates/fuzz/run` builds and runs it.
+//! Bytes as all documents that they might be (`check`), guided by the code that they reach (libFuzzer); `crates/fuzz/run` builds and runs it.
 
 #![no_main]
 

@@ -1,5 +1,4 @@
-//! `meshwright-paper digests`: what is computed of many submissions, each result as one hash, so that two versions of the engine are compared to the
-//! last bit.
+//! `meshwright-paper digests`: the results of many submissions, each as one hash, so that two versions of the engine are compared to the last bit.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -101,7 +100,7 @@ fn digest(submission: &Submission, library: &Library) -> String {
     sha256_hex(text)
 }
 
-/// The submission in a document: itself, the base of a study, or what a series of reference solutions has solved; `None` where none of these is.
+/// The submission in a document: itself, the base of a study, or the pair of a series of reference solutions; `None` where it has none of these.
 fn submission_of(path: &Path) -> anyhow::Result<Option<Value>> {
     let document: Value = serde_json::from_str(&read(path)?)
         .with_context(|| format!("{} is no JSON", path.display()))?;
@@ -110,7 +109,7 @@ fn submission_of(path: &Path) -> anyhow::Result<Option<Value>> {
     Ok(found.find(|found| found.get("pair").is_some()).cloned())
 }
 
-/// Prints what is in only one of the lists `now` and `before`.
+/// Prints entries that only one of the lists `now` and `before` has.
 fn compare(now: &[String], before: &str) -> anyhow::Result<()> {
     let now: BTreeSet<&str> = now.iter().map(String::as_str).collect();
     let before: BTreeSet<&str> = before.lines().collect();

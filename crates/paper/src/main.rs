@@ -1,5 +1,4 @@
-//! What the documents of the repository are made by: the paper, recomputed, and the machine, measured at it; and the hashes by which two versions of
-//! the engine are compared.
+//! The documents of the repository: the paper, recomputed, and measurements of the machine; and the hashes by which two versions of the engine are compared.
 
 mod digests;
 mod measure;
@@ -20,7 +19,7 @@ struct Arguments {
 enum Command {
     /// Print the hash of every result, or compare it with an earlier list.
     Digests(digests::Digests),
-    /// Measure how fast this machine computes, and how time grows with what is asked.
+    /// Measure the speed of this machine, and the growth of time with the size of a request.
     Measure(measure::Measure),
     /// Recompute the paper's tables, figures and study.
     Reproduce(reproduce::Reproduce),

@@ -1,6 +1,6 @@
 //! `meshwright-paper validity`: the transmission error of the service beside every series of reference solutions.
 //!
-//! What is told of each in docs/validity.md in a line, these figures show point by point.
+//! These figures show point by point the comparisons that docs/validity.md has in a line each.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -133,7 +133,7 @@ impl Validity {
         }))
     }
 
-    /// What the series `name` solves. Those that were made by others say it in words; our own checks of them have the submission.
+    /// The pair of the series `name`. Series of others describe it in words; our own checks of them have the submission.
     fn submission(&self, name: &str, torque: f64) -> anyhow::Result<Value> {
         let holder = match name {
             "s1" | "s3" => "check-s1",

@@ -94,17 +94,17 @@ impl Axis {
         Self { ticks, ..self }
     }
 
-    /// Whether `value` lies on the axis.
+    /// True if `value` lies on the axis.
     pub(crate) fn shows(&self, value: f64) -> bool {
         (self.low..=self.high).contains(&value)
     }
 
-    /// What stands beside it, and where.
+    /// Labels beside it, and their places.
     pub(crate) fn ticks(&self) -> &[(f64, String)] {
         &self.ticks
     }
 
-    /// The part of the way between the ends at which `value` stands, from 0 to 1; what lies beyond an end is put there.
+    /// The part of the way between the ends at which `value` stands, from 0 to 1; a value beyond an end is put there.
     pub(crate) fn fraction(&self, value: f64) -> f64 {
         let value = value.clamp(self.low, self.high);
         match self.scale {

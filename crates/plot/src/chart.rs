@@ -120,7 +120,7 @@ impl<'a> Frame<'a> {
         self.bottom + self.axes.1.fraction(y) * (self.top - self.bottom)
     }
 
-    /// Whether both axes reach the point.
+    /// True if both axes contain the point.
     fn shows(&self, (x, y): (f64, f64)) -> bool {
         self.axes.0.shows(x) && self.axes.1.shows(y)
     }
@@ -205,7 +205,7 @@ fn draw_series(svg: &mut Svg, frame: &Frame<'_>, series: &Series) {
     svg.path(simplified(&places, TOLERANCE), series.color, width);
 }
 
-/// What stands at a point, where it is drawn by lines of a `width`.
+/// Draws the mark of a point, by lines of a `width`.
 fn draw_point(svg: &mut Svg, place: Point, color: Color, (look, width): (Look, f64)) {
     match look {
         Look::Crosses => svg.cross(place, 3.0, color, width),

@@ -31,11 +31,11 @@ pub enum Shape {
 pub struct Drawing {
     /// The title of the panel.
     pub title: String,
-    /// The corners of what is shown, in meters.
+    /// Corners of the visible part, in meters.
     pub window: (Vector, Vector),
     /// The shapes, each over those before it.
     pub shapes: Vec<Shape>,
-    /// What the fills and the circles mean.
+    /// Meaning of the fills and the circles.
     pub legend: Vec<(String, Color, Look)>,
 }
 
@@ -144,7 +144,7 @@ pub fn openings(gear: &SpurGear, place: Placement) -> Vec<Shape> {
     shapes
 }
 
-/// A hole: a disk, a slot along its circle with round ends, or what its contour encloses.
+/// A hole: a disk, a slot along its circle with round ends, or the inside of its contour.
 fn opening(hole: &Hole, place: Placement) -> Shape {
     let at = |angle: f64| place.center + hole.circle_radius * radial(place.angle + angle);
     match hole.shape {

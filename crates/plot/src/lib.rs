@@ -1,7 +1,7 @@
 //! Figures as SVG: charts of named series, order spectra, and drawings of gears.
 //!
 //! Read in this order: `svg` (its elements), [`axis`], [`chart`] (curves and stems), [`drawing`] (shapes, and the true outline of a gear), [`map`] (fields by
-//! color), `simplify` (what keeps the files small). Nothing here knows what the figures are about.
+//! color), `simplify` (small files). Nothing here knows the subject of the figures.
 
 pub mod axis;
 pub mod chart;

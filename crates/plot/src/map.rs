@@ -20,7 +20,7 @@ const RAMP: [Color; 6] = [
     Color(78, 14, 60),
 ];
 
-/// What has no value to tell.
+/// Color of cells without a value.
 pub const BEYOND: Color = Color(0, 114, 178);
 
 /// The value of a cell.
@@ -47,7 +47,7 @@ pub struct Map {
     pub rows: Vec<Vec<Cell>>,
     /// The scale of colors, with its label.
     pub scale: Axis,
-    /// What is told of cells beyond it.
+    /// Label of cells beyond it.
     pub beyond: String,
 }
 
@@ -74,7 +74,7 @@ impl Map {
         self.draw_scale(svg, &frame);
     }
 
-    /// What stands for cells beyond the scale, if there are any.
+    /// Legend of cells beyond the scale, if there are any.
     pub(crate) fn legend(&self) -> Option<(&str, Color)> {
         let any = self.rows.iter().flatten().any(|cell| *cell == Cell::Beyond);
         any.then_some((&self.beyond, BEYOND))

@@ -3,8 +3,8 @@
 /// Points that are looked at together. A path that goes to and fro is divided as often as it has points, and each division looks at all points between two.
 const PIECE: usize = 200;
 
-/// The points of `path` that are needed so that no other lies farther than `tolerance` from what is drawn
-/// (Ramer, Douglas and Peucker, piece by piece); the first and the last stay.
+/// The points of `path` that are needed so that no other lies farther than `tolerance` from the drawn line (Ramer, Douglas and Peucker, piece by piece); the
+/// first and the last stay.
 pub(crate) fn simplified(path: &[(f64, f64)], tolerance: f64) -> Vec<(f64, f64)> {
     if path.len() < 3 {
         return path.to_vec();
@@ -70,7 +70,7 @@ mod tests {
             .collect();
         let drawn = simplified(&path, 0.1);
         assert!(drawn.len() > 190_000, "{} points", drawn.len());
-        // What is straight loses all but an end for each piece.
+        // Straight parts lose all points but an end for each piece.
         let straight: Vec<(f64, f64)> = (0..200_001_i32).map(|i| (f64::from(i), 0.0)).collect();
         assert_eq!(simplified(&straight, 0.1).len(), 200_000 / PIECE + 1);
     }

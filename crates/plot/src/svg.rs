@@ -58,7 +58,7 @@ impl Svg {
         self.text + "</svg>\n"
     }
 
-    /// What `draw` draws, with its upper left corner at `corner`.
+    /// The content that `draw` draws, with its upper left corner at `corner`.
     pub(crate) fn group(&mut self, corner: Point, draw: impl FnOnce(&mut Self)) {
         let [x, y] = [corner.0, corner.1].map(number);
         self.line(format_args!("<g transform=\"translate({x} {y})\">"));

@@ -29,8 +29,7 @@ impl DatabaseAddress {
 impl FromStr for DatabaseAddress {
     type Err = Infallible;
 
-    // What is wrong with an address is reported when it is used: a parser of arguments repeats what it does not understand,
-    // with the password.
+    // A faulty address is reported when it is used: a parser of arguments repeats the text that it does not understand, with the password.
     fn from_str(text: &str) -> Result<Self, Infallible> {
         let is_address = text.starts_with("postgres://") || text.starts_with("postgresql://");
         let file = ["sqlite://", "sqlite:"]

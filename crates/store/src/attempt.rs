@@ -1,4 +1,4 @@
-//! What comes of a job that runs: running -> running, successful, failed, or accepted again.
+//! Outcomes of a running job: running -> running, successful, failed, or accepted again.
 
 use std::collections::BTreeMap;
 
@@ -31,23 +31,23 @@ pub struct Lease {
     pub lasts: SignedDuration,
 }
 
-/// When an attempt ended, and what it took.
+/// End and duration of an attempt.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct End {
     /// The time of day.
     pub at: Timestamp,
-    /// What the attempt took, by the steady clock.
+    /// Duration of the attempt, by the steady clock.
     pub elapsed: SignedDuration,
 }
 
-/// What came of an attempt.
+/// Outcome of an attempt.
 #[derive(Debug, Clone, Copy)]
 pub enum Came<'a> {
-    /// Results, and what the tables of studies show of them.
+    /// Results, and their summary for the tables of studies.
     Results {
         /// The results document, or its name.
         document: &'a Packed,
-        /// What tables show of it, JSON.
+        /// Summary for tables, JSON.
         summary: Option<&'a str>,
     },
     /// The problem document, JSON.
@@ -61,12 +61,12 @@ pub struct Ended<'a> {
     pub claim: Claim,
     /// When it ended.
     pub end: End,
-    /// What came of it.
+    /// Outcome.
     pub came: Came<'a>,
 }
 
 impl Ended<'_> {
-    /// What a statement reads of it.
+    /// The values that a statement reads.
     fn row(&self) -> Value {
         let (status, results, problem) = match self.came {
             Came::Results { document, .. } => (Status::Successful, Some(document.hash()), None),
@@ -135,9 +135,8 @@ impl Store {
         Ok(are_among(&claims, &held))
     }
 
-    /// Running -> successful or failed for several jobs in one commit, each with its results document and what the tables of studies show
-    /// of it, or with its problem document. For each, the job as it has ended; absent if its claim holds no more, and then nothing of
-    /// it is kept.
+    /// Running -> successful or failed for several jobs in one commit, each with its results document and its summary for the tables of studies, or with its
+    /// problem document. Returns each job as it has ended; `None` if its claim no longer holds: then nothing of it is stored.
     pub async fn end_all(
         &self,
         ends: &[Ended<'_>],

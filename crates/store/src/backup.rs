@@ -44,7 +44,7 @@ impl Store {
         let mut name = target.as_os_str().to_owned();
         name.push(".partial");
         let partial = PathBuf::from(name);
-        // What an earlier backup left that was interrupted.
+        // A file that an interrupted backup left.
         let _ = std::fs::remove_file(&partial);
         let copied = copy(database, &partial).await;
         let placed = copied.and_then(|()| place(&partial, target));

@@ -33,32 +33,32 @@ impl Record for Started {
     }
 }
 
-/// What a worker finds in the queue.
+/// The work that a worker finds in the queue.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Claimed {
     /// The jobs to compute, one after the other: one, or several small ones of one lane.
     pub started: Vec<Started>,
     /// Jobs that were next, but have been given the results of an equal one.
     pub given: Vec<Job>,
-    /// Whether nothing waits any more, not even for another job.
+    /// True if no job waits any more, not even for another job.
     pub drained: bool,
 }
 
-/// What a worker can do.
+/// Limits of a worker.
 #[derive(Debug, Clone, Copy)]
 pub struct Reader<'a> {
     /// The version of its solver, whose results are given again.
     pub solver: &'a str,
     /// The latest version of documents that it reads.
     pub documents: i64,
-    /// It takes several jobs at once as long as they cost no more together, in microseconds of a core.
+    /// Limit of the cost of several jobs in one claim, in microseconds of a core.
     pub at_once: i64,
 }
 
-/// So many jobs are given results in one commit at most.
+/// Maximum number of jobs that get known results in one commit.
 const MOST_GIVEN: usize = 100;
 
-/// So many are begun in one commit at most.
+/// Maximum number of jobs that begin in one commit.
 const MOST_STARTED: usize = 64;
 
 impl Store {
@@ -66,8 +66,7 @@ impl Store {
     /// is running is passed over, and one whose equal has become successful since it was submitted is given its results,
     /// accepted -> successful.
     ///
-    /// A job that may have brought a process down is run alone in its process: before it begins, what runs comes to its end,
-    /// and nothing begins beside it.
+    /// A job that may have crashed a process runs alone in its process: the running jobs end before it, and none begins beside it.
     pub async fn claim(
         &self,
         now: Timestamp,
@@ -104,7 +103,7 @@ impl Store {
     }
 }
 
-/// Whether a job has to be run alone.
+/// Whether a job has to run alone.
 enum Suspects {
     /// None has.
     None,
@@ -136,14 +135,14 @@ async fn suspects(
     })
 }
 
-/// What a claim means for the shares. Written behind the jobs, as every transition does (see `dialect::postgres`).
+/// Effect of a claim on the shares. Written after the jobs, as in every transition (see `dialect::postgres`).
 #[derive(Default)]
 struct Turn {
     /// How many lanes had work to do, as it seemed.
     lanes: usize,
-    /// Those of them that had none.
+    /// Lanes without a waiting job.
     empty: Vec<Lane>,
-    /// The lane of the jobs that are begun, what they cost, and whether there were no more.
+    /// The lane of the jobs that begin, their cost, and true if it had no more.
     charged: Option<(Lane, i64, bool)>,
 }
 
@@ -245,7 +244,7 @@ struct Waiting {
     cost: i64,
 }
 
-/// A look at what waits in a lane, from the front to the back.
+/// A look at the waiting jobs of a lane, from the front to the back.
 struct Look<'a> {
     lane: &'a Lane,
     /// The place of the last one that was seen.
@@ -255,7 +254,7 @@ struct Look<'a> {
 }
 
 impl Look<'_> {
-    /// At most so many jobs, and for each what is known of an equal one.
+    /// The next jobs, up to a limit, and the known results of an equal job for each.
     async fn next(
         &mut self,
         connection: &mut Connection,

@@ -1,12 +1,12 @@
-//! What a file of SQLite stands on: its name and that of its journal, which may be taken from them while they are open, and the room on its disk.
+//! Identity of a SQLite database's file and of its journal, which may be renamed or replaced while they are open, and the room on its disk.
 
 use std::io::{Error, ErrorKind, Result};
 use std::path::{Path, PathBuf};
 
 use super::lock::beside;
 
-/// With less room on the disk nothing is taken for writable, in bytes. A look writes less than a submission does, and what one
-/// checkpoint gives back is enough for many looks.
+/// Room on the disk below which the database counts as read-only, in bytes. A check writes less than a submission does, and one checkpoint frees enough room
+/// for many checks.
 #[cfg(unix)]
 const LEAST_ROOM: u64 = 1 << 20;
 
@@ -14,7 +14,7 @@ const LEAST_ROOM: u64 = 1 << 20;
 #[derive(Debug, Clone)]
 pub(super) struct DatabaseFiles {
     path: PathBuf,
-    /// It, and the journal beside it.
+    /// The file, and the journal beside it.
     files: [(PathBuf, Identity); 2],
 }
 
@@ -34,7 +34,7 @@ impl DatabaseFiles {
         })
     }
 
-    /// That both still have their names. What is written to one that has lost it is gone with the process.
+    /// Checks that both still have their names. Data written to a file without a name is lost with the process.
     pub(super) fn check_names(&self) -> Result<()> {
         for (path, known) in &self.files {
             match identity(path) {
@@ -63,7 +63,7 @@ impl DatabaseFiles {
         None
     }
 
-    /// That there is room for what comes.
+    /// Checks that there is room for the next write.
     pub(super) fn check_room(&self) -> Result<()> {
         check_room(&self.path)
     }
@@ -83,7 +83,7 @@ fn check_room(path: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Whether the disk of a file, or of the folder in which it would be made, is full.
+/// True if the disk of a file, or of the folder in which it would be made, is full.
 pub(super) fn is_on_a_full_disk(path: &Path) -> bool {
     let place = match path.parent() {
         Some(folder) if !path.exists() => folder,

@@ -63,8 +63,7 @@ impl Packed {
     }
 }
 
-/// Keeps documents, unless they are kept already, each with what the tables of studies show of it. One of which only the name was kept
-/// becomes whole.
+/// Stores documents that are not stored yet, each with its summary for the tables of studies. A document of which only the name was stored becomes whole.
 pub(super) async fn insert_documents(
     connection: &mut Connection,
     documents: impl Iterator<Item = (&Packed, Option<&str>)>,
@@ -106,7 +105,7 @@ pub(super) async fn insert_documents(
     Ok(())
 }
 
-/// What is kept beside a document to find out whether it was changed by other means: CRC-32.
+/// Checksum of a document (CRC-32), which shows whether it was changed by other programs.
 pub(super) fn checksum(body: &[u8]) -> i64 {
     let mut crc = Crc::new();
     crc.update(body);
@@ -137,7 +136,7 @@ pub struct Document {
 /// Name, encoding, body and checksum of a document, as they are read.
 pub(super) type Columns = (String, String, Vec<u8>, Option<i64>);
 
-/// What was read is not what was written.
+/// The text that was read differs from the text that was written.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("the document {0} is damaged")]
 pub struct Damaged(String);

@@ -20,13 +20,13 @@ pub enum Lost<'a> {
     Process,
     /// All of them: the process that ran them ended in order, but could not write that down.
     InOrder,
-    /// Those whose lease is over, by the steady clock, but for those that this process knows to run. Leases last so long.
+    /// Jobs whose lease has ended, by the steady clock, except those that this process runs. Leases last this long.
     Lease {
         /// The steady time.
         steady: Timestamp,
         /// How long a lease lasts.
         lasts: SignedDuration,
-        /// What this process knows to run.
+        /// Jobs that this process runs.
         alive: &'a [Uuid],
     },
 }

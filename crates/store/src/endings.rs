@@ -1,4 +1,4 @@
-//! What follows when a job ends: its study may have ended with it, and a webhook may want a message.
+//! Consequences of a job's end: its study may have ended with it, and a webhook may need a message.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ pub(super) async fn tell_end(
     now: Timestamp,
 ) -> Result<(), sqlx::Error> {
     match job.study {
-        // The designs of a study end by the thousand; the study is what its client waits for.
+        // The designs of a study end by the thousand; its client waits for the study.
         Some(study) => note_study(connection, study, now).await,
         None if job.status.has_ended() => {
             let event = Event::of_job(EventKind::JobEnded, job);

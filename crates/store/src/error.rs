@@ -1,4 +1,4 @@
-//! What can go wrong with the database, by what is to be done about it.
+//! Errors of the database, by the action that they need.
 
 use std::sync::Arc;
 
@@ -8,11 +8,11 @@ use sqlx::sqlite::SqliteError;
 /// Why the database did not do its part.
 #[derive(Debug, Clone, thiserror::Error)]
 pub enum StoreError {
-    /// Nothing can be stored, or read, for now: the disk is full or gone, the file is locked or read-only, the server is away.
-    /// It may pass.
+    /// The database cannot be read or written for now: the disk is full or gone, the file is locked or read-only, the server is away.
+    /// This may pass.
     #[error("the database cannot be used now")]
     Unavailable(#[source] Arc<sqlx::Error>),
-    /// It does not pass: the file is damaged, or a statement is wrong.
+    /// A lasting error: the file is damaged, or a statement is wrong.
     #[error("the database failed")]
     Broken(#[source] Arc<sqlx::Error>),
 }
@@ -38,7 +38,7 @@ impl StoreError {
         sqlx::Error::PoolTimedOut.into()
     }
 
-    /// Whether it is worth trying again.
+    /// True if another try may succeed.
     pub fn may_pass(&self) -> bool {
         matches!(self, Self::Unavailable(_))
     }
@@ -68,7 +68,7 @@ const OF_THE_SERVER: [&str; 9] = [
     "3D000", // the database is not there yet
 ];
 
-/// Whether it is worth trying again.
+/// True if another try may succeed.
 pub(super) fn may_pass(error: &sqlx::Error) -> bool {
     match error {
         sqlx::Error::Database(error) => match error.try_downcast_ref::<PgDatabaseError>() {
@@ -77,7 +77,7 @@ pub(super) fn may_pass(error: &sqlx::Error) -> bool {
                 .any(|class| error.code().starts_with(class)),
             None => primary_code(error.as_ref()).is_some_and(|code| OF_THE_WORLD.contains(&code)),
         },
-        // What a server says that goes down in the middle of a sentence.
+        // A server that shuts down in the middle of an answer.
         sqlx::Error::Protocol(_) | sqlx::Error::Tls(_) => true,
         sqlx::Error::Io(_) | sqlx::Error::PoolTimedOut | sqlx::Error::PoolClosed => true,
         // The thread of a connection that broke.

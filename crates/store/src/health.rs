@@ -1,4 +1,4 @@
-//! Whether what is written arrives, and why not.
+//! Checks whether writes reach the database, and the reason if they do not.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use tracing::{error, info};
 
 use super::error::{StoreError, may_pass};
 
-/// Whether what is written arrives.
+/// State of the writes to the database.
 #[derive(Debug)]
 pub(super) struct Health {
     /// Why nothing can be stored, if so.

@@ -50,7 +50,7 @@ pub struct Job {
     pub started_at: Option<Timestamp>,
     /// When it ended.
     pub finished_at: Option<Timestamp>,
-    /// What the attempt took that brought it to its end, by a clock that is never set.
+    /// Duration of the attempt that ended it, by a clock that is never set.
     pub elapsed: Option<SignedDuration>,
     /// Of a failed job: the problem document.
     pub problem: Option<Value>,

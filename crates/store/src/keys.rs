@@ -1,4 +1,4 @@
-//! API keys as they are kept: who has them and what they may do. Of the secret part only the hash is kept.
+//! Stored API keys: owner and role. Of the secret part only the hash is stored.
 
 use jiff::Timestamp;
 
@@ -6,7 +6,7 @@ use super::rows::{Record, Row, instant, optional_instant, small};
 use super::statement::{query, query_as};
 use super::{Store, StoreError};
 
-/// What the bearer of a key may do.
+/// Rights of the bearer of a key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Role {
     /// Everything with the jobs of its client.
@@ -15,7 +15,7 @@ pub enum Role {
     Reader,
     /// As client, and read the numbers of the whole service.
     Operator,
-    /// As client, and see who uses the service, and cancel and delete what others have submitted.
+    /// As client; also sees the usage of all clients, and cancels and deletes their jobs and studies.
     Administrator,
 }
 
@@ -30,7 +30,7 @@ impl Role {
         }
     }
 
-    /// What a word stands for.
+    /// The role of a word.
     pub fn of_word(word: &str) -> Self {
         match word {
             "client" => Self::Client,
@@ -49,9 +49,9 @@ pub struct KeyRecord {
     pub id: String,
     /// Whose jobs it reads and makes.
     pub client: String,
-    /// What the operator calls it.
+    /// The operator's name for it.
     pub name: String,
-    /// What its bearer may do.
+    /// Rights of its bearer.
     pub role: Role,
     /// SHA-256 of its secret part, in hexadecimal.
     pub secret_hash: String,
@@ -155,7 +155,7 @@ impl Store {
         Ok(keys)
     }
 
-    /// Whether a key was ever made. A revoked key does not make the service open to everybody again.
+    /// True if a key was ever made. A revoked key does not open the service to everybody again.
     pub async fn has_keys(&self) -> Result<bool, StoreError> {
         let found = query("select 1 from keys limit 1")
             .exists(&self.readers)

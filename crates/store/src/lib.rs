@@ -3,13 +3,13 @@
 //! All SQL of the service stands here. Documents go in and out as text, states as the words of the database: the store knows no gear and no HTTP.
 //!
 //! In reading order:
-//! - the database: where it is (`address`), statements for either kind (`statement`) and where the two differ (`dialect`), how it is opened
-//!   (`open`, `lock`) and written (`write`), and what can go wrong with it ([`StoreError`]);
-//! - the states (`state`), a [`Job`], a [`StudyRecord`], and how they are read (`rows`);
+//! - the database: its `address`, statements for either kind (`statement`) and the differences (`dialect`), opening (`open`, `lock`), writing (`write`), and
+//!   its errors ([`StoreError`]);
+//! - the states (`state`), a [`Job`], a [`StudyRecord`], and their rows (`rows`);
 //! - the transitions of a job: `submit`, `claim` in its turn (`shares`), `attempt`, and other ends (`end`); those of a study (`studies`);
-//! - what is read: lists, documents, tables; what other processes report (`news`);
-//! - keys, `links` to results, [`webhooks`], and the messages to them, which are written with what they report (`outbox`);
-//! - for operators: who uses the service (`usage`), retention and backup.
+//! - reading: lists, documents, tables; reports of other processes (`news`);
+//! - keys, `links` to results, [`webhooks`], and their messages, which are written with the change that they report (`outbox`);
+//! - for operators: `usage`, retention and backup.
 //!
 //! Each transition is one transaction that names the state it leaves; when the job is not in that state the transition does
 //! not happen, and says so. Time comes in as an argument.
@@ -99,7 +99,7 @@ pub struct Store {
     writer: Pool,
     readers: Pool,
     health: Arc<Health>,
-    /// What its file stands on, if it is one.
+    /// Identity of its files, for SQLite.
     files: Option<DatabaseFiles>,
     /// This process, among those that work on the same database. Another one at each start.
     process: Uuid,
@@ -117,7 +117,7 @@ impl Store {
         self.readers.close().await;
     }
 
-    /// Whether it was closed.
+    /// True if it was closed.
     pub fn is_closed(&self) -> bool {
         self.writer.is_closed()
     }
@@ -127,7 +127,7 @@ impl Store {
         self.files.as_ref()?.disk()
     }
 
-    /// Whether other processes may work on the same database.
+    /// True if other processes may work on the same database.
     pub fn is_shared(&self) -> bool {
         matches!(self.place, DatabaseAddress::Postgres(_))
     }

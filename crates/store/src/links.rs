@@ -37,10 +37,10 @@ pub struct LinkRecord {
     pub ends_at: Timestamp,
 }
 
-/// What came of a link.
+/// Outcome of making a link.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LinkOutcome {
-    /// It opens the results.
+    /// The link opens the results.
     Made,
     /// The client has no such job.
     NoJob,

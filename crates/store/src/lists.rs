@@ -14,34 +14,34 @@ use super::{Damaged, Job, Status, Store, StoreError, StudyRecord, dialect};
 /// Which jobs of a client to list. An absent part does not select.
 #[derive(Debug, Clone, Default)]
 pub struct Filter {
-    /// Those in one of these states.
+    /// Selects jobs in one of these states.
     pub statuses: Option<Vec<Status>>,
-    /// Those that bear this tag.
+    /// Selects jobs with this tag.
     pub tag: Option<String>,
     /// These only.
     pub ids: Option<Vec<Uuid>>,
-    /// Those that compute designs of this study, or those that stand alone.
+    /// Selects jobs of designs of this study, or jobs that stand alone.
     pub study: Option<Membership>,
-    /// Those that this user of the client submitted.
+    /// Selects jobs that this user of the client submitted.
     pub submitted_by: Option<String>,
-    /// Those that were submitted in this time.
+    /// Selects jobs submitted in this time.
     pub span: Span,
-    /// Those that stand behind this place in the list.
+    /// Selects jobs behind this place in the list.
     pub after: Option<Cursor>,
 }
 
 /// Which studies of a client to list.
 #[derive(Debug, Clone, Default)]
 pub struct StudyFilter {
-    /// Those of this name.
+    /// Selects studies of this name.
     pub name: Option<String>,
-    /// Those that bear this tag.
+    /// Selects studies with this tag.
     pub tag: Option<String>,
-    /// Those that this user of the client submitted.
+    /// Selects studies that this user of the client submitted.
     pub submitted_by: Option<String>,
-    /// Those that were submitted in this time.
+    /// Selects studies submitted in this time.
     pub span: Span,
-    /// Those that stand behind this place in the list.
+    /// Selects studies behind this place in the list.
     pub after: Option<Cursor>,
 }
 
@@ -55,7 +55,7 @@ pub struct Span {
     pub until: Option<Timestamp>,
 }
 
-/// Whether a job belongs to a study.
+/// Membership of a job in a study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Membership {
     /// It belongs to this one.
@@ -226,7 +226,7 @@ pub struct Depth {
     pub oldest: Option<Timestamp>,
 }
 
-/// What keeps SQLite from another way to the rows than the one that has their order. PostgreSQL goes by its own counts.
+/// Hints that keep SQLite on the index that has the order of the rows. PostgreSQL decides by its own statistics.
 struct Hints {
     /// A join that goes through its left side.
     join: &'static str,
@@ -366,7 +366,7 @@ impl StudyFilter {
     }
 }
 
-/// Keeps to a span of time and to what stands behind a cursor, by the sequence in the table `walked`.
+/// Limits a list to a span of time and to the rows behind a cursor, by the sequence in the table `walked`.
 fn bound_sequence<T: Record>(
     query: &mut Statement<T>,
     walked: &str,

@@ -9,8 +9,7 @@ use tracing::warn;
 
 use super::private::open_or_make;
 
-/// What the note says while a process works, and after it has ended in order. They are of the same length, so that the
-/// second fits on a disk that is full.
+/// Content of the note while a process works, and after its orderly end. Both have the same length, so that the second fits on a full disk.
 const AT_WORK: &[u8] = b"at work\n";
 const AT_REST: &[u8] = b"at rest\n";
 
@@ -28,7 +27,7 @@ pub enum LockError {
     /// Another process has the lock.
     #[error("another process serves the database {}", .0.display())]
     Taken(PathBuf),
-    /// It, or the note beside it, cannot be opened.
+    /// The file, or the note beside it, cannot be opened.
     #[error("cannot open {}", path.display())]
     Open {
         /// Which of the two.
@@ -83,7 +82,7 @@ impl DatabaseLock {
         Ok(lock)
     }
 
-    /// Whether the process before this one ended in order.
+    /// True if the process before this one ended in order.
     pub fn ended_in_order(&self) -> bool {
         self.ended_in_order
     }

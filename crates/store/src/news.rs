@@ -1,4 +1,4 @@
-//! What other processes report, where there are any: the server passes it on with each commit (see `migrations/postgres`).
+//! Reports of other processes on the same database: the server passes them on with each commit (see `migrations/postgres`).
 
 use sqlx::postgres::PgListener;
 use uuid::Uuid;
@@ -48,7 +48,7 @@ impl Listener {
     }
 }
 
-/// What the words of a trigger mean. Those of a later version mean that something has happened.
+/// Meaning of a trigger's words. Those of a later version mean that something has happened.
 fn read(words: &str) -> Notice {
     let mut words = words.split(' ');
     let notice = match words.next() {

@@ -1,4 +1,4 @@
-//! Opening the database: what it has to be, and what it is brought to.
+//! Opening of the database: checks and migrations.
 
 use std::io::{ErrorKind, Read};
 use std::net::IpAddr;
@@ -24,12 +24,12 @@ use super::private::open_or_make;
 use super::statement::{Dialect, LONGEST_STATEMENT, Pool, Renewal};
 use super::{DatabaseAddress, Store, StoreError};
 
-/// The files of the folder `migrations`: their numbers, what they are called, and their statements.
+/// The files of the folder `migrations`: numbers, names and statements.
 mod files {
     include!(concat!(env!("OUT_DIR"), "/migrations.rs"));
 }
 
-/// What brings the tables up to date. Those of a later version may be there already.
+/// Migrations of the tables. Those of a later version may be there already.
 pub(super) fn migrations(dialect: Dialect) -> Migrator {
     let files = match dialect {
         Dialect::Sqlite => files::SQLITE,
@@ -74,7 +74,7 @@ const LONGEST_LOCK: Duration = Duration::from_secs(5);
 /// By this number a file says that it is ours ("mesh"); SQLite keeps it in the head of the file.
 const APPLICATION: i64 = 0x6d65_7368;
 
-/// What every SQLite database begins with.
+/// First bytes of every SQLite database.
 const MAGIC: &[u8; 16] = b"SQLite format 3\0";
 
 /// The journal is cut to this length when it has been emptied.
@@ -129,7 +129,7 @@ pub enum OpenError {
 }
 
 impl OpenError {
-    /// Whether the server may be there, and let this process in, a moment later.
+    /// True if the server may be there, and admit this process, a moment later.
     pub fn may_pass(&self) -> bool {
         matches!(self, Self::Connect(error) if may_pass(error))
     }
@@ -198,7 +198,7 @@ impl Store {
     pub async fn open_as(place: &DatabaseAddress, migrate: Migrate) -> Result<Self, OpenError> {
         let opened = Self::try_to_open(place, migrate).await;
         opened.map_err(|error| match (error, place.file()) {
-            // SQLite says of a full disk what failed: to map, to read or to write.
+            // Of a full disk SQLite only reports the operation that failed: to map, to read or to write.
             (OpenError::Connect(_), Some(path)) if is_on_a_full_disk(path) => OpenError::Full,
             (error, _) => error,
         })
@@ -227,8 +227,7 @@ impl Store {
         Ok(store)
     }
 
-    /// Reads through the file, unless it is so large that it would take seconds; then what is damaged is met when it is read.
-    /// A server looks after its own files.
+    /// Reads the whole file, unless that would take seconds; then damage is found when it is read. A server checks its own files.
     async fn look_for_damage(&self) -> Result<(), OpenError> {
         let Pool::Sqlite(readers) = &self.readers else {
             return Ok(());
@@ -276,11 +275,10 @@ async fn open_server(address: &str, migrate: Migrate) -> Result<(Pool, Pool), Op
     let options = PgConnectOptions::from_str(address)
         .map_err(|error| OpenError::Address(Box::new(error)))?
         .application_name("meshwright")
-        // Tables grow from nothing to hundreds of thousands of rows while a connection keeps the plans that it has made: what was
-        // cheap to read through then is not later. Every statement that matters has its index.
+        // Tables grow from nothing to hundreds of thousands of rows while a connection keeps its plans: a scan that was cheap at first is not later. Every
+        // statement that matters has its index.
         .options([("enable_seqscan", "off"), ("jit", "off")])
-        // A process that vanishes in the middle of a transaction, with its network or frozen, holds what it has locked no
-        // longer than this.
+        // A process that vanishes in the middle of a transaction, with its network or frozen, holds its locks no longer than this.
         .options([
             ("idle_in_transaction_session_timeout", "10s"),
             ("tcp_keepalives_idle", "10"),
@@ -353,8 +351,8 @@ async fn migrate_server(connection: &mut PgConnection, migrate: Migrate) -> Resu
 const APPLIED: &str = "select version from _sqlx_migrations where success order by version";
 const LEAST_MIGRATION: &str = "select least_migration from compatibility";
 
-/// Whether there is something to do on tables with these migrations, and this process may. `least` is the migration that a program
-/// has to know to work on tables of a later version.
+/// True if these migrations are missing in the tables, and this process may run them. `least` is the migration that a program has to know to work on tables of
+/// a later version.
 async fn is_to_be_done(
     migrations: &Migrator,
     applied: &[i64],
@@ -385,7 +383,7 @@ async fn is_to_be_done(
     }
 }
 
-/// Whether what is sent to the server crosses a network.
+/// True if data for the server cross a network.
 fn leaves_the_machine(options: &PgConnectOptions) -> bool {
     let host = options.get_host();
     let by_number = host.trim_matches(['[', ']']).parse::<IpAddr>();
@@ -395,7 +393,7 @@ fn leaves_the_machine(options: &PgConnectOptions) -> bool {
     !here && options.get_socket().is_none()
 }
 
-/// Whether others on the way cannot read along.
+/// True if the connection is encrypted.
 async fn is_encrypted(connection: &mut PgConnection) -> Result<bool, sqlx::Error> {
     sqlx::query_scalar(
         "select exists (select from pg_stat_ssl where pid = pg_backend_pid() and ssl)",
@@ -413,7 +411,7 @@ fn refuse_other_files(path: &Path) -> Result<(), OpenError> {
     }
     let mut head = [0; MAGIC.len()];
     let Ok(mut file) = std::fs::File::open(path) else {
-        // SQLite reports what may not be read or made.
+        // SQLite reports a file that cannot be read or made.
         let _ = open_or_make(path);
         return Ok(());
     };
@@ -425,10 +423,9 @@ fn refuse_other_files(path: &Path) -> Result<(), OpenError> {
     }
 }
 
-/// A database that is there says that it is ours, or has our tables, or nothing yet. It is only read for that; what cannot be read so is
-/// told by SQLite when it is opened.
+/// An existing database has our application id, or our tables, or no content yet. It is only read for that; SQLite reports other faults when it is opened.
 async fn refuse_other_programs(path: &Path) -> Result<(), OpenError> {
-    // What its program has written last may stand in the journal alone. Without one not even that is made.
+    // The last writes of its program may stand in the journal alone. Without one not even that is made.
     let journal = path
         .canonicalize()
         .and_then(|path| std::fs::metadata(beside(&path, "-wal")));
@@ -471,8 +468,7 @@ async fn bring_up_to_date(
     options: &SqliteConnectOptions,
     migrate: Migrate,
 ) -> Result<(), OpenError> {
-    // In a new file space of what was deleted can be given back a little at a time. (The statement writes, so it is not for
-    // readers.)
+    // In a new file the space of deleted rows can be returned a little at a time. (The statement writes, so it is not for readers.)
     let options = options.clone().auto_vacuum(SqliteAutoVacuum::Incremental);
     let mut connection = options.foreign_keys(false).connect().await?;
     let migrated = migrate_file(&mut connection, migrate).await;
@@ -507,7 +503,7 @@ async fn mark(connection: &mut SqliteConnection) -> Result<(), sqlx::Error> {
     Ok(())
 }
 
-/// Whether there was something to do.
+/// True if there was something to do.
 async fn migrate_file(
     connection: &mut SqliteConnection,
     migrate: Migrate,
@@ -539,8 +535,8 @@ async fn migrate_file(
     Ok(to_be_done)
 }
 
-/// A database of an earlier version keeps the space of what is deleted until it is made anew, which takes as much space
-/// again. It works without; only the file stays as large as it once was.
+/// A database of an earlier version keeps the space of deleted rows until it is made anew, which takes as much space again. It works without; only the file
+/// stays as large as it once was.
 async fn make_shrinkable(connection: &mut SqliteConnection) {
     let mode: Result<i64, _> = sqlx::query_scalar("pragma auto_vacuum")
         .fetch_one(&mut *connection)

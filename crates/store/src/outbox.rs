@@ -1,5 +1,5 @@
-//! The messages to webhooks, as they come to be: each is written in the transaction of the change that it reports, so that none is lost
-//! and none reports what did not happen. How they leave is the business of `webhooks`.
+//! Messages to webhooks: each is written in the transaction of the change that it reports, so that none is lost and none reports a change that was rolled back.
+//! `webhooks` delivers them.
 
 use jiff::Timestamp;
 use serde::Serialize;
@@ -8,7 +8,7 @@ use uuid::Uuid;
 use super::statement::{Connection, query, query_as};
 use super::{By, Job, Status, Store, StoreError, StudyRecord};
 
-/// What can be reported.
+/// Changes that can be reported.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EventKind {
     /// A job that stands alone has ended.
@@ -40,7 +40,7 @@ impl EventKind {
         }
     }
 
-    /// Who does what is told, where it is never the client.
+    /// The cause in its message; `None` where it is always the client.
     fn by(self) -> Option<&'static str> {
         match self {
             Self::JobEnded | Self::StudyEnded => None,
@@ -60,7 +60,7 @@ impl EventKind {
 pub(crate) struct NewMessage<'a> {
     /// The webhook.
     pub(crate) webhook: &'a str,
-    /// What it reports, in a word.
+    /// Kind of change, in a word.
     pub(crate) kind: &'static str,
     /// Whose end it reports, or the webhook itself.
     pub(crate) subject: Uuid,
@@ -70,7 +70,7 @@ pub(crate) struct NewMessage<'a> {
     pub(crate) by: Option<&'a str>,
 }
 
-/// What has happened to a job or a study.
+/// A change of a job or a study.
 pub(super) struct Event<'a> {
     kind: EventKind,
     subject: Uuid,

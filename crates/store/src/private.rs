@@ -4,8 +4,8 @@ use std::fs::{File, OpenOptions};
 use std::io;
 use std::path::Path;
 
-/// Opens the file at `path` to read and write, and makes it if it is absent: then nobody but its owner may read it, where
-/// the system knows of owners. What SQLite puts beside a database has the rights of the database.
+/// Opens the file at `path` to read and write, and makes it if it is absent: then only its owner may read it, where the system has owners. The files of SQLite
+/// beside a database have the rights of the database.
 ///
 /// # Errors
 ///

@@ -1,4 +1,4 @@
-//! What is kept how long, and the space that is given back.
+//! Retention, and the return of space.
 
 use std::collections::BTreeSet;
 
@@ -10,13 +10,13 @@ use super::rows::job_columns;
 use super::statement::{Pool, query, query_as, query_scalar};
 use super::{DatabaseAddress, Job, Store, StoreError, dialect};
 
-/// So many jobs are removed in one commit.
+/// Jobs removed in one commit.
 const REMOVED_AT_ONCE: u32 = 100;
 
-/// So many pages of the file are given back in one commit.
+/// Pages of the file returned in one commit.
 const PAGES_AT_ONCE: u32 = 1000;
 
-/// What the file holds.
+/// Content of the file in bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Space {
     /// Bytes of the file, the journal aside.
@@ -32,7 +32,7 @@ impl Space {
     }
 }
 
-/// What was removed, or whether anything was.
+/// Numbers of removed rows.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Removed {
     /// Jobs that stood alone.
@@ -42,7 +42,7 @@ pub struct Removed {
 }
 
 impl Removed {
-    /// Whether there was nothing to remove.
+    /// True if there was nothing to remove.
     pub fn is_nothing(self) -> bool {
         self == Self::default()
     }
@@ -112,8 +112,7 @@ impl Store {
         Ok(jobs.len() as u64)
     }
 
-    /// What the database holds. A server gives the space of what is removed to what comes next, and does not say how much
-    /// of it is free.
+    /// Content of the database. A server reuses the space of removed rows, and does not say how much of it is free.
     pub async fn space(&self) -> Result<Space, StoreError> {
         let count = |number: i64| u64::try_from(number).unwrap_or(0);
         if self.is_shared() {
@@ -161,7 +160,7 @@ impl Store {
         std::fs::metadata(name).map_or(0, |data| data.len())
     }
 
-    /// Moves what stands in the journal to the file, and empties the journal, if no reader needs it.
+    /// Moves the content of the journal to the file, and empties the journal, if no reader needs it.
     pub async fn empty_journal(&self) -> Result<(), StoreError> {
         if let Pool::Sqlite(writer) = &self.writer {
             sqlx::raw_sql("pragma wal_checkpoint(truncate)")

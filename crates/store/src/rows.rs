@@ -1,4 +1,4 @@
-//! Rows of the database as what they mean.
+//! Rows of the database as values.
 
 use jiff::{SignedDuration, Timestamp};
 use sqlx::postgres::{PgRow, Postgres};
@@ -14,7 +14,7 @@ pub(crate) enum Row {
     Postgres(PgRow),
 }
 
-/// What a column of both databases is read as.
+/// A type of a column in both databases.
 pub(crate) trait Cell:
     for<'r> Decode<'r, Sqlite> + Type<Sqlite> + for<'r> Decode<'r, Postgres> + Type<Postgres>
 {
@@ -26,7 +26,7 @@ impl<T> Cell for T where
 }
 
 impl Row {
-    /// What stands in a column, by its name or number.
+    /// The value of a column, by its name or number.
     pub(crate) fn get<T: Cell>(
         &self,
         column: impl ColumnIndex<SqliteRow> + ColumnIndex<PgRow>,
@@ -38,7 +38,7 @@ impl Row {
     }
 }
 
-/// What is read from a row.
+/// A value read from a row.
 pub(crate) trait Record: Sized {
     fn read(row: &Row) -> Result<Self, sqlx::Error>;
 }
@@ -61,8 +61,8 @@ tuple!(A 0_usize, B 1_usize, C 2_usize, D 3_usize, E 4_usize);
 tuple!(A 0_usize, B 1_usize, C 2_usize, D 3_usize, E 4_usize, F 5_usize);
 tuple!(A 0_usize, B 1_usize, C 2_usize, D 3_usize, E 4_usize, F 5_usize, G 6_usize);
 
-/// The columns of a job by their names, which is what every statement reads: a later version may add one meanwhile, and what
-/// `*` means would change under the statements that a server has prepared.
+/// The columns of a job by their names, as every statement reads them: a later version may add one meanwhile, and the meaning of `*` would change under the
+/// statements that a server has prepared.
 macro_rules! job_columns {
     () => {
         "id, sequence, client, method, tags, status, attempt, returned, positions_done, positions_total, submitted_at, started_at, \

@@ -1,10 +1,9 @@
 //! Whose turn it is: clients share the service, the users of a client its part, and the lanes of a user theirs.
 //!
-//! A lane is a study, or the jobs of a user that stand alone. What a client submits without the name of a user is of one user without a name.
-//! Each client, user and lane has a time at which its next job is due, which moves on by what its jobs cost; the least is served next
-//! (start-time fair queueing, Goyal et al. 1996). Who begins to
-//! wait starts where those are that are being served: nobody saves up a claim, and nobody pays for having been alone. So
-//! while a client has work to do, no other one gets more than its share, however many jobs or studies it brings.
+//! A lane is a study, or the jobs of a user that stand alone. Jobs that a client submits without a user's name are of one user without a name. Each client,
+//! user and lane has a time at which its next job is due, which moves on by the cost of its jobs; the least is served next (start-time fair queueing, Goyal et
+//! al. 1996). A new one starts at the time of those being served: nobody saves up a claim, and nobody pays for having been alone. So while a client has work to
+//! do, no other one gets more than its share, however many jobs or studies it brings.
 
 use std::collections::BTreeSet;
 
@@ -17,7 +16,7 @@ use super::{Job, dialect};
 /// Jobs that stand alone have so many times the part of a study: somebody waits for them, but a study is not to starve.
 const WEIGHT_ALONE: i64 = 3;
 
-/// What the name of a lane of jobs that stand alone begins with, if they are of a user; those of no user have the lane ''.
+/// First character of the name of a user's lane of jobs that stand alone; jobs of no user have the lane ''.
 const ALONE: char = '!';
 
 /// The lane of a job, in the order in which shares are locked.
@@ -114,14 +113,14 @@ pub(super) struct Lane {
     lane_due: i64,
 }
 
-/// What runs in a process, and whether a job waits that is to run alone.
+/// The running jobs of a process, and whether a job waits that has to run alone.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Here {
     /// How many jobs run.
     pub(super) running: i64,
     /// How many of them are to run alone.
     pub(super) alone: i64,
-    /// Whether one that is to run alone waits, wherever it will.
+    /// Number of waiting jobs that have to run alone, anywhere.
     pub(super) waiting: i64,
 }
 
@@ -150,7 +149,7 @@ impl Record for LaneHere {
     }
 }
 
-/// The lanes with work to do, in the order in which they are due, and what runs in `process`, which is left out where nothing waits.
+/// The lanes with work to do, in the order in which they are due, and the running jobs of `process`, which are left out where no job waits.
 pub(super) async fn lanes(
     connection: &mut Connection,
     process: &str,
@@ -220,7 +219,7 @@ impl Lane {
     }
 }
 
-/// Takes a lane out of the turn. What it has had is remembered while that can matter.
+/// Takes a lane out of the turn. Its consumption is remembered while it can matter.
 pub(super) async fn rest(
     connection: &mut Connection,
     client: &str,

@@ -36,7 +36,7 @@ impl Status {
         }
     }
 
-    /// Whether nothing changes any more.
+    /// True if the state is final.
     pub fn has_ended(self) -> bool {
         matches!(self, Self::Successful | Self::Failed | Self::Dismissed)
     }
@@ -52,7 +52,7 @@ impl Status {
 pub enum Kept {
     /// The results document.
     Results,
-    /// What the table of a study shows.
+    /// The values of a study's table.
     Statistics,
 }
 
@@ -65,7 +65,7 @@ impl Kept {
         }
     }
 
-    /// What a word stands for.
+    /// The state of a word.
     pub fn of_word(word: &str) -> Option<Self> {
         [Self::Results, Self::Statistics]
             .into_iter()

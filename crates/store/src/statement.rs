@@ -1,5 +1,4 @@
-//! A statement, and what it is run on: the same words on SQLite and on PostgreSQL, except where [`dialect`](super::dialect)
-//! has two texts for one meaning.
+//! A statement and its connection: the same text on SQLite and on PostgreSQL, except where [`dialect`](super::dialect) has two texts for one meaning.
 //!
 //! The drivers are typed by their database. Here the choice is a value, made once when the store is opened; a statement
 //! keeps its parameters until it knows which driver takes them.
@@ -16,7 +15,7 @@ use sqlx::{AssertSqlSafe, Either, Executor, PgConnection, SqlSafeStr, SqlStr, Sq
 use super::health::Health;
 use super::rows::{Cell, Record, Row};
 
-/// What is kept of a database: its connections.
+/// The connections of a database.
 #[derive(Debug, Clone)]
 pub(crate) enum Pool {
     /// A file.
@@ -30,7 +29,7 @@ pub(crate) enum Pool {
 pub(crate) struct Renewal(Arc<Mutex<Option<Instant>>>);
 
 impl Renewal {
-    /// Whether a connection of this age has to go.
+    /// True if a connection of this age has to be closed.
     pub(crate) fn outdates(&self, age: Duration) -> bool {
         self.lock().is_some_and(|since| age >= since.elapsed())
     }
@@ -112,8 +111,8 @@ pub(crate) enum Connection {
     Postgres(sqlx::pool::PoolConnection<Postgres>, Renewal),
 }
 
-/// What is said to SQLite together with the next statement. Its connection lives on a thread of its own, and the way there and back takes
-/// longer than most statements.
+/// Statements that are sent to SQLite together with the next one. Its connection lives on a thread of its own, and the way there and back takes longer than
+/// most statements.
 #[derive(Default)]
 pub(crate) struct Unsaid {
     text: String,
@@ -196,7 +195,7 @@ impl Connection {
         Ok(())
     }
 
-    /// Says something of which nothing is read. SQLite hears it with the next statement, and what is wrong with it shows then.
+    /// Adds a statement without an answer. SQLite gets it with the next statement, whose result shows its errors.
     pub(crate) async fn later(&mut self, statement: Statement<Nothing>) -> Result<(), sqlx::Error> {
         match self {
             Self::Sqlite(_, unsaid) => {
@@ -220,8 +219,8 @@ pub(super) const LONGEST_STATEMENT: Duration = Duration::from_secs(10);
 /// A server that has not even said so by then is frozen, or behind a network that is.
 const LONGEST_SILENCE: Duration = Duration::from_secs(12);
 
-/// What `work` gives, if the server answers in time. A connection that is left in the middle of a sentence is no good any more;
-/// the driver finds that out, and a transaction takes its own with it.
+/// The result of `work`, if the server answers in time. A connection left in the middle of a statement is useless; the driver finds that out, and a transaction
+/// closes its own.
 async fn in_time<T>(work: impl Future<Output = Result<T, sqlx::Error>>) -> Result<T, sqlx::Error> {
     let done = tokio::time::timeout(LONGEST_SILENCE, work).await;
     done.unwrap_or_else(|_| {
@@ -230,7 +229,7 @@ async fn in_time<T>(work: impl Future<Output = Result<T, sqlx::Error>>) -> Resul
     })
 }
 
-/// What a statement is run on.
+/// The connection of a statement.
 pub(crate) enum On<'c> {
     Sqlite(&'c mut SqliteConnection, &'c mut Unsaid),
     SqlitePool(&'c SqlitePool),
@@ -304,7 +303,7 @@ impl Text {
             (Self::Differing { postgres, .. }, Dialect::Postgres) => {
                 postgres.map(SqlSafeStr::into_sql_str)
             }
-            // Only words of this folder are pushed onto it; what comes from outside is bound.
+            // Only texts of this folder are pushed onto it; values from outside are bound.
             (Self::Made(text), _) => Some(AssertSqlSafe(text).into_sql_str()),
         }
     }
@@ -369,10 +368,10 @@ pub(crate) fn query_as<T: Record>(text: impl Into<Text>) -> Statement<T> {
     }
 }
 
-/// What a statement gave: rows, or how many it has changed.
+/// The result of a statement: rows, and the number of changed rows.
 type Given = (Vec<Row>, u64);
 
-/// Says a statement on a connection to SQLite, and before it what has not been said. What is given back is the last one's.
+/// Runs a statement on a connection to SQLite, after the postponed ones. Returns the result of the last one.
 async fn ask(
     connection: &mut SqliteConnection,
     unsaid: &mut Unsaid,
@@ -390,13 +389,13 @@ async fn ask(
 
 macro_rules! driver {
     ($name:ident, $database:ident) => {
-        /// What the last of the statements of a query gives.
+        /// The result of the last statement of a query.
         async fn $name<'c>(
             executor: impl Executor<'c, Database = $database>,
             text: SqlStr,
             values: &[Value],
         ) -> Result<Given, sqlx::Error> {
-            // A pragma does what it does when it is read: kept by the driver, it would do nothing the next time.
+            // A pragma acts when it is prepared: cached by the driver, it would not act the next time.
             let is_kept = !text.as_str().contains("pragma");
             let mut query = sqlx::query::<$database>(text).persistent(is_kept);
             for value in values {
@@ -501,7 +500,7 @@ impl<T: Record> Statement<T> {
         Ok(changed)
     }
 
-    /// Whether it finds a row.
+    /// True if it finds a row.
     pub(crate) async fn exists<'c>(self, on: impl Into<On<'c>>) -> Result<bool, sqlx::Error> {
         Ok(self.fetch_optional(on).await?.is_some())
     }
@@ -588,7 +587,7 @@ mod tests {
         let words = rows.iter().map(|(number, word)| format!("{number}{word}"));
         assert_eq!(words.collect::<Vec<_>>(), ["0a$", "1a$", "111b$", "210b$"]);
 
-        // What is wrong with it shows in the next one.
+        // The next statement shows its errors.
         connection
             .later(query("insert into nowhere values (1)"))
             .await

@@ -1,5 +1,5 @@
-//! The transitions of a study. Its designs are jobs, whose own transitions stand elsewhere; here is what concerns many of
-//! them at once: their beginning, chunk after chunk, and their end when the study is cancelled or deleted.
+//! The transitions of a study. Its designs are jobs, whose own transitions stand elsewhere; here are those of many at once: their beginning, chunk after chunk,
+//! and their end when the study is cancelled or deleted.
 
 use std::collections::BTreeSet;
 
@@ -15,16 +15,16 @@ use super::statement::{Connection, list, query, query_as, query_scalar};
 use super::submit::{QueueBounds, find_known, insert_jobs, insert_submissions, words};
 use super::{By, NewJob, Status, Store, StoreError, column, dialect, micros};
 
-/// So many jobs of studies may wait; further studies are refused.
+/// Maximum number of waiting jobs of studies; further studies are refused.
 const MOST_WAITING_DESIGNS: i64 = 250_000;
 
 /// Where several processes expand studies, one that has taken a study has it for so long beyond each chunk.
 const EXPANDING_FOR: SignedDuration = SignedDuration::from_secs(20);
 
-/// So many jobs are dismissed in one commit, so that others write in between however large the study is.
+/// Jobs dismissed in one commit, so that others write in between however large the study is.
 const DISMISSED_AT_ONCE: u32 = 500;
 
-/// So many jobs are deleted in one commit.
+/// Jobs deleted in one commit.
 const DELETED_AT_ONCE: u32 = 200;
 
 /// A study to be kept.
@@ -34,7 +34,7 @@ pub struct NewStudy {
     pub id: Uuid,
     /// Who submits it.
     pub client: String,
-    /// What the client calls it.
+    /// The client's name for it.
     pub name: Option<String>,
     /// Short words of the client.
     pub tags: Vec<String>,
@@ -42,7 +42,7 @@ pub struct NewStudy {
     pub document: String,
     /// The version of its base's document.
     pub document_version: i64,
-    /// The hash of what was sent.
+    /// Hash of the sent document.
     pub body_hash: String,
     /// The gear whose mass and holes its table shows, in a word.
     pub gear: String,
@@ -54,7 +54,7 @@ pub struct NewStudy {
     pub submitted_at: Timestamp,
     /// The word under which the client may ask again and get this study.
     pub idempotency_key: Option<String>,
-    /// So many designs of the client may wait.
+    /// Maximum number of waiting designs of the client.
     pub client_limit: i64,
     /// The user of the client who submits it, if the client says.
     pub submitted_by: Option<String>,
@@ -63,9 +63,9 @@ pub struct NewStudy {
 /// A row to be kept.
 #[derive(Debug, Clone)]
 pub struct NewRow {
-    /// What the design is called.
+    /// Label of the design.
     pub label: String,
-    /// What the design changes of the base, JSON.
+    /// Changes of the base by the design, JSON.
     pub changes: String,
     /// The job, or the problem document of a design that cannot be built.
     pub job: Result<NewJob, String>,
@@ -80,21 +80,21 @@ pub struct SearchStep {
     pub state: String,
 }
 
-/// What came of a study.
+/// Outcome of the submission of a study.
 #[derive(Debug, Clone, PartialEq)]
 pub enum StudyOutcome {
-    /// It stands, with its first rows.
+    /// The study is stored, with its first rows.
     Taken,
     /// The study that the same key and document got before.
     Repeated(Uuid),
     /// The key was used for another study.
     KeyConflict,
-    /// So many designs wait already.
+    /// The limit of waiting designs is reached.
     QueueFull {
         /// They.
         waiting: i64,
     },
-    /// So many designs of this client wait already.
+    /// The limit of waiting designs of this client is reached.
     ClientQueueFull {
         /// They.
         waiting: i64,
@@ -177,7 +177,7 @@ impl Store {
         Ok(true)
     }
 
-    /// Keeps a study that waits for what came of its rows, so that no other process takes it.
+    /// Holds a study that waits for the outcomes of its rows, so that no other process takes it.
     pub async fn hold_study(&self, id: Uuid, steady: Timestamp) -> Result<(), StoreError> {
         let mut write = self.begin().await?;
         query(dialect::expanding())
@@ -247,7 +247,7 @@ impl Store {
         id: Uuid,
         now: Timestamp,
     ) -> Result<(Vec<Uuid>, bool), StoreError> {
-        // What computes is stopped first. In a commit of its own, because jobs are locked before their study.
+        // Running jobs are stopped first. In a commit of its own, because jobs are locked before their study.
         let mut write = self.begin().await?;
         let mut dismissed = dismiss(&mut write, id, Status::Running, now).await?;
         write.commit().await?;
@@ -300,7 +300,7 @@ impl Store {
         self.delete_and_tell(id, None).await
     }
 
-    /// The same. What happened is told to its client with the last commit.
+    /// The same. The last commit writes the message to its client.
     async fn delete_and_tell(
         &self,
         id: Uuid,
@@ -389,7 +389,7 @@ async fn refusal(
             }));
         }
     }
-    // Those that have no row yet will wait, too.
+    // Rows that do not exist yet will wait, too.
     let (own, all): (i64, i64) = query_as(
         "select cast(coalesce(sum(case client when $1 then designs else 0 end), 0) as bigint),
                 cast(coalesce(sum(designs), 0) as bigint)

@@ -12,7 +12,7 @@ pub struct StudyRecord {
     pub id: Uuid,
     /// Its place in the order of arrival.
     pub sequence: i64,
-    /// What the client calls it.
+    /// The client's name for it.
     pub name: Option<String>,
     /// Short words of the client.
     pub tags: Vec<String>,

@@ -10,15 +10,15 @@ use super::{Damaged, Document, Store, StoreError};
 /// A row as it is read.
 #[derive(Debug, Clone)]
 pub struct StoredRow {
-    /// What the design is called.
+    /// Label of the design.
     pub label: String,
-    /// What it changes of the base, JSON.
+    /// Changes of the base, JSON.
     pub changes: String,
     /// Its job, if there was one.
     pub job: Option<String>,
     /// Where the job stands, unless it was deleted.
     pub status: Option<String>,
-    /// What is shown of its results, JSON, unless that is damaged.
+    /// Summary of its results, JSON, unless that is damaged.
     pub summary: Option<Result<String, Damaged>>,
     /// Why there are no results, a problem document, JSON.
     pub problem: Option<String>,
@@ -51,7 +51,7 @@ impl Record for StoredRow {
 pub struct DocumentLine {
     /// Its place in the table, from 0.
     pub position: i64,
-    /// What the design is called.
+    /// Label of the design.
     pub label: String,
     /// The job that computed it.
     pub job: String,
@@ -59,7 +59,7 @@ pub struct DocumentLine {
     pub document: Document,
 }
 
-/// Position, label and job; what is read of its document.
+/// Position, label and job; columns of its document.
 type StoredDocument = (i64, String, String, String, String, Vec<u8>, Option<i64>);
 
 impl Store {

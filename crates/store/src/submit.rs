@@ -29,9 +29,9 @@ pub struct NewJob {
     pub submission: String,
     /// The version of the submission's document: who reads only earlier ones leaves the job to others.
     pub document_version: i64,
-    /// What equal work has in common.
+    /// Hash that equal work has in common.
     pub input_hash: String,
-    /// What it will take of a core, in microseconds.
+    /// Estimated cost in microseconds of a core.
     pub cost: u64,
     /// Mesh positions to solve.
     pub positions_total: u64,
@@ -43,15 +43,15 @@ pub struct NewJob {
     pub study: Option<Uuid>,
     /// How much of its results is kept.
     pub keep: Kept,
-    /// So many jobs of the client may wait, those of studies aside.
+    /// Maximum number of waiting jobs of the client, those of studies aside.
     pub client_limit: u32,
     /// The user of the client who submits it, if the client says.
     pub submitted_by: Option<String>,
-    /// So many jobs of that user may wait.
+    /// Maximum number of waiting jobs of that user.
     pub user_limit: u32,
 }
 
-/// What came of a submission.
+/// Outcome of a submission.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
     /// A job waits in the queue.
@@ -62,27 +62,27 @@ pub enum Outcome {
     Repeated(Job),
     /// The key was used for another submission.
     KeyConflict,
-    /// So many jobs wait already.
+    /// The limit of waiting jobs is reached.
     QueueFull {
         /// They.
         waiting: i64,
     },
-    /// So many jobs of this client wait already.
+    /// The limit of waiting jobs of this client is reached.
     ClientQueueFull {
         /// They.
         waiting: i64,
     },
-    /// So many jobs of this user of the client wait already.
+    /// The limit of waiting jobs of this user of the client is reached.
     UserQueueFull {
         /// They.
         waiting: i64,
     },
 }
 
-/// What a submission is measured against.
+/// Limits for a submission.
 #[derive(Debug, Clone, Copy)]
 pub struct QueueBounds<'a> {
-    /// So many jobs may wait, those of studies aside.
+    /// Maximum number of waiting jobs, those of studies aside.
     pub queue_limit: u32,
     /// Keys that are older than this are forgotten.
     pub forget_keys_before: Timestamp,
@@ -250,7 +250,7 @@ async fn submit_one(
     Ok(outcome)
 }
 
-/// What the key was answered with before.
+/// The earlier answer to the key.
 async fn earlier_answer(
     connection: &mut Connection,
     new: &NewJob,
@@ -291,7 +291,7 @@ pub(super) struct Known {
     pub(super) positions: i64,
 }
 
-/// What the client has had computed of the same input by this version, and of which enough was kept.
+/// The client's stored results of the same input by this version, of the wanted extent.
 pub(super) async fn find_known(
     connection: &mut Connection,
     client: &str,

@@ -8,10 +8,10 @@ use uuid::Uuid;
 use super::statement::query_as;
 use super::{Store, StoreError, column};
 
-/// So many users of a client are told at most: those with most work under way.
+/// Maximum number of users of a client in the answer: those with most work under way.
 const MOST_USERS: u64 = 1000;
 
-/// So many ids of jobs, and of studies, are told of a client at most: the oldest.
+/// Maximum number of ids of jobs, and of studies, of a client in the answer: the oldest.
 const MOST_IDS: u64 = 1000;
 
 /// The use of the service by a client.
@@ -19,14 +19,14 @@ const MOST_IDS: u64 = 1000;
 pub struct ClientUsage {
     /// The client.
     pub client: String,
-    /// Its users; one without a name for what was submitted without one.
+    /// Its users; one without a name for submissions without one.
     pub users: Vec<UserUsage>,
 }
 
 /// The use of the service by a user of a client.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct UserUsage {
-    /// The user; none for what was submitted without the name of one.
+    /// The user; `None` for submissions without one.
     pub user: Option<String>,
     /// Jobs that wait, designs of studies among them.
     pub waiting: i64,

@@ -15,10 +15,10 @@ const PING: &str = "webhook.ping";
 /// Who has taken a message has it for so long: more than an attempt takes.
 const TAKEN_FOR: SignedDuration = SignedDuration::from_secs(30);
 
-/// So long messages are signed with the secret before the last rotation, too.
+/// Time for which messages are also signed with the secret before the last rotation.
 const BOTH_SECRETS_FOR: SignedDuration = SignedDuration::from_hours(24);
 
-/// So many messages does the list of deliveries have.
+/// Number of messages in the list of deliveries.
 const LISTED: u32 = 100;
 
 /// After so many seconds a webhook is tried again; when it has failed once more it is given up. A day and a half in all.
@@ -34,14 +34,14 @@ const PATIENCE_S: [i64; 9] = [
     12 * 3600,
 ];
 
-/// Where a client wants messages sent, and of what.
+/// A client's address for messages, and their kinds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Webhook {
     /// Its id on the wire.
     pub id: Uuid,
     /// Where messages are sent.
     pub url: String,
-    /// What is reported.
+    /// Kinds of events that are reported.
     pub events: Vec<EventKind>,
     /// When it was made.
     pub created_at: Timestamp,
@@ -115,15 +115,15 @@ pub struct NewWebhook {
     pub secret: String,
     /// The word under which the client may ask again and get this webhook.
     pub idempotency_key: Option<String>,
-    /// The hash of what is asked for.
+    /// Hash of the request.
     pub body_hash: String,
-    /// So many may a client have.
+    /// Maximum number of webhooks of a client.
     pub most: i64,
 }
 
-/// What came of it.
+/// Outcome of making a webhook.
 pub enum Outcome {
-    /// It is kept.
+    /// The webhook is stored.
     Made,
     /// The same was asked for before under this key: that webhook, and its secret.
     Repeated(Webhook, String),
@@ -133,16 +133,16 @@ pub enum Outcome {
     TooMany,
 }
 
-/// A message to a webhook, and what has come of it so far.
+/// A message to a webhook, and its state.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Delivery {
     /// Its id, the same at every attempt.
     pub id: Uuid,
-    /// What it reports, in a word.
+    /// Kind of event, in a word.
     pub kind: String,
     /// Whose end it reports: a job or a study; or the webhook itself.
     pub subject: Option<Uuid>,
-    /// When what it reports happened.
+    /// Time of the event.
     pub created_at: Timestamp,
     /// Attempts so far.
     pub attempts: u32,
@@ -150,7 +150,7 @@ pub struct Delivery {
     pub attempted_at: Option<Timestamp>,
     /// When it arrived; `None` while it waits.
     pub arrived_at: Option<Timestamp>,
-    /// What the receiver answered last, an HTTP status.
+    /// The receiver's last HTTP status.
     pub answered: Option<u32>,
     /// Why it was not taken.
     pub problem: Option<String>,
@@ -179,7 +179,7 @@ pub struct Waiting {
     pub webhook: Uuid,
     /// Whose it is.
     pub client: String,
-    /// Whether the last attempt has failed.
+    /// True if the last attempt has failed.
     pub is_failing: bool,
     /// How long it is not to be tried yet.
     pub patience: SignedDuration,
@@ -194,7 +194,7 @@ pub struct Message {
     pub webhook: Uuid,
     /// Where it is sent.
     pub url: String,
-    /// What it is signed with: the secret, and for a day the one before.
+    /// Keys of its signatures: the secret, and for a day the one before.
     pub secrets: Vec<String>,
     /// Its body, JSON.
     pub body: String,
@@ -202,7 +202,7 @@ pub struct Message {
     taken_at: i64,
 }
 
-/// What came of an attempt.
+/// Outcome of an attempt.
 pub struct Attempt {
     /// The HTTP status, if there was an answer.
     pub answered: Option<u16>,
@@ -212,9 +212,9 @@ pub struct Attempt {
 
 /// Why a message was not taken.
 pub enum Refusal {
-    /// It may be the next time.
+    /// The message may arrive the next time.
     Again(String),
-    /// It will not be.
+    /// The message will not arrive.
     Never(String),
 }
 
@@ -441,7 +441,7 @@ impl Store {
                 .bind(left)
                 .fetch_all(&mut *write)
                 .await?;
-            // What is given back has the order in which it was found, which is any.
+            // The returned rows have no order.
             messages.sort();
             taken.extend(messages);
         }
@@ -474,7 +474,7 @@ impl Store {
         Ok(taken.into_iter().filter_map(message).collect())
     }
 
-    /// What another process had taken, where there is no other one: it was this one, before its start.
+    /// Releases messages that another process had taken, where there is no other one: it was this one, before its start.
     pub async fn give_back_messages(&self) -> Result<(), StoreError> {
         if self.is_shared() {
             return Ok(());
@@ -486,7 +486,7 @@ impl Store {
         Ok(())
     }
 
-    /// Writes down what came of an attempt. True if the webhook is given up with it.
+    /// Writes the outcome of an attempt. True if the webhook is disabled with it.
     pub async fn attempted(
         &self,
         message: &Message,

@@ -15,21 +15,21 @@ const BETWEEN_TRIES: Duration = Duration::from_millis(500);
 /// A look that takes longer says that nothing can be stored now.
 const LOOKING: Duration = Duration::from_secs(2);
 
-/// A transaction that has the write lock from its first statement on. Dropped without an end, it takes its connection with it: what the
-/// database, the driver and this program believe of the transaction need not agree any more, after an error least of all.
+/// A transaction that has the write lock from its first statement on. Dropped without an end, it closes its connection: after an error the database, the driver
+/// and this program may disagree about the transaction.
 pub(crate) struct Write {
     connection: Connection,
     health: Arc<Health>,
-    /// What is said for that.
+    /// Statement of the commit.
     commit: Text,
-    /// Whether the commit waits for no disk.
+    /// True if the commit does not wait for the disk.
     relaxed: bool,
     ended: bool,
 }
 
 impl Store {
-    /// Begins a transaction whose commit does not wait for the disk: for what may be lost with the power, because what follows from the
-    /// loss is that it is done again. A process that dies loses nothing of it, and every later commit that waits has it with it.
+    /// Begins a transaction whose commit does not wait for the disk: for changes that a power failure may lose, because the lost work is then done again. A
+    /// crash of the process loses nothing of it, and every later commit that waits includes it.
     pub(super) async fn begin_relaxed(&self) -> Result<Write, StoreError> {
         let begun = begin_with(
             &self.writer,
@@ -77,7 +77,7 @@ impl Store {
         write.commit().await
     }
 
-    /// Finds out whether what comes next can be stored: something is, and there is room for more.
+    /// Checks whether the next write can be stored: it writes a value, and checks the room on the disk.
     ///
     /// # Errors
     ///

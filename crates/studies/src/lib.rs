@@ -1,9 +1,9 @@
 //! Many designs at once: studies, populations and searches, their tables, and the numbers behind them.
 //!
-//! Read in this order. The numbers: [`sample`] (members drawn from laws, and what a sample shows with which confidence) and [`optimum`] (which points of a
-//! cube to compute next); neither knows gears or JSON. Then [`table`], the quantities that designs are compared by. The documents: `population`, `search` and
-//! [`study`], which holds one of them or lists its designs. Last what is made of the rows of a study: [`population_results`] and [`searching`]. [`refusals`] counts
-//! the designs without results.
+//! Read in this order. The numbers: [`sample`] (members drawn from laws, and estimates from a sample with their confidence) and [`optimum`] (choice of the next
+//! points of a cube); neither knows gears or JSON. Then [`table`], the quantities that designs are compared by. The documents: `population`, `search` and
+//! [`study`], which holds one of them or lists its designs. Last the statistics of a study's rows: [`population_results`] and [`searching`]. [`refusals`]
+//! counts the designs without results.
 
 pub mod optimum;
 pub mod sample;

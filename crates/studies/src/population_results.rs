@@ -1,4 +1,4 @@
-//! What the results of members come to: how each quantity is spread over a population.
+//! Statistics of the results of members: the spread of each quantity over a population.
 
 use std::ops::Range;
 
@@ -28,10 +28,10 @@ const PERCENTS: [f64; 7] = [1.0, 5.0, 25.0, 50.0, 75.0, 95.0, 99.0];
 /// Influences are found from so many members: more make them no truer than one needs.
 const MOST_OF_INFLUENCES: u32 = 16_384;
 
-/// So many numbers of all members are kept at a time.
+/// Maximum number of values of all members in memory at a time.
 const MOST_KEPT: usize = 8_000_000;
 
-/// What a population comes to, as far as its members have been computed.
+/// Statistics of a population over the members computed so far.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 #[schema(as = PopulationResults, title = "Population results")]
 pub struct PopulationResults {
@@ -47,7 +47,7 @@ pub struct PopulationResults {
     pub failed: u64,
     /// Why they could not, the most common reason first.
     pub refusals: Vec<RefusalState>,
-    /// What is told of each quantity: those of the pair once, those of a curve for each torque. Left out are those that the method does not tell.
+    /// The quantities that the method has: those of the pair once, those of a curve for each torque.
     pub quantities: Vec<QuantityDocument>,
     /// The share of gears whose total cumulative pitch deviation, measured from the bore, is beyond the tolerance F_pT of their class: none of those that are
     /// inspected. Null where teeth are not drawn.
@@ -92,7 +92,7 @@ pub struct QuantityDocument {
     pub failed_share: f64,
     /// How many members have which values.
     pub histogram: HistogramDocument,
-    /// What makes which part of the variance. Empty where nothing varies.
+    /// Shares of the variance by their sources. Empty where nothing varies.
     pub influences: Vec<InfluenceDocument>,
 }
 
@@ -112,7 +112,7 @@ pub struct ExtremesDocument {
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 #[schema(as = Percentile, title = "Percentile")]
 pub struct PercentileDocument {
-    /// So many percent of the members are below it.
+    /// Percentage of the members below it.
     pub percent: f64,
     /// Its value among the members.
     pub value: f64,
@@ -175,7 +175,7 @@ struct CurveColumns {
     columns: Vec<Vec<f64>>,
 }
 
-/// What differs between members, made ready to be asked.
+/// The differences between members, prepared for queries.
 #[derive(Debug)]
 struct Sources {
     base: Node,
@@ -183,7 +183,7 @@ struct Sources {
     counted: [Counted; 2],
 }
 
-/// What is counted of the gears of the members.
+/// Counts of the gears of the members.
 #[derive(Debug, Default, Clone, Copy)]
 struct Counted {
     /// Gears that were looked at.
@@ -196,7 +196,7 @@ struct Counted {
 }
 
 impl Counted {
-    /// So many numbers are drawn at most to tell what an inspection rejects.
+    /// Maximum number of random numbers for the estimate of an inspection's rejections.
     const MOST_DRAWN: u64 = 4_000_000;
 
     /// The part of the gears made that passed, teeth and leads being independent.
@@ -334,12 +334,12 @@ impl PopulationSample {
         }
     }
 
-    /// Whether no member has torques behind those that it knows.
+    /// True if no member has torques beyond those that it knows.
     pub fn has_all_torques(&self) -> bool {
         self.of_curves.len() < self.torques.len()
     }
 
-    /// What the members tell.
+    /// Statistics of the members.
     pub fn results(&self, id: Option<Uuid>, status: Status) -> PopulationResults {
         let ranked = Inputs::of(&self.population, &self.members);
         let named = |columns: &[Vec<f64>], torque: Option<f64>| -> Vec<QuantityDocument> {
@@ -490,7 +490,7 @@ impl<'a> Inputs<'a> {
         }
     }
 
-    /// What makes which part of the variance of `column`.
+    /// Shares of the variance of `column` by their sources.
     fn influences(&self, column: &[f64]) -> Vec<InfluenceDocument> {
         let column = &column[..self.members.len()];
         let mut ranked = self.ranked.iter();

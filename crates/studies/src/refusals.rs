@@ -14,9 +14,9 @@ pub struct RefusalState {
     /// The code of their problem.
     #[schema(value_type = Code)]
     pub code: String,
-    /// So many designs.
+    /// Number of designs.
     pub count: u64,
-    /// What was wrong with the first of them.
+    /// Fault of the first of them.
     pub detail: String,
 }
 

@@ -1,4 +1,4 @@
-//! What tests of studies have in common, beside what tests of documents have.
+//! Common parts of tests of studies, beside those of tests of documents.
 
 use meshwright_engine::run::Run;
 use meshwright_wire::Problem;

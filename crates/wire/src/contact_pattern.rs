@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::declare::document;
 use super::units::{or_null, rounded_json, significant, to_mm, to_mpa, to_n_per_mm};
 
-/// Digits of a place, and of what acts there.
+/// Significant digits of a place, and of the values there.
 const DIGITS: (usize, usize) = (6, 5);
 
 /// Positions at which lines are told, of all curves together: some 100 places each.

@@ -1,4 +1,4 @@
-//! Tables as CSV (RFC 4180) that a spreadsheet may open: what a client wrote never becomes a formula.
+//! Tables as CSV (RFC 4180) for spreadsheets: a text of a client never becomes a formula.
 
 use std::borrow::Cow;
 
@@ -62,11 +62,11 @@ impl CsvWriter {
     }
 }
 
-/// What a spreadsheet takes for the beginning of a formula.
+/// Characters that begin a formula in a spreadsheet.
 const BEGIN_A_FORMULA: [char; 8] = ['=', '+', '-', '@', '＝', '＋', '－', '＠'];
 
-/// A text that spreadsheets take for text. They take one that begins with certain signs for a formula, which may call programs and
-/// addresses, some of them also behind what cannot be seen; an apostrophe before it prevents that. A number may keep its sign.
+/// A text that spreadsheets read as text. They read one that begins with certain characters as a formula, which may call programs and addresses, some of them
+/// also behind invisible characters; an apostrophe before it prevents that. A number may keep its sign.
 fn neutral(text: &str) -> Cow<'_, str> {
     let is_number = text.parse::<f64>().is_ok_and(f64::is_finite);
     let first = text.chars().find(|letter| can_be_seen(*letter));

@@ -22,16 +22,14 @@ document! {
         iso_1328_class: u32 = CLASS,
         /// How many times three standard deviations of a deviation fit into its tolerance.
         capability: f64 = CAPABILITY,
-        /// What the numbers are drawn from: the same seed gives the same teeth on every machine.
+        /// Seed of the random numbers: the same seed gives the same teeth on every machine.
         seed: u32 = SEED,
         /// The helix angle at the reference circle, whichever the hand, of which tolerances depend by the reference diameter.
         helix_angle_deg: f64 = number("Helix angle", "deg", -45.0, 45.0).or(0.0),
-        /// Whether the slopes of the leads are drawn too, which only methods in three dimensions take. The other deviations are the same with
-        /// them and without them.
+        /// Also draws the slopes of the leads, which only methods in three dimensions take. The other deviations are the same with them and without them.
         lead_slopes: bool = flag("Lead slopes", false),
-        /// Whether the gear is one that has passed an inspection: each single pitch within f_pT, the cumulative pitch measured from the bore within F_pT, the
-        /// runout within F_rT, and the slopes within theirs. Gears that do not pass are drawn again; without an inspection the first one is
-        /// taken as it is.
+        /// Draws a gear that has passed an inspection: each single pitch within f_pT, the cumulative pitch measured from the bore within F_pT, the runout
+        /// within F_rT, and the slopes within theirs. Gears that do not pass are drawn again; without an inspection the first one is taken as it is.
         inspected: bool = INSPECTED,
     }
 }
@@ -42,13 +40,13 @@ pub const CLASS: Number = number("Accuracy class", "1", 1.0, 11.0);
 /// How well a process keeps its tolerances.
 pub const CAPABILITY: Number = number("Process capability", "1", 0.1, 10.0).or(1.0);
 
-/// Whether gears that are not of their class are rejected and drawn again.
+/// Flag: gears outside of their class are rejected and drawn again.
 pub const INSPECTED: Flag = flag("Inspected", true);
 
-/// What random numbers are drawn from.
+/// Seed of random numbers.
 pub const SEED: Number = number("Seed", "1", 0.0, 4_294_967_295.0).or(1.0);
 
-/// What is asked: teeth for a gear, of an accuracy, from a seed.
+/// A request for teeth: gear, accuracy and seed.
 pub struct Draw {
     accuracy: Accuracy,
     seed: u64,
@@ -56,7 +54,7 @@ pub struct Draw {
 }
 
 impl DrawDocument {
-    /// What is asked, if its gear can be made and may pass; what prevents it is reported to `errors`.
+    /// The request, if its gear can be made and may pass; faults are reported to `errors`.
     fn made(self, errors: &Errors, run: &Run) -> Option<Draw> {
         let made = self
             .gear
@@ -83,11 +81,11 @@ impl DrawDocument {
 /// same teeth have them and have them not.
 #[derive(Debug, Clone)]
 pub struct Accuracy {
-    /// Its tolerances, and what an inspection measures.
+    /// Its tolerances, and the measurements of an inspection.
     pub inspection: Inspection,
     /// How many times three standard deviations of a deviation fit into its tolerance.
     pub capability: f64,
-    /// Whether gears that do not pass are made again.
+    /// True if gears that do not pass are drawn again.
     pub is_inspected: bool,
 }
 
@@ -206,14 +204,14 @@ document! {
 #[derive(Debug, Serialize, ToSchema)]
 #[schema(title = "Drawn deviations")]
 pub struct DrawnDeviations {
-    /// What the teeth deviate by, ready for a gear of a submission.
+    /// The deviations of the teeth, ready for a gear of a submission.
     tooth_deviations: DeviationsDocument,
     /// F_p: the total cumulative pitch deviation of these teeth, measured from the bore, so that the eccentricity counts, in um. Without an
     /// inspection it may be more than `total_pitch`.
     total_pitch_deviation_um: f64,
     /// The gears that were drawn before this one and did not pass; 0 without an inspection.
     gears_rejected: u32,
-    /// What the class allows, in um.
+    /// The tolerances of the class, in um.
     tolerances_um: TolerancesDocument,
 }
 
@@ -222,7 +220,7 @@ fn um(value: f64) -> f64 {
 }
 
 impl Draw {
-    /// Reads and checks what is asked.
+    /// Reads and checks the request.
     ///
     /// # Errors
     ///
@@ -320,7 +318,7 @@ mod tests {
                     .as_f64()
                     .expect("a number")
         );
-        // What the gear has already is not looked at.
+        // Deviations that the gear has already are ignored.
         let again = json!({ "gear": submission["pair"]["driven"], "iso_1328_class": 6, "seed": 3 });
         assert_eq!(answer, drawn(&again).expect("drawn"));
     }
@@ -389,7 +387,7 @@ mod tests {
         // 59 % are beyond F_pT, and 80 % pass by each of the others that has 85 numbers: about three of four gears do not pass.
         assert!((14..34).contains(&out_of_class), "{out_of_class}");
         assert!((60.0..240.0).contains(&rejected), "{rejected}");
-        // What was drawn before there was an inspection, to the last digit.
+        // The deviations of versions without an inspection, to the last digit.
         let earlier = json!({ "gear": standard_pair()["pair"]["driven"], "iso_1328_class": 6, "seed": 3, "inspected": false });
         let teeth = &drawn(&earlier).expect("drawn")["tooth_deviations"];
         assert_eq!(teeth["pitch_single_um"][0], EARLIER[0]);

@@ -7,7 +7,7 @@ use meshwright_engine::analysis::fields::{Fields, GearField};
 use super::declare::document;
 use super::units::{rounded_json, significant, to_mm, to_mpa, to_um};
 
-/// Digits of a place, and of what happens there: more than a drawing shows at any scale.
+/// Significant digits of a place, and of the values there: more than a drawing shows at any scale.
 const DIGITS: (usize, usize) = (6, 4);
 
 /// A point or a displacement.
@@ -89,7 +89,7 @@ impl LoadedEdges {
 fn chains(edges: &[[u32; 3]]) -> Vec<Vec<u32>> {
     let ends: HashSet<u32> = edges.iter().map(|edge| edge[2]).collect();
     let mut from: HashMap<u32, [u32; 3]> = edges.iter().map(|edge| (edge[0], *edge)).collect();
-    // Those that begin where nothing ends come first; what is left of the others are rings.
+    // Edges that begin where no other ends come first; the rest are rings.
     let (begins, rest): (Vec<u32>, Vec<u32>) = edges
         .iter()
         .map(|edge| edge[0])

@@ -2,7 +2,7 @@
 
 use super::declare::Node;
 
-/// What takes a change back.
+/// The inverse of a change.
 #[derive(Debug)]
 pub enum Undo {
     /// This stood there.
@@ -79,7 +79,7 @@ impl Node {
     }
 }
 
-/// Whether a step names an item of a list: no field of a submission is a number.
+/// True if a step names an item of a list: no field of a submission is a number.
 fn is_item<S: AsRef<str>>(step: &S) -> bool {
     step.as_ref().bytes().all(|byte| byte.is_ascii_digit())
 }

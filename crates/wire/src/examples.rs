@@ -5,9 +5,9 @@
 pub struct Example {
     /// Its name, which is also its file's under `api/examples`.
     pub name: &'static str,
-    /// What it is.
+    /// Description.
     pub description: &'static str,
-    /// Whether it can be computed; one cannot, on purpose.
+    /// False for the one that cannot be computed.
     pub valid: bool,
     /// The document.
     pub json: &'static str,

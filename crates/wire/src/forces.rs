@@ -1,4 +1,4 @@
-//! What is asked beside the curves: a table of force, and the motion over speed.
+//! Requests beside the curves: a table of force, and the motion over speed.
 
 use meshwright_engine::analysis::at_speed::DynamicsRequest;
 use meshwright_engine::analysis::forces::ForceTableRequest;
@@ -35,7 +35,7 @@ document! {
 }
 
 impl ForceTableQuestion {
-    /// What is asked where a table is needed and nothing is said of it.
+    /// The default request where a table is needed and none is given.
     pub(super) fn usual() -> Self {
         Self {
             loads: 12,

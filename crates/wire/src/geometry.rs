@@ -1,4 +1,4 @@
-//! The pair as its drawing makes it: what follows from the submission without any load.
+//! Geometry of the pair, which follows from the submission without any load.
 
 use meshwright_engine::analysis::Case;
 use meshwright_engine::analysis::RotationSpeed;
@@ -39,13 +39,13 @@ document! {
         #[serde(default = "not_a_number")]
         #[schema(required)]
         backlash_line_of_action_mm: f64 = to_mm(pair.backlash()),
-        /// The least normal backlash over the true period, in mm: what the pitch deviations of teeth in mesh at the same time, slopes that stand out and
-        /// eccentricity leave of it.
+        /// The least normal backlash over the true period, in mm: after the pitch deviations of teeth in mesh at the same time, slopes that stand out and
+        /// eccentricity.
         least_backlash_mm: f64 = to_mm(pair.least_backlash() * normal),
         /// The face width on which the gears touch, in mm: the smaller of the two.
         contact_width_mm: f64 = to_mm(width),
-        /// The helix angle at the base circles, in degrees, without a sign; absent, as what follows, for plane methods. With a helix all other values of the
-        /// pair are those of its transverse section.
+        /// The helix angle at the base circles, in degrees, without a sign; absent, as the following fields, for plane methods. With a helix all other values
+        /// of the pair are those of its transverse section.
         helix_angle_base_deg?: f64 = faces.map(|pair| pair.base_helix_angle().to_degrees()),
         /// The overlap ratio: the common face over the axial pitch.
         overlap_ratio?: f64 = faces.map(SolidPair::overlap_ratio),
@@ -110,7 +110,7 @@ document! {
     answer of (case: &Case, member: Member) with {
         let (pair, gear) = (&case.pair, case.pair.gear(member));
         let solid = case.faces().map(|faces| faces.pair.gear(member));
-        // What rounding leaves of holes that balance each other has no direction.
+        // A remainder of rounding, of holes that balance each other, has no direction.
         let noise = 1e-12 * gear.mass() * gear.tip_radius();
         let normal = solid.map_or(1.0, |solid| solid.helix_angle_at(gear.tip_radius()).cos());
         let module = solid.map_or(gear.data().rack.module, |solid| solid.normal_rack().module);
@@ -205,7 +205,7 @@ document! {
 }
 
 impl Frequencies {
-    /// Those of `case`, if it has a speed.
+    /// The speeds of `case`, if it has one.
     pub(super) fn of_case(case: &Case) -> Option<Self> {
         Some(Self::of(&case.pair, case.driving_speed?))
     }

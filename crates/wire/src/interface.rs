@@ -80,13 +80,13 @@ impl InterfaceRadii {
         }
     }
 
-    /// Those of both gears in meters; `None` for a gear's default.
+    /// The radii of both gears in meters; `None` for a gear's default.
     pub(super) fn data(&self) -> [Option<f64>; 2] {
         Member::BOTH.map(|member| self.of(member).map(from_mm))
     }
 
-    /// What is wrong with them on `pair`, whose submission has them at `pointer`. The interface has to stay clear of the holes and
-    /// of the roots, by a quarter of the material between them or a quarter of a module, whichever is less.
+    /// Faults on `pair`, whose submission has them at `pointer`. The interface has to stay clear of the holes and of the roots, by a quarter of the material
+    /// between them or a quarter of a module, whichever is less.
     pub(super) fn faults(&self, pair: &GearPair, pointer: &str) -> Vec<FieldError> {
         match self {
             Self::Common(None) => Vec::new(),

@@ -1,17 +1,17 @@
-//! How much of what was computed is kept.
+//! Extent of the stored results.
 
 use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::declare::words;
 
-/// How much of what was computed is kept.
+/// Extent of the stored results.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Kept {
     /// The results document.
     Results,
-    /// What the table of a study shows.
+    /// The values of a study's table.
     Statistics,
 }
 

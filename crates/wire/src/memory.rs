@@ -1,4 +1,4 @@
-//! Whether a computation would take more memory than it may.
+//! Check of a computation against the limit of memory.
 
 use std::collections::VecDeque;
 use std::sync::Mutex;
@@ -23,8 +23,8 @@ const USUAL_RIM: f64 = 2.0;
 /// Memory of a usual pair, in MB.
 const USUAL_MB: u64 = 400;
 
-/// Whether counting alone says that `submission` takes no more memory than `limit_mb`, in MB. It takes a fraction of a millisecond; what it
-/// leaves open [`memory_above`] answers.
+/// True if counting alone shows that `submission` takes at most `limit_mb` of memory, in MB. It takes a fraction of a millisecond; for all others
+/// [`memory_above`] decides.
 pub fn memory_is_within(submission: &Submission, limit_mb: u64) -> bool {
     limit_mb >= USUAL_MB && is_usual(submission)
 }
@@ -41,8 +41,8 @@ pub fn memory_above(submission: &Submission, limit_mb: u64) -> Option<u64> {
     (needed_mb > limit_mb).then_some(needed_mb)
 }
 
-/// Whether a case is of a plane pair of at most `most_teeth` together, on the standard grid or a coarser one, without an error estimate, with round
-/// holes or slots: the kind whose cost is known by counting.
+/// True for a plane pair of at most `most_teeth` together, on the standard grid or a coarser one, without an error estimate, with round holes or slots: the
+/// kind whose cost is known by counting.
 pub fn is_plain(case: &Case, most_teeth: u32) -> bool {
     let gears = Member::BOTH.map(|member| case.pair.gear(member));
     let has_contours = |gear: &SpurGear| {
@@ -65,7 +65,7 @@ fn is_usual(submission: &Submission) -> bool {
         && submission.positions_total() <= USUAL_POSITIONS
 }
 
-/// Whether the gear is no shaft, and its rim is not thin.
+/// True if the gear is no shaft, and its rim is not thin.
 fn has_usual_rim(gear: &SpurGear) -> bool {
     let blank = &gear.data().blank;
     let web = blank.web_in(gear.face_width());
@@ -74,8 +74,8 @@ fn has_usual_rim(gear: &SpurGear) -> bool {
     blank.shaft().is_none() && gear.root_radius() - reach >= USUAL_RIM * gear.data().rack.module
 }
 
-/// What an estimate of memory depends on: not on what flanks are modified and teeth deviate by, nor on how gears stand to each other, so that all
-/// members of most populations have one.
+/// The fields on which an estimate of memory depends. Flank modifications, tooth deviations and the position of the gears are not among them, so that all
+/// members of most populations have one estimate.
 #[derive(Debug, PartialEq)]
 struct Asked {
     gears: [SpurGear; 2],
@@ -110,7 +110,7 @@ impl Asked {
 /// The estimates that were made last.
 static LAST: Mutex<VecDeque<(Asked, u64)>> = Mutex::new(VecDeque::new());
 
-/// So many of them are kept.
+/// Number of estimates that are kept.
 const KEPT: usize = 8;
 
 /// The memory that `submission` is estimated to take, in MB.
@@ -135,7 +135,7 @@ fn estimated_mb(submission: &Submission) -> u64 {
     needed_mb
 }
 
-/// The memory that `submission` is estimated to take, in MB: of a usual pair what all of them stay below.
+/// The estimated memory of `submission` in MB; for a usual pair the bound for all of them.
 pub fn memory_of(submission: &Submission) -> u64 {
     memory_above(submission, USUAL_MB).unwrap_or(USUAL_MB)
 }

@@ -87,7 +87,7 @@ document! {
 }
 
 document! {
-    /// A web: a ring of its own thickness. Its edges are those two circles, less what the holes take of them.
+    /// A web: a ring of its own thickness. Its edges are those two circles, except where holes cut them.
     pub struct WebOutline as WebOutline, "Web outline" answer of (web: Web) {
         /// The radius at which it begins, in mm.
         inner_radius_mm: f64 = to_mm(web.inner_radius),

@@ -1,4 +1,4 @@
-//! The pair of a submission, and what is wrong with gears that cannot mesh.
+//! The pair of a submission, and faults of gears that cannot mesh.
 
 use meshwright_engine::gear::printed::{differ_in_digits_only, last_unit};
 use meshwright_engine::gear::{
@@ -16,8 +16,8 @@ use super::warning::WarningDocument;
 document! {
     /// Two spur or helical gears at a center distance, the first driving the second.
     pub struct PairDocument as "Pair", "Gear pair" {
-        /// The operating center distance, not the reference one. Teeth have to reach each other with a contact ratio of at least one,
-        /// without negative backlash and without interference. What the last digits of printed numbers take from the backlash is taken for none.
+        /// The operating center distance, not the reference one. Teeth have to reach each other with a contact ratio of at least one, without negative backlash
+        /// and without interference. A negative backlash within the last digits of printed numbers counts as zero.
         center_distance_mm: f64 = number("Center distance", "mm", 0.5, 52_500.0),
         /// The helix angle at the reference circle: positive where the driving gear is right-handed and the driven one left-handed. Module,
         /// pressure angle, rack and profile shift are those of the normal section then. Other than 0 it needs three dimensions.
@@ -75,7 +75,7 @@ impl PairDocument {
         })
     }
 
-    /// Refuses what a plane `method` does not know.
+    /// Refuses the fields that a plane `method` does not support.
     pub(super) fn refuse_three_dimensions(&self, method: &str, errors: &Errors) {
         let number =
             |value: f64, name: &str| (value != 0.0).then(|| (format!("/pair/{name}"), Some(0.0)));
@@ -102,7 +102,7 @@ impl PairDocument {
         }
     }
 
-    /// The pair along its faces, if its gears can be made and mesh; what prevents it is reported to `errors`.
+    /// The pair along its faces, if its gears can be made and mesh; faults are reported to `errors`.
     pub(super) fn to_solid_pair(&self, errors: &Errors) -> Option<SolidPair> {
         let [driving, driven] = self.made(errors, |gear, member| {
             gear.to_solid(&format!("/pair/{member}"), self.helix(member))
@@ -173,7 +173,7 @@ impl PairDocument {
         errors.report(Err(found))
     }
 
-    /// The pair, if its gears can be made and mesh; what prevents it is reported to `errors`.
+    /// The pair, if its gears can be made and mesh; faults are reported to `errors`.
     pub(super) fn to_pair(&self, errors: &Errors) -> Option<GearPair> {
         let [driving, driven] = self.made(errors, |gear, member| {
             gear.to_gear(&format!("/pair/{member}"), Helix::STRAIGHT)
@@ -183,7 +183,7 @@ impl PairDocument {
         errors.report(pair.map_err(|error| self.field_error([&driving, &driven], 0.0, &error)))
     }
 
-    /// Both gears, if they can be made and could mesh; what prevents that is reported to `errors`.
+    /// Both gears, if they can be made and could mesh; faults are reported to `errors`.
     fn made<G>(
         &self,
         errors: &Errors,
@@ -288,7 +288,7 @@ impl PairDocument {
         Some(error.nearest(nearest))
     }
 
-    /// What has to be the same in both gears, and of these what is not written alike.
+    /// Fields that have to be equal in both gears and are written differently.
     fn unlike(&self) -> impl Iterator<Item = Unlike> {
         let of_both = |value: fn(&GearDocument) -> f64| [value(&self.driving), value(&self.driven)];
         let same = [
@@ -311,7 +311,7 @@ impl PairDocument {
             .filter(|Unlike { values, .. }| values[0] != values[1])
     }
 
-    /// What has to be the same in both gears and is not.
+    /// Faults of fields that have to be equal in both gears.
     fn mismatches(&self) -> Vec<FieldError> {
         let different = self.unlike().filter(|unlike| unlike.taken().is_none());
         let refusals = different.map(|unlike| {
@@ -390,7 +390,7 @@ impl Unlike {
     }
 }
 
-/// Whether the teeth of `gear` take from the backlash what its drawing leaves.
+/// True if the teeth of `gear` reduce the backlash of its drawing.
 fn deviates(gear: &SpurGear) -> bool {
     !gear.deviations().is_none()
 }

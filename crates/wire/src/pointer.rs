@@ -71,31 +71,31 @@ impl Pointer {
         &self.steps[self.steps.len().saturating_sub(count)..]
     }
 
-    /// Whether its first steps are these.
+    /// True if its first steps are these.
     pub fn starts_with(&self, steps: &[&str]) -> bool {
         self.steps.len() >= steps.len() && self.steps.iter().zip(steps).all(|(a, b)| a == b)
     }
 
-    /// Whether it names what `pointer` names, or something that contains it.
+    /// True if it names the same place as `pointer`, or an object that contains it.
     pub fn covers(&self, pointer: &str) -> bool {
         is_within(pointer, &self.text)
     }
 
-    /// Whether it names something within what `pointer` names.
+    /// True if it names a place below `pointer`.
     pub fn is_below(&self, pointer: &str) -> bool {
         is_within(&self.text, pointer)
     }
 
-    /// Whether the schema of a submission has a field at this place.
+    /// Checks that the schema of a submission has a field at this place.
     ///
     /// # Errors
     ///
-    /// The code and a sentence that says which step is unknown and what would be known there.
+    /// The code and a sentence that names the unknown step and the known ones there.
     pub fn check_named(&self) -> Result<(), (Code, String)> {
         self.named(&SCHEMA, &self.steps).map(|_| ())
     }
 
-    /// What kind of number the field at this place takes.
+    /// Kind of number of the field at this place.
     ///
     /// # Errors
     ///
@@ -104,7 +104,7 @@ impl Pointer {
         self.number_kind_in(&SCHEMA, &self.steps)
     }
 
-    /// What kind of number `schema` says that the field behind these last steps takes.
+    /// Kind of number of the field behind these last steps, by `schema`.
     ///
     /// # Errors
     ///
@@ -133,7 +133,7 @@ impl Pointer {
         }
     }
 
-    /// What a schema says of the place behind these last steps.
+    /// The part of a schema at the place behind these last steps.
     fn named(
         &self,
         schema: &'static Schema,
@@ -188,7 +188,7 @@ fn is_within(inner: &str, outer: &str) -> bool {
 
 /// The schema of a document, with those that it refers to.
 pub struct Schema {
-    /// What it is of.
+    /// Name of its object.
     of: &'static str,
     root: Value,
     named: Map<String, Value>,
@@ -228,7 +228,7 @@ impl Schema {
     }
 }
 
-/// What a schema says of the field or item `step`.
+/// The part of a schema for the field or item `step`.
 fn child<'a>(schema: &'a Value, step: &str) -> Option<&'a Value> {
     let property = schema["properties"]
         .as_object()

@@ -21,9 +21,9 @@ const PREVIEW_ID: Declared<Optional<Text>> = Declared::new(
 /// A submission, and the word by which a newer preview replaces this one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Preview {
-    /// What is asked.
+    /// The submission.
     pub submission: Submission,
-    /// What the client calls this series of previews; a newer one stops an older one of the same id.
+    /// The client's name for this series of previews; a newer one stops an older one of the same id.
     pub id: Option<String>,
 }
 

@@ -1,4 +1,4 @@
-//! What went wrong, as RFC 9457 problem documents with stable codes.
+//! Errors as RFC 9457 problem documents with stable codes.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -24,10 +24,10 @@ macro_rules! codes {
             /// The HTTP status that it answers with.
             pub fn status(self) -> u16 { match self { $(Code::$name => $status,)* } }
 
-            /// What kind of problem it is.
+            /// Title of the kind of problem.
             pub fn title(self) -> &'static str { match self { $(Code::$name => $title,)* } }
 
-            /// A paragraph on what it means and what to do.
+            /// A paragraph on its meaning and on what to do.
             pub fn explanation(self) -> &'static str { match self { $(Code::$name => $explanation,)* } }
         }
     };
@@ -195,7 +195,7 @@ codes! {
         "Something went wrong that is not your doing. It has been logged under the request's identifier, which the operator can look up."
 }
 
-/// What is wrong with one field of a document.
+/// Fault of one field of a document.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(title = "Field error")]
 pub struct FieldError {
@@ -204,7 +204,7 @@ pub struct FieldError {
     pub pointer: String,
     /// The stable code.
     pub code: Code,
-    /// What is wrong, with the numbers, in the field's own unit.
+    /// The fault with its numbers, in the field's own unit.
     pub detail: String,
     /// The nearest value that is accepted, in the field's own unit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -238,16 +238,16 @@ pub struct Problem {
     #[serde(rename = "type")]
     #[schema(example = "/problems/teeth-do-not-reach")]
     pub type_: String,
-    /// What kind of problem it is.
+    /// Title of the kind of problem.
     pub title: String,
     /// The HTTP status.
     #[schema(minimum = 400, maximum = 599)]
     pub status: u16,
-    /// What is wrong this time.
+    /// The fault in this case.
     pub detail: String,
     /// The stable code.
     pub code: Code,
-    /// What is wrong with which field of the input.
+    /// The fault of each field of the input.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub errors: Vec<FieldError>,
     /// The request or job that met it.
@@ -257,7 +257,7 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// A problem of the kind `code`, with what is wrong this time.
+    /// A problem of the kind `code`, with the fault in this case.
     pub fn new(code: Code, detail: impl Into<String>) -> Self {
         Self {
             type_: format!("/problems/{}", code.slug()),

@@ -22,7 +22,7 @@ pub fn methods() -> impl Iterator<Item = &'static str> {
     Method::OPTIONS.iter().map(|(word, ..)| *word)
 }
 
-/// Whether the method of this name sees the faces.
+/// True if the method of this name takes the faces into account.
 pub fn sees_faces(name: &Node) -> bool {
     let mut methods = Method::OPTIONS.iter();
     methods.any(|(word, method, _)| {
@@ -104,8 +104,8 @@ document! {
         stiffness: StiffnessDocument = (),
         /// The formulas of the method load_distribution.
         load_distribution: LoadDistributionDocument = nested("LoadDistribution").or_defaults(),
-        /// Whether a second run tells the discretization error: a finer one, which takes several times as long, or in three dimensions a
-        /// coarser one, which differs by more than a finer one would.
+        /// Also computes a second run for the discretization error: a finer one, which takes several times as long, or in three dimensions a coarser one, which
+        /// differs by more than a finer one would.
         error_estimate: bool = flag("Error estimate", false),
     }
 }

@@ -12,7 +12,7 @@ use super::problem::{Code, FieldError, Problem};
 /// entries each.
 pub const MOST_VALUES: u64 = 80_000;
 
-/// Refuses a document of more than `most` values. What is no JSON is reported later, with its place.
+/// Refuses a document of more than `most` values. A document that is not JSON is reported later, with its place.
 ///
 /// # Errors
 ///
@@ -128,7 +128,7 @@ mod tests {
         assert!(refuse_many_values(list, 5).is_ok());
         let problem = refuse_many_values(list, 4).unwrap_err();
         assert_eq!((problem.code, problem.status), (Code::TooLarge, 422));
-        // What is no JSON is somebody else's matter.
+        // A document that is not JSON passes here.
         assert!(refuse_many_values(b"[1, 2", 9).is_ok());
     }
 }

@@ -1,4 +1,4 @@
-//! From a submission to its results, or to what it would come to.
+//! From a submission to its results, or to its validation.
 
 use meshwright_engine::analysis::blank_modes::blank_modes;
 use meshwright_engine::analysis::contact_pattern::ContactPattern;
@@ -116,7 +116,7 @@ pub fn contact_pattern(
     })
 }
 
-/// What the engine has met, with the field that leads out of it.
+/// The problem of an engine's error, with the field that can mend it.
 fn problem_of(error: &AnalysisError) -> Problem {
     const TORQUES: &str = "/output_torques_n_m";
     let of_field = |pointer: &str, code, detail| {
@@ -259,14 +259,14 @@ pub struct Validation {
     pub submission: Submission,
     /// The derived geometry, as in the results.
     pub pair: PairGeometry,
-    /// What to know beside the numbers, as far as it is known before the computation.
+    /// Warnings that are known before the computation.
     pub warnings: Vec<WarningDocument>,
-    /// What the computation will cost.
+    /// Estimated cost of the computation.
     pub estimate: EstimateDocument,
 }
 
 document! {
-    /// What a computation will cost.
+    /// Estimated cost of a computation.
     pub struct EstimateDocument as Estimate, "Estimate" answer of (submission: &Submission) with {
         let estimate = submission.estimate();
     } {
@@ -281,7 +281,7 @@ document! {
     }
 }
 
-/// What `submission` would be computed as, and what that would cost.
+/// The filled-in form of `submission`, and its estimated cost.
 pub fn validate(submission: &Submission) -> Validation {
     let case = submission.case();
     let warnings = analysis::warnings(case);

@@ -31,7 +31,7 @@ impl Status {
         }
     }
 
-    /// Whether nothing changes any more.
+    /// True if the state is final.
     pub fn has_ended(self) -> bool {
         matches!(self, Self::Successful | Self::Failed | Self::Dismissed)
     }

@@ -1,4 +1,4 @@
-//! What tests of documents have in common, here and in the crate `studies`: examples, changes of them, and tables of what is refused.
+//! Common parts of tests of documents, here and in the crate `studies`: examples, changes of them, and tables of refusals.
 
 use serde_json::Value;
 
@@ -30,7 +30,7 @@ pub fn filled_in(name: &str) -> Value {
     echo(&submission(name))
 }
 
-/// What a submission is answered with.
+/// The answer to a submission.
 pub fn echo(submission: &Submission) -> Value {
     serde_json::from_str(&submission.canonical_json()).expect("JSON")
 }
@@ -67,7 +67,7 @@ pub fn and(mut object: Value, fields: &Value) -> Value {
     object
 }
 
-/// What is wrong, error by error: its place, its code, and the nearest value that would do.
+/// Faults, error by error: place, code, and the nearest value that would do.
 pub fn faults(problem: Problem) -> Vec<(String, Code, Option<f64>)> {
     let errors = problem.errors.into_iter();
     errors
@@ -88,7 +88,7 @@ pub fn fault(document: &Value, place: &str, code: Code) -> FieldError {
     fault
 }
 
-/// A table of what is refused, a line each: what is sent, the place and the code that are told, and the nearest value that would do.
+/// A table of refusals, a line each: the value, place and code of the refusal, and the nearest value that would do.
 #[macro_export]
 macro_rules! refused {
     ($($sent:expr => $place:expr, $code:ident $(, $nearest:expr)?;)*) => {

@@ -116,8 +116,8 @@ pub fn rounded_to_unit(bound: f64, side: Side, steps: u32, unit_exponent: i32) -
 
 /// Writes `document` with every number rounded to ten significant digits.
 ///
-/// Significant digits, not decimals, so that the small noise of a spectrum stays what it is; ten of them, so that what
-/// rounding adds to a spectrum stays a thousand times below 1e-9 of the mean.
+/// Significant digits, not decimals, so that the small noise of a spectrum is kept; ten of them, so that the rounding of a spectrum stays a thousand times
+/// below 1e-9 of the mean.
 ///
 /// # Errors
 ///
@@ -130,7 +130,7 @@ pub fn rounded_json(document: &impl serde::Serialize) -> serde_json::Result<Stri
     String::from_utf8(text).map_err(serde::ser::Error::custom)
 }
 
-/// What is read of a text like that of [`rounded_json`], in which values may be absent.
+/// The values of a text like that of [`rounded_json`], in which values may be absent.
 ///
 /// # Errors
 ///
@@ -176,7 +176,7 @@ pub fn one_or_null<S: serde::Serializer>(
     }
 }
 
-/// What stands for a number that a document of an earlier version lacks. It is never written.
+/// Value of a number that a document of an earlier version lacks. It is never written.
 pub fn not_a_number() -> f64 {
     f64::NAN
 }
@@ -209,7 +209,7 @@ impl Formatter for RoundingFormatter {
         CompactFormatter.write_f64(writer, significant(value, DIGITS))
     }
 
-    /// What is not finite is written as null, so a null here is a number that went wrong.
+    /// A value that is not finite is written as null, so a null here is an invalid number.
     fn write_null<W: io::Write + ?Sized>(&mut self, _: &mut W) -> io::Result<()> {
         Err(io::Error::other("a result is not finite"))
     }

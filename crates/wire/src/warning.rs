@@ -1,4 +1,4 @@
-//! What a reader should know beside the numbers.
+//! Warnings to read with the numbers.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -19,7 +19,7 @@ use super::units::{Side, plain, rounded_to_unit, significant, to_mm, to_mpa, to_
 pub struct WarningDocument {
     /// The stable code.
     pub code: WarningCode,
-    /// What it is, with the numbers.
+    /// The warning with its numbers.
     pub detail: String,
     /// The gear, where it concerns one: `driving` or `driven`.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -74,7 +74,7 @@ pub enum WarningCode {
     ContactBeyondElasticity,
     /// The largest contact pressure stands at a kink of a profile modification, which a run-in would round.
     PressureAtKink,
-    /// So few positions a mesh period tell the orders of its higher multiples wrongly, and may miss extremes of the stiffness.
+    /// Too few positions a mesh period: the orders of its higher multiples are wrong, and extremes of the stiffness may be missed.
     FewPositions,
     /// The span is not whole true periods.
     PartialSpan,
@@ -82,7 +82,7 @@ pub enum WarningCode {
     FormulaRange,
     /// The method does not see the holes that the drawing has.
     HolesNotSeen,
-    /// The projected decomposition leaves out too much of what the holes do.
+    /// The projected decomposition leaves out too much of the effect of the holes.
     ProjectionDoubtful,
 }
 
@@ -505,7 +505,7 @@ fn tip_diameter(diameter: f64) -> f64 {
     rounded_to_unit(to_mm(diameter), Side::AtMost, 0, -3)
 }
 
-/// What to make of a web so many times as thick as the face is wide, under a rim of so many modules.
+/// Advice about a web with `web` times the thickness of the face width, under a rim of `rim` modules.
 fn outside_plane(member: Member, web: f64, rim: f64) -> String {
     let [[web_plane, web_none], [rim_plane, rim_none]] = [PLANE_WEB, PLANE_RIM];
     let advice = if web < web_none || rim < rim_none {

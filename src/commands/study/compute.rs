@@ -21,10 +21,10 @@ use crate::jobs::{
 };
 use crate::serve::open;
 
-/// What the substructures that designs share may take.
+/// Limit of the memory of the substructures that designs share, in bytes.
 const LIBRARY_BYTES: usize = 256 << 20;
 
-/// Between two looks at what has come of the study.
+/// Time between two looks at the progress of the study.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(500);
 
 /// Nobody else waits for a design here.
@@ -119,7 +119,7 @@ async fn follow(
     }
 }
 
-/// So many rows, or documents, are read at a time.
+/// Rows or documents read at a time.
 const AT_ONCE: u32 = 100;
 
 /// Takes the rows that have ended behind those that are here, up to the first one that has not.

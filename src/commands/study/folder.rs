@@ -1,4 +1,4 @@
-//! The folder in which a study leaves what it computed.
+//! The folder of a study on the disk.
 
 use std::fs;
 use std::path::{Path, PathBuf};

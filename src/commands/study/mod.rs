@@ -96,7 +96,7 @@ impl Study {
     }
 }
 
-/// What the members of a population come to; none where the designs are none.
+/// Results of a population; `None` if no member has any.
 fn population(study: &StudyDocument, computed: &Computed) -> Option<PopulationResults> {
     let mut sample = PopulationSample::new(study, 0..StudyDocument::MOST_TORQUES)?;
     for (member, row) in (0..).zip(&computed.rows) {

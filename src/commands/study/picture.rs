@@ -1,4 +1,4 @@
-//! What a study came to, as a picture.
+//! Picture of the results of a study.
 
 use meshwright_plot::{Axis, Chart, Color, Figure, Look, PALETTE, Panel, Series};
 use meshwright_studies::table::{Quantity, TableRow};
@@ -8,7 +8,7 @@ use meshwright_studies::{PopulationResults, SearchState, Study as StudyDocument,
 const SHOWN: &str = "transmission_error_um.peak_to_peak";
 const OVER: &str = "pair_mass_kg";
 
-/// What stands at the axis of a quantity; a goal that is none stands there by its own words.
+/// Label of the axis of a quantity; a goal without a quantity is labelled by its own words.
 fn at_axis(name: &str) -> String {
     Quantity::of_name(name).map_or_else(|| name.to_owned(), Quantity::at_axis)
 }

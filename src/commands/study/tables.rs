@@ -1,4 +1,4 @@
-//! What is printed of a study.
+//! Tables of a study for the terminal.
 
 use std::time::Duration;
 
@@ -18,7 +18,7 @@ pub(super) fn numbers(values: &[Option<f64>]) -> String {
     values.collect::<Vec<_>>().join(", ")
 }
 
-/// What a search found: the best design, of two goals the front, and what the best one comes to once more, on the fine grid.
+/// The result of a search: the best design, or the front of two goals, and the best one computed again on the fine grid.
 pub(super) fn search_table(
     study: &StudyDocument,
     search: &SearchState,
@@ -136,7 +136,7 @@ fn why_others_failed(what: &str, refusals: &[RefusalState]) -> String {
     format!(" {count} {what} failed: {}", reasons.join(" "))
 }
 
-/// A line for each quantity of a population and each torque, and what makes the peak-to-peak values vary.
+/// A line for each quantity of a population and each torque, and the shares of the causes in the variance of the peak-to-peak values.
 pub(super) fn spread_table(results: &PopulationResults, elapsed: Duration) -> String {
     const SHOWN: [&str; 4] = [
         "transmission_error_um.peak_to_peak",
@@ -207,7 +207,7 @@ pub(super) fn spread_table(results: &PopulationResults, elapsed: Duration) -> St
     text
 }
 
-/// A line for each design and torque, or for the best designs of a large study, and what could not be computed.
+/// A line for each design and torque, or for the best designs of a large study, and the designs that failed.
 pub(super) fn short_table(results: &StudyResults, elapsed: Duration) -> String {
     let computed: Vec<&TableRow> = results
         .rows

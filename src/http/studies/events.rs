@@ -53,7 +53,7 @@ pub(in crate::http) struct Watch {
     client: String,
     id: Uuid,
     news: News,
-    /// What the client knows: the state, and the designs done.
+    /// The state that the client knows, and the designs done.
     known: Option<(Status, u64)>,
 }
 

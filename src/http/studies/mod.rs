@@ -86,7 +86,7 @@ pub(super) async fn submit(
     ))
 }
 
-/// What to list.
+/// Filter of a list.
 #[derive(Deserialize, IntoParams)]
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
@@ -106,7 +106,7 @@ pub(in crate::http) struct StudyListParameters {
     /// Studies before the first one that was submitted at this instant or later (RFC 3339).
     #[param(format = DateTime, example = "2100-01-01T00:00:00Z")]
     submitted_before: Option<String>,
-    /// So many studies at most.
+    /// Maximum number of studies.
     #[param(minimum = 1, maximum = 200, default = 50, example = 20)]
     limit: Option<u32>,
     /// Where to go on: `next` of the list before.
@@ -171,7 +171,7 @@ pub(super) async fn show(
     resource::show::<StudyRecord>(client, wait, id, request).await
 }
 
-/// The tag of what is told of a study, in one form, as long as the study does not change.
+/// The entity tag of one form of a study, until the study changes.
 fn tag_of(study: &StudyRecord, form: &str, edge: &Edge) -> Tag {
     let (id, version) = (study.id.to_string(), study.version.to_string());
     tag_of_parts(&["study", &id, &version, form, &edge.public_url])
@@ -206,7 +206,7 @@ pub(super) async fn document(
 
 /// Cancel a study
 ///
-/// Dismisses what waits or runs of it; what has results keeps them. Cancelling again changes nothing.
+/// Dismisses the waiting and running jobs of the study; finished ones keep their results. Cancelling again changes nothing.
 #[utoipa::path(
     post, path = "/v1/studies/{id}/cancel", tag = "Studies", operation_id = "cancel_study",
     responses(

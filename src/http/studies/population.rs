@@ -1,4 +1,4 @@
-//! The population that a study is: what its members tell of all, and one member or design by itself.
+//! The population of a study: its statistics, and one member or design by itself.
 
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ use crate::http::parameters::{IfNoneMatch, StudyId};
 use crate::http::problem::Refusal;
 use crate::jobs::{Resource as _, StudyRecord, shown_status};
 
-/// Get what a population comes to
+/// Get the statistics of a population
 ///
 /// Mean, spread, percentiles with their confidence limits, a histogram and influences of every quantity, as far as the study has come; it can
 /// be asked at any time. A percentile's limits are order statistics, drawn together as far as Sobol' points settle sooner than random members; there are none where
@@ -116,8 +116,8 @@ async fn document(
 
 /// Get the submission of a design
 ///
-/// The design of a row of the table, as a submission with every default filled in: what its job computes, the drawn teeth of a member among
-/// it. One that cannot be built is given as far as it can be put together.
+/// The design of a row of the table, as a submission with every default filled in, including the drawn teeth of a member: the input of its job. A design that
+/// cannot be built is given as far as it can be put together.
 #[utoipa::path(
     get, path = "/v1/studies/{id}/designs/{row}", tag = "Studies", operation_id = "get_study_design",
     params(
@@ -167,7 +167,7 @@ async fn submission_of(
         })
         .await;
     }
-    // What a search asked for stands in its rows.
+    // The rows hold the designs that a search has asked for.
     let rows = app.jobs.study_rows(record.id, u64::from(row), 1).await?;
     blocking(client, move |_| {
         let row = rows.first()?;

@@ -140,7 +140,7 @@ pub(in crate::http) enum StudyFile {
 pub(in crate::http) struct DesignResults<'a> {
     /// The place of the design in the table, from 0.
     row: i64,
-    /// What the design is called.
+    /// Label of the design.
     label: &'a str,
     /// The job that computed it.
     #[schema(format = "uuid")]
@@ -223,18 +223,18 @@ async fn send(
 const PIECE: u64 = 256 << 10;
 const LARGEST_PIECE: u64 = 1 << 20;
 
-/// So many rows are read first, and so many at a time at most.
+/// Rows read first, and maximum number of rows read at a time.
 const FIRST_ROWS: u32 = 50;
 const MOST_ROWS: u32 = 500;
 
-/// So many documents are read at a time at most.
+/// Maximum number of documents read at a time.
 const MOST_DOCUMENTS: u32 = 8;
 
-/// What has to be known of all rows before the first one is shown.
+/// Values of all rows that the first one needs.
 struct Front {
     pointers: Vec<String>,
     quantities: KnownQuantities,
-    /// Whether no other row beats it, of each row.
+    /// True for each row that no other row beats.
     best: Vec<bool>,
 }
 
@@ -275,7 +275,7 @@ impl Outlines {
     }
 }
 
-/// The table, read twice: first for what has to be known before the first row, then row by row.
+/// The table, read twice: first for the values that the first row needs, then row by row.
 async fn table(
     app: App,
     client: Arc<str>,
@@ -320,7 +320,7 @@ async fn table(
     Ok(Body::from_stream(head.chain(rows).chain(foot)))
 }
 
-/// What `add` makes of every row of a study and its place; they are read some at a time.
+/// Applies `add` to every row of a study and its place; rows are read some at a time.
 pub(super) async fn over_rows<T: Send + 'static>(
     app: &App,
     client: &str,
@@ -425,7 +425,7 @@ async fn page(
     let memory = app.bodies.for_answer(client, LARGEST_PIECE).await?;
     let turn = turn_to_read(client).await;
     let rows = app.jobs.study_rows(writer.study.id, read, most).await?;
-    // What is written of them has its memory.
+    // The written text has its own memory.
     drop(turn);
     if rows.is_empty() {
         return Ok(None);
@@ -438,7 +438,7 @@ async fn page(
 /// The results of every design that has some.
 async fn documents(app: App, client: Arc<str>, study: &StudyRecord) -> Result<Body, Problem> {
     let id = study.id;
-    // The first lines are read before anything is sent, so that what fails at once is told as a problem.
+    // The first lines are read before anything is sent, so that an early failure is a problem document.
     let first = lines(&app, &client, id, None).await?;
     let lines = stream::unfold(Some((app, client, first)), move |at| async move {
         let (app, client, ready) = at?;

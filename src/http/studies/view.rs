@@ -31,7 +31,7 @@ document! {
         failed: u64 = study.failed + study.unbuildable,
         /// Designs that were cancelled, or whose job was deleted.
         dismissed: u64 = study.dismissed,
-        /// What the client calls the study.
+        /// The client's name for the study.
         name: Option<String> = study.name.clone(),
         /// The tags of the study.
         tags: Vec<String> = study.tags.clone(),
@@ -61,7 +61,7 @@ document! {
 }
 
 document! {
-    /// Where to find what belongs to a study.
+    /// Links of a study.
     pub(in crate::http) struct StudyLinks as StudyLinks
     view of (study: &StudyRecord, edge: &Edge) with {
         let address = edge.study(study.id);

@@ -47,14 +47,14 @@ impl Closed {
         }
     }
 
-    /// Whether it runs around `inner`, which does not cross it.
+    /// True if it runs around `inner`, which does not cross it.
     pub(super) fn encloses(&self, inner: &Self) -> bool {
         let point = inner.sides[0].from;
         self.whole.may_hold(point) && self.is_around(point)
     }
 
-    /// Whether it runs around a point: around most of three places beside it. A point on the chord of an arc, as the center of a circle, is seen on either
-    /// side of it by a rounding.
+    /// True if it runs around a point: around most of three places beside it. Rounding puts a point on the chord of an arc, as the center of a circle, on
+    /// either side of it.
     pub(super) fn is_around(&self, point: Vector) -> bool {
         let near = BESIDE * self.whole.reach[1];
         let places =
@@ -63,7 +63,7 @@ impl Closed {
         inside.count() >= 2
     }
 
-    /// Whether `other` is the same curve, to within `near`, whichever way round.
+    /// True if `other` is the same curve, to within `near`, in either direction.
     pub(super) fn is_same(&self, other: &Self, near: f64) -> bool {
         if (self.whole.center - other.whole.center).norm() > near {
             return false;
@@ -109,7 +109,7 @@ impl Whole {
         }
     }
 
-    /// Whether it is a circle to within `slack`.
+    /// True if it is a circle to within `slack`.
     pub(super) fn is_circle(&self, slack: f64) -> bool {
         self.reach[1] - self.reach[0] <= 2.0 * slack
     }
@@ -119,7 +119,7 @@ impl Whole {
         f64::midpoint(self.reach[0], self.reach[1])
     }
 
-    /// Whether the rectangle around it holds a point.
+    /// True if the rectangle around it contains a point.
     pub(super) fn may_hold(&self, point: Vector) -> bool {
         let [low, high] = self.bounds;
         (low.x..=high.x).contains(&point.x) && (low.y..=high.y).contains(&point.y)

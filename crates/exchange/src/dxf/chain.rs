@@ -7,7 +7,7 @@ use meshwright_engine::gear::{Side, Vector};
 /// Ends no farther apart than this are the same, in mm: the digits of a drawing. Where others are near, these belong together first.
 const SAME_MM: f64 = 1e-3;
 
-/// The least that ends may be apart, in mm: what is computed of the angles of an arc and of a line is off by so much.
+/// Least distance of ends that are joined, in mm: the rounding of points computed from the angles of an arc and of a line.
 const LEAST_MM: f64 = 1e-6;
 
 /// Ends near an end beyond this number are not looked at.
@@ -32,7 +32,7 @@ pub(super) struct Within {
 }
 
 impl Within {
-    /// Those of a tolerance in mm.
+    /// Distances of a tolerance in mm.
     pub(super) fn of(tolerance_mm: f64, in_mm: f64) -> Self {
         let joined = tolerance_mm.max(LEAST_MM);
         Self {
@@ -46,7 +46,7 @@ impl Within {
 /// The ends of pieces, twice as many: piece i begins at end 2 i and ends at the next.
 struct Ends {
     points: Vec<Vector>,
-    /// Those in each cell of a square lattice.
+    /// Ends in each cell of a square lattice.
     cells: HashMap<[i64; 2], Vec<usize>>,
     within: Within,
 }
@@ -72,7 +72,7 @@ pub(super) struct Loop {
     pub(super) sources: Vec<usize>,
 }
 
-/// Loops, and what is no part of one.
+/// Loops, and curves that are not part of one.
 #[derive(Debug)]
 pub(super) struct Chains {
     pub(super) loops: Vec<Loop>,

@@ -6,10 +6,10 @@ use meshwright_engine::gear::{Side, Vector};
 
 use super::file::{Entity, code, number};
 
-/// No point of a curve is farther from its lines and arcs, in mm: a micrometer, less what lies between the points at which that is looked at.
+/// Largest distance of a curve's points from its lines and arcs, in mm: a micrometer, less the part between the points that are checked.
 const WITHIN_MM: f64 = 0.9e-3;
 
-/// What the points of a curve may leave between them of that.
+/// Share of that for the parts of a curve between its points.
 const BETWEEN: f64 = 1.0 / 8.0;
 
 /// The parts of a stretch between two knots before it is looked at where more points are needed.
@@ -187,7 +187,7 @@ impl Spline {
         stretches
     }
 
-    /// Whether the curve turns at a knot, by more than it bends on the way there.
+    /// True if the curve turns at a knot, by more than it bends on the way there.
     fn has_corner(&self, knot: f64) -> bool {
         let before = self.knots.partition_point(|other| *other < knot);
         let after = self.knots.partition_point(|other| *other <= knot);
@@ -273,7 +273,7 @@ fn fit(
     let last = points.len() - 1;
     let mut from = 0;
     while from < last {
-        // So many pairs of steps are taken, and so many are known to be too many.
+        // Number of steps that fit, and a number that does not.
         let most = (last - from) / 2;
         let (mut good, mut bad) = (1, most + 1);
         let mut found = side(from, from + 2);

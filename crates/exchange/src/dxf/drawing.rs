@@ -78,7 +78,7 @@ impl<'a> Drawing<'a> {
     /// The coordinates of a point in the frame of the drawing.
     fn coordinates(&self, at: Vector) -> [f64; 2] {
         let at = at + self.center;
-        // What is left of the rounding of a sum is nothing.
+        // The remainder of a sum's rounding counts as zero.
         [at.x, at.y].map(|x| significant((x * 1e9).round() / 1e9 + 0.0, 9))
     }
 
@@ -418,7 +418,7 @@ fn counted<'n>(names: impl Iterator<Item = &'n str>) -> String {
 
 /// Openings by the radius of their center of mass, and those of a circle by its angle from the x axis: the order in which they were drawn says nothing.
 fn in_order(openings: Vec<Vec<Side>>) -> Vec<Vec<Side>> {
-    /// What radii and angles of a circle of openings may differ by: the digits of a drawing.
+    /// Tolerance of radii and angles in a circle of openings: the digits of a drawing.
     const ALIKE: f64 = 1e-6;
     let center = |sides: &[Side]| {
         let moments: Moments = sides.iter().map(Side::moments).sum();

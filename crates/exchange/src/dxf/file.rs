@@ -10,10 +10,10 @@ const MOST_BYTES: usize = 16 << 20;
 /// The most entities of a file, and of its drawing with those of its blocks in each place where they stand.
 pub(super) const MOST_ENTITIES: usize = 100_000;
 
-/// What a binary file begins with.
+/// First bytes of a binary file.
 const BINARY: &[u8] = b"AutoCAD Binary DXF";
 
-/// What the other format of the same program begins with.
+/// First bytes of the other format of the same program.
 const DWG: &[u8] = b"AC10";
 
 /// The codes of the groups that are read of an entity.
@@ -58,7 +58,7 @@ pub(super) mod code {
     pub(super) const UNIT: i32 = 70;
 }
 
-/// What a drawing says.
+/// A drawing.
 #[derive(Debug)]
 pub(super) struct File<'a> {
     pub(super) entities: Vec<Entity<'a>>,

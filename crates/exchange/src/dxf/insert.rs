@@ -64,7 +64,7 @@ pub(super) struct Places {
 }
 
 impl Places {
-    /// Those of `insert`, of the block that `head` begins. `outer` is the motion of what the insert belongs to.
+    /// Pieces of `insert`, of the block that `head` begins. `outer` is the motion of the insert's own block.
     ///
     /// # Errors
     ///

@@ -42,7 +42,7 @@ pub const TOLERANCES_MM: RangeInclusive<f64> = 0.0..=0.1;
 /// That distance where none is chosen, in mm.
 pub const TOLERANCE_MM: f64 = 0.01;
 
-/// What a drawing leaves open.
+/// Choices that a drawing leaves open.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Choices {
     /// The layers that are read; all if none are named.
@@ -67,14 +67,14 @@ impl Default for Choices {
     }
 }
 
-/// What a drawing comes to.
+/// The outline of a drawing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outline {
     /// The loops of `blank.outline`: the sides of each, as a submission has them, clockwise around an opening.
     pub loops: Vec<Vec<Value>>,
     /// The radius of the bore, in mm: that which is chosen, or that of the circle that is drawn.
     pub bore_radius_mm: Option<f64>,
-    /// What was assumed and what was left out, in sentences.
+    /// Assumptions and entities left out, in sentences.
     pub remarks: Vec<String>,
 }
 
@@ -113,7 +113,7 @@ impl From<String> for Refused {
     }
 }
 
-/// The outline of the drawing `bytes`, DXF as text: of its model space, or of what is there on some layers.
+/// The outline of the drawing `bytes`, DXF as text: of its model space, or of its entities on some layers.
 ///
 /// The origin, or the chosen center, is the axis of the gear, the x axis the centerline of tooth 0. Loops that do not run around the axis bound openings. Of
 /// the others the smallest circle within all openings is the bore and the largest beyond them the circle around. Openings are in the order of their radius

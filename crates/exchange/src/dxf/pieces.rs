@@ -31,14 +31,14 @@ pub(super) struct Source<'a> {
 }
 
 impl Source<'_> {
-    /// What it is and where it stands.
+    /// Kind and place.
     pub(super) fn place(&self) -> String {
         let block = self.block.map(|block| format!(" of the block {block}"));
         place(self.entity, self.layer) + &block.unwrap_or_default()
     }
 }
 
-/// What a drawing has.
+/// Pieces of a drawing.
 #[derive(Debug, Default)]
 pub(super) struct Pieces<'a> {
     pub(super) pieces: Vec<Piece>,
@@ -53,7 +53,7 @@ pub(super) struct Pieces<'a> {
     seen: usize,
 }
 
-/// Reads the entities of a drawing, with what stands the same for all of them.
+/// Reader of the entities of a drawing, with the settings that they share.
 pub(super) struct Reader<'a> {
     pub(super) file: &'a File<'a>,
     /// The layers that are asked for; all if there are none.
@@ -94,7 +94,7 @@ impl<'a> Reader<'a> {
         Ok(found)
     }
 
-    /// Reads entities that stand together. What is wrong with one of them is added to the faults.
+    /// Reads the entities of one group. Faults of one of them are added to the list.
     ///
     /// # Errors
     ///
@@ -113,7 +113,7 @@ impl<'a> Reader<'a> {
             let count = rest.iter().take_while(is_vertex).count();
             next += 1 + count;
             found.count(1 + count)?;
-            // What is on no layer of its own in a block is on that of the block.
+            // An entity without a layer of its own in a block is on that of the block.
             let own = Some(entity.layer()).filter(|layer| *layer != NO_LAYER);
             let layer = own.or(place.layer).unwrap_or(NO_LAYER);
             found.layers.insert(layer);
@@ -307,7 +307,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The layer of what is on none.
+/// The layer of entities without one.
 const NO_LAYER: &str = "0";
 
 /// Flags of a block.
@@ -341,7 +341,7 @@ impl Pieces<'_> {
         }
     }
 
-    /// A sentence of what is no part of an outline.
+    /// A sentence about an entity that is not part of an outline.
     pub(super) fn left_out(&self) -> Option<String> {
         let left_out = self.left_out.iter();
         let left_out: Vec<String> = left_out
@@ -351,7 +351,7 @@ impl Pieces<'_> {
     }
 }
 
-/// What an entity is and where it stands.
+/// Kind and place of an entity.
 fn place(entity: &Entity<'_>, layer: &str) -> String {
     format!("{} on layer {layer}, line {}", entity.name, entity.line)
 }

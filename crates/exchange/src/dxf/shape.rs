@@ -37,7 +37,7 @@ const ANNOTATIONS: [&str; 23] = [
     "XLINE",
 ];
 
-/// What an entity is.
+/// Kind of an entity.
 pub(super) enum Kind {
     /// Lines and arcs, in the unit of the drawing, and how they are had. No arc turns by more than a half turn.
     Sides(Vec<Side>, Made),
@@ -58,11 +58,11 @@ pub(super) enum Made {
     Guessed(&'static str),
 }
 
-/// What `entity` is; `vertices` are those that follow it.
+/// The kind of `entity`; `vertices` are those that follow it.
 ///
 /// # Errors
 ///
-/// The end of a sentence that begins with what it is.
+/// The end of a sentence that begins with its kind.
 pub(super) fn kind(
     entity: &Entity<'_>,
     vertices: &[Entity<'_>],
@@ -236,7 +236,7 @@ fn polyline(entity: &Entity<'_>, corners: &[Corner]) -> Result<Vec<Side>, String
         .collect())
 }
 
-/// Whether the plane of an entity is that of the drawing seen from below: its x axis runs the other way then.
+/// True if the plane of an entity is that of the drawing seen from below: its x axis then runs the other way.
 pub(super) fn is_seen_from_below(entity: &Entity<'_>) -> Result<bool, String> {
     let [x, y, z] = code::NORMAL;
     let [x, y, z] =

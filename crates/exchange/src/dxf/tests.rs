@@ -528,7 +528,7 @@ fn off(sides: &[Value], distance: impl Fn([f64; 2]) -> f64) -> f64 {
     1e3 * distances.fold(0.0, f64::max)
 }
 
-/// Whether a loop is a whole circle.
+/// True if a loop is a whole circle.
 fn is_two_arcs(sides: &[Value]) -> bool {
     sides.len() == 2 && sides.iter().all(|side| side.get("arc_to").is_some())
 }
@@ -548,7 +548,7 @@ fn a_gear_in_splines_and_ellipses_is_read_within_a_micrometer_and_its_teeth_and_
         panic!("{:?}", read.remarks);
     };
     let from = |x: f64, y: f64| move |[u, v]: [f64; 2]| (u - x).hypot(v - y);
-    // The polynomials of degree 3 leave the arcs for which they stand by 2.7e-4 of the radius; what is read leaves them by a micrometer.
+    // The polynomials of degree 3 deviate from their arcs by 2.7e-4 of the radius; the lines and arcs read from them deviate by a micrometer.
     let cubic = |radius: f64| 0.275 * radius;
     let drawn = off(round, |at| from(27.0, 0.0)(at) - 7.0);
     assert!(drawn < 1.0 + cubic(7.0), "{drawn}");
@@ -580,7 +580,7 @@ fn a_gear_in_splines_and_ellipses_is_read_within_a_micrometer_and_its_teeth_and_
         }
     });
     assert!(drawn < 1.0 + cubic(5.0), "{drawn}");
-    // The distance from an ellipse is at most what a point is off in its equation over the slope of that.
+    // The distance from an ellipse is at most the residual of its equation over the slope of that.
     let drawn = off(ellipse, |[x, y]| {
         let (u, v) = ((x + 26.0) / 9.0, y / 4.5);
         let slope = 2.0 * (u / 9.0).hypot(v / 4.5);

@@ -1,5 +1,5 @@
-//! The containers of the standard: XML, JSON, and either of them packed in a zip archive, known by what they begin with. And the
-//! characters of a text, by its own declaration.
+//! The containers of the standard: XML, JSON, and either of them packed in a zip archive, known by their first bytes. And the encoding of a text, by its own
+//! declaration.
 
 use std::borrow::Cow;
 use std::io::{Cursor, Read};
@@ -11,16 +11,16 @@ use zip::ZipArchive;
 
 use super::fault::{Fault, Refused};
 
-/// What an archive begins with: its first file, or its end where it has none.
+/// First bytes of an archive: its first file, or its end where it has none.
 const ARCHIVES: [&[u8]; 2] = [b"PK\x03\x04", b"PK\x05\x06"];
 
-/// What the entry of a file in the list of an archive begins with.
+/// First bytes of a file's entry in the list of an archive.
 const LISTED: &[u8] = b"PK\x01\x02";
 
 /// The most files of an archive, which bounds the memory of their list. A model has some of others beside it.
 const MOST_FILES: usize = 1000;
 
-/// Whether `document` is a model rather than a submission: an archive, XML, or JSON with a `model`.
+/// True if `document` is a model rather than a submission: an archive, XML, or JSON with a `model`.
 pub fn is_model(document: &[u8]) -> bool {
     /// JSON of which one name is known.
     #[derive(Deserialize)]
@@ -34,7 +34,7 @@ pub fn is_model(document: &[u8]) -> bool {
         })
 }
 
-/// Whether `document` is an archive, whose model is still to be unpacked.
+/// True if `document` is an archive, whose model is still to be unpacked.
 pub fn is_packed(document: &[u8]) -> bool {
     ARCHIVES.iter().any(|begin| document.starts_with(begin))
 }
@@ -63,7 +63,7 @@ pub fn unpacked(document: &[u8], most: usize) -> Result<Cow<'_, [u8]>, Refused> 
     Ok(bytes)
 }
 
-/// What is wrong with the file as a whole.
+/// A fault of the file as a whole.
 pub(super) fn of_file(detail: String) -> Refused {
     Fault::new("the file", detail).into()
 }

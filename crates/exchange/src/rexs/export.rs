@@ -27,13 +27,13 @@ struct Ids {
     data: usize,
     tool: usize,
     settings: usize,
-    /// Those of the grinding, where it leaves the teeth of another thickness than the tool that cut the root.
+    /// Tool of the grinding, where it leaves the teeth of another thickness than the tool that cut the root.
     grinding: Option<usize>,
     material: usize,
     body: usize,
     /// The modifications of both flanks, which are the same.
     modifications: Vec<usize>,
-    /// Those of their leads that the standard has words for.
+    /// Lead modifications for which the standard has names.
     leads: Vec<usize>,
 }
 
@@ -161,7 +161,7 @@ fn load_cases(document: &Value, results: Option<&Value>, ids: &[Ids; 2]) -> Stri
     text
 }
 
-/// A gear as the submission has it, and what follows from that.
+/// A gear as the submission has it, and derived values.
 struct Gear<'a> {
     document: &'a Value,
     section: &'a SpurGear,
@@ -203,7 +203,7 @@ impl Gear<'_> {
         to_mm(self.section.generating_shift_length()) / self.number("module_mm")
     }
 
-    /// Whether the flanks are ground to another thickness than that tool leaves.
+    /// True if the flanks are ground to another thickness than that tool leaves.
     fn is_ground(&self) -> bool {
         (self.finished_shift() - self.generated_shift()).abs() > SAME_SHIFT
     }
@@ -367,19 +367,19 @@ impl Gear<'_> {
         }
     }
 
-    /// What is taken off the leads.
+    /// Modifications of the leads.
     fn leads(&self) -> impl Iterator<Item = &Value> {
         let listed = self.document["lead_modifications"].as_array();
         listed.into_iter().flatten()
     }
 
-    /// What is taken off the flanks in ways that the standard knows, in the order of the submission.
+    /// Modifications of the flanks for which the standard has names, in the order of the submission.
     fn modifications(&self) -> Vec<&Value> {
         let listed = self.document["profile_modifications"].as_array();
         std::iter::once(&self.document["tip_relief"])
             .chain(listed.into_iter().flatten())
             .filter(|modification| !modification.is_null() && kind(modification) != "table")
-            // What takes nothing off may begin anywhere, even beside the flank.
+            // A modification without an amount may begin anywhere, even beside the flank.
             .filter(|modification| number(modification, "amount_um") != 0.0)
             .collect()
     }
@@ -491,7 +491,7 @@ fn kind(modification: &Value) -> &str {
     modification["kind"].as_str().unwrap_or(TIP.kind)
 }
 
-/// Whether the standard has words for a modification of a lead.
+/// True if the standard has a name for a modification of a lead.
 fn is_known(lead: &Value) -> bool {
     ["crowning", "slope"].contains(&kind(lead))
 }

@@ -1,14 +1,14 @@
-//! What is wrong with a model, with its place.
+//! Faults of a model, with their places.
 
 use std::fmt;
 
-/// So many are told at most; nobody reads more before mending some.
+/// Maximum number of reported faults; nobody reads more before mending some.
 const MOST_TOLD: usize = 50;
 
 /// Faults beyond this number are not kept.
 const MOST_FAULTS: usize = 100;
 
-/// The most characters of a place, and of what is wrong there.
+/// Maximum number of characters of a place, and of a fault there.
 const LONGEST: usize = 500;
 
 /// One thing that is wrong, or that is not there.
@@ -16,7 +16,7 @@ const LONGEST: usize = 500;
 pub struct Fault {
     /// The component and its attribute, or the line, or the file.
     pub place: String,
-    /// What is wrong there, and what would do.
+    /// The fault, and the nearest value that would do.
     pub detail: String,
 }
 
@@ -28,7 +28,7 @@ impl Fault {
         }
     }
 
-    /// Whether it is of the component at `place`, or of one of its attributes.
+    /// True if it is of the component at `place`, or of one of its attributes.
     pub(super) fn is_of(&self, place: &str) -> bool {
         let rest = self.place.strip_prefix(place);
         rest.is_some_and(|rest| rest.is_empty() || rest.starts_with(", "))
@@ -44,7 +44,7 @@ pub(super) fn cut(mut text: String, most: usize) -> String {
     text
 }
 
-/// What was found to be wrong so far: a bounded number of faults, whatever a model is made of.
+/// Faults so far: a bounded number, whatever the size of the model.
 #[derive(Debug, Default)]
 pub(super) struct Faults(Vec<Fault>);
 
@@ -60,7 +60,7 @@ impl Faults {
         }
     }
 
-    /// Whether no more are noted.
+    /// True if no more are noted.
     pub(super) fn is_full(&self) -> bool {
         self.0.len() >= MOST_FAULTS
     }
@@ -74,7 +74,7 @@ impl Faults {
         self
     }
 
-    /// Whether nothing was found to be wrong.
+    /// True if there are no faults.
     pub(super) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }

@@ -22,8 +22,8 @@ const MOST_NODES: u32 = 300_000;
 /// The most load cases of a file, which is far more than a submission has torques.
 const MOST_LOAD_CASES: usize = 1000;
 
-/// Limit of the characters of a type, an id, a unit, a role or a name. Those of the standard have at most half as many. Faults and the list of what was not
-/// read repeat them.
+/// Limit of the characters of a type, an id, a unit, a role or a name. Those of the standard have at most half as many. Faults and the list of unread parts
+/// repeat them.
 const LONGEST_NAME: usize = 120;
 
 /// The attributes by which a component says, since version 1.5, that its values are those of a component in another file.
@@ -40,7 +40,7 @@ pub(super) struct Model {
     pub(super) version: (u32, u32),
     pub(super) components: Vec<Component>,
     pub(super) relations: Vec<Relation>,
-    /// What is different in each load case, after its identifier.
+    /// Values of each load case, after its identifier.
     pub(super) load_cases: Vec<(i64, LoadCase)>,
     /// Where each component stands, by its id.
     index: HashMap<i64, usize>,
@@ -49,16 +49,16 @@ pub(super) struct Model {
 /// Components with the attributes that they have in one load case, by their ids.
 pub(super) type LoadCase = BTreeMap<i64, Component>;
 
-/// Something of a gearbox, and what is said of it.
+/// A component of a gearbox with its attributes.
 #[derive(Debug)]
 pub(super) struct Component {
     pub(super) id: i64,
     pub(super) kind: String,
     name: String,
     pub(super) attributes: Vec<Attribute>,
-    /// Whether it belongs to what is imported.
+    /// True if it belongs to the imported stage.
     pub(super) met: Cell<bool>,
-    /// Whether something was asked for that it does not say here.
+    /// True if an attribute was asked for that it does not have here.
     wanting: Cell<bool>,
 }
 
@@ -83,7 +83,7 @@ pub(super) struct Relation {
     pub(super) refs: Vec<(String, i64)>,
 }
 
-/// What a file says, not yet checked.
+/// Content of a file, not yet checked.
 #[derive(Debug, Default)]
 pub(super) struct Content {
     pub(super) components: Vec<Component>,
@@ -168,7 +168,7 @@ impl Model {
             .filter(move |component| component.kind == kind)
     }
 
-    /// What has been read so far: of each component whether it was met, and whether each of its attributes was read.
+    /// Marks of the reading so far: of each component whether it was met, and whether each of its attributes was read.
     pub(super) fn read_marks(&self) -> Vec<bool> {
         let of = |component: &Component| {
             let attributes = component.attributes.iter().map(|it| it.read.get());
@@ -193,14 +193,14 @@ impl Model {
         marks
     }
 
-    /// What stands as `wanted` in the relations of a kind in which `known` has its role, in their order.
+    /// Components with the role `wanted` in the relations of a kind in which `known` has its role, in their order.
     pub(super) fn related<'a>(
         &'a self,
         kind: &str,
         known: (&str, &Component),
         wanted: &str,
     ) -> Vec<&'a Component> {
-        // What it belongs to may stand where its values stand.
+        // The component that it belongs to may stand in the file of its values.
         known.1.wanting.set(true);
         let mut relations: Vec<&Relation> = self
             .relations
@@ -229,7 +229,7 @@ fn version_of(version: &str) -> Result<(u32, u32), String> {
         .ok_or_else(|| format!("It is of REXS version \"{version}\"; 1.0 to 2 are read."))
 }
 
-/// What the text of a file in XML says, and its version.
+/// The model in the text of an XML file, and its version.
 ///
 /// # Errors
 ///
@@ -295,7 +295,7 @@ fn at_line(node: Node<'_, '_>) -> String {
 }
 
 impl Component {
-    /// Reads a component; what is wrong with it is added to `faults`.
+    /// Reads a component; its faults are added to `faults`.
     fn of(node: Node<'_, '_>, faults: &mut Faults) -> Option<Self> {
         if faults.is_full() {
             return None;
@@ -312,7 +312,7 @@ impl Component {
         Self::new(id, kind.to_owned(), name.to_owned(), attributes, faults)
     }
 
-    /// A component; what is wrong with it is added to `faults`.
+    /// A component; its faults are added to `faults`.
     pub(super) fn new(
         id: i64,
         kind: String,
@@ -356,7 +356,7 @@ impl Component {
         Some(found)
     }
 
-    /// Forgets what was asked of the component.
+    /// Clears the marks of the component.
     pub(super) fn begin(&self) {
         self.wanting.set(false);
     }

@@ -1,4 +1,4 @@
-//! What is taken off the loaded flanks of a gear: their profiles and their leads.
+//! Modifications of the loaded flanks of a gear: their profiles and their leads.
 
 use serde_json::{Value, json};
 
@@ -74,7 +74,7 @@ impl<'a> Gear<'a> {
         )
     }
 
-    /// What `of_flank` says of the loaded flanks, which have to be alike.
+    /// The modifications by `of_flank` of the loaded flanks, which have to be the same.
     fn of_loaded(
         &self,
         of_flank: impl Fn(&'a Component) -> Option<Vec<Value>>,
@@ -93,7 +93,7 @@ impl<'a> Gear<'a> {
         Some(first)
     }
 
-    /// What `flank` refers to.
+    /// Components that `flank` refers to.
     fn parts_of(&self, flank: &'a Component) -> Vec<&'a Component> {
         let model = self.reading.model;
         model.related("reference", ("origin", flank), "referenced")
@@ -149,8 +149,7 @@ impl<'a> Gear<'a> {
         Some(modifications)
     }
 
-    /// Whether a modification of a kind that is not known here says that it has no amount; else it is told as wrong, because without it
-    /// another flank would be computed.
+    /// True if a modification of an unknown kind has no amount; otherwise a fault, because without it another flank would be computed.
     fn takes_nothing_off(&self, part: &'a Component) -> bool {
         let amount = part.attributes.iter().find(|attribute| {
             let id = &attribute.id;
@@ -169,7 +168,7 @@ impl<'a> Gear<'a> {
         none
     }
 
-    /// Whether a modification says that it does not add to others, which is told as wrong.
+    /// True if a modification is declared as exclusive, which is a fault.
     fn excludes_others(&self, part: &'a Component) -> bool {
         let name = "is_additive_modification";
         let exclusive = self.reading.choice(part, name, &["true", "false"]) == Some("false");
@@ -341,7 +340,7 @@ impl<'a> Gear<'a> {
         };
         let whole = significant(um_of_mm(amount * width / range), DIGITS);
         let mut leads = vec![json!({ "kind": "slope", "amount_um": whole })];
-        // It is nothing where the range begins, and not at the end of the face.
+        // The modification is zero where the range begins, and not at the end of the face.
         leads.extend(
             self.constant(0.5 * (amount - amount * width / range), |removed| {
                 let end = significant(0.5 * width, DIGITS);
@@ -437,8 +436,7 @@ impl<'a> Gear<'a> {
         None
     }
 
-    /// A crowning of the profile as a submission has it: the parabola that takes off what is said at the two diameters where it is said,
-    /// and nothing midway between them.
+    /// A crowning of the profile as a submission has it: the parabola with the given amounts at the two diameters, and zero midway between them.
     fn crowning(&self, crowning: &'a Component) -> Option<Vec<Value>> {
         let reading = self.reading;
         let tip = needed(reading, crowning, "profile_crowning_at_tip", MM)?;
@@ -560,8 +558,8 @@ impl<'a> Gear<'a> {
         Some(Some([from, to]))
     }
 
-    /// What takes off `crowning` at both ends of a range of roll lengths and nothing in its middle, and `slope` at the end of it and
-    /// nothing at its beginning: over the whole flank, from its form circle to its tip circle, as a submission has it.
+    /// The modification with `crowning` at both ends of a range of roll lengths and zero in its middle, and `slope` at its end and zero at its beginning: over
+    /// the whole flank, from its form circle to its tip circle, as a submission has it.
     fn over_flank(&self, crowning: f64, slope: f64, [from, to]: [f64; 2]) -> Vec<Value> {
         let um = |length: f64| significant(um_of_mm(length), DIGITS);
         let (tip, h) = (self.tip_length(), 0.5 * (to - from));

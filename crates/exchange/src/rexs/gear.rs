@@ -10,22 +10,22 @@ use super::reading::{LoadedFlank, Reading};
 use super::unit::{DEG, KG_PER_DM3, MM, MPA, NONE, Unit, um_of_mm};
 use crate::significant;
 
-/// What two ways to say one radius may differ by, in mm, to be the same.
+/// Largest difference of two statements of the same radius, in mm.
 pub(super) const SAME: f64 = 5e-4;
 
-/// What two ways to say one profile shift may differ by to be the same: less than a file has digits of it.
+/// Largest difference of two statements of the same profile shift: less than a file has digits of it.
 pub(super) const SAME_SHIFT: f64 = 1e-9;
 
-/// The digits of what is computed from several attributes.
+/// Digits of values computed from several attributes.
 pub(super) const DIGITS: usize = 12;
 
-/// A gear and what belongs to it.
+/// A gear and its components.
 pub(super) struct Gear<'a> {
     pub(super) reading: &'a Reading<'a>,
     pub(super) gear: &'a Component,
     /// Both flanks, or one if the model has one.
     pub(super) flanks: Vec<&'a Component>,
-    /// Those of them that are loaded: one if the model says which, else all.
+    /// Its loaded flanks: one if the model says which, otherwise all.
     pub(super) loaded: Vec<&'a Component>,
     pub(super) tool: Option<&'a Component>,
     /// The settings of the manufacturing steps, in their order; before version 1.3 the flank has them itself.
@@ -203,7 +203,7 @@ impl<'a> Gear<'a> {
         Some(first)
     }
 
-    /// The gear as a submission has it. `pointer` is its place there, `bore` what the caller says of its bore radius.
+    /// The gear as a submission has it. `pointer` is its place there, `bore` the caller's bore radius.
     pub(super) fn document(&self, pointer: &str, bore: Option<f64>) -> Option<Value> {
         let reading = self.reading;
         let face_width = needed(reading, self.gear, "face_width", MM);
@@ -435,8 +435,7 @@ impl<'a> Gear<'a> {
         Some((shift, settings))
     }
 
-    /// What the first tool leaves on each flank, normal to it, for another step; the teeth are cut so much thicker, and the root so much
-    /// less deep.
+    /// Stock that the first tool leaves on each flank, normal to it, for another step; the teeth are cut thicker by it, and the root less deep.
     pub(super) fn allowance(&self) -> f64 {
         let steps = self
             .settings
@@ -562,7 +561,7 @@ impl<'a> Gear<'a> {
         Some((um_of_mm(significant(thicker, 10)), settings))
     }
 
-    /// The material; what of it the model does not say is that of steel, as everywhere.
+    /// The material; values that the model lacks are those of steel, as everywhere.
     fn material(&self, pointer: &str) -> Value {
         let mut document = Map::new();
         for (name, attribute, unit, factor) in [

@@ -11,7 +11,7 @@ use crate::significant;
 /// The attributes of a tool that say how far its tip stands out from its flank, in mm and in modules.
 const AMOUNT: [&str; 2] = ["protuberance_amount", "protuberance_amount_factor"];
 
-/// Those that say how far above its tip line that begins.
+/// Attributes of the height above its tip line where that begins.
 const HEIGHT: [&str; 2] = ["protuberance_height", "protuberance_height_factor"];
 
 /// The angle of its flank there, which says the same.
@@ -24,8 +24,8 @@ const REMAINING: &str = "remaining_protuberance";
 const SAME_ANGLE_DEG: f64 = 0.05;
 
 impl<'a> Gear<'a> {
-    /// The protuberance of the hob as a submission has it: ours where we wrote it, else that of the standard's attributes. `tip_radius` is the
-    /// rounding of the tool's tip, in mm. What is missing or contradicts itself is reported.
+    /// The protuberance of the hob as a submission has it: from our own attribute if it is there, otherwise from the standard's attributes. `tip_radius` is the
+    /// rounding of the tool's tip, in mm. Missing and contradictory values are reported.
     pub(super) fn protuberance(&self, pointer: &str, tip_radius: Option<f64>) -> Option<Value> {
         let reading = self.reading;
         let field = format!("{pointer}/protuberance");

@@ -1,4 +1,4 @@
-//! From a model to a submission: which stage, which gear drives, and what was not read.
+//! From a model to a submission: the stage, the driving gear, and the parts that were not read.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -16,10 +16,10 @@ use super::unit::{DEG, MM};
 /// A pair of gears on parallel axes.
 const STAGE: &str = "cylindrical_stage";
 
-/// So many names of a list are told.
+/// Maximum number of names in a list.
 const MOST_LISTED: usize = 20;
 
-/// So much that was not read is told one by one.
+/// Maximum number of unread parts that are listed one by one.
 const MOST_NOT_READ: usize = 1000;
 
 /// A submission out of a model.
@@ -27,12 +27,12 @@ const MOST_NOT_READ: usize = 1000;
 pub struct Import {
     /// The document, which is still to be checked as every submission is.
     pub submission: Value,
-    /// What the model does not say and was assumed, and what it says and was not read: one sentence each.
+    /// Assumptions where the model is silent, and parts that were not read: one sentence each.
     pub remarks: Vec<String>,
     origins: Vec<(String, String)>,
 }
 
-/// What a model says and was not read.
+/// A part of a model that was not read.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct NotRead {
     /// The component.
@@ -42,7 +42,7 @@ pub struct NotRead {
 }
 
 impl Import {
-    /// Where in the model the field at `pointer` of the submission is from, or what that field is a part of.
+    /// The place in the model from which the field at `pointer` of the submission, or its object, comes.
     pub fn origin(&self, pointer: &str) -> Option<&str> {
         let found = self.origins.iter().find(|(field, _)| field == pointer);
         match found {
@@ -56,13 +56,13 @@ impl Import {
 ///
 /// # Errors
 ///
-/// Everything that is wrong, with its place: what is no model, several stages, and what the mechanics cannot compute.
+/// All faults, with their places: a file that is no model, several stages, and pairs that the mechanics cannot compute.
 pub fn import(bytes: &[u8], choices: &Choices) -> Result<Import, Refused> {
     import_of(&Model::read(bytes)?, choices)
 }
 
-/// Hands each of the first `most` cylindrical stages of a model to `take`, or the one that is chosen: its id, where there are several, and the pair or what is
-/// wrong with it. Answers with what was read for none of those that `take` says were taken; `take` may end it.
+/// Calls `take` with each of the first `most` cylindrical stages of a model, or with the chosen one: its id, where there are several, and the pair or its
+/// faults. Returns the parts that were read for none of the stages that `take` accepted; `take` may end it.
 ///
 /// # Errors
 ///
@@ -126,7 +126,7 @@ fn import_of(model: &Model, choices: &Choices) -> Result<Import, Refused> {
     }
 }
 
-/// The faults, with one for each component that was asked for what stands in another file instead of those that follow from that.
+/// The faults, with one for each component whose values stand in another file instead of the faults that follow from that.
 fn with_other_files(model: &Model, faults: Faults) -> Faults {
     let elsewhere = model.components.iter().filter_map(Component::elsewhere);
     faults.after(elsewhere.collect())
@@ -137,7 +137,7 @@ pub(super) struct Stage<'a> {
     pub(super) component: &'a Component,
     /// The driving gear, then the driven one.
     pub(super) gears: [&'a Component; 2],
-    /// What is said of each gear in this stage.
+    /// Attributes of each gear in this stage.
     pub(super) gear_data: [Option<&'a Component>; 2],
 }
 
@@ -364,13 +364,13 @@ impl<'a> Reading<'a> {
 /// The helix angle of a gear.
 pub(super) const HELIX_ANGLE: &str = "helix_angle_reference_diameter";
 
-/// Whether a plane method would refuse `pair`.
+/// True if a plane method would refuse `pair`.
 fn needs_faces(pair: &Value) -> bool {
     let said = |value: &Value| match value {
         Value::Null => false,
         Value::Array(list) => !list.is_empty(),
         Value::Number(number) => number.as_f64() != Some(0.0),
-        // A torque that enters at both ends of a shaft is what a plane has.
+        // A plane has a torque that enters at both ends of a shaft.
         Value::String(word) => word != "both",
         _ => true,
     };
@@ -391,7 +391,8 @@ fn needs_faces(pair: &Value) -> bool {
         })
 }
 
-/// What was not read by the marks `read`: attributes of what was met, and what was not met. The first are told one by one, the others by their number.
+/// The unread parts by the marks `read`: attributes of components that were met, and components that were not. The first are listed one by one, the others by
+/// their number.
 fn not_read(model: &Model, read: &[bool]) -> Vec<NotRead> {
     let mut marks = read.iter();
     let mut is_read = || marks.next().copied().unwrap_or_default();
@@ -484,7 +485,7 @@ fn left_out(model: &Model) -> Vec<String> {
 mod tests {
     use super::*;
 
-    /// A model of so many pairs, `beside` components of kinds that nobody reads, and what else is said of the first stage.
+    /// A model of `pairs` pairs, `beside` components of unknown kinds, and more text of the first stage.
     fn model(pairs: i64, beside: i64, more: &str) -> String {
         let mut components = String::new();
         let mut relations = String::new();
@@ -586,7 +587,7 @@ mod tests {
         assert_eq!(looked_at, 2);
     }
 
-    /// What is told of a model that is refused has no more bytes than this, whatever it is made of.
+    /// Limit in bytes of the refusal of a model, whatever its content.
     const MOST_BYTES: usize = 200_000;
 
     #[test]

@@ -46,7 +46,7 @@ struct Reference {
 #[derive(Deserialize)]
 struct Part {
     id: i64,
-    /// Those of load cases say none.
+    /// Components of load cases have none.
     #[serde(rename = "type", default)]
     kind: Option<String>,
     #[serde(default)]
@@ -187,7 +187,7 @@ impl Part {
     }
 }
 
-/// What the text of a file says.
+/// The model in the text of a file.
 ///
 /// # Errors
 ///

@@ -1,15 +1,15 @@
-//! A look at a file before it is taken apart: what would make that take a time that grows with the square of its size.
+//! A check of a file before it is parsed: content that would make parsing take a time that grows with the square of its size.
 
 /// The most attributes of one element, and the most declarations of namespaces in all: a reader of XML compares each with all
 /// others, and those that are declared further out. Files have up to a dozen, and a few.
 const MOST_XML_ATTRIBUTES: usize = 100;
 const MOST_NAMESPACES: usize = 100;
 
-/// Checks the elements of `text`. What is no XML is left to the reader, which says it better.
+/// Checks the elements of `text`. The reader reports text that is not XML.
 ///
 /// # Errors
 ///
-/// A sentence that says what there is too much of, and where.
+/// A sentence about the excessive content, and its place.
 pub(super) fn check(text: &str) -> Result<(), String> {
     let (mut rest, mut namespaces) = (text, 0);
     while let Some(at) = rest.find('<') {
@@ -43,7 +43,7 @@ pub(super) fn check(text: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// What there is between the brackets of an element.
+/// Content between the brackets of an element.
 struct Tag {
     length: usize,
     attributes: usize,

@@ -1,10 +1,10 @@
 //! REXS, the gearbox exchange format of the FVA: a pair of cylindrical gears out of a model, and a pair with its curves as a model.
 //!
-//! A model is a list of components with attributes, relations between components, and load cases. Read in this order: `container` (XML,
-//! JSON or an archive), `file` with `json` and `markup` (what it says), `unit` (what its numbers are in), `fault` (what is wrong with a
-//! model), `reading`, `import` with `gear`, `hob`, `flank`, `shaft` and `load`, and `export`.
+//! A model is a list of components with attributes, relations between components, and load cases. Read in this order: `container` (XML, JSON or an archive),
+//! `file` with `json` and `markup` (content), `unit` (units of its numbers), `fault` (faults of a model), `reading`, `import` with `gear`, `hob`, `flank`,
+//! `shaft` and `load`, and `export`.
 //!
-//! Names are those of versions 1.0 to 2.0. What the format has no words for stands in attributes `custom_meshwright_...`.
+//! Names are those of versions 1.0 to 2.0. Fields without a name in the format stand in attributes `custom_meshwright_...`.
 
 mod container;
 mod export;

@@ -1,4 +1,4 @@
-//! A model under way to a submission: what is read of its attributes, and what is noted on the way.
+//! The reading of a model: marks of its attributes, and remarks.
 
 use std::cell::RefCell;
 
@@ -12,7 +12,7 @@ use super::unit::Unit;
 pub(super) const MOST_REMARKS: usize = 100;
 const LONGEST_REMARK: usize = 1000;
 
-/// What a model leaves open, and the caller says.
+/// Choices of the caller where a model leaves them open.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Choices {
     /// The id of the cylindrical stage, where there are several.
@@ -47,7 +47,7 @@ impl LoadedFlank {
     }
 }
 
-/// A model under way to a submission. Every method reports what is wrong and answers `None` then, so that all is told together.
+/// The reading of a model. Every method reports faults and then returns `None`, so that all faults are reported together.
 pub(super) struct Reading<'a> {
     pub(super) model: &'a Model,
     pub(super) choices: &'a Choices,
@@ -58,7 +58,7 @@ pub(super) struct Reading<'a> {
 
 impl<'a> Reading<'a> {
     pub(super) fn wrong(&self, place: String, detail: impl Into<String>) {
-        // What both flanks refer to is read for each, and noted once.
+        // Components of both flanks are read for each, and noted once.
         self.faults.borrow_mut().push(place, detail);
     }
 
@@ -105,7 +105,7 @@ impl<'a> Reading<'a> {
         word.ok().filter(|word| !word.is_empty())
     }
 
-    /// Whether one of several words is said. A program writes `false` where none was chosen.
+    /// True if one of several words is chosen. A program writes `false` where none was chosen.
     pub(super) fn is_chosen(&self, of: &'a Component, attribute: &str) -> bool {
         !matches!(self.word(of, attribute), None | Some("false"))
     }

@@ -10,7 +10,7 @@ use super::unit::{MM, N_M, NONE};
 /// Places along a shaft nearer than this are the same, in mm.
 const SAME_PLACE: f64 = 1e-6;
 
-/// What holds a gear or a shaft on a shaft so that they turn together. A switchable coupling may be open.
+/// Components that hold a gear or a shaft on a shaft so that they turn together. A switchable coupling may be open.
 const HOLDING: [&str; 5] = [
     "coupling",
     "feather_key_connection",
@@ -95,11 +95,11 @@ impl<'a> Reading<'a> {
     }
 }
 
-/// What turns together, and what meshes. Components are known by their ids.
+/// Units of components that turn together, and meshes between them. Components are known by their ids.
 pub(super) struct Train<'a> {
     /// The shaft of each gear.
     shafts: HashMap<i64, &'a Component>,
-    /// What each component turns with.
+    /// The unit of each component.
     units: HashMap<i64, i64>,
     /// The loads on each unit.
     loads: HashMap<i64, Vec<&'a Component>>,
@@ -219,7 +219,7 @@ impl<'a> Train<'a> {
         Some(found)
     }
 
-    /// Whether the axes of two gears point the same way, as a sign; they do where a model does not say.
+    /// Sign of the directions of two gears' axes: 1 where they point the same way, also where the model is silent.
     fn along(&self, one: &Component, other: &Component) -> f64 {
         let axis = |gear: &Component| {
             let shaft = self.shafts.get(&gear.id)?;
@@ -262,7 +262,7 @@ pub(super) fn is_gear(component: &Component) -> bool {
     )
 }
 
-/// What turns together, by one of each.
+/// Units of components that turn together, by one of each.
 #[derive(Default)]
 struct Units(HashMap<i64, i64>);
 

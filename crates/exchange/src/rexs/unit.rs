@@ -3,15 +3,15 @@
 
 use crate::significant;
 
-/// The digits that the standard keeps of a number; what lies below is noise of a conversion.
+/// The digits that the standard keeps of a number; smaller parts are noise of a conversion.
 const DIGITS: usize = 15;
 
-/// A unit of the standard, and what is converted to it.
+/// A unit of the standard, and units that are converted to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Unit {
     /// As the standard writes it.
     pub(super) name: &'static str,
-    /// Other units, as [`plain`] writes them, and what one of them is: a factor and a divisor, so that powers of ten round once.
+    /// Other units, as [`plain`] writes them, each with a factor and a divisor, so that powers of ten round once.
     others: &'static [(&'static str, f64, f64)],
 }
 

@@ -1,4 +1,4 @@
-//! What `cargo bench` found, beside the paper's times and the goals.
+//! Results of `cargo bench`, beside the paper's times and the goals.
 
 use std::fs;
 use std::path::Path;
@@ -28,14 +28,14 @@ pub(super) struct Benchmark {
     pub(super) seconds: f64,
 }
 
-/// What criterion keeps of a benchmark's name.
+/// The fields of a benchmark's name in criterion's files.
 #[derive(Deserialize)]
 struct Identity {
     group_id: String,
     function_id: String,
 }
 
-/// What criterion keeps of a benchmark's samples.
+/// The fields of a benchmark's samples in criterion's files.
 #[derive(Deserialize)]
 struct Samples {
     iters: Vec<f64>,
@@ -68,7 +68,7 @@ pub(super) fn found(folder: &Path) -> anyhow::Result<Vec<Benchmark>> {
             }
         }
     }
-    // A folder of criterion keeps what earlier benchmarks were called.
+    // A folder of criterion keeps the names of earlier benchmarks.
     found.retain(|benchmark| GROUPS.contains(&benchmark.group.as_str()));
     anyhow::ensure!(!found.is_empty(), none());
     found.sort_by_key(|benchmark| {
@@ -100,7 +100,7 @@ fn read<T: DeserializeOwned>(path: &Path) -> anyhow::Result<T> {
         .with_context(|| format!("{} is none of criterion's", path.display()))
 }
 
-/// What the paper took for a benchmark, and what is asked for.
+/// The paper's time for a benchmark, and the goal.
 pub(super) fn expectation(benchmark: &Benchmark) -> (&'static str, &'static str) {
     match (benchmark.group.as_str(), benchmark.name.as_str()) {
         ("cold", "case 1, flexible") => ("15 h", "600 ms"),

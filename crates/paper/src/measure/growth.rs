@@ -9,7 +9,7 @@ use meshwright_engine::run::Run;
 use super::stopwatch::{answer, cold, least};
 use crate::reproduce::cases::{at_torques, by, example, with_holes};
 
-/// What varies.
+/// The varied quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Varied {
     /// The teeth of both gears.
@@ -83,7 +83,7 @@ const HOLE_COUNTS: [u32; 12] = [0, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24];
 const POSITIONS: [u32; 6] = [10, 20, 40, 100, 200, 400];
 const TORQUES: [u32; 6] = [1, 2, 5, 10, 15, 20];
 
-/// Mesh periods computed where the true period would change with what varies: that of test case 2.
+/// Mesh periods computed where the true period would change with the varied quantity: that of test case 2.
 const SPAN: u32 = 5;
 
 /// Test case 2 by these methods, where positions or torques vary.
@@ -93,7 +93,7 @@ const METHODS: [(SectionHoles, &str); 3] = [
     (SectionHoles::FirstOrder, "projected"),
 ];
 
-/// Measures them all, telling `progress` what comes next.
+/// Measures them all, and reports each to `progress`.
 ///
 /// # Errors
 ///

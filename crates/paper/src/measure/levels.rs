@@ -1,4 +1,4 @@
-//! What a finer grid costs, and what it changes.
+//! Cost of a finer grid, and the differences that it makes.
 
 use anyhow::Context;
 use meshwright_engine::analysis::{Case, Curve};
@@ -37,7 +37,7 @@ pub(super) struct LevelRow {
     pub(super) grid: &'static str,
     pub(super) degrees_of_freedom: u64,
     pub(super) seconds: f64,
-    /// What differs from the fine level, relative; none at the fine level itself.
+    /// Differences from the fine level, relative; `None` at the fine level itself.
     pub(super) against_fine: Option<Differences>,
 }
 

@@ -1,7 +1,7 @@
-//! `meshwright-paper measure`: how fast this machine computes, and how the time grows with what is asked.
+//! `meshwright-paper measure`: the speed of this machine, and the growth of time with the size of a request.
 //!
-//! Read in this order: [`stopwatch`] (what a time is here), [`benchmarks`] (what `cargo bench` found), [`growth`] (one thing
-//! varied at a time), [`levels`] (what a finer grid costs and gains), [`report`] (the tables and figures of it).
+//! Read in this order: [`stopwatch`] (definition of a time), [`benchmarks`] (results of `cargo bench`), [`growth`] (one quantity varied at a time), [`levels`]
+//! (cost and gain of a finer grid), [`report`] (tables and figures).
 
 mod benchmarks;
 mod growth;
@@ -19,11 +19,11 @@ use benchmarks::Benchmark;
 use growth::Growth;
 use levels::LevelRow;
 
-/// Measure how fast this machine computes, and how time grows with what is asked: tables and four figures. It takes a minute or
-/// two; other work on the machine makes its numbers worse.
+/// Measure the speed of this machine, and the growth of time with the size of a request: tables and four figures. It takes a minute or two; other work on the
+/// machine makes its numbers worse.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Measure {
-    /// Where cargo bench has left what it found.
+    /// Folder of the results of cargo bench.
     #[arg(long, default_value = "target/criterion", value_name = "DIR")]
     criterion: PathBuf,
     /// The folder to write measured.md and the figures to.
@@ -40,7 +40,7 @@ struct Measured {
     grid_levels: Vec<LevelRow>,
 }
 
-/// Where it was measured, and what.
+/// The machine and the version of the measurements.
 #[derive(Debug)]
 struct Machine {
     processor: String,

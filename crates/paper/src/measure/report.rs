@@ -1,4 +1,4 @@
-//! The tables and figures of what was measured.
+//! Tables and figures of the measurements.
 
 use super::benchmarks::{Benchmark, expectation};
 use super::growth::{Growth, TimeSeries, Varied};
@@ -95,7 +95,7 @@ fn quantity(varied: Varied) -> &'static str {
     }
 }
 
-/// What the figure shows, from its numbers.
+/// Sentence about the figure, from its numbers.
 fn sentence(growth: &Growth) -> String {
     let series = &growth.series;
     match growth.varied {
@@ -254,7 +254,7 @@ pub(super) fn figure(growth: &Growth) -> Figure {
     }
 }
 
-/// What a second is in the unit of the figure: seconds over decades, milliseconds otherwise.
+/// A second in the unit of the figure: seconds over decades, milliseconds otherwise.
 fn unit(varied: Varied) -> f64 {
     if varied == Varied::ToothCount {
         1.0

@@ -1,4 +1,4 @@
-//! What a time is here: the least of a few runs.
+//! Definition of a time: the least of a few runs.
 
 use std::time::Instant;
 
@@ -15,15 +15,13 @@ pub(super) const RUNS: u32 = 3;
 /// Work that has taken this many seconds is not run again.
 pub(super) const PATIENCE: f64 = 1.5;
 
-/// The least time in seconds that `work` takes, and what it gave then: of [`RUNS`] runs, or as many as begin within
-/// [`PATIENCE`].
+/// The least time in seconds of `work`, and its result: of [`RUNS`] runs, or as many as begin within [`PATIENCE`].
 ///
-/// Other work on the machine only ever adds time, so that the least is nearest to what the work takes by itself. `prepare` is
-/// not timed.
+/// Other work on the machine only ever adds time, so that the least is nearest to the time of the work by itself. `prepare` is not timed.
 ///
 /// # Errors
 ///
-/// What `prepare` or `work` fails with.
+/// Errors of `prepare` or `work`.
 pub(super) fn least<I, T>(
     mut prepare: impl FnMut() -> anyhow::Result<I>,
     mut work: impl FnMut(I) -> anyhow::Result<T>,

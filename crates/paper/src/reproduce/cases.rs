@@ -1,4 +1,4 @@
-//! What is computed: the paper's test cases and designs, from the examples that ship with the service.
+//! Computed cases: the paper's test cases and designs, from the examples that ship with the service.
 
 use anyhow::Context;
 use meshwright_engine::analysis::{Case, Model, SectionHoles};

@@ -1,4 +1,4 @@
-//! What the paper says in words, held to the computed numbers.
+//! The paper's statements, compared with the computed numbers.
 
 use meshwright_engine::analysis::Curve;
 
@@ -6,7 +6,7 @@ use super::computed::{Computed, Design, TestCase, line};
 use super::paper::{OPTIMAL_TORQUES, STANDARD_PEAK_TO_PEAK};
 use super::tables::{Cells, micro, peak_to_peak_at, percent, statistics, table};
 
-/// Whether a claim holds on what is computed.
+/// Verdict on a claim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Verdict {
     Holds,
@@ -33,7 +33,7 @@ impl Verdict {
     }
 }
 
-/// A claim, with what was found.
+/// A claim, with the computed numbers.
 pub(super) struct Claim {
     place: &'static str,
     words: &'static str,
@@ -487,7 +487,7 @@ fn what_governs(computed: &Computed) -> anyhow::Result<Claim> {
     })
 }
 
-/// What the holes change in one statistic of k, in percent, for each design at one torque.
+/// Change of one statistic of k by the holes, in percent, for each design at one torque.
 fn stiffness_changes(
     computed: &Computed,
     torque: usize,

@@ -94,7 +94,7 @@ pub(super) struct Design {
     pub(super) name: String,
     /// The case, flexible.
     pub(super) case: Case,
-    /// Whether the paper kept it; the standard pair counts as kept.
+    /// True if the paper kept it; the standard pair counts as kept.
     pub(super) kept: bool,
     /// The flexible curves at 20 and 115 N m.
     pub(super) flexible: [Curve; 2],
@@ -104,7 +104,7 @@ pub(super) struct Design {
 
 /// Curves over the torque.
 pub(super) struct Sweep {
-    /// What pair.
+    /// Name of the pair.
     pub(super) name: &'static str,
     /// One curve a torque, rising.
     pub(super) curves: Vec<Curve>,
@@ -115,7 +115,7 @@ pub(super) struct Sweep {
 }
 
 impl Computed {
-    /// Computes it all, telling `progress` what has been done.
+    /// Computes it all, and reports to `progress`.
     ///
     /// # Errors
     ///

@@ -1,7 +1,7 @@
 //! `meshwright-paper reproduce`: every table, figure and claim of the paper, recomputed.
 //!
-//! Read in this order: [`cases`] (what is asked), [`paper`] (what the paper prints), [`computed`] (what comes out), then
-//! what is made of it: [`tables`], [`claims`], [`figures`] and the [`report`] that holds them.
+//! Read in this order: [`cases`] (submissions), [`paper`] (printed values), [`computed`] (results), then [`tables`], [`claims`], [`figures`] and the [`report`]
+//! that contains them.
 
 pub(super) mod cases;
 mod claims;

@@ -1,4 +1,4 @@
-//! What the paper prints, to stand beside what is computed (Benaicha et al. 2021, hal-03230238).
+//! Values printed in the paper, to stand beside the computed ones (Benaicha et al. 2021, hal-03230238).
 
 /// STE mean, rms and peak-to-peak in um, then stiffness mean, rms and peak-to-peak in N/m.
 pub(super) type Row = [f64; 6];
@@ -11,7 +11,7 @@ pub(super) struct PrintedCase {
     pub(super) decomposition: Row,
     /// The errors in %, as printed, without sign.
     pub(super) errors: Row,
-    /// What the stiffness is divided by: where the paper takes the load as T/R_b1, the tooth ratio.
+    /// Divisor of the stiffness: where the paper takes the load as T/R_b1, the tooth ratio.
     pub(super) stiffness_divisor: f64,
     /// Hours for the flexible method (section 4.2).
     pub(super) flexible_hours: u32,

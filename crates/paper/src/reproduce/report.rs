@@ -1,4 +1,4 @@
-//! The document: tables, figures with their captions, claims, and what the paper leaves open.
+//! The document: tables, figures with their captions, claims, and open points of the paper.
 
 use anyhow::Context;
 
@@ -11,7 +11,7 @@ use super::tables::{self, TABLE_2_HEADER, percent, statistics, table};
 ///
 /// # Errors
 ///
-/// If a curve lacks what a table needs.
+/// A curve that lacks a value of a table.
 pub(super) fn text(computed: &Computed, figures: &[Illustration]) -> anyhow::Result<String> {
     let figure = |start: &str| shown(figures, start);
     let claims = claims(computed)?;
@@ -215,7 +215,7 @@ fn section_5(computed: &Computed, figures: &[Illustration]) -> anyhow::Result<St
     ))
 }
 
-/// What the paper leaves open or prints wrongly, with the numbers that say so.
+/// Open points and misprints of the paper, with the numbers that show them.
 fn open(computed: &Computed) -> anyhow::Result<String> {
     let standard = &computed.design("standard")?.flexible;
     let [low, high] = [0, 1].map(|i| standard[i].transmission_error_statistics.peak_to_peak * 1e6);

@@ -36,7 +36,7 @@ fn milli(value: f64, decimals: usize) -> String {
     format!("{:.decimals$}", value * 1e3)
 }
 
-/// What `value` differs from `reference`, in percent with its sign.
+/// Difference of `value` from `reference`, in percent with its sign.
 pub(super) fn percent(value: f64, reference: f64) -> String {
     let percent = (value / reference - 1.0) * 100.0;
     // Not "-0.0": the sign of nothing is noise.
@@ -125,7 +125,7 @@ fn printed_decomposition(printed: &PrintedCase, i: usize) -> String {
     format!("{} ({} %)", number(i, value), printed.errors[i])
 }
 
-/// Table 1: what the drawing of each gear gives, and what of it the paper prints.
+/// Table 1: values from the drawing of each gear, and those that the paper prints.
 pub(super) fn table_1(computed: &Computed) -> String {
     let mut rows = Vec::new();
     for (test_case, printed) in computed.test_cases.iter().zip(paper::BASE_RADII) {
@@ -175,7 +175,7 @@ pub(super) fn table_1(computed: &Computed) -> String {
     )
 }
 
-/// What the pairs of Table 1 make together.
+/// Values of the pairs of Table 1.
 pub(super) fn table_1_pairs(computed: &Computed) -> String {
     let rows: Vec<Cells> = computed
         .test_cases
@@ -373,7 +373,7 @@ pub(super) fn sweeps(computed: &Computed) -> String {
     )
 }
 
-/// What the interface radius does to the decomposition of test case 2, against the flexible method.
+/// Effect of the interface radius on the decomposition of test case 2, against the flexible method.
 pub(super) fn interfaces(computed: &Computed) -> anyhow::Result<String> {
     let flexible = computed.test_cases[1].flexible();
     let reference = statistics(flexible);

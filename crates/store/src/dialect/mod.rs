@@ -1,7 +1,7 @@
-//! The statements that the two databases do not say in the same words, and what only one of them has.
+//! Statements with a text for each database, and statements of only one of them.
 //!
-//! Lists are parameters as JSON, so that one statement does for many jobs. Everything else in this folder is one text for both. [`sqlite`] and [`postgres`] have the same names in the same order;
-//! what one of them has no need of is `None`.
+//! Lists are parameters as JSON, so that one statement serves many jobs. Everything else in this folder is one text for both. [`sqlite`] and [`postgres`] have
+//! the same names in the same order; a statement that one of them does not need is `None`.
 
 /// New jobs: those that have a document are successful at once, the others wait. How a list is read and how the next places in the order
 /// of arrival are found differs.
@@ -27,7 +27,7 @@ macro_rules! insert_jobs {
     };
 }
 
-/// What has come of jobs that run; how a list is read differs.
+/// Outcomes of running jobs; the two differ in reading a list.
 macro_rules! end_jobs {
     ($before:literal, $list:literal) => {
         concat!(
@@ -45,7 +45,7 @@ macro_rules! end_jobs {
     };
 }
 
-/// The lanes with work to do, and beside each of them what runs here; how that is found differs.
+/// The lanes with work to do, and the jobs that run here beside each of them; the two differ in finding these.
 macro_rules! lanes {
     ($here:literal) => {
         concat!(
@@ -139,7 +139,7 @@ pairs! {
     /// latest version of documents that is read, $4: behind this place in the order of arrival, $5: how many,
     /// $6: solver version, for whether an equal one may have been computed.
     next_waiting = NEXT_WAITING;
-    /// What a client has had computed. $1: client, $2: input hash, $3: solver version, $4: 1 if the whole results have to be kept.
+    /// Earlier results of a client. $1: client, $2: input hash, $3: solver version, $4: 1 if the whole results have to be stored.
     known = KNOWN;
     /// Which inputs a client may have had computed. $1: client, $2: solver version, $3: a list of input hashes.
     known_among = KNOWN_AMONG;
@@ -151,7 +151,7 @@ pairs! {
     start = START;
     /// Where jobs stand: id, attempt, status. $1: a list of ids.
     states = STATES;
-    /// Running -> successful or failed. $1: a list of what has come of each, $2: the solver's version.
+    /// Running -> successful or failed. $1: a list of outcomes, $2: the solver's version.
     end = END;
     /// Running -> running. $1: a list of how far each has come, $2: the steady clock, $3: how long the lease lasts.
     report = REPORT;
@@ -164,13 +164,13 @@ pairs! {
     insert_study = INSERT_STUDY;
     /// Keeps documents, unless they are kept already. $1: a list of them, $2: their bodies, one behind the other.
     insert_documents = INSERT_DOCUMENTS;
-    /// Keeps what the tables of studies show of documents. $1: a list.
+    /// Stores summaries of documents for the tables of studies. $1: a list.
     insert_summaries = INSERT_SUMMARIES;
     /// From here to its end, no other transaction begins or ceases to need the document $1.
     lock_document = LOCK_DOCUMENT;
     /// Accepted or running -> dismissed. $1: study, $2: now, $3: accepted or running, $4: how many.
     dismiss_designs = DISMISS_DESIGNS;
-    /// From here to its end, no other transaction removes what is old.
+    /// Prevents other transactions from removing old rows until its end.
     keep_alone = KEEP_ALONE;
     /// Studies without all their rows, which nobody expands. $1: the steady clock, $2: for how long they are taken, $3: the
     /// latest version of documents that is read.

@@ -47,7 +47,7 @@ pub(crate) const LOCK_WEBHOOKS: Words =
 pub(crate) const LOCK_LINKS: Words =
     Some("select 1 from pg_advisory_xact_lock(hashtext('meshwright'), 6)");
 
-// Whose turn it is follows from who was served before. What is claimed is skipped by those who would wait for it.
+// The turn depends on the lanes served before. Claimed rows are skipped by other claims.
 pub(crate) const LOCK_TURN: Words =
     Some("select 1 from pg_advisory_xact_lock(hashtext('meshwright'), 4)");
 
@@ -85,7 +85,7 @@ pub(crate) const NEXT_WAITING: Words = Some(concat!(
      order by sequence limit $5 for update of waiting skip locked"
 ));
 
-// Nobody removes what is about to be pointed to.
+// Nobody removes a document to which a row is about to point.
 pub(crate) const KNOWN: Words = Some(
     "select j.id, j.document, j.positions_total from jobs j join documents d on d.hash = j.document
      where j.client = $1 and j.input_hash = $2 and j.solver_version = $3 and j.status = 'successful' and d.whole >= $4

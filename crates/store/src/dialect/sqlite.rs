@@ -7,7 +7,7 @@ type Words = Option<&'static str>;
 
 pub(crate) const BEGIN: Words = Some("begin immediate");
 
-// In the journal's mode, what a commit has not waited for is lost with the power and not with the process.
+// In this journal mode, a power failure loses a commit that has not reached the disk; a crash of the process does not.
 pub(crate) const BEGIN_RELAXED: Words = Some("pragma synchronous = normal; begin immediate");
 
 pub(crate) const COMMIT_RELAXED: Words = Some("commit; pragma synchronous = full");
@@ -150,7 +150,7 @@ pub(crate) const DISMISS_DESIGNS: Words = Some(
 
 pub(crate) const KEEP_ALONE: Words = None;
 
-// Only the start asks: this process expands what it has taken since.
+// Only the start asks: this process expands all studies that it has accepted since.
 pub(crate) const UNFINISHED_EXPANSIONS: Words = Some(
     "select id, client from studies where expanded < total and cancelled_at is null and document_version <= $3 order by sequence",
 );

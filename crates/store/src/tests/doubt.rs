@@ -1,4 +1,4 @@
-//! Transactions that come to no end, and documents that are not what was written.
+//! Transactions without an end, and documents that differ from their checksums.
 
 use super::*;
 

@@ -97,7 +97,7 @@ async fn what_is_no_database_is_refused_and_not_touched() {
         assert!(matches!(refused, OpenError::NotADatabase), "{refused:?}");
         assert_eq!(fs::read(&path).unwrap(), content);
     }
-    // An empty file is what many programs make first.
+    // Many programs begin with an empty file.
     fs::write(&path, b"").unwrap();
     assert!(
         Store::open(&DatabaseAddress::File(path.clone()))
@@ -129,7 +129,7 @@ async fn a_database_that_was_cut_off_is_refused() {
             kept,
             "nothing was cut off it"
         );
-        // What is recovered from its journal is written into it before it is looked through.
+        // The recovered journal is written into it before it is read.
         let told = refused.to_string();
         assert!(
             kept < 5000 || !told.contains("nothing was changed"),

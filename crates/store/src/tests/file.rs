@@ -1,4 +1,4 @@
-//! What is so of a file only: its space is given back, a copy of it is whole, and it is its owner's.
+//! Properties of a file only: its space is returned, a copy of it is whole, and it belongs to its owner.
 
 use super::*;
 use crate::BackupError;

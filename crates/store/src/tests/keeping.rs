@@ -1,4 +1,4 @@
-//! What is old goes, and what is kept is small.
+//! Removal of old jobs, and the size of the stored ones.
 
 use super::*;
 

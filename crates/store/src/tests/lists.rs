@@ -1,4 +1,4 @@
-//! Lists: what they select, in what order, and how little they read for it.
+//! Lists: selection, order, and the number of rows that they read.
 
 use super::*;
 use crate::{Filter, Span};

@@ -8,7 +8,7 @@ use crate::Filter;
 use crate::open::migrations;
 use crate::statement::Dialect;
 
-/// What the version before this one wrote.
+/// The database that the version before this one wrote.
 const BEFORE: &str = r#"
 insert into documents (hash, body) values
     ('2f2d5bd0e1f5e0c0b3ad3b1d4f8a4f0ad6f4dbe0b54ae7a5b4e0ad8d4b1c9d11', '{"of":"a"}');
@@ -96,7 +96,7 @@ async fn jobs_results_studies_and_keys_survive_the_upgrade() {
         r#"{"base":{}}"#
     );
 
-    // What waited is claimed, what ran is recovered, and the study counts on.
+    // Waiting jobs are claimed, running ones are recovered, and the study counts on.
     assert_eq!(claim(&store, 1).await.id, jobs[2].id);
     let recovered = store.recover(at(1), expired(1), 3, "{}").await.unwrap();
     assert_eq!(recovered, [jobs[1].id]);

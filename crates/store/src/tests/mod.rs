@@ -1,4 +1,4 @@
-//! The store: what each transition does, whose turn it is, what is damaged, what is old.
+//! The store: transitions, turns, damage, retention.
 
 mod faults;
 mod file;
@@ -70,7 +70,7 @@ impl Store {
         Ok(self.report_all(&[(claim, progress)], lease).await?[0])
     }
 
-    /// Whether one claim holds.
+    /// True if one claim holds.
     pub(super) async fn holds(&self, claim: Claim) -> Result<bool, StoreError> {
         Ok(self.hold(&[claim]).await?[0])
     }

@@ -1,4 +1,4 @@
-//! What the store does whatever is below it, on PostgreSQL; and what only several processes do to each other.
+//! Behavior of the store on any database, on PostgreSQL; and interactions of several processes.
 
 #![expect(
     clippy::duplicate_mod,

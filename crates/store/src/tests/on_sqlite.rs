@@ -1,4 +1,4 @@
-//! What the store does whatever is below it, on SQLite.
+//! Behavior of the store on any database, on SQLite.
 
 use super::*;
 

@@ -73,7 +73,7 @@ async fn a_claim_looks_at_no_job_that_has_ended() {
         .fetch_all(readers(&store))
         .await
         .unwrap();
-    // Both indexes leave out what has ended, and the first one has the order of the lane: nothing is sorted.
+    // Both indexes leave out ended jobs, and the first one has the order of the lane: nothing is sorted.
     let uses = |index: &str| steps.iter().filter(|step| step.3.contains(index)).count();
     assert_eq!(
         (

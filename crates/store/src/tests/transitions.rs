@@ -70,7 +70,7 @@ async fn a_job_ends_with_the_very_text_of_its_results() {
     assert_eq!(document.unwrap().text().unwrap(), "{ \"x\": 1.0e0 }");
 }
 
-/// Changes one bit of what is kept.
+/// Changes one bit of a stored value.
 async fn flip(store: &Store, words: &'static str) {
     let mut write = store.begin().await.unwrap();
     let changed = query(words).execute(&mut *write).await.unwrap();

@@ -142,7 +142,7 @@ async fn users_of_a_client_take_turns_and_have_no_more_of_the_service_than_their
     for i in 0..3 {
         submit(&store, of_user("a", "few", &format!("f{i}"))).await;
     }
-    // The one who comes later waits for no more than what runs.
+    // The one who comes later waits for no more than the running jobs.
     let few = Some("few".to_owned());
     let users = served_users(&store, 6).await;
     assert_eq!((count(&users, &few), &users[0]), (3, &few));
@@ -669,7 +669,7 @@ async fn a_study_that_is_cancelled_ends_with_the_last_of_its_jobs() {
             .unwrap()
     );
     assert_eq!(next(&store, 3).await, None, "no further one is begun");
-    // What ends meanwhile keeps its results, and does not end the study; another process finds it.
+    // A job that ends meanwhile keeps its results, and does not end the study; another process finds it.
     assert!(store.ends(running, 4).await);
     assert_eq!(store.unfinished_cancellations().await.unwrap(), [id]);
     let mut dismissed = Vec::new();

@@ -1,7 +1,7 @@
 //! The evolution strategy that adapts its covariance (CMA-ES; Hansen, "The CMA evolution strategy: a tutorial", 2016), in the unit cube.
 //!
-//! It gets the points that were computed, which need not be those that it asked for: points outside the cube are put on its border, and whoever asks
-//! may move them. Steps that are longer than its law would make them are shortened (Hansen, "Injecting external solutions into CMA-ES", 2011).
+//! The caller reports the points that were computed, which need not be the points that were asked for: points outside the cube are moved to its border, and the
+//! caller may move others. Steps longer than the law would make them are shortened (Hansen, "Injecting external solutions into CMA-ES", 2011).
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 

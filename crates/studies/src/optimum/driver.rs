@@ -21,7 +21,7 @@ const SETTLED: f64 = 1e-3;
 /// No violation weighs more than so much.
 const HEAVIEST: f64 = 1e30;
 
-/// What is searched.
+/// An optimization problem.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Problem {
     /// The variables; at least one.
@@ -30,9 +30,9 @@ pub struct Problem {
     pub goals: usize,
     /// The number of conditions.
     pub conditions: usize,
-    /// So many designs are computed at most.
+    /// Maximum number of designs that are computed.
     pub evaluations: u32,
-    /// What everything random is drawn from.
+    /// Seed of all random numbers.
     pub seed: u32,
     /// A design to begin with.
     pub start: Option<Vec<f64>>,
@@ -49,26 +49,26 @@ pub struct Driver {
     known: Known,
     chance: Chance,
     pending: Vec<Vec<f64>>,
-    /// The best design so far, and what came of it.
+    /// The best design so far, and its outcome.
     best: Option<(Vec<f64>, Outcome)>,
-    /// Whether `pending` are designs beside the best one.
+    /// True if `pending` are designs beside the best one.
     is_beside: bool,
 }
 
 enum Way {
-    /// So many evenly spread points are asked for.
+    /// Number of evenly spread points at the start.
     Beginning(usize),
     One(Box<Descent>),
     Two(Evolution),
 }
 
-/// CMA-ES, and what conditions weigh in the values that it gets.
+/// CMA-ES, and the weights of the conditions in its values.
 struct Descent {
     cmaes: Cmaes,
     size: usize,
     /// The points as CMA-ES asked for them, or as they were moved.
     points: Vec<Vec<f64>>,
-    /// Whether the points that it asked for last hardly differ.
+    /// True if its last points hardly differ.
     is_narrow: bool,
     weights: Vec<f64>,
     /// Generations of it.
@@ -119,12 +119,12 @@ impl Driver {
         designs
     }
 
-    /// Whether every design that there is has been asked for.
+    /// True if every possible design has been asked for.
     pub fn is_exhausted(&self) -> bool {
         count(&self.problem.axes).is_some_and(|all| all <= self.known.count())
     }
 
-    /// What came of the designs that were asked for last, in their order.
+    /// Reports the outcomes of the last designs, in their order.
     pub fn tell(&mut self, outcomes: &[Outcome]) {
         // The last generation may be cut short; nothing follows it.
         if outcomes.len() < self.pending.len() || self.is_exhausted() {
@@ -208,7 +208,7 @@ impl Driver {
         self.problem.look_beside(&mut designs, generation);
         let designs = self.without_repeats(designs);
         if let Way::One(descent) = &mut self.way {
-            // It gets the points to which designs were moved.
+            // Reports the points to which designs were moved.
             descent.points.truncate(designs.len());
             for ((point, design), snapped) in descent.points.iter_mut().zip(&designs).zip(&snapped)
             {
@@ -257,7 +257,7 @@ impl Driver {
         kept
     }
 
-    /// What follows the evenly spread points.
+    /// The method that follows the evenly spread points.
     fn begun(&self, size: usize, outcomes: &[Outcome]) -> Way {
         if self.problem.goals > 1 {
             return Way::Two(Evolution::new(size, &self.pending, outcomes));
@@ -335,7 +335,7 @@ impl Problem {
     }
 }
 
-/// Whether points differ by less than what is worth looking at, on every axis.
+/// True if points differ by less than the resolution on every axis.
 fn is_narrow(points: &[Vec<f64>]) -> bool {
     (0..points[0].len()).all(|i| {
         let values = || points.iter().map(|point| point[i]);
@@ -344,7 +344,7 @@ fn is_narrow(points: &[Vec<f64>]) -> bool {
     })
 }
 
-/// What a violation weighs against goals at first: the usual violation as much as half the range of the goal.
+/// First weights of violations against goals: the usual violation counts as half the range of the goal.
 fn first_weights(outcomes: &[Outcome], conditions: usize) -> Vec<f64> {
     let computed = || {
         outcomes.iter().filter_map(|one| match one {
@@ -371,7 +371,7 @@ fn first_weights(outcomes: &[Outcome], conditions: usize) -> Vec<f64> {
 }
 
 impl Descent {
-    /// What came of its designs; whether it has settled.
+    /// Reports the outcomes of its designs; true if it has settled.
     fn tell(&mut self, outcomes: &[Outcome]) -> bool {
         let merits = self.merits(outcomes);
         self.weigh(outcomes, &merits);
@@ -380,7 +380,7 @@ impl Descent {
         self.is_narrow
     }
 
-    /// What CMA-ES is to make small: the goal and what violations weigh; above all of that, by their distance, what cannot be had.
+    /// The values that CMA-ES makes small: the goal and the weighted violations; above all of those, by their distance, designs that cannot be built.
     fn merits(&self, outcomes: &[Outcome]) -> Vec<f64> {
         let computed: Vec<Option<f64>> = outcomes
             .iter()

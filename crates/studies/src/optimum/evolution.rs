@@ -1,8 +1,8 @@
 //! The evolution of a front of two goals: of parents and children those stay that leave the largest area behind the front.
 //!
-//! A child is a parent moved by a part of the difference of two others, as in differential evolution (Storn and Price 1997), so that steps follow the shape
-//! and the size of the front. Half of the children mutate as well (polynomial mutation, Deb and Agrawal 1999). Those stay that no other beats; of the last
-//! front those go first whose loss costs the least area (SMS-EMOA; Beume, Naujoks and Emmerich 2007). What is not feasible comes behind everything that is.
+//! A child is a parent moved by a part of the difference of two others, as in differential evolution (Storn and Price 1997), so that steps follow the shape and
+//! the size of the front. Half of the children mutate as well (polynomial mutation, Deb and Agrawal 1999). Designs that no other beats stay; of the last front
+//! the designs go first whose loss costs the least area (SMS-EMOA; Beume, Naujoks and Emmerich 2007). Designs that are not feasible come behind all that are.
 
 use std::cmp::Ordering;
 
@@ -56,7 +56,7 @@ impl Evolution {
         for (i, u) in child.iter_mut().enumerate() {
             if chance.happens(MOVED) {
                 let moved = *u + reach * (one[i] - other[i]);
-                // What would leave the cube stays somewhere between its border and the middle of the way there.
+                // A step out of the cube ends between its border and the middle of the way there.
                 *u = if moved < 0.0 {
                     0.5 * *u * chance.even()
                 } else if moved > 1.0 {
@@ -72,7 +72,7 @@ impl Evolution {
         child
     }
 
-    /// Takes what came of the designs that were asked for.
+    /// Reports the outcomes of the last designs.
     pub(crate) fn tell(&mut self, designs: &[Vec<f64>], outcomes: &[Outcome]) {
         let children = designs.iter().cloned().zip(outcomes.iter().cloned());
         self.parents.extend(children);

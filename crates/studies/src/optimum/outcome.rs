@@ -1,23 +1,23 @@
-//! What comes of a design, and which of two is better.
+//! Outcomes of designs, and their comparison.
 
 use std::cmp::Ordering;
 
-/// What came of a design.
+/// Outcome of a design.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
-    /// It was computed.
+    /// The design was computed.
     Computed {
-        /// What is to be small.
+        /// Values to make small.
         goals: Vec<f64>,
         /// By how much each condition fails, as a share of its limit; zero where it holds.
         violations: Vec<f64>,
     },
-    /// It cannot be built or computed; how far it is from being one that can: what would have to change by which share of itself.
+    /// The design cannot be built or computed. The number is its distance from one that can: the relative change that is needed.
     Refused(f64),
 }
 
 impl Outcome {
-    /// Whether it can be had and every condition holds.
+    /// True if it can be built and every condition holds.
     pub fn is_feasible(&self) -> bool {
         self.violation() == Some(0.0)
     }
@@ -132,12 +132,12 @@ pub fn front(outcomes: &[Outcome]) -> Vec<usize> {
     front.into_iter().map(|(i, _)| i).collect()
 }
 
-/// Whether `one` is as good as the `other` in every goal.
+/// True if `one` is as good as the `other` in every goal.
 fn is_no_worse(one: &[f64], other: &[f64]) -> bool {
     one.iter().zip(other).all(|(one, other)| one <= other)
 }
 
-/// Whether `one` is as good as the `other` in every goal, and better in one.
+/// True if `one` is as good as the `other` in every goal, and better in one.
 pub(crate) fn beats(one: &[f64], other: &[f64]) -> bool {
     is_no_worse(one, other) && one != other
 }

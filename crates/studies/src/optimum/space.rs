@@ -7,7 +7,7 @@ use std::collections::HashSet;
 pub enum Axis {
     /// Every value between its ends.
     Continuous,
-    /// So many steps lead from one end to the other.
+    /// Number of steps from one end to the other.
     Steps(u32),
 }
 

@@ -10,7 +10,7 @@ fn computed(goals: Vec<f64>, conditions: &[f64]) -> Outcome {
     Outcome::Computed { goals, violations }
 }
 
-/// Every design that a search asks for, and what came of it.
+/// Every design that a search asks for, and its outcome.
 fn searched(problem: &Problem, function: Function) -> Vec<(Vec<f64>, Outcome)> {
     let mut driver = Driver::new(problem.clone());
     let mut all = Vec::new();
@@ -301,8 +301,8 @@ fn area_behind(all: &[(Vec<f64>, Outcome)], corner: [f64; 2]) -> f64 {
 
 #[test]
 fn the_front_of_two_goals_is_far_nearer_than_that_of_designs_at_random() {
-    // The areas behind the whole fronts: of the bowls by their closed form, f and (1 - √f)² times the value at the other middle; of the other 1 - 1/3 + what
-    // lies between it and the corner.
+    // The areas behind the whole fronts: of the bowls by their closed form, f and (1 - √f)² times the value at the other middle; of the other 1 - 1/3 plus the
+    // area between it and the corner.
     let across = {
         let Outcome::Computed { goals, .. } = bowls(&[0.7, 0.5, 0.5, 0.6]) else {
             unreachable!("it is computed")

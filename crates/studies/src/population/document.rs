@@ -39,7 +39,7 @@ document! {
     pub(crate) struct PopulationDocument as "Population", "Population" {
         /// The number of members.
         pub(crate) size: u32 = number("Size", "1", 2.0, MOST_MEMBERS),
-        /// What the members are drawn from.
+        /// Seed of the members' random numbers.
         pub(crate) seed: u32 = SEED,
         /// How the members are spread. Single teeth are random in either way.
         pub(crate) sampling: Sampling = word("Sampling").or(Sampling::Sobol),
@@ -73,16 +73,16 @@ document! {
         pub(crate) iso_1328_class: u32 = CLASS,
         /// How many times three standard deviations of a deviation fit into its tolerance.
         pub(crate) capability: f64 = CAPABILITY,
-        /// Whether gears that are not of their class are rejected and drawn again, as an inspector does: those beyond f_pT, beyond F_pT measured from
-        /// the bore, beyond F_rT or beyond the tolerances of slopes.
+        /// Draws the gears again that an inspector would reject: those beyond f_pT, beyond F_pT measured from the bore, beyond F_rT or beyond the tolerances of
+        /// slopes.
         pub(crate) inspected: bool = INSPECTED,
     }
 }
 
 tagged! {
-    /// A field and the law that it follows. What is drawn for a field of whole numbers is rounded.
+    /// A field and its law. Values of fields of whole numbers are rounded.
     pub(crate) enum VariedDocument as "VariedField", "Varied field" {
-        /// The normal law; what lies below `low` or above `high` is not made.
+        /// The normal law; values below `low` or above `high` do not occur.
         Normal(NormalDocument) = "normal" as "NormalLaw", "Normal law",
         /// Every value between two as likely.
         Uniform(UniformDocument) = "uniform" as "UniformLaw", "Uniform law",

@@ -1,7 +1,7 @@
 //! A population: members of a design as they are made, each drawn from laws.
 //!
-//! A member is known by its number alone: `document` says what is drawn, and `reading` what is wrong with it; `Population` draws it, and
-//! [`population_results`](crate::population_results) is what the results of the members come to.
+//! A member is known by its number alone: `document` declares the laws, and `reading` finds their faults; `Population` draws a member, and
+//! [`population_results`](crate::population_results) has the statistics of the members' results.
 
 pub(crate) mod document;
 mod reading;
@@ -28,7 +28,7 @@ use document::{GearAccuracy, MembersDepth};
 pub(crate) use document::PopulationDocument;
 pub(crate) use reading::{number_at, rises};
 
-/// Members drawn from laws. What exists has laws that can be drawn from, of fields that take a number.
+/// Members drawn from laws. Each law has been checked, and its field takes a number.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Population {
     size: u32,
@@ -45,7 +45,7 @@ pub(crate) struct Population {
 pub(crate) struct Varied {
     pub(crate) path: Pointer,
     pub(crate) law: Law,
-    /// Whether the field takes whole numbers, to which what is drawn is rounded.
+    /// True if the field takes whole numbers, to which values are rounded.
     whole: bool,
 }
 
@@ -56,7 +56,7 @@ impl Varied {
         if self.whole {
             value.round()
         } else {
-            // So many digits are the same whichever machine adds them up.
+            // Digits that are the same on every machine that adds them up.
             significant(value, 12)
         }
     }
@@ -76,7 +76,7 @@ impl Varied {
     }
 }
 
-/// A part of what differs between members, of which it is told how much of the variance it makes.
+/// A source of the differences between members, whose share of the variance is estimated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Source<'a> {
     /// A field.
@@ -101,12 +101,12 @@ impl Population {
         &self.varied
     }
 
-    /// Whether the teeth of `gear` are drawn.
+    /// True if the teeth of `gear` are drawn.
     pub(crate) fn draws_teeth_of(&self, gear: Member) -> bool {
         self.accuracy[gear as usize].is_some()
     }
 
-    /// What a member has in its varied fields, in their order.
+    /// Values of a member's varied fields, in their order.
     pub(crate) fn values(&self, member: u32) -> Vec<f64> {
         let axes = self.varied.iter().zip(0..);
         axes.map(|(varied, axis)| varied.at(self.points.at(member, axis)))
@@ -143,7 +143,8 @@ impl Population {
         }
     }
 
-    /// Gives the gears of a member their teeth, with slopes of their leads for a `method` that sees the faces; what prevents a gear is reported to `errors`.
+    /// Gives the gears of a member their teeth, with slopes of their leads for a `method` that takes the faces into account; faults of a gear are reported to
+    /// `errors`.
     pub(crate) fn give_teeth(
         &self,
         member: u32,
@@ -219,8 +220,8 @@ impl Population {
         Normals::of_attempt(u64::from(self.points.seed), stream, attempt)
     }
 
-    /// The member for which the gear of `member` was drawn first: every gear of some batches stands in two pairs, so that what two pairs
-    /// of one gear have in common tells what the gear makes of the variance.
+    /// The member for which the gear of `member` was drawn first: every gear of some batches is in two pairs, so that the common part of two pairs of one gear
+    /// gives the gear's share of the variance.
     fn drawn_for(&self, member: u32, gear: Member) -> u32 {
         if self.is_shared(member, gear) {
             member.min(crate::sample::partner(member))
@@ -229,7 +230,7 @@ impl Population {
         }
     }
 
-    /// Whether the partner of `member` has the same `gear`. Where both gears are drawn they take turns, batch by batch.
+    /// True if the partner of `member` has the same `gear`. Where both gears are drawn they take turns, batch by batch.
     pub(crate) fn is_shared(&self, member: u32, gear: Member) -> bool {
         let drawn: Vec<Member> = GEARS
             .into_iter()
@@ -242,8 +243,8 @@ impl Population {
 
     /// Everything that differs between members and of which it is known how much of the variance it makes.
     ///
-    /// Gears that an inspector passes are of one law, and two pairs of one gear tell what it makes of the variance. Where its tolerances
-    /// differ between members, two of them may not get the same gear.
+    /// Gears that pass an inspection follow one law, and two pairs of one gear give its share of the variance. Where its tolerances differ between members, two
+    /// of them may not get the same gear.
     pub(crate) fn sources(&self) -> Vec<Source<'_>> {
         let fields = self.varied.iter().map(|varied| Source::Field(&varied.path));
         let is_of_one_law = |gear: &Member| {
@@ -281,13 +282,13 @@ impl Population {
         }
     }
 
-    /// Whether a field of `gear` is varied, which what its teeth are measured by may depend on.
+    /// True if a field of `gear` is varied, on which the measurement of its teeth may depend.
     pub(crate) fn varies(&self, gear: Member) -> bool {
         let mut paths = self.varied.iter().map(|varied| &varied.path);
         paths.any(|path| path.starts_with(&["pair", gear.word()]))
     }
 
-    /// Whether the tolerances of `gear` differ between members: by what is varied of the size of its teeth.
+    /// True if the tolerances of `gear` differ between members, because the size of its teeth is varied.
     fn varies_tolerances(&self, gear: Member) -> bool {
         const SIZES: [&str; 4] = [
             "tooth_count",

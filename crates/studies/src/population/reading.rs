@@ -1,4 +1,4 @@
-//! From the document of a population to its laws, and what is wrong with one.
+//! From the document of a population to its laws and their faults.
 
 use meshwright_wire::declare::{Choice as _, EACH, Errors, Kind as _, Location, Node};
 use meshwright_wire::pointer::{NumberKind, Pointer};
@@ -11,7 +11,7 @@ use crate::sample::law::Law;
 use crate::sample::points::Points;
 
 impl Population {
-    /// Reads the population that stands at `place` over `base`. What is wrong is reported there.
+    /// Reads the population at `place` over `base`. Faults are reported there.
     pub(crate) fn read(
         node: &Node,
         base: Option<&Node>,

@@ -1,4 +1,4 @@
-//! What is drawn, what is refused, and what the members tell.
+//! Drawing of members, refusals, and results.
 
 use meshwright_engine::gear::{SpurGear, ToothDeviations};
 use meshwright_engine::run::Run;
@@ -138,7 +138,7 @@ fn members_follow_their_laws() {
         let mean = |i: usize, f: &dyn Fn(f64) -> f64| {
             values.iter().map(|values| f(values[i])).sum::<f64>() / 4096.0
         };
-        // Cut at 2.5 standard deviations the variance is 1 - 2 x 2.5 phi(2.5)/(2 Phi(2.5) - 1) = 0.911257 of what it was.
+        // Cut at 2.5 standard deviations the variance is 1 - 2 x 2.5 phi(2.5)/(2 Phi(2.5) - 1) = 0.911257 of the full one.
         assert!((mean(0, &|x| x) - 40.2).abs() < 1.5e-3);
         let variance = mean(0, &|x| (x - 40.2).powi(2));
         assert!(
@@ -258,7 +258,7 @@ fn moved(design: &Design) -> f64 {
     (design.changes["/pair/center_distance_mm"].as_f64().unwrap() - 40.2) / 0.02
 }
 
-/// What the teeth of a gear make of a result: the deviation of one of them.
+/// The part of a result that comes from the teeth of a gear: the deviation of one of them.
 fn stands_out(design: &Design, gear: Member) -> f64 {
     1e6 * teeth(design, gear).profile_slope[3]
 }
@@ -481,7 +481,7 @@ fn shares_of_inspected_gears_are_those_that_the_result_was_made_of() {
         let gear = driven_of(design);
         1e6 * Inspection::of(gear, 6).total_pitch_deviation(gear.deviations())
     };
-    // What passed of the driven gear as a whole, of the driving one in one tooth, and the distance.
+    // The passed part of the driven gear as a whole, of the driving one in one tooth, and the distance.
     let parts = |design: &Design| {
         [
             3.0 * moved(design),

@@ -2,7 +2,7 @@
 
 use crate::sample::percentile::percentile;
 
-/// So many bars a histogram has at most.
+/// Maximum number of bars of a histogram.
 const MOST_BARS: f64 = 64.0;
 
 /// Bars of one width between the smallest and the largest value.

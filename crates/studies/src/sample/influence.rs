@@ -1,11 +1,11 @@
 //! Influences: the part of a result's variance that an input makes, of first order (Sobol').
 //!
-//! The share of x is Var(E[y | x])/Var(y): what would vanish on average if x were known. Both estimators use the members as they are and cost no
-//! further one.
+//! The share of x is Var(E[y | x])/Var(y): the part of the variance that would vanish on average if x were known. Both estimators use the members as they are,
+//! without further ones.
 
 use crate::sample::{BATCHES, Estimate, REPLICATES};
 
-/// So many neighbors to each side are looked at: more settle the average, and lie farther off.
+/// Number of neighbors to each side: more of them settle the average, and lie farther off.
 const MOST_NEIGHBORS: usize = 16;
 
 /// Members in the order of a number that is an input of theirs.
@@ -49,8 +49,8 @@ impl Ranked {
             .collect();
         let parts = parts.unwrap_or_default();
         let limits = Estimate::of_parts(value, &parts);
-        // Fewer members lie farther apart; what that makes of the estimate bounds what is left of it in the whole. A third of the way to each limit is
-        // added because shares of batches are not normal.
+        // Fewer members lie farther apart; the effect on the estimate bounds the same effect in the whole. A third of the way to each limit is added because
+        // shares of batches are not normal.
         let half = limits.high.map_or(0.0, |high| high - value);
         let apart =
             half / 3.0 + crate::sample::mean(&parts).map_or(0.0, |mean| (mean - value).abs());
@@ -91,7 +91,7 @@ fn share_of(sorted: &[(u32, f64)]) -> Option<f64> {
     (count > 0).then(|| sum / count as f64 / variance)
 }
 
-/// Whether so little is rounding.
+/// True if a variance is only rounding.
 fn is_nothing(variance: f64, mean: f64) -> bool {
     variance <= 1e-24 * mean * mean
 }
@@ -141,7 +141,7 @@ pub fn of_group(pairs: &[[f64; 2]]) -> Option<Estimate> {
     }))
 }
 
-/// Within what a share can be.
+/// The estimate within 0 and 1.
 fn bounded(estimate: Estimate) -> Estimate {
     let part = |value: f64| value.clamp(0.0, 1.0);
     Estimate {
@@ -239,8 +239,8 @@ mod tests {
 
     #[test]
     fn limits_of_shares_of_groups_hold_the_truth() {
-        // What is common and what is each one's own are normal, of variances 3 and 7; as they are, and as exponents of a tenth of them, which is askew: of a
-        // log-normal law the share is (exp(c) - 1)/(exp(c + d) - 1).
+        // The common part and the own parts are normal, of variances 3 and 7; as they are, and as exponents of a tenth of them, which is askew: of a log-normal
+        // law the share is (exp(c) - 1)/(exp(c + d) - 1).
         let (common, own) = (0.3_f64, 0.7_f64);
         let askew = (common.exp() - 1.0) / ((common + own).exp() - 1.0);
         for (make, truth) in [

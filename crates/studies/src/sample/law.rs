@@ -5,7 +5,7 @@ use crate::sample::normal;
 /// The law of a quantity that varies from member to member.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Law {
-    /// The normal law, cut off below `low` and above `high`: what would lie beyond is not made.
+    /// The normal law, cut off below `low` and above `high`.
     Normal {
         /// The mean of the law before it is cut.
         mean: f64,
@@ -46,7 +46,7 @@ impl Law {
             } => {
                 let [a, b] = [low, high].map(|end| (end - mean) / standard_deviation);
                 let below = normal::distribution(a);
-                // What lies above is found as such, because one less a small number forgets it.
+                // The upper tail is computed by itself, because one less a small number loses its digits.
                 let above = normal::distribution(-b);
                 let z = if u < 0.5 {
                     normal::quantile(below + u * (1.0 - below - above))

@@ -1,7 +1,7 @@
-//! Populations: members drawn from laws, and what the results of some of them say of all.
+//! Populations: members drawn from laws, and estimates for all of them from the results of some.
 //!
-//! Read [`law`] (how a quantity is spread), [`points`] (where the members stand), then what is made of their results: [`percentile`] with
-//! its confidence limits, [`histogram`], and [`influence`], the part of the variance that an input makes.
+//! Read [`law`] (spread of a quantity), [`points`] (places of the members), then the statistics of their results: [`percentile`] with its confidence limits,
+//! [`histogram`], and [`influence`], the share of an input in the variance.
 //!
 //! Members come in [`REPLICATES`] replicates, member n in replicate n mod 16. Of Sobol' points each replicate is scrambled by itself, so that the
 //! spread between replicates says how far the whole is to be trusted. Two neighbors n and n xor 1 stand in a [`batch`]; members of a batch
@@ -18,10 +18,10 @@ pub mod percentile;
 pub mod points;
 mod student;
 
-/// So many replicates has a sample.
+/// Number of replicates of a sample.
 pub const REPLICATES: u32 = 16;
 
-/// So many batches, of two replicates each.
+/// Number of batches, of two replicates each.
 pub const BATCHES: usize = REPLICATES as usize / 2;
 
 /// The batch that `member` stands in. Batches are independent of each other.
@@ -49,7 +49,7 @@ pub fn standard_deviation(values: &[f64]) -> Option<f64> {
 /// An estimate and its 95 % confidence limits; a limit is none where the sample is too small to tell one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
-    /// What is estimated.
+    /// Estimate.
     pub value: f64,
     /// With 95 % confidence it is not below this.
     pub low: Option<f64>,

@@ -103,13 +103,13 @@ pub fn design_effect(pairs: &[[f64; 2]], count: usize, limit: f64, share: f64) -
 fn ranks(n: u32, p: f64) -> [Option<u32>; 2] {
     // 2.5 % to the digits that anybody tells: 0.99^367 is 0.02501.
     const EACH: f64 = 0.025_05;
-    // So many standard deviations from the mean nothing adds to either sum.
+    // Number of standard deviations from the mean beyond which nothing adds to either sum.
     const NOTHING: f64 = 12.0;
     let mean = f64::from(n) * p;
     let reach = NOTHING * (mean * (1.0 - p)).sqrt() + NOTHING;
     let first = (mean - reach).max(0.0) as u32;
     let last = ((mean + reach) as u32).min(n);
-    // So many members are not above the quantile: B of the binomial law. It lies below rank l with P(B < l).
+    // Number of members not above the quantile: B of the binomial law. It lies below rank l with P(B < l).
     let mut below = 0.0;
     let mut low = None;
     for k in first..n {
@@ -119,7 +119,7 @@ fn ranks(n: u32, p: f64) -> [Option<u32>; 2] {
         }
         low = Some(k + 1);
     }
-    // It lies above rank u with P(B >= u).
+    // The quantile lies above rank u with P(B >= u).
     let mut above = 0.0;
     let mut high = None;
     for k in (1..=last).rev() {

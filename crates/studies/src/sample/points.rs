@@ -6,13 +6,13 @@ use sobol_burley::parts::{hash, owen_scramble_rev, sobol_rev};
 
 use crate::sample::REPLICATES;
 
-/// So many members of one replicate at most have a point of their own.
+/// Maximum number of members of one replicate with a point of their own.
 const LONGEST_SEQUENCE: u32 = 1 << 16;
 
-/// So many members a sample may have.
+/// Maximum number of members of a sample.
 pub const MOST_MEMBERS: u32 = REPLICATES * LONGEST_SEQUENCE;
 
-/// So many axes the points have.
+/// Number of axes of the points.
 pub const MOST_AXES: u32 = sobol_burley::NUM_DIMENSIONS;
 
 /// How the members of a sample are spread.
@@ -29,7 +29,7 @@ pub enum Sampling {
 pub struct Points {
     /// How they are spread.
     pub sampling: Sampling,
-    /// What they are drawn from.
+    /// Seed.
     pub seed: u32,
 }
 
@@ -149,7 +149,7 @@ mod tests {
         assert_eq!(at(Sampling::Random, 1), RANDOM_OF_SEED_1);
     }
 
-    // What this gave when it was written; a change would change every population that anybody has drawn.
+    // Values of the first version; a change would change every population that anybody has drawn.
     const SOBOL_OF_SEED_1: [f64; 4] = [
         0.867_147_446_726_448_8,
         0.621_823_520_981_706_7,

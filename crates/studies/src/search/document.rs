@@ -1,4 +1,4 @@
-//! The document of a search, and what is wrong with one.
+//! The document of a search, and its faults.
 
 use std::sync::LazyLock;
 
@@ -24,7 +24,7 @@ const MOST: usize = 50;
 const PATH: Text = text("Path", 300);
 
 words! {
-    /// What of several torques counts.
+    /// Choice among several torques.
     pub(crate) enum Torques {
         Largest = "largest":
             "of the torque at which it is worst: the largest value, in at_least the smallest",
@@ -33,24 +33,24 @@ words! {
 }
 
 document! {
-    /// Finds the design that has the least of something: asks for designs generation by generation, each chosen by what came of those before.
+    /// A search for the design with the least value of a goal. It asks for designs generation by generation, each chosen by the outcomes of earlier ones.
     pub(crate) struct SearchDocument as "Search", "Search" {
-        /// What may differ between designs.
+        /// Fields that differ between designs.
         variables: Vec<VariableDocument> =
             list("Variables", EACH, MOST).not_empty(Code::MissingField, "name what may differ"),
-        /// What is to be small. Of two goals the front is sought: the designs of which no other one is better in both.
+        /// Goals to make small. Of two goals the result is the front: the designs that no other one beats in both.
         minimize: Vec<GoalDocument> =
             list("Goals", EACH, 2).not_empty(Code::MissingField, "say what is to be small"),
-        /// What has to hold. Default: nothing.
+        /// Conditions. Default: none.
         subject_to: Vec<ConditionDocument> = list("Conditions", EACH, MOST).or_empty(),
         /// The design as it is made: a goal or condition with a percent is looked at over its members.
         population: Option<PopulationDocument> =
             absent(nested("Population"), "designs as they are drawn"),
-        /// So many designs are computed at most, each over all members of the population.
+        /// Maximum number of designs that are computed, each over all members of the population.
         evaluations: u32 = number("Evaluations", "1", 2.0, MOST_EVALUATIONS).or(400.0),
         /// After so much time no further generation is begun.
         seconds: Option<f64> = absent(number("Time", "s", 1.0, 1e7), "no limit"),
-        /// What everything random is drawn from: the same seed gives the same designs.
+        /// Seed of all random numbers: the same seed gives the same designs.
         seed: u32 = SEED,
     }
 }
@@ -74,7 +74,7 @@ document! {
 }
 
 document! {
-    /// What is to be small: a quantity, or a cost.
+    /// A goal to make small: a quantity, or a cost.
     pub(crate) struct GoalDocument as "SearchGoal", "Goal" {
         /// The quantity.
         quantity: Option<QuantityName> = or_else(&["cost"], ()),
@@ -95,19 +95,19 @@ document! {
     pub(crate) struct CostDocument as "SearchCost", "Part of a cost" {
         /// The path of a variable.
         path: String = PATH,
-        /// What one unit of it costs; negative where more of it is cheaper.
+        /// Cost of one unit of it; negative where more of it is cheaper.
         weight: f64 = value("Weight"),
     }
 }
 
 document! {
-    /// What has to hold.
+    /// A condition.
     pub(crate) struct ConditionDocument as "SearchCondition", "Condition" {
         /// The quantity.
         quantity: QuantityName = (),
-        /// It is not to be less than this.
+        /// Lower bound.
         at_least: Option<f64> = absent(value("At least"), "no bound"),
-        /// It is not to be more than this.
+        /// Upper bound.
         at_most: Option<f64> = absent(value("At most"), "no bound"),
         /// Which torque it is told of.
         torques: Torques = word("Torques").or(Torques::Largest),
@@ -153,7 +153,7 @@ impl Kind for QuantityName {
 }
 
 impl Search {
-    /// Reads the search that stands at `place` over `base`. What is wrong is reported there.
+    /// Reads the search at `place` over `base`. Faults are reported there.
     pub(crate) fn read(
         node: &Node,
         base: Option<&Node>,
@@ -271,10 +271,10 @@ fn variables(
 static POPULATION: LazyLock<Schema> =
     LazyLock::new(|| Schema::of::<PopulationDocument>("a population"));
 
-/// What kind of number the field takes that is a variable: one of the submission, or one of the population.
+/// Kind of number of a variable's field: one of the submission, or one of the population.
 fn number_kind(pointer: &Pointer) -> Result<NumberKind, (Code, String)> {
     match pointer.steps() {
-        // The members are what designs are compared by.
+        // Designs are compared by their members.
         [first, only] if first == OF_POPULATION && (only == "size" || only == "seed") => {
             let detail = format!("{} has to be the same for all designs.", pointer.text());
             Err((Code::OutOfRange, detail))
@@ -339,7 +339,7 @@ impl VariableDocument {
     }
 }
 
-/// What goals and conditions are read with.
+/// Reader of goals and conditions.
 struct Reader<'a> {
     population: Option<&'a Population>,
     variables: &'a [Variable],

@@ -12,7 +12,7 @@ use crate::table::{Of, RowState, Summary};
 /// No condition fails by more than so many times its limit, as far as a search cares.
 const WORST_VIOLATION: f64 = 10.0;
 
-/// What of several values counts: the largest is the worst of what is to be small, the smallest of what is to be large.
+/// Choice among several values: the largest is the worst of a value to make small, the smallest of one to make large.
 #[derive(Clone, Copy)]
 enum Worst {
     Largest,
@@ -49,7 +49,7 @@ impl Measure {
                 let mut values: Vec<f64> = numbers.collect();
                 values.sort_by(f64::total_cmp);
                 let found = (!values.is_empty()).then(|| percentile(&values, percent))?;
-                // Between a number and what lies beyond all there is nothing but that.
+                // A number and an infinite one have only the infinite one between them.
                 Some(if found.is_finite() {
                     found
                 } else {
@@ -80,7 +80,7 @@ impl Measure {
 }
 
 impl Condition {
-    /// What it is about, and by how much it fails as a share of its limit; none if the design does not tell it.
+    /// Its value, and its violation as a share of its limit; `None` if the design does not have it.
     fn of(
         &self,
         design: &Summary,
@@ -109,7 +109,7 @@ impl Condition {
     }
 }
 
-/// What a design comes to: the search's view of it, and the numbers themselves.
+/// Outcome of a design: the search's view of it, and the numbers themselves.
 pub(crate) struct Judged {
     pub(crate) outcome: Outcome,
     /// Of each goal; none where it is not told.
@@ -119,8 +119,8 @@ pub(crate) struct Judged {
 }
 
 impl Search {
-    /// Whether `design` keeps every condition that is about designs as they are drawn, and tells every such goal; none where all it could tell holds, and
-    /// others are about members.
+    /// True if `design` keeps every condition on designs as they are drawn, and has every such goal; `None` where all known ones hold, and others are about
+    /// members.
     pub(crate) fn is_kept_as_drawn(&self, design: &Summary, gear: GearName) -> Option<bool> {
         let drawn = |measure: &Measure| measure.percent.is_none();
         let keeps = |one: &Condition| {
@@ -142,7 +142,7 @@ impl Search {
         others.is_empty().then_some(true)
     }
 
-    /// What a design comes to, its variables having these values.
+    /// Outcome of a design, whose variables have these values.
     pub(crate) fn judge(
         &self,
         values: &[f64],
@@ -177,8 +177,7 @@ impl Search {
         let known: Option<Vec<f64>> = goals.iter().copied().collect();
         let outcome = match (known, violations) {
             (Some(goals), Some(violations)) => Outcome::Computed { goals, violations },
-            // It can be had, and does not tell what it is to be judged by: a pressure at a sharp corner has no limit, and too many members may
-            // have no results.
+            // The design can be built, and lacks a value that judges it: a pressure at a sharp corner has no limit, and too many members may have no results.
             _ => Outcome::Refused(failed_share(members).unwrap_or(0.0)),
         };
         let finite = |(value, _): (f64, f64)| Some(value).filter(|value| value.is_finite());
@@ -201,7 +200,7 @@ pub(crate) fn failed_share(members: &[Option<Summary>]) -> Option<f64> {
 
 /// How far a row without results is from having some: by which share of itself each wrong field would have to change.
 pub(crate) fn distance(row: &RowState, submission: Option<&Node>) -> f64 {
-    /// That of what nothing near would mend.
+    /// Distance of a design that no small change would mend.
     const FAR: f64 = 1.0;
     let problem: Option<Problem> = row
         .problem

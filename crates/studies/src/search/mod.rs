@@ -1,7 +1,7 @@
-//! A search: which designs of a base to compute, each chosen by what came of those before.
+//! A search: the choice of designs of a base to compute, each by the outcomes of earlier ones.
 //!
-//! `document` says what is sought, `Search` what a point of the search means as a design, `measure` how good a design is. [`searching`](crate::searching) leads
-//! from one generation to the next. Which points to compute is the business of [`optimum`](crate::optimum).
+//! `document` declares goals and variables, `Search` turns a point of the search into a design, `measure` judges a design. [`searching`](crate::searching)
+//! leads from one generation to the next. [`optimum`](crate::optimum) chooses the points.
 
 mod document;
 pub(crate) mod measure;
@@ -28,7 +28,7 @@ pub(crate) use document::SearchDocument;
 /// The most designs of a search.
 const MOST_EVALUATIONS: f64 = 20_000.0;
 
-/// A search. What exists has variables that the base, or the population, takes numbers for.
+/// A search. Each of its variables has been checked: the base, or the population, takes a number there.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Search {
     pub(crate) variables: Vec<Variable>,
@@ -48,7 +48,7 @@ pub(crate) struct Variable {
     low: f64,
     high: f64,
     axis: Axis,
-    /// Whether the field takes whole numbers.
+    /// True if the field takes whole numbers.
     whole: bool,
 }
 
@@ -95,7 +95,7 @@ impl Variable {
     pub(crate) fn at(&self, u: f64) -> f64 {
         let value = self.low + u * (self.high - self.low);
         match self.axis {
-            // So many digits are the same whichever machine adds them up.
+            // Digits that are the same on every machine that adds them up.
             Axis::Steps(_) => significant(value, 12),
             // Nobody makes anything finer than a hundred thousandth of its range, or wants to read it.
             Axis::Continuous => {
@@ -167,7 +167,7 @@ impl Search {
             .chain(varied.map(|varied| &varied.path))
     }
 
-    /// Those that its variables are.
+    /// Paths of the variables in the base.
     pub(crate) fn paths_of_base(&self) -> impl Iterator<Item = &Pointer> {
         let own = self
             .variables
@@ -181,7 +181,7 @@ impl Search {
         self.variables.iter().map(|variable| &variable.path)
     }
 
-    /// What of the changes of a row are its variables; none if one is missing.
+    /// The variables among the changes of a row; `None` if one is missing.
     pub(crate) fn changes_among(&self, row: &Map<String, Value>) -> Option<Map<String, Value>> {
         let paths = self.paths_of_variables().map(Pointer::text);
         paths
@@ -203,13 +203,13 @@ impl Search {
         goals.collect()
     }
 
-    /// What its conditions are about, as a line of text names it.
+    /// Its conditions, as a line of text names them.
     pub(crate) fn conditions_in_words(&self) -> Vec<String> {
         let conditions = self.conditions.iter();
         conditions.map(|one| one.measure.in_words()).collect()
     }
 
-    /// What is searched, as numbers.
+    /// The space of the search, as numbers.
     pub(crate) fn space(&self, base: &Node) -> Space {
         Space {
             axes: self
@@ -244,7 +244,7 @@ impl Search {
         })
     }
 
-    /// What a point of the search changes: of the variables, in their order.
+    /// The changes at a point of the search: values of the variables, in their order.
     pub(crate) fn changes_at(&self, point: &[f64]) -> Map<String, Value> {
         let placed = self.variables.iter().zip(point);
         placed
@@ -256,7 +256,7 @@ impl Search {
     ///
     /// # Errors
     ///
-    /// What is wrong with it, where a law does not go with its variables.
+    /// Faults of a law beside the variables.
     pub(crate) fn population_with(
         &self,
         base: &Node,
@@ -308,7 +308,7 @@ impl Search {
         })
     }
 
-    /// Designs that show what may come of the search before anything is computed: the base, the ends of each variable, and some spread evenly.
+    /// Designs that show possible outcomes of the search before anything is computed: the base, the ends of each variable, and some spread evenly.
     pub(crate) fn trials(&self, base: &Node) -> impl Iterator<Item = Map<String, Value>> {
         const SPREAD: u32 = 32;
         let points = Points {
@@ -351,7 +351,7 @@ impl Search {
     }
 }
 
-/// What a row of a search is, as its label says.
+/// Kind of a row of a search, by its label.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Role {
     /// A design as it is drawn, by its number, from 1.
@@ -381,7 +381,7 @@ impl Role {
         }
     }
 
-    /// What the row of this label is.
+    /// Kind of the row of this label.
     pub(crate) fn of_label(label: &str) -> Option<Self> {
         if label == Self::Confirmed.to_string() {
             return Some(Self::Confirmed);
@@ -396,7 +396,7 @@ impl Role {
     }
 }
 
-/// What the best design is changed by to be confirmed: to the method that sees most of what its own sees, and to the finest grid.
+/// Changes of the best design for its confirmation: the method that has most of the effects of its own, and the finest grid.
 pub(crate) fn confirming(method: Option<&Node>) -> Vec<(Pointer, Value)> {
     let method = if method.is_some_and(sees_faces) {
         "three_dimensional"

@@ -1,4 +1,4 @@
-//! What is sought, what is refused, and how a search goes on from its rows.
+//! Goals, refusals, and the continuation of a search from its rows.
 
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
@@ -702,7 +702,7 @@ fn a_member_without_results_lies_beyond_every_bound_in_the_direction_that_hurts(
         );
         assert!(state.refusals.is_empty(), "the designs themselves were had");
     }
-    // 1, 1, 2 and what lies beyond: the median is 1.5; with it on the other side it is 1.
+    // 1, 1, 2 and an infinite value: the median is 1.5; with it on the other side it is 1.
     let median = |bound| {
         judged(RANGE, bound, 50)
             .best

@@ -1,4 +1,4 @@
-//! A search under way: which rows come next, and what came of those that are there; `state` is what its study shows of it.
+//! A running search: choice of the next rows, and outcomes of the earlier ones; `state` is the view of its study.
 
 mod state;
 
@@ -14,8 +14,8 @@ use crate::table::{RowState, Summary};
 
 pub use state::*;
 
-/// A search and what came of its rows so far. It is a function of the study and of its rows, so that nothing else has to be kept: who tells a
-/// new one the same rows again goes on where the first one stopped.
+/// A search and the outcomes of its rows so far. It is a function of the study and of its rows, so that nothing else has to be stored: a new one continues
+/// where the old one stopped once it has the same rows.
 pub struct Searching {
     pub(crate) study: Study,
     driver: Driver,
@@ -28,7 +28,7 @@ pub struct Searching {
     refusals: Refusals,
     /// Why members of designs that could be had could not.
     member_refusals: Refusals,
-    /// The designs of the generation that is being looked at, and what came of the first of them.
+    /// The designs of the current generation, and the outcomes of the first of them.
     asked: Vec<Asked>,
     fresh: Vec<Outcome>,
     /// The design whose rows are being read, and how many rows of the generation follow.
@@ -43,7 +43,7 @@ struct Asked {
     number: usize,
     point: Vec<f64>,
     changes: Map<String, Value>,
-    /// So many of its rows are members.
+    /// Number of its rows that are members.
     members: u32,
 }
 
@@ -102,7 +102,7 @@ impl Searching {
         self.search().seconds()
     }
 
-    /// Whether the row of this label is the best design once more: it stands behind all others.
+    /// True if the row of this label is the confirmation of the best design: it stands behind all others.
     pub fn is_confirmation(label: &str) -> bool {
         Role::of_label(label) == Some(Role::Confirmed)
     }
@@ -175,7 +175,7 @@ impl Searching {
         );
     }
 
-    /// What came of the next row of the generation that was asked for last.
+    /// Reports the outcome of the next row of the current generation.
     pub fn tell(&mut self, row: RowState) {
         match &mut self.looked {
             Some(design) if matches!(Role::of_label(&row.label), Some(Role::Member(..))) => {
@@ -277,7 +277,7 @@ impl Searching {
         )
     }
 
-    /// What came of the best design once more.
+    /// Reports the outcome of the confirmation.
     pub fn confirm(&mut self, row: &RowState) {
         let search = self.search();
         let values: Vec<f64> = search

@@ -45,11 +45,11 @@ pub struct FoundDesign {
     /// The variables: JSON pointers and values.
     #[schema(value_type = Object)]
     pub values: Map<String, Value>,
-    /// Whether it keeps every condition; of the best design, whether it also does on the fine grid, once that has been computed.
+    /// True if it keeps every condition; for the best design, also on the fine grid, once that has been computed.
     pub feasible: bool,
     /// Its goals, in the order of `minimize`.
     pub goals: Vec<Option<f64>>,
-    /// What the conditions are about, in the order of `subject_to`.
+    /// Values of the conditions, in the order of `subject_to`.
     pub conditions: Vec<Option<f64>>,
     /// The share of its members that could not be built or computed; null where it is not looked at over members. In a percentile such a member lies
     /// beyond every number, in the direction that hurts; one that falls among them is null.
@@ -86,14 +86,14 @@ pub enum SearchEnd {
 pub struct ConfirmedDesign {
     /// Its place in the table, from 0.
     pub row: u64,
-    /// Whether it keeps every condition there, false where there are no results. Null where all that are about the design as it is drawn are
-    /// kept, and others are about members, which are not computed again.
+    /// True if it keeps every condition there, false where there are no results. Null where all conditions on the drawn design are kept, and others are about
+    /// members, which are not computed again.
     pub feasible: Option<bool>,
     /// Its goals there, in the order of `minimize`; null where they are about members.
     pub goals: Vec<Option<f64>>,
-    /// What the conditions are about there, in the order of `subject_to`; null where they are about members.
+    /// Values of the conditions there, in the order of `subject_to`; null where they are about members.
     pub conditions: Vec<Option<f64>>,
-    /// What a second grid level changes, the largest over the torques; null where there are no results.
+    /// Change by a second grid level, the largest over the torques; null where there are no results.
     pub error_estimate: Option<ErrorEstimateDocument>,
     /// Why there are no results.
     #[serde(default)]

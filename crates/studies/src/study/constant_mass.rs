@@ -10,8 +10,8 @@ use meshwright_wire::units::significant;
 use serde_json::{Map, Value, json};
 
 document! {
-    /// Sets the holes of each design so that they remove the same share of the blank: round ones get a radius, slots a width of twice that radius, alike in
-    /// all patterns. A design without holes is left alone. What is set stands among the changes of the design's row.
+    /// Sets the holes of each design so that they remove the same share of the blank: round ones get a radius, slots a width of twice that radius, the same in
+    /// all patterns. A design without holes keeps none. The sizes stand among the changes of the design's row.
     pub(super) struct ConstantMass as "ConstantMass", "Constant mass" {
         /// The gear with the holes.
         pub(super) gear: Member = word("Gear"),
@@ -39,7 +39,7 @@ struct Pattern {
 }
 
 impl ConstantMass {
-    /// Whether `pointer` names a size that it sets: that of the pattern, or of each pattern of a list.
+    /// True if `pointer` names a size that it sets: that of the pattern, or of each pattern of a list.
     pub(super) fn sets(&self, pointer: &str) -> bool {
         let Some(rest) = pointer.strip_prefix(&*self.holes_pointer()) else {
             return false;
@@ -57,8 +57,8 @@ impl ConstantMass {
         format!("/pair/{}/blank/holes", self.gear.word())
     }
 
-    /// Gives the holes of `submission` their radius r, and slots the width 2 r, and notes it among the changes; the patterns of a list get the
-    /// same. What cannot be read is left to the check of the submission.
+    /// Gives the holes of `submission` their radius r, and slots the width 2 r, and notes it among the changes; the patterns of a list get the same. The check
+    /// of the submission reports values that cannot be read.
     ///
     /// Σ N (π r² + 2 r R φ) = percent · π (((r_a + r_f)/2)² − r_bore²), DESIGN section 4; R φ is the length of a slot between the centers of its ends.
     pub(super) fn apply(&self, submission: &mut Node, changes: &mut Map<String, Value>) {

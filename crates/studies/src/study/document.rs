@@ -28,22 +28,22 @@ pub(super) const MOST_CHANGES: usize = 100;
 /// The most characters of a label, and of a name.
 pub(super) const LONGEST_LABEL: usize = 200;
 
-/// What the client calls the study.
+/// The client's name for the study.
 pub(super) const NAME: Declared<Optional<Text>> = Declared::new(
     "name",
     "What the client calls the study.",
     absent(text("Name", LONGEST_LABEL), "none"),
 );
 
-/// How much of what is computed is kept.
+/// Extent of the stored results.
 pub(super) const KEEP: Declared<OneWord<Kept>> = Declared::new(
     "keep",
     "How much is kept of each design that has been computed.",
     word("Keep").or(Kept::Results),
 );
 
-/// What stands in the lists of a document, as it is written there: values are kept as they were sent, and read one at a time,
-/// since those of a hundred thousand designs take fifty times their text.
+/// The lists of a document, as they are written: values are kept as they were sent, and read one at a time, since those of a hundred thousand designs take
+/// fifty times their text.
 #[derive(Default, Deserialize)]
 struct Written<'a> {
     #[serde(borrow)]
@@ -59,9 +59,9 @@ struct WrittenAxis<'a> {
     values: Vec<&'a RawValue>,
 }
 
-/// The item `i` of what is written.
+/// The item `i` of the written list.
 fn value_at(written: Option<&[&RawValue]>, i: usize) -> Value {
-    // What is no list has been refused as such.
+    // A value that is not a list has been refused as such.
     let item = written.and_then(|items| items.get(i));
     let value = item.and_then(|item| serde_json::from_str(item.get()).ok());
     value.unwrap_or_default()
@@ -95,7 +95,7 @@ pub(super) fn read(node: Node, document: String, errors: &Errors) -> Option<Stud
     })
 }
 
-/// What a study may choose its designs by.
+/// Fields of a study that choose its designs.
 pub(super) const PLANS: [&str; 4] = ["axes", "designs", "population", "search"];
 
 fn read_plan(

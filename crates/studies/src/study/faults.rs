@@ -1,5 +1,5 @@
-//! What is wrong with a study wherever it stands: fields that there are not, values that no submission may have, in the
-//! base and in each change. Whether values go together is each design's own matter.
+//! Faults of a study independent of the place: unknown fields, and values that no submission may have, in the base and in each change. Each design checks its
+//! values against each other.
 
 use std::collections::HashSet;
 
@@ -47,7 +47,7 @@ impl Study {
         }
     }
 
-    /// Refuses what is wrong with a field of the base, unless each design sets it.
+    /// Refuses faulty fields of the base, unless each design sets them.
     fn check_base(&self, errors: &Errors) {
         let mended = |error: &FieldError| {
             let pointer = &error.pointer;
@@ -77,7 +77,7 @@ impl Study {
         let Plan::Axes(axes) = &self.plan else {
             return Ok(());
         };
-        // An axis may change a part of what an axis before it brings.
+        // An axis may change a part that an axis before it brings.
         let mut before = self.base.clone();
         let mut right = HashSet::new();
         for (i, axis) in axes.iter().enumerate() {
@@ -116,7 +116,7 @@ impl Study {
         Ok(())
     }
 
-    /// Refuses what would be wrong with a varied field in the middle of its law.
+    /// Refuses a varied field that would be faulty in the middle of its law.
     fn check_population(&self, population: &Population, at: &str, errors: &Errors) {
         let mut submission = self.base.clone();
         let places = population.varied().iter().zip(0..).map(|(varied, i)| {
@@ -143,7 +143,7 @@ impl Study {
         }
     }
 
-    /// Refuses what would be wrong with a variable at an end of its range.
+    /// Refuses a variable that would be faulty at an end of its range.
     fn check_search(&self, search: &Search, errors: &Errors) {
         for (i, end, changes) in search.ends() {
             let path = search.path_of(i);
@@ -183,7 +183,7 @@ impl Study {
         }
     }
 
-    /// Every place of the study that names what designs change, and what it names.
+    /// Every place of the study with a path of a change, and the path.
     fn places(&self) -> Vec<(String, &Pointer)> {
         fn numbered<'a>(
             at: &str,
@@ -219,7 +219,7 @@ impl Study {
     }
 }
 
-/// Where a design of the list names what it changes.
+/// Place of a design of the list that has this path.
 fn place_of_change(design: usize, path: &Pointer) -> String {
     format!("/designs/{design}/changes/{}", escaped(path.text()))
 }
@@ -271,7 +271,7 @@ fn names_nothing(path: &Pointer, place: &str) -> FieldError {
     FieldError::new(place, Code::UnknownField, detail)
 }
 
-/// Whether `pointer` names something in the object in which `path` names a field, or that object.
+/// True if `pointer` names a field beside that of `path`, or the object of both.
 fn is_beside(path: &Pointer, pointer: &str) -> bool {
     let object = path
         .text()
@@ -283,7 +283,7 @@ fn is_beside(path: &Pointer, pointer: &str) -> bool {
             .is_some_and(|(within, _)| within == object)
 }
 
-/// Whether nothing at all is wrong with what the changes bring, numbers beyond their bounds included.
+/// True if the changes are free of faults, numbers beyond their bounds included.
 fn report_misread(
     submission: &Node,
     changes: &[(&Pointer, &Value, String)],
@@ -308,7 +308,7 @@ fn report_misread(
     is_right
 }
 
-/// What decides whether changes name known fields with values of the right types: everything but how large numbers are.
+/// The part of a change that decides whether it names known fields with values of the right types: all but the size of numbers.
 fn form(changes: &[(&Pointer, &Value, String)]) -> String {
     fn add(value: &Value, form: &mut String) {
         match value {

@@ -1,4 +1,4 @@
-//! What designs of axes are called.
+//! Labels of the designs of axes.
 
 use std::collections::HashSet;
 

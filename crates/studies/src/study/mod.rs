@@ -1,10 +1,10 @@
 //! A study: one submission in many variants, each of which is computed.
 //!
-//! A study has a `base`, and says in one of four ways what changes in it, by JSON pointers (RFC 6901) into the submission:
+//! A study has a `base`, and changes it in one of four ways, by JSON pointers (RFC 6901) into the submission:
 //! - `axes`: every combination of their values, the last axis changing fastest, as nested loops written in their order would;
 //! - `designs`: a list with labels;
 //! - `population`: members drawn from laws;
-//! - `search`: designs chosen by what came of those before.
+//! - `search`: designs chosen by the outcomes of earlier ones.
 //!
 //! A fault of the study itself is refused: a pointer that names no field, a value of the wrong type, a label that stands twice. So are a field of
 //! the base that a design does not set, and more designs than the limit. A fault of one design is not refused: a tooth that is undercut, holes that
@@ -36,7 +36,7 @@ use crate::population::{Population, Varied};
 use crate::search::{Role, Search, confirming};
 use constant_mass::ConstantMass;
 
-/// One submission in many variants. What exists names fields that there are, and has no more designs than the limit.
+/// One submission in many variants. It has been checked: it names known fields, and has no more designs than the limit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Study {
     /// The document as it was sent, without its white space.
@@ -76,15 +76,15 @@ struct Listed {
 /// One variant of the base.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Design {
-    /// What it is called; no other design of the study is called so.
+    /// Its label; no other design of the study has the same.
     pub label: String,
-    /// What it changes in the base: pointers and values, the hole radius among them where the study sets it.
+    /// Its changes of the base: pointers and values, the hole radius among them where the study sets it.
     pub changes: Map<String, Value>,
     /// The submission, or why there is none.
     pub submission: Result<Submission, Problem>,
 }
 
-/// Places and what stands there.
+/// Places and their values.
 type Changes<'a> = Vec<(&'a Pointer, Cow<'a, Value>)>;
 
 /// A row that has been put together.
@@ -115,13 +115,13 @@ impl Composed {
     }
 }
 
-/// What is drawn for the fields that are varied.
+/// Values drawn for the varied fields.
 fn drawn(varied: &[Varied], values: Vec<f64>) -> impl Iterator<Item = (&Pointer, Cow<'_, Value>)> {
     let drawn = varied.iter().zip(values);
     drawn.map(|(varied, value)| (&varied.path, Cow::Owned(varied.json_of(value))))
 }
 
-/// A document that is JSON, without what stands between its words.
+/// A document that is JSON, without white space between its tokens.
 fn without_white_space(document: &[u8]) -> Result<String, Problem> {
     let (mut in_text, mut is_escaped) = (false, false);
     let stays = |&byte: &u8| {
@@ -142,8 +142,7 @@ impl Study {
     ///
     /// # Errors
     ///
-    /// A [`Problem`]: `malformed_json` (400), `too_large` before anything is expanded, `stopped`, or 422 with what is
-    /// wrong and a JSON pointer into the study.
+    /// A [`Problem`]: `malformed_json` (400), `too_large` before anything is expanded, `stopped`, or 422 with the faults and a JSON pointer into the study.
     pub fn parse(document: &[u8], run: &Run) -> Result<Self, Problem> {
         size::refuse_too_many(document)?;
         let node = Node::parse(document)?;
@@ -181,23 +180,23 @@ impl Study {
         }
     }
 
-    /// What a search makes small, in words.
+    /// The goals of a search, in words.
     pub fn goals(&self) -> Vec<String> {
         self.search().map_or_else(Vec::new, Search::goals_in_words)
     }
 
-    /// What the conditions of a search are about, in words.
+    /// The conditions of a search, in words.
     pub fn conditions(&self) -> Vec<String> {
         let search = self.search();
         search.map_or_else(Vec::new, Search::conditions_in_words)
     }
 
-    /// Whether its designs are the members of one population.
+    /// True if its designs are the members of one population.
     pub fn is_population(&self) -> bool {
         self.population().is_some()
     }
 
-    /// Whether its designs are chosen by a search, one after the other.
+    /// True if its designs are chosen by a search, one after the other.
     pub fn is_search(&self) -> bool {
         self.search().is_some()
     }
@@ -212,7 +211,7 @@ impl Study {
         &self.base
     }
 
-    /// What the client calls it.
+    /// The client's name for it.
     pub fn name(&self) -> Option<&str> {
         self.name.as_deref()
     }
@@ -222,7 +221,7 @@ impl Study {
         &self.tags
     }
 
-    /// How much of what is computed is kept.
+    /// Extent of the stored results.
     pub fn keep(&self) -> Kept {
         self.keep
     }

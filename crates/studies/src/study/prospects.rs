@@ -1,4 +1,4 @@
-//! What becomes of some designs, looked at before any is computed: whether any can be had at all, and whether they tell what a search goes by.
+//! A trial of some designs before any is computed: whether any can be built, and whether they have the values that a search needs.
 
 use meshwright_engine::run::Run;
 use meshwright_wire::declare::{Errors, Node};
@@ -12,13 +12,13 @@ use crate::population::Population;
 use crate::search::{Role, Search};
 use crate::table::Quantity;
 
-/// So many members of a population are tried at most.
+/// Maximum number of members of a population that are tried.
 const MEMBERS: usize = 256;
 
-/// So many designs are looked at for those by which the cost of a study is estimated.
+/// Maximum number of designs that are tried for those from which the cost of a study is estimated.
 const LOOKED_AT: usize = 16;
 
-/// So many designs of a search are tried over its population at most, and so many members of each.
+/// Maximum number of designs of a search that are tried over its population, and of members of each.
 const OF_SEARCH: (usize, u32) = (4, 16);
 
 impl Study {
@@ -26,8 +26,8 @@ impl Study {
     ///
     /// # Errors
     ///
-    /// As [`Study::parse`], and 422 where no member or design could be had, for one reason that none of them would mend, or where they do not tell
-    /// what a search goes by (`quantity_not_told`).
+    /// As [`Study::parse`], and 422 where no member or design can be built, for one reason that none of them would mend, or where they lack a value that a
+    /// search needs (`quantity_not_told`).
     pub fn submitted(document: &[u8], run: &Run) -> Result<Self, Problem> {
         let study = Self::parse(document, run)?;
         let errors = Errors::default();
@@ -59,7 +59,7 @@ impl Study {
         errors.settle(Some(study))
     }
 
-    /// At most `most` designs that can be built, by which the cost of all is estimated: spread over the rows, or over what a search may try.
+    /// At most `most` designs that can be built, from which the cost of all is estimated: spread over the rows, or over the space of a search.
     ///
     /// # Errors
     ///
@@ -135,8 +135,8 @@ impl Study {
         Ok(())
     }
 
-    /// Refuses a search none of whose designs, or none of whose members, can be had for a reason that does not lie in the pair, and one that goes by what they
-    /// do not tell.
+    /// Refuses a search none of whose designs, or none of whose members, can be built for a reason outside of the pair, and one that needs values that they do
+    /// not have.
     fn try_designs(&self, search: &Search, errors: &Errors, run: &Run) -> Result<(), Problem> {
         let (most, members) = OF_SEARCH;
         let [mut of_designs, mut of_members] = [false, true].map(|percent| Asked {
@@ -175,7 +175,7 @@ impl Study {
     }
 }
 
-/// What a search goes by that no design, or no member, comes to so far: where it is asked for, and why the first one that was built does not come to it.
+/// A value that a search needs and that no design, or no member, has so far: the place of the request, and the reason of the first design that was built.
 struct Asked {
     missing: Vec<(String, &'static Quantity, Option<String>)>,
     any_built: bool,

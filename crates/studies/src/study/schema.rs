@@ -1,4 +1,4 @@
-//! What the OpenAPI document says of a study.
+//! The OpenAPI schemas of a study.
 
 use meshwright_wire::Kept;
 use meshwright_wire::declare::{

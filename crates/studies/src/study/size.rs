@@ -17,7 +17,7 @@ const MOST_WORK: u64 = 20_000_000;
 /// Refuses a document with too many designs or values, or too much work. It keeps none, so that ten million of them cost no
 /// memory, and a bomb costs no more than to read it once.
 pub(super) fn refuse_too_many(document: &[u8]) -> Result<(), Problem> {
-    // What is ignored has no size, and a list of it takes no memory.
+    // Ignored values have no size, and a list of them takes no memory.
     #[derive(Deserialize)]
     struct Counted {
         #[serde(default)]
@@ -34,7 +34,7 @@ pub(super) fn refuse_too_many(document: &[u8]) -> Result<(), Problem> {
     }
 
     impl Counted {
-        /// That the base is too large for what is to be made of it.
+        /// Fault of a base that is too large for its designs.
         fn work(&self) -> Option<FieldError> {
             let lengths = || self.axes.iter().map(|axis| axis.values.len());
             let combined = lengths().fold(1, |total: usize, values| {
@@ -50,7 +50,7 @@ pub(super) fn refuse_too_many(document: &[u8]) -> Result<(), Problem> {
         }
     }
 
-    // What is not of this form is refused later, with its place.
+    // A document of another form is refused later, with its place.
     if let Ok(counted) = serde_json::from_slice::<Counted>(document) {
         let long = counted
             .axes

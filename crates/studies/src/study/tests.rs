@@ -1,4 +1,4 @@
-//! What a study is expanded to, and refused for.
+//! Expansion of a study, and its refusals.
 
 use meshwright_wire::examples::STUDY_SECTION_5;
 use serde_json::json;
@@ -76,13 +76,13 @@ fn designs(study: &Study) -> Vec<Design> {
     (0..).map_while(|row| study.design(row)).collect()
 }
 
-/// Whether a study is refused with this code, at these places.
+/// True if a study is refused with this code, at these places.
 fn refuses(document: &Value, code: Code, places: &[&str]) {
     let places: Vec<String> = places.iter().map(|place| (*place).to_owned()).collect();
     assert_eq!(refused(document), (code, places), "{document}");
 }
 
-/// What a study is refused with: code, and pointers.
+/// The refusal of a study: code and pointers.
 fn refused(document: &Value) -> (Code, Vec<String>) {
     let problem = parse(document).expect_err("refused");
     let pointers = problem.errors.iter().map(|error| error.pointer.clone());
@@ -157,7 +157,7 @@ fn constant_mass_sets_the_radius_that_the_paper_s_quarter_needs() {
         let submission = design.submission.as_ref().expect("can be built");
         let driven = submission.case().pair.driven();
         match printed {
-            // Half a digit of what is printed.
+            // Half a digit of the printed value.
             Some(printed) => {
                 assert!((radius(design).unwrap() - printed).abs() < 5e-4, "{label}");
                 assert!((driven.removed_fraction() - 0.25).abs() < 1e-10, "{label}");
@@ -250,7 +250,7 @@ fn one_design_of_the_wrong_type_among_many_of_the_right_one_is_found() {
         [4, 6].map(|i| format!("/designs/{i}/changes/~1pair~1driven~1blank~1holes~1count"));
     let document = listed(designs.collect());
     refuses(&document, Code::WrongType, &[&places[0], &places[1]]);
-    // Of torques each may have digits; what comes first is beyond its bounds, which is the matter of its design.
+    // Digits of torques are counted from the first one; that one is out of range, which its design reports.
     let torques = [
         json!([-1.5]),
         json!([1.5]),
@@ -419,7 +419,7 @@ fn a_base_that_no_design_mends_is_refused_once() {
     let mut document = axes(bores);
     document["base"].as_object_mut().unwrap().remove("method");
     refuses(&document, Code::MissingField, &["/base/method"]);
-    // What every design brings need not stand in the base, and need not be right there.
+    // A value that every design brings may be absent or wrong in the base.
     document["axes"] = json!([{ "path": "/method", "values": ["flexible"] }]);
     assert!(parse(&document).is_ok());
     let item = json!([{ "path": "/output_torques_n_m/0", "values": [20] }]);

@@ -17,7 +17,7 @@ pub struct CsvTable {
 }
 
 impl CsvTable {
-    /// A table whose rows change what is at these pointers, with columns for what it has `told`.
+    /// A table whose rows change the values at these pointers, with columns for the quantities in `told`.
     pub fn new(pointers: Vec<String>, quantities: KnownQuantities) -> Self {
         Self {
             pointers,

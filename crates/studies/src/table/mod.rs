@@ -47,7 +47,7 @@ pub struct StudyResults {
     pub rows: Vec<TableRow>,
 }
 
-/// Makes rows of what has come of all designs, `gear` being the study's.
+/// Rows of all designs with their outcomes, for `gear`, the study's.
 pub fn table(gear: GearName, states: Vec<RowState>) -> Vec<TableRow> {
     let mut outline = Outline::default();
     for state in &states {

@@ -9,8 +9,8 @@ use super::quantity::{Of, QUANTITIES, Quantity};
 use super::row::RowState;
 use super::summary::{Conditions, Summary};
 
-/// What has to be known of all rows before one of them can be shown: which are best, and what they change. It keeps three
-/// numbers of each row, so that a table of any length is made row by row.
+/// Values of all rows that one of them needs before it can be shown: the best ones, and the changed fields. It keeps three numbers of each row, so that a table
+/// of any length is made row by row.
 #[derive(Debug, Default)]
 pub struct Outline {
     rows: usize,
@@ -31,7 +31,7 @@ impl KnownQuantities {
     pub(super) fn add(&mut self, summary: &Summary) {
         for (i, quantity) in QUANTITIES.iter().enumerate() {
             let Of::Curve(of) = quantity.of else { continue };
-            // What one gear has of it, both have.
+            // A quantity of one gear has the same form for both.
             let mut curves = summary.curves().iter();
             let is_known = curves.any(|curve| of(curve, GearName::Driven).is_some());
             self.0 |= u64::from(is_known) << i;
@@ -79,7 +79,7 @@ impl Outline {
         self.quantities
     }
 
-    /// What the rows change, in the order in which it was met first.
+    /// Changed fields of the rows, in the order of their first occurrence.
     pub fn pointers(&self) -> &[String] {
         &self.pointers
     }

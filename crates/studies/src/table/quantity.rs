@@ -25,11 +25,11 @@ pub struct Quantity {
     better: Option<Better>,
     /// Where a row of a table has it, before its name.
     within: &'static str,
-    /// Whether every table has a column of it; else those do whose rows tell it.
+    /// True if every table has a column of it; otherwise only tables whose rows have it.
     pub(super) in_every_table: bool,
-    /// What a submission has to have for it.
+    /// Conditions on a submission that has it.
     needs: &'static [Needs],
-    /// What it is as good as for a design that has none, such as the ligament beside holes that there are not. None where it is only not told.
+    /// Its equivalent for a design without it, such as the ligament of a design without holes. `None` where it is only not computed.
     pub(crate) absent: fn(&Summary) -> Option<f64>,
 }
 
@@ -44,7 +44,7 @@ pub enum Better {
     Larger,
 }
 
-/// What a quantity is told of.
+/// Subject of a quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(title = "What a quantity is of")]
@@ -56,17 +56,17 @@ pub enum QuantityOf {
 }
 
 document! {
-    /// A number of a design: columns of tables, goals and bounds of searches and what populations tell have its name.
+    /// A quantity of a design: columns of tables, goals and bounds of searches and results of populations have its name.
     pub struct QuantityEntry as Quantity, "Quantity" view of (quantity: &Quantity) {
         /// Its name in goals, bounds and populations.
         name: &'static str = quantity.name,
-        /// What it is called.
+        /// Title.
         title: String = quantity.title(),
         /// How it is abbreviated.
         symbol: String = quantity.symbol(),
         /// Its unit, written as those of fields are; 1 without one.
         unit: &'static str = quantity.unit,
-        /// Whether it is told of the pair or of each curve.
+        /// Subject: the pair or each curve.
         of: QuantityOf = match quantity.of {
             Of::Pair(_) => QuantityOf::Pair,
             Of::Curve(_) => QuantityOf::Curve,
@@ -139,7 +139,7 @@ impl Quantity {
         Self { absent, ..self }
     }
 
-    /// What it is called.
+    /// Title.
     pub fn title(&self) -> String {
         let gear = self
             .gear
@@ -157,7 +157,7 @@ impl Quantity {
         self.symbol.to_owned() + gear
     }
 
-    /// What stands at an axis that it is drawn over.
+    /// Label of an axis over it.
     pub fn at_axis(&self) -> String {
         let title = self.title();
         match self.unit {
@@ -174,12 +174,12 @@ impl Quantity {
         format!("{}{}", self.within, own.unwrap_or(self.name))
     }
 
-    /// Whether a row of a study of `gear` has it.
+    /// True if a row of a study of `gear` has it.
     pub(super) fn is_in_rows_of(&self, gear: GearName) -> bool {
         matches!(self.of, Of::Curve(_)) || self.gear.is_none_or(|own| own == gear)
     }
 
-    /// Whether the method of this name computes it.
+    /// True if the method of this name computes it.
     fn is_known_to(&self, method: &str) -> bool {
         let method = Method::of_word(method);
         self.needs.iter().all(|needs| match needs {
@@ -188,21 +188,21 @@ impl Quantity {
         })
     }
 
-    /// Whether it is a stress.
+    /// True if it is a stress.
     pub(crate) fn is_stress(&self) -> bool {
         self.needs
             .iter()
             .any(|needs| matches!(needs, Needs::Stress))
     }
 
-    /// Why a computation of `submission` does not come to it, and what would; none where it does.
+    /// The reason why a computation of `submission` does not have it, and the change that would help; `None` where it has it.
     pub(crate) fn why_absent(&self, submission: &Submission) -> Option<String> {
         let mut needs = self.needs.iter();
         needs.find_map(|needs| needs.unmet(submission))
     }
 }
 
-/// What a submission has to have for a number to be told.
+/// Condition on a submission that has a quantity.
 #[derive(Debug, Clone, Copy)]
 enum Needs {
     /// Stresses that are asked for.
@@ -272,9 +272,9 @@ impl Needs {
 /// Where a number of a design stands.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Of {
-    /// It is the pair's, whatever the torque.
+    /// A value of the pair, for any torque.
     Pair(fn(&Summary) -> Option<f64>),
-    /// It is that of a curve, the study's gear being given.
+    /// A value of a curve, for the study's gear.
     Curve(fn(&CurveSummary, GearName) -> Option<f64>),
 }
 
@@ -345,7 +345,7 @@ macro_rules! stresses {
     };
 }
 
-/// What stresses need.
+/// Conditions of stresses.
 const STRESS: &[Needs] = &[
     Needs::Method(Method::computes_stress),
     Needs::Stress,

@@ -1,4 +1,4 @@
-//! A row of the table: a design, what has come of it, and the numbers that designs are compared by.
+//! A row of the table: a design, its outcome, and the quantities that designs are compared by.
 
 use meshwright_engine::analysis::Method;
 use meshwright_wire::declare::{Kind as _, utoipa_schema, word};
@@ -14,25 +14,25 @@ use uuid::Uuid;
 use super::quantity::{Of, Quantity};
 use super::summary::{CurveSummary, Summary};
 
-/// A design and what has come of it so far.
+/// A design and its outcome so far.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RowState {
-    /// What the design is called.
+    /// Label of the design.
     pub label: String,
-    /// What it changes in the base.
+    /// Its changes of the base.
     pub changes: Map<String, Value>,
     /// The job that computes it, if it could be built.
     pub job: Option<Uuid>,
     /// Where it stands.
     pub status: Status,
-    /// What of its results is shown, once there are some.
+    /// The summary of its results, once there are some.
     pub summary: Option<Summary>,
     /// Why it has no results.
     pub problem: Option<Value>,
 }
 
 impl RowState {
-    /// A design with these changes that has been computed without a job, and what came of it.
+    /// A design with these changes that has been computed without a job, and its outcome.
     #[cfg(test)]
     pub(crate) fn computed(
         label: String,
@@ -61,9 +61,9 @@ impl RowState {
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 #[schema(title = "Row")]
 pub struct TableRow {
-    /// What the design is called.
+    /// Label of the design.
     pub label: String,
-    /// What it changes in the base: JSON pointers and values, the hole radius among them where the study sets it.
+    /// Its changes of the base: JSON pointers and values, the hole radius among them where the study sets it.
     #[schema(value_type = Object)]
     pub changes: Map<String, Value>,
     /// The job that computes it; null for a design that could not be built.
@@ -87,17 +87,16 @@ pub struct TableRow {
     pub contact_ratio: Option<f64>,
     /// The backlash, in mm, as in the results.
     pub backlash_mm: Option<f64>,
-    /// Whether no other design of the study is at least as good in everything and better in something, of those that
-    /// were computed by the same method at the same torques so far. Compared are the mass of both gears (less is
-    /// better), the largest peak-to-peak transmission error over the torques (less), and the mean tangent stiffness,
-    /// averaged over the torques (more), each to six significant digits.
+    /// True if no other design of the study is at least as good in everything and better in one quantity, among those that were computed by the same method at
+    /// the same torques so far. The quantities are the mass of both gears (less is better), the largest peak-to-peak transmission error over the torques
+    /// (less), and the mean tangent stiffness, averaged over the torques (more), each to six significant digits.
     pub pareto: bool,
     /// One entry for each output torque.
     pub curves: Vec<RowCurve>,
     /// Why the design has no results; its pointers lead into the design's submission.
     #[schema(value_type = Option<Problem>)]
     pub problem: Option<Value>,
-    /// The study's gear, and what has come of the design.
+    /// The study's gear, and the outcome of the design.
     #[serde(skip)]
     #[schema(ignore)]
     known: (GearName, Summary),
@@ -120,7 +119,8 @@ pub struct RowCurve {
     /// The amplitude of the transmission error at the order of the holes, H_N, in um. Where the holes of both gears make
     /// different orders it is that of the study's gear. Null without holes or spectrum.
     pub hole_order_um: Option<f64>,
-    /// What the holes alone make of it, in um: where teeth deviate, pitch errors and runout have a part in that order too. Absent where none deviate.
+    /// The part of it that comes from the holes alone, in um: where teeth deviate, pitch errors and runout have a part in that order too. Absent where none
+    /// deviate.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hole_order_of_holes_um: Option<f64>,
     /// The amplitude of the transmission error at the mesh order, H_Z2, in um; null without spectrum.
@@ -140,12 +140,12 @@ pub struct RowCurve {
     /// The largest contact pressure away from kinks and sharp corners, in MPa; absent where there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub smooth_contact_pressure_mpa: Option<f64>,
-    /// What a run-up comes to; absent without one.
+    /// Results of a run-up; absent without one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dynamic_transmission_error_um: Option<RowDynamics>,
 }
 
-/// What a run-up of a design comes to at one torque.
+/// Results of a design's run-up at one torque.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, ToSchema)]
 #[schema(title = "Run-up of a row")]
 pub struct RowDynamics {

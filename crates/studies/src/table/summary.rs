@@ -1,4 +1,4 @@
-//! What of a results document the table shows, kept beside the document.
+//! The part of a results document that the table shows, kept beside the document.
 
 use std::collections::BTreeMap;
 
@@ -10,8 +10,8 @@ use meshwright_wire::warning::GearName;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// What of a results document a table shows. It is kept beside the document, so that a table of thousands of rows reads
-/// kilobytes where the documents have hundreds of megabytes.
+/// The part of a results document that a table shows. It is kept beside the document, so that a table of thousands of rows reads kilobytes where the documents
+/// have hundreds of megabytes.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     #[serde(default)]
@@ -26,12 +26,12 @@ pub struct Summary {
     pub(super) backlash_mm: Option<f64>,
     #[serde(default)]
     pub(super) curves: Vec<CurveSummary>,
-    /// What a second grid level changes, where it was asked for.
+    /// Change by a second grid level, if requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     error_estimate: Option<ErrorEstimateDocument>,
 }
 
-/// The mass of a gear and what holes leave of it.
+/// The mass of a gear, and the share that holes leave of it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(title = "Gear of a row")]
 pub(super) struct GearSummary {
@@ -69,12 +69,12 @@ pub(crate) struct CurveSummary {
     pub(super) face_load_factor: Option<f64>,
     /// Amplitudes of the transmission error, in um, by the names of their orders.
     pub(super) orders: BTreeMap<String, f64>,
-    /// Those that the holes alone make, where teeth deviate.
+    /// Amplitudes of the holes alone, where teeth deviate.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     orders_of_holes: BTreeMap<String, f64>,
 }
 
-/// Method and torques: what has to be the same for a comparison to mean something.
+/// Method and torques: a comparison has a meaning only where they are the same.
 pub(super) type Conditions = (Option<String>, Vec<u64>);
 
 /// The names of orders that a table shows.
@@ -116,7 +116,7 @@ impl Summary {
         rounded(&exact).map_err(|error| Problem::new(Code::InternalError, error.to_string()))
     }
 
-    /// It as it is kept.
+    /// The summary in its stored form.
     pub fn to_json(&self) -> String {
         serde_json::to_string(self).expect("a summary is plain data")
     }
@@ -173,7 +173,7 @@ impl CurveSummary {
         of_holes(&self.orders, gear)
     }
 
-    /// What the holes alone make of it, where teeth deviate.
+    /// The part of the hole order that comes from the holes alone, where teeth deviate.
     pub(super) fn hole_order_of_holes(&self, gear: GearName) -> Option<f64> {
         of_holes(&self.orders_of_holes, gear)
     }
@@ -199,7 +199,7 @@ impl Summary {
         &self.curves
     }
 
-    /// What a second grid level changes, where it was asked for.
+    /// Change by a second grid level, if requested.
     pub(crate) fn error_estimate(&self) -> Option<ErrorEstimateDocument> {
         self.error_estimate.clone()
     }
@@ -209,7 +209,7 @@ impl Summary {
         Some(significant(sum, 10))
     }
 
-    /// What designs are compared by, each the less the better; none if a number is missing.
+    /// The values that designs are compared by, each the less the better; `None` if a number is missing.
     pub(super) fn objectives(&self) -> Option<[f64; 3]> {
         let mut worst_range = f64::NEG_INFINITY;
         let mut stiffness = 0.0;
@@ -226,7 +226,7 @@ impl Summary {
             worst_range,
             -stiffness / self.curves.len() as f64,
         ];
-        // Six digits: what differs beyond them, as the masses of a study of constant mass do, is rounding and no merit.
+        // Six digits: differences beyond them, as in the masses of a study of constant mass, are rounding and no merit.
         Some(objectives.map(|objective| significant(objective, 6)))
     }
 

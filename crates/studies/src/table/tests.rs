@@ -1,4 +1,4 @@
-//! What a table shows, and which designs are best.
+//! The table, and the choice of the best designs.
 
 use meshwright_wire::Code;
 use meshwright_wire::results::Results;
@@ -95,7 +95,7 @@ fn a_summary_keeps_what_the_table_shows_and_survives_the_store() {
         "rounded as documents are: {stored}"
     );
     assert_eq!(serde_json::from_str::<Summary>(&stored).unwrap(), summary);
-    // What an earlier version kept may tell none of it.
+    // Summaries of an earlier version may have none of it.
     assert_eq!(
         serde_json::from_str::<Summary>("{}").unwrap(),
         Summary::default()
@@ -273,7 +273,7 @@ fn the_load_along_the_face_is_told_by_those_who_see_it() {
         [told(&helical, 0), told(&helical, 1), told(&plain, 0)],
         [Some(1.69), None, None]
     );
-    // It is kept with the row.
+    // It is stored with the row.
     let kept = serde_json::to_string(&helical.summary).expect("JSON");
     helical.summary = serde_json::from_str(&kept).expect("the same");
     assert_eq!(told(&helical, 0), Some(1.69));
@@ -295,7 +295,7 @@ fn what_holes_alone_make_stands_beside_their_order_where_teeth_deviate() {
     document["curves"][0]["spectrum"]["named"][0]["transmission_error_of_holes_um"] = json!(0.12);
     let mut deviating = state("deviating", 0.9, [1.7, 2.5], 2.2e8);
     deviating.summary = Some(summary(&document));
-    // It is kept with the row.
+    // It is stored with the row.
     let kept = deviating.summary.as_ref().expect("computed").to_json();
     deviating.summary = serde_json::from_str(&kept).expect("the same");
     let plain = state("plain", 0.9, [1.7, 2.5], 2.2e8);

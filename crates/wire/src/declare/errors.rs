@@ -1,4 +1,4 @@
-//! What is wrong with a document, collected while it is read.
+//! Faults of a document, collected while it is read.
 
 use std::cell::RefCell;
 
@@ -25,7 +25,7 @@ impl Errors {
         self.0.borrow().len()
     }
 
-    /// Whether no more are reported.
+    /// True if no more are reported.
     pub fn is_full(&self) -> bool {
         self.count() >= MOST_ERRORS
     }
@@ -41,7 +41,7 @@ impl Errors {
             .ok()
     }
 
-    /// What was read, if nothing is wrong.
+    /// The value that was read, if there are no faults.
     pub fn settle<T>(self, read: Option<T>) -> Result<T, Problem> {
         match read {
             Some(read) if self.count() == 0 => Ok(read),

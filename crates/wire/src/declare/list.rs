@@ -7,23 +7,23 @@ use serde_json::{Value, json};
 use super::{Kind, Location, Named, Node, Written};
 use crate::problem::Code;
 
-/// What a declaration says of a list.
+/// Declaration of a list.
 #[derive(Debug, Clone, Copy)]
 pub struct List<S> {
     title: &'static str,
     each: S,
     most: usize,
-    /// What its items are called, as they are expected and as they are counted, and what becomes of those that fit.
+    /// Name of its items in the expectation and in the count, and the use of those that fit.
     said: Option<[&'static str; 3]>,
     /// How too many items are refused.
     too_many: Code,
-    /// How an empty list is refused, and what to do about it; else it may be empty.
+    /// Code and advice for an empty list; `None` if it may be empty.
     empty: Option<(Code, &'static str)>,
-    /// What is said of an item that stands there twice; else it may.
+    /// Sentence about an item that stands there twice; `None` if it may.
     repeated: Option<&'static str>,
-    /// Whether it is empty where it is absent.
+    /// True if an absent list is empty.
     or_empty: bool,
-    /// Whether null is as good as absent.
+    /// True if null counts as absent.
     or_null: bool,
 }
 
@@ -43,7 +43,7 @@ pub const fn list<S>(title: &'static str, each: S, most: usize) -> List<S> {
 }
 
 impl<S: Copy> List<S> {
-    /// What its items are called, as they are expected and as they are counted, and what becomes of those that fit.
+    /// Declares the name of its items in the expectation and in the count, and the use of those that fit.
     pub const fn of(
         self,
         expected: &'static str,
@@ -59,7 +59,7 @@ impl<S: Copy> List<S> {
         Self { too_many, ..self }
     }
 
-    /// It has at least one item.
+    /// Refuses an empty list.
     pub const fn not_empty(self, code: Code, advice: &'static str) -> Self {
         let empty = Some((code, advice));
         Self { empty, ..self }

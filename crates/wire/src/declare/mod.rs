@@ -1,9 +1,8 @@
 //! One declaration for every object of the wire; from it come its reader, its writer and its schema.
 //!
-//! A [`document!`] says of each field its name, its type, a sentence, and a specification such as `number("Module", "mm", 0.1, 50.0)`:
-//! title, unit, bounds, and what stands for the field where it is absent. What a specification can say depends on the type
-//! of the field, which is a [`Kind`]. The declaration of a field is a constant of its object, named as the field, for
-//! those who look up its unit or its bounds. Of an object that is answered it says what each field is filled from.
+//! A [`document!`] declares for each field its name, its type, a sentence, and a specification such as `number("Module", "mm", 0.1, 50.0)`: title, unit,
+//! bounds, and default. The content of a specification depends on the type of the field, which is a [`Kind`]. The declaration of a field is a constant of its
+//! object, named as the field, for code that looks up its unit or its bounds. The declaration of an answered object also has the source of each field.
 
 mod errors;
 mod list;
@@ -32,15 +31,15 @@ pub use words::{Choice, Flag, OneWord, Text, flag, is_short_text, text, word, wo
 /// The named schemas that others refer to.
 pub type Named = Vec<(&'static str, Value)>;
 
-/// A kind of value: how it is read, written and described, from what a declaration says of it.
+/// A kind of value: how it is read, written and described, by its declaration.
 pub trait Kind: Sized {
-    /// What a declaration says of such a value.
+    /// Declaration of such a value.
     type Spec;
 
-    /// What several of them are called: what a list of them is expected to hold, and what it has too many of.
+    /// Plural of the value: the expected content of a list of them, and the name in its count.
     const MANY: [&'static str; 2] = ["objects", "items"];
 
-    /// Reads the value that stands at `place`. What is wrong is reported there.
+    /// Reads the value at `place`. Faults are reported there.
     fn read(node: &Node, place: &Location<'_>, spec: &Self::Spec) -> Option<Self>;
 
     /// Reads the field `name`.
@@ -56,17 +55,17 @@ pub trait Kind: Sized {
         }
     }
 
-    /// Whether null is as good as absent.
+    /// True if null counts as absent.
     fn takes_null(_: &Self::Spec) -> bool {
         false
     }
 
-    /// What stands for it where it is absent; nothing if it has to be given.
+    /// Default of an absent value; `None` if it has to be given.
     fn usual(_: &Self::Spec) -> Option<Self> {
         None
     }
 
-    /// What stands for the field `name`, which is absent.
+    /// Value of the absent field `name`.
     fn absent(
         reader: &mut ObjectReader<'_>,
         name: &'static str,
@@ -75,7 +74,7 @@ pub trait Kind: Sized {
         Self::usual(spec).or_else(|| reader.missing(name))
     }
 
-    /// Whether it has to be given.
+    /// True if it has to be given.
     fn is_needed(spec: &Self::Spec) -> bool {
         Self::usual(spec).is_none()
     }
@@ -85,7 +84,7 @@ pub trait Kind: Sized {
         None
     }
 
-    /// Whether its field is not written.
+    /// True if its field is not written.
     fn is_left_out(&self, _: &Self::Spec) -> bool {
         false
     }
@@ -93,7 +92,7 @@ pub trait Kind: Sized {
     /// Writes it.
     fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error>;
 
-    /// What the schema says of it, `about` being the sentence of its field.
+    /// Schema of the value; `about` is the sentence of its field.
     fn describe(about: &str, spec: &Self::Spec) -> Value;
 
     /// Adds the schemas that its own refers to.
@@ -105,9 +104,9 @@ pub trait Kind: Sized {
 pub struct Declared<S> {
     /// Its name.
     pub name: &'static str,
-    /// What it is.
+    /// Description.
     pub about: &'static str,
-    /// What its kind of value needs to know.
+    /// Specification of its kind of value.
     pub spec: S,
 }
 
@@ -134,7 +133,7 @@ impl<S> Declared<S> {
         map.serialize_entry(self.name, &Written(value))
     }
 
-    /// What the schema says of the field.
+    /// Schema of the field.
     pub fn property<K: Kind<Spec = S>>(&self) -> Property {
         let schema = K::describe(self.about.trim_start(), &self.spec);
         Property {

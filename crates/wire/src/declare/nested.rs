@@ -12,9 +12,9 @@ use super::{Kind, Location, Named, Node, ObjectReader};
 pub struct Property {
     /// Its name.
     pub name: &'static str,
-    /// What the schema says of it.
+    /// Schema.
     pub schema: Value,
-    /// Whether it has to be given.
+    /// True if it has to be given.
     pub is_needed: bool,
     /// Which others it cannot be given with.
     pub exclusion: Option<Exclusion>,
@@ -37,7 +37,7 @@ impl Property {
 pub struct Exclusion {
     /// The names of the others.
     pub others: &'static [&'static str],
-    /// Whether one of them has to be given.
+    /// True if one of them has to be given.
     pub is_one_needed: bool,
 }
 
@@ -52,10 +52,10 @@ pub trait Object: Sized {
     /// Writes its fields.
     fn write_fields<M: SerializeMap>(&self, map: &mut M) -> Result<(), M::Error>;
 
-    /// What the schema says of its fields.
+    /// Schemas of its fields.
     fn properties() -> Vec<Property>;
 
-    /// What the schema says of it.
+    /// Schema.
     fn json_schema() -> Value;
 
     /// Adds the schemas that its own refers to.
@@ -69,11 +69,11 @@ pub trait Object: Sized {
     }
 }
 
-/// What a declaration says of an object within another one.
+/// Declaration of an object within another one.
 #[derive(Debug, Clone, Copy)]
 pub struct Nested {
     title: &'static str,
-    /// Whether it is made of its fields' defaults where it is absent or null.
+    /// True if an absent or null object has its fields' defaults.
     or_defaults: bool,
 }
 
@@ -83,7 +83,7 @@ pub const fn nested(title: &'static str) -> Nested {
     Nested { title, or_defaults }
 }
 
-/// An object that has to be given, of which there is nothing to say beside what it says itself.
+/// An object that has to be given, without a description beside its own.
 pub const EACH: Nested = nested("");
 
 impl Nested {
@@ -183,10 +183,9 @@ pub fn object(title: &str, about: &str, properties: Vec<Property>) -> Value {
     schema
 }
 
-/// What a schema says of fields that exclude each other: one alternative for each, and one for none of them unless one has to be given. Null is
-/// as good as absent.
+/// Schema of fields that exclude each other: one alternative for each, and one for none of them unless one has to be given. Null counts as absent.
 ///
-/// It stands in an `allOf` beside the properties, and says nothing but what is not: generators of clients make no types of such alternatives.
+/// The schema stands in an `allOf` beside the properties and only excludes: generators of clients make no types of such alternatives.
 pub fn exclusive(names: &[&str], is_one_needed: bool) -> Value {
     let given = |name: &&str| json!({ "not": { "properties": { *name: { "type": "null" } } } });
     let mut alternatives: Vec<Value> = names.iter().map(given).collect();
@@ -196,8 +195,8 @@ pub fn exclusive(names: &[&str], is_one_needed: bool) -> Value {
     json!({ "oneOf": alternatives })
 }
 
-/// `schema` in a form that utoipa carries to the finished document, which has it instead. What utoipa knows of schemas is less than
-/// what ours say, and it drops the rest.
+/// `schema` in a form that utoipa carries to the finished document, which then contains it. The model of utoipa knows fewer keywords than our schemas use, and
+/// drops the others.
 pub fn utoipa_schema(schema: Value) -> RefOr<Schema> {
     let declared = ExtensionsBuilder::new().add("x-declared", schema).build();
     ObjectBuilder::new().extensions(Some(declared)).into()
@@ -208,8 +207,8 @@ pub fn utoipa_schema(schema: Value) -> RefOr<Schema> {
 /// Of one that is sent each field has its type, a sentence and a specification: `field: f64 = number("Title", "mm", 0.1, 50.0),`. From it come reader,
 /// writer and schema.
 ///
-/// Of one that is answered (`answer of (what: &There, is: f64)`) each field has its type, a sentence and what it is filled from; a field with a question
-/// mark is absent where its source is `None`. It can be read back. One that is only written is a `view of (…)`.
+/// Each field of an answered object (`answer of (what: &There, is: f64)`) has its type, a sentence and its source; a field with a question mark is absent where
+/// its source is `None`. It can be read back. An object that is only written is a `view of (…)`.
 #[macro_export]
 macro_rules! document {
     (
@@ -268,7 +267,7 @@ macro_rules! document {
         $crate::document!(@known $Object);
     };
 
-    // What others than this module ask of an object.
+    // Requests of other modules to an object.
     (@known $Object:ty) => {
         impl serde::Serialize for $Object {
             fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -366,7 +365,7 @@ macro_rules! document {
         }
 
         impl $(<$lifetime>)? $Object $(<$lifetime>)? {
-            /// Tells what there is.
+            /// Makes the document from its sources.
             $visibility fn of $given -> Self {
                 $($before)*
                 Self { $($field: $source,)* }

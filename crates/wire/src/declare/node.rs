@@ -125,7 +125,7 @@ impl Node {
         }
     }
 
-    /// What it is, for a sentence.
+    /// Name of its kind, for a sentence.
     pub fn kind(&self) -> String {
         match self {
             Self::Null => "null".to_owned(),

@@ -7,18 +7,18 @@ use super::{Kind, Location, Node, ObjectReader};
 use crate::problem::Code;
 use crate::units::{plain, significant};
 
-/// What stands for a number that is not given.
+/// Default of a number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Preset {
     /// Nothing: it has to be given.
     Needed,
     /// This value.
     Value(f64),
-    /// So many times the module of the same gear.
+    /// Multiple of the module of the same gear.
     Modules(f64),
 }
 
-/// What a declaration says of a number.
+/// Declaration of a number.
 #[derive(Debug, Clone, Copy)]
 pub struct Number {
     title: &'static str,
@@ -26,14 +26,14 @@ pub struct Number {
     pub unit: &'static str,
     /// The smallest and the largest value that are accepted, in its unit.
     pub bounds: (f64, f64),
-    /// Whether zero is accepted too where the bounds do not hold it.
+    /// True if zero is accepted outside the bounds.
     or_zero: bool,
     preset: Preset,
     /// Makes a default go with the numbers that were read before it.
     fitted: Option<fn(f64, &ObjectReader<'_>) -> f64>,
     /// How a value below zero is refused.
     negative: Code,
-    /// What a value below zero means elsewhere, and why it is refused.
+    /// Meaning of a value below zero in other programs, and the reason of the refusal.
     meaning: Option<&'static str>,
 }
 
@@ -64,7 +64,7 @@ impl Number {
         Self { preset, ..self }
     }
 
-    /// Its default is `fit` of what it says and of the numbers that stand before it.
+    /// Takes `fit` of the typed value and of the numbers before it as the value.
     pub const fn fitted(self, fit: fn(f64, &ObjectReader<'_>) -> f64) -> Self {
         let fitted = Some(fit);
         Self { fitted, ..self }
@@ -81,13 +81,13 @@ impl Number {
         Self { negative, ..self }
     }
 
-    /// A value below zero is refused as what it means elsewhere.
+    /// Refuses a value below zero by its meaning in other programs.
     pub const fn negative_means(self, meaning: &'static str) -> Self {
         let meaning = Some(meaning);
         Self { meaning, ..self }
     }
 
-    /// What stands for it where it is not given, for a gear of `module`.
+    /// Default for a gear of `module`.
     pub fn preset(&self, module: Option<f64>) -> Option<f64> {
         match self.preset {
             Preset::Needed => None,
@@ -96,8 +96,8 @@ impl Number {
         }
     }
 
-    /// Checks `value`, which stands at `place`: the code, a sentence with the numbers, and the nearest value that is accepted.
-    /// It is none where a negative value means something that is not known here.
+    /// Checks `value`, which stands at `place`: the code, a sentence with the numbers, and the nearest accepted value. There is no nearest value where a
+    /// negative value has a meaning that is not supported.
     fn check(
         &self,
         value: f64,

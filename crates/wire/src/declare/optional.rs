@@ -5,26 +5,26 @@ use serde_json::{Value, json};
 
 use super::{Declared, Exclusion, Kind, Location, Named, Node, ObjectReader};
 
-/// What it means that a value is absent.
+/// Meaning of an absent value.
 #[derive(Debug, Clone, Copy)]
 enum Absent {
     /// This. Null is as good.
     Means(&'static str),
-    /// That another field stands in its place; where those are absent too, what would stand for the value by itself.
+    /// Another field stands in its place; where those are absent too, the default of the value by itself.
     Unless,
     /// That another field stands in its place; one of the two has to be given.
     OneOf,
 }
 
-/// What a declaration says of a value that may be absent.
+/// Declaration of a value that may be absent.
 #[derive(Debug, Clone, Copy)]
 pub struct Optional<S> {
-    /// What is declared of the value that is given.
+    /// Declaration of the given value.
     pub spec: S,
     absent: Absent,
     /// The fields that cannot be given together with it.
     others: &'static [&'static str],
-    /// Whether it is left out where it is absent, instead of being written as null.
+    /// True if an absent value is left out instead of being written as null.
     left_out: bool,
 }
 
@@ -154,7 +154,7 @@ impl<T: Kind> Kind for Option<T> {
     }
 }
 
-/// The schema of what may be null as well, which is as good as absent.
+/// Schema of a value that may also be null; null counts as absent.
 pub fn or_null(mut schema: Value) -> Value {
     let nothing = json!({ "type": "null" });
     if schema.get("type").is_some() {
@@ -194,7 +194,7 @@ mod tests {
         }
     }
 
-    /// Whether `schema`, as far as it is about which fields are there, allows `value`.
+    /// True if `schema`, in the keywords about present fields, allows `value`.
     fn allows(schema: &Value, value: &Value) -> bool {
         let all = |schemas: &Value, count: fn(usize, usize) -> bool| {
             schemas.as_array().is_none_or(|schemas| {

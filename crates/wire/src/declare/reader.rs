@@ -6,7 +6,7 @@ use super::errors::Errors;
 use super::node::{Node, joined, shortened};
 use crate::problem::{Code, FieldError};
 
-/// A place in a document, and where to report what is wrong there.
+/// A place in a document, with the list of faults.
 #[derive(Debug, Clone)]
 pub struct Location<'a> {
     /// The JSON pointer to it.
@@ -23,7 +23,7 @@ impl<'a> Location<'a> {
         }
     }
 
-    /// The field or item `step` of what stands here.
+    /// Place of the field or item `step`.
     pub fn of(&self, step: &str) -> Self {
         Self {
             pointer: joined(&self.pointer, step),
@@ -31,7 +31,7 @@ impl<'a> Location<'a> {
         }
     }
 
-    /// Reports what is wrong here. There is no value then, of whatever kind.
+    /// Reports a fault here, and returns no value of whatever kind.
     pub fn wrong<T>(
         &self,
         code: Code,
@@ -63,8 +63,8 @@ impl fmt::Display for Location<'_> {
 
 /// One object of the document, and which of its fields have been asked for.
 ///
-/// Every method reports what is wrong and answers `None` then; reading goes on, so that all errors are reported together.
-/// What nobody asked for is refused when the reading is [`finished`](ObjectReader::finish).
+/// Every method reports faults and then returns `None`. Reading goes on, so that all errors are reported together. Unknown fields are refused when the reading
+/// is [`finished`](ObjectReader::finish).
 pub struct ObjectReader<'a> {
     place: Location<'a>,
     fields: &'a [(String, Node)],
@@ -131,7 +131,7 @@ impl<'a> ObjectReader<'a> {
 
     /// Reports that one of these fields is needed and none is there.
     pub fn missing_one_of<T>(&mut self, names: &[&'static str]) -> Option<T> {
-        // It is said once for all of them.
+        // One fault covers all of them.
         self.refused.extend(names);
         let names = names.join(", ");
         let detail = format!("{} needs one of {names}; it has none.", self.place);
@@ -149,7 +149,7 @@ impl<'a> ObjectReader<'a> {
         }
     }
 
-    /// Whether the field was refused because another one stands in its place.
+    /// True if the field was refused because another one stands in its place.
     pub fn is_refused(&self, name: &str) -> bool {
         self.refused.contains(&name)
     }

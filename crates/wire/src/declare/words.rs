@@ -1,4 +1,4 @@
-//! Words of which a field takes one, texts, and what is true or false.
+//! Choices of one word, texts, and booleans.
 
 use serde::Serializer;
 use serde_json::{Value, json};
@@ -9,7 +9,7 @@ use crate::problem::Code;
 
 /// Words that a field may take, each standing for a value.
 pub trait Choice: Copy + PartialEq + 'static {
-    /// Word, value, and what it means.
+    /// Word, value and meaning of each.
     const OPTIONS: &'static [(&'static str, Self, &'static str)];
 
     /// The word for this value.
@@ -35,11 +35,11 @@ pub trait Choice: Copy + PartialEq + 'static {
     }
 }
 
-/// What a declaration says of one of several words.
+/// Declaration of a choice of words.
 #[derive(Debug, Clone, Copy)]
 pub struct OneWord<C> {
     title: &'static str,
-    /// What stands for it where it is absent; nothing if it has to be given.
+    /// Default; `None` if it has to be given.
     pub preset: Option<C>,
 }
 
@@ -77,7 +77,7 @@ impl<C: Copy> OneWord<C> {
         })
     }
 
-    /// What stands for the field `name`, which is absent.
+    /// Value of the absent field `name`.
     pub fn absent(&self, reader: &mut ObjectReader<'_>, name: &'static str) -> Option<C>
     where
         C: Choice,
@@ -89,7 +89,7 @@ impl<C: Copy> OneWord<C> {
         })
     }
 
-    /// What the schema says of it.
+    /// Schema.
     pub fn describe(&self, about: &str) -> Value
     where
         C: Choice,
@@ -112,7 +112,7 @@ impl<C: Copy> OneWord<C> {
     }
 }
 
-/// Declares the words of a type, each with what it means; the type itself, too, where it is none of the engine.
+/// Declares the words of a type and the meaning of each; the type itself, too, unless it is one of the engine.
 #[macro_export]
 macro_rules! words {
     (
@@ -172,7 +172,7 @@ macro_rules! words {
 
 pub use words;
 
-/// What a declaration says of what is true or false.
+/// Declaration of a boolean.
 #[derive(Debug, Clone, Copy)]
 pub struct Flag {
     title: &'static str,
@@ -207,7 +207,7 @@ impl Kind for bool {
     }
 }
 
-/// What a declaration says of a short text.
+/// Declaration of a short text.
 #[derive(Debug, Clone, Copy)]
 pub struct Text {
     title: &'static str,
@@ -252,7 +252,7 @@ impl Kind for String {
     }
 }
 
-/// Whether a text has 1 to `longest` characters, none of them a control character.
+/// True if a text has 1 to `longest` characters, none of them a control character.
 pub fn is_short_text(text: &str, longest: usize) -> bool {
     (1..=longest).contains(&text.chars().count()) && !text.chars().any(char::is_control)
 }

@@ -1,4 +1,4 @@
-//! What carries the teeth: the bore or the shaft, the holes and the web.
+//! Blanks: bore or shaft, holes and web.
 
 use meshwright_engine::gear::{BlankRegion, Core, FaceEnds, Hub, Web};
 
@@ -9,7 +9,7 @@ use crate::declare::{absent, document, nested, number, unless, word};
 use crate::units::from_mm;
 
 document! {
-    /// What carries the teeth: everything between the bore and the root circle.
+    /// The blank: everything between the bore and the root circle.
     pub struct BlankDocument as "Blank", "Blank" {
         /// The radius on which the hub is rigid: at least 5 % of the root radius, and a module below it. A gear that is cut on its shaft has none, and says
         /// the shaft instead.
@@ -34,9 +34,9 @@ document! {
 }
 
 document! {
-    /// A shaft in one piece with the gear. What holds the gear acts on the section of the shaft: the torque rises with the radius, as torsion leaves it, and
-    /// a force is even. The transmission error refers to the mean rotation of that section, and its mean displacement is none. In three dimensions that is the
-    /// section at both ends of the face, or of the hub where it has one: the torque enters there, and neither is displaced nor tilted in the mean.
+    /// A shaft in one piece with the gear. The gear is held at the section of the shaft: the torque rises with the radius, as torsion leaves it, and a force is
+    /// uniform. The transmission error refers to the mean rotation of that section, whose mean displacement is zero. In three dimensions the section stands at
+    /// both ends of the face, or of the hub where it has one: the torque enters there, and the mean displacement and tilt of each are zero.
     pub struct ShaftDocument as "Shaft", "Shaft" {
         /// The radius of the shaft: at least 5 % of the root radius, and a module below it. Holes and web lie outside of it.
         pub(super) radius_mm: f64 = number("Radius of the shaft", "mm", 0.02, 25_000.0),
@@ -89,7 +89,7 @@ impl BlankDocument {
         })
     }
 
-    /// The field of the bore radius, or of the shaft's, and what it says.
+    /// The field of the radius of the bore or of the shaft, and its value.
     pub(super) fn core_field(&self) -> (Field, f64) {
         match &self.shaft {
             Some(shaft) => (
@@ -103,7 +103,7 @@ impl BlankDocument {
         }
     }
 
-    /// What the engine is told.
+    /// The blank of the engine.
     pub(super) fn data(&self) -> BlankRegion {
         let region = BlankRegion {
             bore_radius: from_mm(self.core_field().1),

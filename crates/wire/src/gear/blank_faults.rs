@@ -1,4 +1,4 @@
-//! What prevents a blank: holes too near to each other, to the rim or to the bore, and a web outside of it.
+//! Faults of a blank: holes too near to each other, to the rim or to the bore, and a web outside of it.
 
 use meshwright_engine::gear::data::LEAST_LIGAMENT;
 
@@ -18,7 +18,7 @@ impl GearDocument {
         let holes = &self.blank.holes;
         let missing = self.least_ligament_mm() - to_mm(ligament);
         let detail = self.left("between them", ligament);
-        // Those that are drawn come last.
+        // Drawn holes come last.
         if let Some(by) = self.blank.drawn_by(other) {
             let fault = self.opening_fault(by, Code::HolesOverlap, missing, detail);
             return match self.blank.drawn_by(one) == Some(by) {
@@ -245,7 +245,7 @@ impl GearDocument {
         LEAST_LIGAMENT * self.module_mm
     }
 
-    /// What is left at `place`, as a sentence.
+    /// Sentence about the ligament at `place`.
     fn left(&self, place: &str, ligament: f64) -> String {
         if ligament < 0.0 {
             let too_far = plain(to_mm(-ligament));
@@ -257,7 +257,7 @@ impl GearDocument {
         )
     }
 
-    /// The least width of a web, and of what stands between it and the bore.
+    /// Least width of a web, and of the ring between it and the bore, in mm.
     fn least_web_mm(&self) -> f64 {
         0.1 * self.module_mm
     }

@@ -1,4 +1,4 @@
-//! What the teeth of a gear deviate from each other by, as measured.
+//! Measured deviations of the teeth of a gear.
 
 use meshwright_engine::gear::{Eccentricity, ToothDeviations};
 
@@ -11,9 +11,9 @@ use crate::units::{from_um, plain, to_um};
 const CLOSURE: f64 = 0.01;
 
 document! {
-    /// What the teeth of a gear deviate from each other by. Positive is towards the mate, so that contact is earlier. Teeth are counted as angles are:
-    /// tooth 1 stands next to tooth 0 on the side of its loaded flank. So the teeth of a driven gear mesh in rising, those of a driving gear in falling
-    /// order, and both keep their numbers when the other gear drives.
+    /// Deviations of the teeth of a gear from each other. Positive is towards the mate, so that contact is earlier. Teeth are counted as angles are: tooth 1
+    /// stands next to tooth 0 on the side of its loaded flank. The teeth of a driven gear mesh in rising order, those of a driving gear in falling order, and
+    /// both keep their numbers when the other gear drives.
     pub struct DeviationsDocument as "ToothDeviations", "Tooth deviations" {
         /// How far the loaded flank of each tooth, tooth 0 first, stands from its place towards its mate, as a transverse arc on the
         /// reference circle (ISO 1328-1). Along the base tangent it is times the cosine of the pressure angle. The tooth is displaced as a whole,
@@ -35,8 +35,8 @@ document! {
         /// The slope deviation of the loaded flank of each tooth, tooth 0 first: nothing at the form circle, this much towards the mate at
         /// the tip circle, linear in the roll length.
         profile_slope_um: Option<Vec<f64>> = absent(each_tooth("Profile slope deviations"), "none"),
-        /// What is taken off the loaded flank of each tooth at the +z end of the face, tooth 0 first, linear from nothing at its -z end, as a
-        /// slope of lead_modifications takes it: positive is away from the mate. It needs three dimensions.
+        /// Material removed from the loaded flank of each tooth at the +z end of the face, tooth 0 first, linear from zero at its -z end, as a slope of
+        /// lead_modifications: positive is away from the mate. It needs three dimensions.
         pub(crate) lead_slope_um: Option<Vec<f64>> = absent(each_tooth("Lead slopes"), "none"),
         /// The gear's own axis beside the axis of rotation.
         eccentricity: Option<EccentricityDocument> = absent(nested("Eccentricity"), "none"),
@@ -118,7 +118,7 @@ impl DeviationsDocument {
         given.filter_map(|(name, values)| Some((name, values.as_deref()?)))
     }
 
-    /// What is wrong with it on a gear of so many teeth and of `module` mm, which has it at `pointer`.
+    /// Faults on a gear of `tooth_count` teeth and of `module` mm, whose deviations stand at `pointer`.
     pub(super) fn faults(&self, pointer: &str, tooth_count: u32, module: f64) -> Vec<FieldError> {
         let wrong_length = self
             .lists()
@@ -142,7 +142,7 @@ impl DeviationsDocument {
             .collect()
     }
 
-    /// What deviates by more than a quarter of a module: a search among neighboring flanks means nothing there.
+    /// Fault of a deviation above a quarter of a module, beyond which a search among neighboring flanks has no meaning.
     fn too_large(&self, pointer: &str, module: f64) -> Option<FieldError> {
         const LARGEST: f64 = 0.25;
         let most = 1e3 * LARGEST * module;
@@ -185,7 +185,7 @@ impl DeviationsDocument {
         Some(FieldError::new(pointer, Code::PitchDoesNotClose, detail))
     }
 
-    /// What the engine is told.
+    /// The deviations of the engine.
     pub(super) fn data(&self) -> ToothDeviations {
         let meters = |values: &[f64]| values.iter().copied().map(from_um).collect();
         ToothDeviations {

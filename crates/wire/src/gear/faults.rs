@@ -1,4 +1,4 @@
-//! What prevents a gear, told by field, with the bound beyond which it could be made.
+//! Faults of a gear by field, each with the bound beyond which it could be made.
 
 use std::f64::consts::PI;
 
@@ -192,7 +192,7 @@ impl GearDocument {
                 ),
                 Some((to_mm(largest), Side::AtMost)),
             ),
-            // The lists were looked at before; what differs is the engine's own rounding.
+            // The lists were checked before; the difference is the engine's own rounding.
             GearError::TableDoesNotRise {
                 modification,
                 entry,

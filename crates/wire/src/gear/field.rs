@@ -1,4 +1,4 @@
-//! The fields that may have to change to make a gear: where they stand, and what they may say.
+//! Fields that may have to change so that a gear can be made: pointers and bounds.
 
 use super::GearDocument;
 use super::relief::Relief;
@@ -11,7 +11,7 @@ pub(super) struct Field {
     pub(super) pointer: String,
     /// Its unit, "1" where it has none.
     pub(super) unit: &'static str,
-    /// What it may say: nothing where it is no number.
+    /// Bounds; empty for a field that is no number.
     bounds: (f64, f64),
 }
 
@@ -25,7 +25,7 @@ impl Field {
         }
     }
 
-    /// What is no number.
+    /// A field that is no number.
     pub(super) fn whole(pointer: String) -> Self {
         Self {
             pointer,
@@ -34,7 +34,7 @@ impl Field {
         }
     }
 
-    /// Whether `value` is within its bounds.
+    /// True if `value` is within its bounds.
     pub(super) fn accepts(&self, value: f64) -> bool {
         let (least, most) = self.bounds;
         (least..=most).contains(&value)
@@ -79,7 +79,7 @@ impl GearDocument {
         Field::of("", said.given())
     }
 
-    /// The rounding or the chamfer of the tip edges, and what it says.
+    /// The rounding or the chamfer of the tip edges, and its value.
     pub(super) fn tip_edge_field(&self) -> (Field, f64) {
         let (said, value) = match self.tip_rounding_mm {
             Some(_) => (Self::tip_rounding_mm, self.tip_rounding_mm),

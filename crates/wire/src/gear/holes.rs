@@ -136,7 +136,7 @@ impl HolesDocument {
         }
     }
 
-    /// What the engine is told: the holes of every pattern, one after the other.
+    /// The holes of the engine, pattern after pattern.
     pub(super) fn data(&self) -> Vec<Hole> {
         self.patterns()
             .iter()
@@ -227,7 +227,7 @@ impl PatternDocument {
         }
     }
 
-    /// What that field would say of holes of another half width.
+    /// Value of that field for holes of another half width.
     pub(super) fn of_half_width(&self, half_width: f64) -> f64 {
         match self.slot {
             None => half_width,

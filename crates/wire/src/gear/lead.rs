@@ -1,4 +1,4 @@
-//! Lead modifications: what is taken off the loaded flanks along the face; several add up.
+//! Lead modifications: material removed from the loaded flanks along the face; several add up.
 
 use meshwright_engine::gear::{FaceEnds, LeadError, LeadModification};
 
@@ -18,8 +18,8 @@ words! {
 }
 
 tagged! {
-    /// What is taken off every loaded flank along the face, alike at each diameter: in the transverse section, along the base tangent. Taken
-    /// off is positive.
+    /// Material removed from every loaded flank along the face, the same at each diameter: in the transverse section, along the base tangent. Removed is
+    /// positive.
     pub enum LeadModificationDocument as "LeadModification", "Lead modification" {
         /// A parabola, nothing in the middle of the face.
         Crowning(LeadCrowningDocument) = "crowning"
@@ -63,7 +63,7 @@ document! {
 }
 
 document! {
-    /// What is taken off, height by height.
+    /// Removed material at each place along the face.
     pub struct LeadTableDocument as "LeadTable", "Lead table" {
         /// Where the entries stand, from the middle of the gear's own face, each larger than the one before.
         z_mm: Vec<f64> = entries("Heights", number("", "mm", -1_000.0, 1_000.0)),
@@ -73,7 +73,7 @@ document! {
 }
 
 impl LeadModificationDocument {
-    /// What the engine is told.
+    /// The lead modification of the engine.
     pub(crate) fn data(&self) -> LeadModification {
         match self {
             Self::Crowning(crowning) => LeadModification::Crowning {
@@ -94,7 +94,7 @@ impl LeadModificationDocument {
         }
     }
 
-    /// What is wrong with one in the list at `pointer`, as the engine tells it.
+    /// Fault of one in the list at `pointer`, from the engine's error.
     pub(crate) fn fault(pointer: &str, error: &LeadError) -> FieldError {
         match *error {
             LeadError::EndReliefTooLong {

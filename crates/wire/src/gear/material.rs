@@ -24,7 +24,7 @@ document! {
 }
 
 impl MaterialDocument {
-    /// What the engine is told.
+    /// The material of the engine.
     pub(super) fn data(&self) -> Material {
         Material {
             youngs_modulus: from_gpa(self.youngs_modulus_gpa),

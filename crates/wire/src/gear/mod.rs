@@ -1,7 +1,8 @@
-//! The gears of a submission, and what is wrong with those that cannot be made.
+//! The gears of a submission, and the faults of those that cannot be made.
 //!
-//! The document by its parts: `tip`, `relief`, `modification`, `thickness`, `deviation`, `lead`, `material`, `blank`, `holes` and `openings`; `solid` is the gear along its axis. Then what prevents
-//! a gear (`proportions`, `faults`, `blank_faults`), which fields could change (`field`), and the values that together would do (`repair`).
+//! The document by its parts: `tip`, `relief`, `modification`, `thickness`, `deviation`, `lead`, `material`, `blank`, `holes` and `openings`; `solid` is the
+//! gear along its axis. Then the faults of a gear (`proportions`, `faults`, `blank_faults`), the fields that could change (`field`), and values that would do
+//! together (`repair`).
 
 mod blank;
 mod blank_faults;
@@ -154,18 +155,18 @@ document! {
         face_width_mm: f64 = number("Face width", "mm", 0.1, 2_000.0),
         /// Material taken off the loaded flanks near the tip, as a drawing usually gives it: the first of the profile modifications.
         tip_relief: Option<TipReliefDocument> = absent(nested("Tip relief"), "none"),
-        /// What is taken off the loaded flanks beside the tip relief; they add up. Default: none.
+        /// Material removed from the loaded flanks beside the tip relief; they add up. Default: none.
         profile_modifications: Vec<ModificationDocument> =
             list("Profile modifications", EACH, MOST_MODIFICATIONS).or_empty().or_null(),
-        /// What is taken off the loaded flanks along the face; they add up. They need three dimensions. Default: none.
+        /// Material removed from the loaded flanks along the face; they add up. They need three dimensions. Default: none.
         pub(super) lead_modifications: Vec<LeadModificationDocument> =
             list("Lead modifications", EACH, MOST_MODIFICATIONS).or_empty().or_null(),
-        /// What the teeth deviate from each other by. The contact then repeats once a revolution.
+        /// Deviations of the teeth from each other. The contact then repeats once a revolution.
         tooth_deviations: Option<DeviationsDocument> =
             absent(nested("Tooth deviations"), "nothing"),
-        /// What teeth and blank are made of. Default: steel.
+        /// Material of teeth and blank. Default: steel.
         material: MaterialDocument = nested("Material").or_defaults(),
-        /// What carries the teeth.
+        /// The blank.
         blank: BlankDocument = EACH,
     }
 }
@@ -176,7 +177,7 @@ const USUAL_DEDENDUM: f64 = 1.25;
 /// The least rounding of a rack's tip, in modules.
 const LEAST_RACK_TIP_RADIUS: f64 = 0.05;
 
-/// What programs mean by a negative number of teeth.
+/// Meaning of a negative number of teeth in other programs.
 const INTERNAL: &str =
     "an internal gear, and internal gears are not computed: both gears have outer teeth here";
 
@@ -253,7 +254,7 @@ impl GearDocument {
         }
     }
 
-    /// What the field of the root circle would say of another dedendum, in mm.
+    /// Value of the field of the root circle for another dedendum, in mm.
     fn root_said(&self, dedendum: f64, helix: Helix) -> f64 {
         match self.root_diameter_mm {
             Some(_) => 2.0 * (self.generated_radius_mm(helix) - dedendum),
@@ -277,7 +278,7 @@ impl GearDocument {
         }
     }
 
-    /// What the field of the tip circle would say of another addendum, in mm.
+    /// Value of the field of the tip circle for another addendum, in mm.
     fn tip_said(&self, addendum: f64, helix: Helix) -> f64 {
         match self.tip_diameter_mm {
             Some(_) => 2.0 * (self.shifted_radius_mm(helix) + addendum),
@@ -285,7 +286,7 @@ impl GearDocument {
         }
     }
 
-    /// What the engine is told, of the normal section where the teeth wind by `helix`.
+    /// The gear of the engine, of the normal section where the teeth have a `helix`.
     fn data(&self, helix: Helix) -> GearData {
         GearData {
             tooth_count: self.tooth_count,

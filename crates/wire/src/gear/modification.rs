@@ -1,4 +1,4 @@
-//! Profile modifications: what is taken off the flanks beside the tip relief; several add up.
+//! Profile modifications: material removed from the flanks beside the tip relief; several add up.
 
 use meshwright_engine::gear::{ModificationData, TablePlaces};
 
@@ -17,7 +17,7 @@ const LEAST_ENTRIES: usize = 2;
 const LEAST_STEP: f64 = 1e-4;
 
 tagged! {
-    /// What is taken off every loaded flank, normal to it. Taken off is positive.
+    /// Material removed from every loaded flank, normal to it. Removed is positive.
     pub enum ModificationDocument as "ProfileModification", "Profile modification" {
         /// Grows from its start towards the tip circle.
         TipRelief(TipReliefDocument) = "tip_relief"
@@ -52,7 +52,7 @@ document! {
 }
 
 document! {
-    /// What is taken off, place by place.
+    /// Removed material at each place of the profile.
     pub struct TableDocument as "Table", "Table" {
         /// Where the entries of the table stand, each larger than the one before: roll lengths, from the base circle along the path of
         /// contact.
@@ -97,7 +97,7 @@ impl ModificationDocument {
         }
     }
 
-    /// What the engine is told.
+    /// The profile modification of the engine.
     pub(super) fn data(&self) -> ModificationData {
         match self {
             Self::TipRelief(relief) => relief.relief().data(),
@@ -114,7 +114,7 @@ impl ModificationDocument {
 }
 
 impl TableDocument {
-    /// The field that has the places of the entries, and what stands there.
+    /// The field that has the places of the entries, and its values.
     fn places(&self) -> (&'static str, &[f64]) {
         match (&self.roll_length_mm, &self.diameter_mm) {
             (_, Some(diameters)) => (Self::diameter_mm.name, diameters),
@@ -125,7 +125,7 @@ impl TableDocument {
         }
     }
 
-    /// What is wrong with it on a gear of `module` over the base circle, both in mm, as the list at `pointer` has it.
+    /// Faults on a gear of `module` over the base circle, both in mm, whose list stands at `pointer`.
     pub(super) fn faults(&self, pointer: &str, module: f64, base_radius: f64) -> Vec<FieldError> {
         let length = self.length_fault(pointer);
         let places = self.place_faults(pointer, LEAST_STEP * module, base_radius);

@@ -84,7 +84,7 @@ pub struct Point([f64; 2]);
 const COORDINATE: Number = number("", "mm", -25_000.0, 25_000.0);
 
 impl Kind for Point {
-    /// What it is.
+    /// Its description.
     type Spec = &'static str;
 
     fn read(node: &Node, place: &Location<'_>, _: &Self::Spec) -> Option<Self> {
@@ -178,7 +178,7 @@ impl SpokesDocument {
                     plain(self.inner_radius_mm),
                     plain(to_mm(largest_width))
                 ),
-                // So much narrower that the fillets stand side by side.
+                // Narrower, so that the fillets stand side by side.
                 Some((
                     to_mm(largest_width) - 2.0 * self.fillet_radius_mm,
                     Bound::AtMost,
@@ -206,7 +206,7 @@ impl BlankDocument {
     ///
     /// # Errors
     ///
-    /// What prevents one.
+    /// The openings of the engine, or the fault of one.
     pub(super) fn openings(&self) -> Result<Vec<Hole>, Fault> {
         let mut openings = match &self.spokes {
             Some(spokes) => spokes.openings()?,
@@ -306,7 +306,7 @@ impl BlankDocument {
         Some(FieldError::new(pointer, Code::TooLarge, detail))
     }
 
-    /// What drew the opening that the engine knows as `hole`; `None` if that is one of a pattern.
+    /// The source of the opening that the engine knows as `hole`; `None` if that is one of a pattern.
     pub(super) fn drawn_by(&self, hole: usize) -> Option<DrawnBy> {
         let index = hole.checked_sub(self.holes.count())?;
         let Some(index) = index.checked_sub(self.spoke_count()) else {
@@ -317,7 +317,7 @@ impl BlankDocument {
     }
 }
 
-/// What draws an opening.
+/// Source of an opening.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum DrawnBy {
     Spokes,
@@ -391,7 +391,7 @@ impl DrawnBy {
     }
 }
 
-/// What loop `i` of the outline bounds.
+/// The opening bounded by loop `i` of the outline.
 fn drawn(i: usize, sides: &[SideDocument]) -> Result<Drawn, Fault> {
     let mut from = sides.last().map_or_else(Vector::zeros, SideDocument::end);
     let mut found = Vec::new();

@@ -126,7 +126,7 @@ impl GearDocument {
         0.01 * from_mm(self.module_mm)
     }
 
-    /// What is wrong with its lists, which no single number mends.
+    /// Faults of its lists, which no single number mends.
     pub(super) fn list_faults(&self, pointer: &str) -> Vec<FieldError> {
         let modifications = self.profile_modifications.iter().enumerate();
         let tables = modifications.filter_map(|(i, modification)| Some((i, modification.table()?)));
@@ -165,7 +165,7 @@ pub(super) fn check_between(
     most: f64,
     said: &str,
 ) -> Result<(), Fault> {
-    // What was computed from the other numbers is so up to the last bits.
+    // Rounding of values that were computed from the other numbers.
     const ROUNDING: f64 = 1e-12;
     let bound = if value < least - ROUNDING * least.abs() {
         (least, Side::AtLeast)

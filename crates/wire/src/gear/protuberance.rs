@@ -1,4 +1,4 @@
-//! The hob that cuts before grinding: what it differs by from the basic rack of the ground flanks.
+//! The hob that cuts before grinding: its differences from the basic rack of the ground flanks.
 
 use meshwright_engine::gear::Protuberance;
 
@@ -14,23 +14,24 @@ use crate::units::{Side, from_mm, from_um, plain, to_mm, to_um};
 const LARGEST: f64 = 0.3;
 
 document! {
-    /// A hob that leaves stock on the flanks and cuts deeper at the root, so that the grinding wheel runs out freely. What else is said of the gear is said of the ground
-    /// teeth, the dedendum and the tip rounding of the hob. Its flank stands back by the stock, parallel to that of the basic rack; from `height_mm` on down a straight flank leads to the
-    /// tip rounding and touches it, and the rounding touches a parallel to the hob's own flank that stands out from it by the amount (p_r, q and h of ISO 6336-3 and gear programs; the angle
-    /// of the protuberance follows). What is left of the amount after grinding undercuts the flank: it ends where the root as it is hobbed cuts the involute.
+    /// A hob that leaves stock on the flanks and cuts deeper at the root, so that the grinding wheel runs out freely. All other fields of the gear describe the
+    /// ground teeth, the dedendum and the tip rounding of the hob. Its flank stands back by the stock, parallel to that of the basic rack. From `height_mm` on
+    /// down a straight flank leads to the tip rounding and touches it, and the rounding touches a parallel to the hob's own flank that stands out from it by
+    /// the amount (p_r, q and h of ISO 6336-3 and gear programs; the angle of the protuberance follows). The rest of the amount after grinding undercuts the
+    /// flank: it ends where the root as it is hobbed cuts the involute.
     pub struct ProtuberanceDocument as "Protuberance", "Protuberance" {
         /// p_r: how far the tip rounding stands out from the hob's flank, normal to it in the normal section. At least the grinding stock, at most 0.3 modules. As much as the
         /// stock leaves the root of the basic rack, and nothing is left to undercut the flank.
         pub(super) amount_um: f64 = number("Amount of the protuberance", "um", 0.0, 15_000.0),
         /// How far above the hob's tip line the protuberance begins. At least where its flank would stand upright, at most the dedendum.
         pub(super) height_mm: f64 = number("Height of the protuberance", "mm", 0.0, 125.0),
-        /// q: what is ground off each flank, normal to it in the normal section.
+        /// q: stock ground off each flank, normal to it in the normal section.
         pub(super) grinding_stock_um: f64 = number("Grinding stock", "um", 0.0, 15_000.0).or(0.0),
     }
 }
 
 impl ProtuberanceDocument {
-    /// What the engine is told.
+    /// The protuberance of the engine.
     pub(super) fn data(&self) -> Protuberance {
         Protuberance {
             amount: from_um(self.amount_um),
@@ -73,7 +74,7 @@ impl GearDocument {
         )
     }
 
-    /// It leaves no tooth, or begins above the reference line whatever its height.
+    /// Fault of an amount that leaves no tooth, or begins above the reference line at any height.
     pub(super) fn protuberance_too_large(amount: f64, largest: f64) -> Fault {
         Fault::new(
             place(ProtuberanceDocument::amount_um),
@@ -87,7 +88,7 @@ impl GearDocument {
         )
     }
 
-    /// It begins where no straight flank leads to its rounding, or above the reference line.
+    /// Fault of a height from which no straight flank leads to its rounding, or which lies above the reference line.
     pub(super) fn protuberance_height(height: f64, [least, largest]: [f64; 2]) -> Fault {
         let bound = if height < least {
             (to_mm(least), Side::AtLeast)

@@ -1,4 +1,4 @@
-//! Reliefs of tip and root: how much, in what shape, and from where.
+//! Reliefs of tip and root: amount, shape and start.
 
 use meshwright_engine::gear::{ModificationData, ReliefData, ReliefShape, ReliefStart, SpurGear};
 use serde::Serializer;
@@ -149,7 +149,7 @@ impl StartWay {
 }
 
 impl ReliefEnd {
-    /// What the start of a relief there is called in the contract.
+    /// Name of the start of a relief in the contract.
     fn name(self) -> &'static str {
         match self {
             Self::Tip => "ReliefStart",
@@ -241,7 +241,7 @@ impl Relief {
         }
     }
 
-    /// Whether it takes anything off.
+    /// True if it removes material.
     pub(super) fn is_there(&self) -> bool {
         self.amount_um != 0.0
     }

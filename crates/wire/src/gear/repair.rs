@@ -19,7 +19,7 @@ impl GearDocument {
         if lists.is_empty() {
             return self.with_numbers(pointer, helix);
         }
-        // What else is wrong is told together with the lists.
+        // Other faults are reported together with those of the lists.
         let others = self.without_lists().with_numbers(pointer, helix).err();
         let others = others.into_iter().flatten();
         Err(lists.into_iter().chain(others).collect())

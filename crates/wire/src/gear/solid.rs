@@ -25,7 +25,7 @@ impl GearDocument {
         match SolidGear::new(data, helix, 0.0, None) {
             Ok(gear) => Ok(gear.section().clone()),
             Err(SolidGearError::Section(error)) => Err(error),
-            // What is wrong with its blank along the axis is reported elsewhere.
+            // Faults of its blank along the axis are reported elsewhere.
             Err(_) => match SolidGear::new(on_solid, helix, 0.0, None) {
                 Err(SolidGearError::Section(error)) => Err(error),
                 Ok(gear) => Ok(gear.section().clone()),
@@ -60,7 +60,7 @@ impl GearDocument {
         leads.map(LeadModificationDocument::data).collect()
     }
 
-    /// What it has at `pointer` that the plane does not know, each with what the plane takes in its place.
+    /// Fields at `pointer` that the plane does not support, each with the value that the plane takes in its place.
     pub(crate) fn beyond_the_plane(&self, pointer: &str) -> Vec<(String, Option<f64>)> {
         let web = self.blank.web.as_ref().filter(|web| web.offset_mm != 0.0);
         let slopes = self.tooth_deviations.as_ref();
@@ -90,7 +90,7 @@ impl GearDocument {
             .collect()
     }
 
-    /// What is wrong with a gear along its axis.
+    /// Faults of a gear along its axis.
     fn solid_faults(&self, pointer: &str, error: &SolidGearError) -> Vec<FieldError> {
         let mm = |value: f64| plain(to_mm(value));
         let hub = |field: &str| format!("{pointer}/blank/hub/{field}");

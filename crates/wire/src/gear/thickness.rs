@@ -77,8 +77,8 @@ impl GearDocument {
         }
     }
 
-    /// The field that decides at which generating profile shift the tool stands, and what it says where that is `x_e`; the root circle where its diameter
-    /// is given, because it then stays while x_E changes.
+    /// The field that decides the generating profile shift of the tool, and its value for `x_e`; the root circle where its diameter is given, because it then
+    /// stays while x_E changes.
     pub(super) fn depth_said(&self, x_e: f64, helix: Helix) -> (Field, Option<f64>) {
         let more = x_e - self.tool_shift(helix);
         if let Some(diameter) = self.root_diameter_mm {
@@ -102,7 +102,7 @@ impl GearDocument {
         }
     }
 
-    /// What the engine would be told of the thickness, in the way in which it is said.
+    /// The thickness of the engine, in the way in which it is given.
     fn thickness(&self) -> Thickness {
         let Self {
             tooth_thickness_deviation_um: transverse,
@@ -152,7 +152,7 @@ impl GearDocument {
         }
     }
 
-    /// What that field would say of teeth that deviate by `deviation`, a transverse arc in meters.
+    /// Value of that field for teeth that deviate by `deviation`, a transverse arc in meters.
     fn thickness_said(&self, deviation: f64, helix: Helix) -> Option<f64> {
         let said = self
             .thickness()

@@ -83,7 +83,7 @@ document! {
             .spectrum
             .as_ref()
             .map(|spectrum| SpectrumDocument::of(case, spectrum)),
-        /// What the decomposition adds up; absent for other methods.
+        /// The parts that the decomposition adds; absent for other methods.
         decomposition?: DecompositionDocument =
             curve.decomposition.as_ref().map(DecompositionDocument::of),
         /// The motion over speed; absent unless the submission asks for it.
@@ -110,13 +110,13 @@ document! {
 }
 
 document! {
-    /// What would even the load along the face at this torque: add a slope and a crowning of these amounts to the `lead_modifications` of the driving gear.
-    /// Found from a few positions, and within 2 % of what a job finds for it.
+    /// Lead modification that makes the load even along the face at this torque: add a slope and a crowning of these amounts to the `lead_modifications` of the
+    /// driving gear. Found from a few positions, and within 2 % of the amounts that a job finds for it.
     pub struct LeadCureDocument as LeadCure, "Lead that evens the load"
     answer of (cure: &LeadCure) {
         /// The slope to add, in um: taken off at the +z end of the face; negative adds.
         lead_slope_um: f64 = significant(to_um(cure.slope), 4),
-        /// The crowning to add, in um; negative takes back what the leads have of it, and makes no flank hollow.
+        /// The crowning to add, in um; negative reduces the crowning of the leads, and never makes a flank hollow.
         crowning_um: f64 = significant(to_um(cure.crowning), 4),
         /// K_Hbeta with both.
         face_load_factor: f64 = significant(cure.face_load_factor, 4),
@@ -137,7 +137,7 @@ document! {
     /// Statistics over the span.
     pub struct StatisticsDocument as Statistics, "Statistics"
     answer of (case: &Case, curve: &Curve) {
-        /// Whether the span is less than whole true periods.
+        /// True if the span is less than whole true periods.
         partial: bool = !case.covers_whole_periods(),
         /// Of the transmission error, in um.
         transmission_error_um: TransmissionErrorStatistics = TransmissionErrorStatistics::of(curve),
@@ -156,18 +156,18 @@ document! {
 }
 
 document! {
-    /// Of the transmission error, in um: also what single-flank testing tells, by the words of ISO/TR 10064-1.
+    /// Statistics of the transmission error, in um: also those of single-flank testing, by the terms of ISO/TR 10064-1.
     pub struct TransmissionErrorStatistics
     as TransmissionErrorStatistics, "Statistics of the transmission error"
     answer of (curve: &Curve) {
-        /// What is told of either curve.
+        /// Statistics that both curves have.
         #[serde(flatten)]
         whole: StatisticsValues = StatisticsValues::of(&curve.transmission_error_statistics, to_um),
         /// f_i', the largest range in any stretch of one mesh period; null in results of versions before 0.5.
         #[serde(default, serialize_with = "one_or_null")]
         #[schema(required)]
         tooth_to_tooth: Option<f64> = Some(to_um(curve.single_flank.tooth_to_tooth)),
-        /// f_l', the peak-to-peak of what has fewer than half a cycle in a mesh period; null for a partial span, which does not tell it.
+        /// f_l', the peak-to-peak of the part with fewer than half a cycle in a mesh period; null for a partial span, which does not contain it.
         #[serde(default, serialize_with = "one_or_null")]
         #[schema(required)]
         long_wave: Option<f64> = curve.single_flank.long_wave.map(to_um),

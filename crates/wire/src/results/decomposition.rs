@@ -1,4 +1,4 @@
-//! What the decomposition adds up.
+//! Terms of the decomposition.
 
 use meshwright_engine::analysis::curve::{BlankFit, BlankSample, DecompositionParts};
 
@@ -8,7 +8,7 @@ use crate::units::{to_mm, to_um};
 use crate::warning::GearName;
 
 document! {
-    /// What the decomposition adds up, eq. 15.
+    /// Terms of the decomposition, eq. 15.
     pub struct DecompositionDocument as Decomposition, "Decomposition"
     answer of (parts: &DecompositionParts) {
         /// The transmission error with rigid blanks, in um, at each position of the curve.
@@ -20,7 +20,7 @@ document! {
 }
 
 document! {
-    /// What the decomposition found for one holed blank: mean + amplitude cos(N theta + phase), eq. 13.
+    /// The decomposition's fit for one holed blank: mean + amplitude cos(N theta + phase), eq. 13.
     pub struct BlankFitDocument as BlankFit, "Blank fit" answer of (fit: &BlankFit) {
         /// The gear.
         gear: GearName = fit.member.into(),

@@ -1,4 +1,4 @@
-//! How good the numbers are, and what they mean.
+//! Evidence for the numbers, and their meaning.
 
 use std::borrow::Cow;
 
@@ -13,7 +13,7 @@ use crate::submission::{SOLVER_VERSION, Submission};
 use crate::units::to_um;
 
 document! {
-    /// How well the equations are satisfied, what they are, and what they leave out.
+    /// Residuals of the equations, the equations' models, and their limits.
     pub struct EvidenceDocument as Evidence, "Evidence"
     answer of (submission: &Submission, analysis: &Analysis) with {
         let evidence = &analysis.evidence;
@@ -24,7 +24,7 @@ document! {
     } {
         /// The version of the solver.
         solver_version: Cow<'static, str> = SOLVER_VERSION.into(),
-        /// SHA-256 of what decides the result: the filled-in submission without its tags, and the solver's version.
+        /// SHA-256 of all that decides the result: the filled-in submission without its tags, and the solver's version.
         input_hash: String = submission.input_hash(),
         /// Unknowns of both gears before condensation; zero for formulas.
         degrees_of_freedom: u64 = evidence.degrees_of_freedom,
@@ -44,11 +44,11 @@ document! {
         /// How it was computed, with every default filled in.
         #[schema(value_type = crate::resolution::ResolutionDocument)]
         resolution: Map<String, Value> = resolution_of(submission),
-        /// What the numbers mean.
+        /// Meaning of the numbers.
         definitions: Vec<Definition> = all(&DEFINITIONS, Definition::of),
-        /// What the method leaves out.
+        /// Effects that the method leaves out.
         does_not_see: Vec<Cow<'static, str>> = unseen.into_iter().map(Cow::from).collect(),
-        /// What a second grid level changes, where it was asked for.
+        /// Change by a second grid level, if the submission asks for it.
         error_estimate?: ErrorEstimateDocument = evidence
             .error_estimate
             .as_ref()
@@ -56,7 +56,7 @@ document! {
     }
 }
 
-/// The resolution as the submission echoes it; what is left to each gear's own default is left out.
+/// The resolution as the submission echoes it, without the fields that are left to each gear's own default.
 fn resolution_of(submission: &Submission) -> Map<String, Value> {
     fn leave_out_nulls(value: &mut Value) {
         if let Value::Object(fields) = value {
@@ -73,12 +73,12 @@ fn resolution_of(submission: &Submission) -> Map<String, Value> {
 }
 
 document! {
-    /// A term and what it means here.
+    /// A term and its meaning here.
     pub struct Definition as Definition, "Definition"
     answer of ((term, meaning): &(&'static str, &'static str)) {
         /// The term.
         term: Cow<'static, str> = Cow::from(*term),
-        /// What it means.
+        /// Meaning.
         meaning: Cow<'static, str> = Cow::from(*meaning),
     }
 }
@@ -112,7 +112,7 @@ const DEFINITIONS: [(&str, &str); 7] = [
 ];
 
 document! {
-    /// What a second grid level changes, the largest over the torques.
+    /// Change by a second grid level, the largest over the torques.
     pub struct ErrorEstimateDocument as ErrorEstimate, "Error estimate"
     answer of (estimate: &ErrorEstimate) {
         /// In the mean transmission error, in um.

@@ -1,4 +1,4 @@
-//! Results as what other programs are given is made of.
+//! Results in the form from which files for other programs are made.
 
 use std::f64::consts::TAU;
 
@@ -9,7 +9,7 @@ use meshwright_exchange::look_up::LookUp;
 use super::{CurveDocument, Results};
 
 impl Results {
-    /// The force table with what turns it into torques; `None` if there is none.
+    /// The force table with the lever arms that turn it into torques; `None` if there is none.
     pub fn mesh_forces(&self) -> Option<MeshForces> {
         let (pair, table) = (&self.pair, self.force_table.as_ref()?);
         let rows = |rows: &[Vec<f64>], convert: fn(f64) -> f64| {

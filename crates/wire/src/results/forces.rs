@@ -81,7 +81,7 @@ document! {
         dynamic_transmission_error_um: DynamicErrorDocument = DynamicErrorDocument::of(branch),
         /// The largest force between the gears over the static load.
         dynamic_load_factor: Vec<f64> = branch.load_factor.clone(),
-        /// Whether the loaded flanks part.
+        /// True where the loaded flanks separate.
         contact_lost: Vec<bool> = branch.contact_lost.clone(),
         /// True periods after which the motion repeats; 0 where it was not found to.
         period_multiple: Vec<u32> = all(&branch.repeats, |repeats| repeats.unwrap_or(0)),
@@ -127,7 +127,7 @@ document! {
         /// The name of the order.
         #[schema(example = "H_Z2")]
         label: String = labels[resonance.order].clone(),
-        /// Whether it is forced or parametric.
+        /// Cause: forced or parametric.
         kind: ResonanceKindName = resonance.kind.into(),
         /// The amplitude of the motion at the natural frequency at this speed, in um, on the branch where it is larger. A parametric resonance that does not
         /// pump has 0.
@@ -144,7 +144,7 @@ document! {
 pub enum ResonanceKindName {
     /// The order meets the natural frequency.
     Forced,
-    /// It meets twice the natural frequency; its part of the stiffness pumps.
+    /// It meets twice the natural frequency; its part of the stiffness excites parametrically.
     Parametric,
 }
 

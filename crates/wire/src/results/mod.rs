@@ -47,7 +47,7 @@ use super::units::{known, rounded_json};
 use super::warning::{GearName, WarningDocument};
 
 document! {
-    /// What a submission comes to. It is bit-identical for the same input and version.
+    /// Results of a submission. They are bit-identical for the same input and version.
     pub struct Results as Results, "Results"
     answer of (submission: &Submission, analysis: &Analysis, forces: Option<&Forces>) with {
         let case = submission.case();
@@ -60,7 +60,7 @@ document! {
         pair: PairGeometry = PairGeometry::of(case),
         /// The frequencies at the speed given; absent without a speed.
         frequencies?: Frequencies = Frequencies::of_case(case),
-        /// What to know beside the numbers.
+        /// Warnings to read with the numbers.
         #[serde(deserialize_with = "known")]
         warnings: Vec<WarningDocument> = submission.warnings(&analysis.warnings),
         /// One curve for each output torque, in the order of the submission.
@@ -75,7 +75,7 @@ document! {
             forces.map(|forces| ForceTableDocument::of(&forces.table)),
         /// The natural modes of both gears; absent unless the submission asks for them.
         modes?: ModesDocument = None,
-        /// How good the numbers are, and what they mean.
+        /// Evidence for the numbers, and their meaning.
         evidence: EvidenceDocument = EvidenceDocument::of(submission, analysis),
     }
 }
@@ -85,7 +85,7 @@ impl Results {
     ///
     /// # Errors
     ///
-    /// A text that is not JSON, or lacks what every version told.
+    /// A text that is not JSON, or lacks fields that every version had.
     pub fn read(document: &str) -> serde_json::Result<Self> {
         serde_json::from_str(document)
     }

@@ -57,7 +57,7 @@ document! {
         /// on for the sidebands.
         #[schema(example = "H_N")]
         label: String = line.label.clone(),
-        /// What it is.
+        /// Kind of order.
         kind: OrderKindName = kind,
         /// The gears that make it: both for the mesh.
         gears: Vec<GearName> = cause
@@ -82,7 +82,7 @@ document! {
     }
 }
 
-/// What a line of the spectrum is.
+/// Kind of a line of the spectrum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = OrderKind, title = "Kind of an order")]
@@ -99,7 +99,7 @@ pub enum OrderKindName {
     RevolutionSideband,
 }
 
-/// What an order is, its cause unless it is the mesh, k and n.
+/// Kind of an order, its cause unless it is the mesh, k and n.
 fn parts_of(kind: &OrderKind) -> (OrderKindName, Option<&OrderCause>, Option<u32>, Option<i64>) {
     match kind {
         OrderKind::Mesh { harmonic } => (OrderKindName::Mesh, None, Some(*harmonic), None),

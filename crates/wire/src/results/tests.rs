@@ -337,7 +337,7 @@ fn the_results_of_every_example_read_back_to_the_same_bytes() {
     for example in examples() {
         let mut document: Value = serde_json::from_str(example.json).expect("JSON");
         document["driving_speed_rpm"] = json!(600.0);
-        // Those that are no submission are studies.
+        // Documents that are no submissions are studies.
         if let Ok(submission) = parse(&document) {
             reads_back(&written(&submission));
             read += 1;

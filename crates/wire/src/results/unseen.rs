@@ -1,4 +1,4 @@
-//! What each method leaves out.
+//! Effects that each method leaves out.
 
 use meshwright_engine::analysis::forces::ForcesRequest;
 use meshwright_engine::analysis::{
@@ -6,7 +6,7 @@ use meshwright_engine::analysis::{
 };
 use meshwright_engine::gear::{SpurGear, TipEdge};
 
-/// What the method of `case` leaves out, and what `forces` do that are asked for beside the curves.
+/// Effects that the method of `case` leaves out, and those that `forces` leave out beside the curves.
 pub(super) fn does_not_see(case: &Case, forces: Option<&ForcesRequest>) -> Vec<&'static str> {
     const ALWAYS: [&str; 2] = [
         "friction between the flanks",
@@ -62,7 +62,7 @@ pub(super) const MODES_DO_NOT_SEE: [&str; 3] = [
     "in the natural modes: that teeth couple motions of n nodal diameters with those of n - z, whose waves are shorter than two teeth",
 ];
 
-/// What a force table and a run-up leave out.
+/// Effects that a force table and a run-up leave out.
 fn forces_do_not_see(forces: Option<&ForcesRequest>) -> Vec<&'static str> {
     let mut unseen = Vec::new();
     if forces.is_some() {
@@ -82,7 +82,7 @@ fn stress_not_computed(case: &Case) -> Option<&'static str> {
     )
 }
 
-/// What is left out of modified, broken and deviating teeth, as far as the gears of `case` have them.
+/// Effects left out of modified, broken and deviating teeth, as far as the gears of `case` have them.
 fn real_teeth_do_not_see(case: &Case) -> Vec<&'static str> {
     let gears = [case.pair.driving(), case.pair.driven()];
     let any = |has: fn(&SpurGear) -> bool| gears.into_iter().any(has);
@@ -129,7 +129,7 @@ fn real_teeth_do_not_see(case: &Case) -> Vec<&'static str> {
     unseen
 }
 
-/// What the load distribution by `formulas` leaves out.
+/// Effects that the load distribution by `formulas` leaves out.
 fn formulas_do_not_see(formulas: Formulas) -> Vec<&'static str> {
     const ALWAYS: [&str; 4] = [
         "holes: the bodies are solid",

@@ -737,7 +737,7 @@ fn taken_of(model: &[u8]) -> Import {
     }
 }
 
-/// The model in which no gear drives, with something behind what its component `id` says.
+/// The model in which no gear drives, with more text behind the attributes of its component `id`.
 fn with_more(id: u32, attributes: &str) -> String {
     let model = std::str::from_utf8(BOTH_FALSE).expect("UTF-8");
     let from = model
@@ -856,7 +856,7 @@ fn a_torque_goes_on_over_the_shafts_by_the_ratios() {
             "Assumed: the torque of component 3 (cylindrical_stage \"Second\") is carried over the shafts from component 60 (external_load) without losses.",
         ],
     );
-    // From the output: what is left of 90 N m before the second stage.
+    // From the output: the rest of 90 N m before the second stage.
     let at_output = text
         .replace(r#"unit="N m">50<"#, r#"unit="N m"><"#)
         .replace(
@@ -990,8 +990,8 @@ fn a_helical_pinion_of_one_piece_with_its_shaft_is_computed_along_its_face() {
     let on_shaft = computed(&[]);
     let at_one_end = computed(&[(shaft, json!({ "radius_mm": 12.0, "torque_at": "plus" }))]);
     let bored = computed(&[("/pair/driving/blank", json!({ "bore_radius_mm": 12.0 }))]);
-    // A rigid bore is stiffer than a shaft, and a shaft is stiffer where the torque leaves it at both ends. Beside what the teeth yield, the body turns by
-    // φ = T/(4 π G b) (1/R² − 1/r²) around a bore and (4/(3 R²) − 1/r²) around a shaft, and T b/(12 G J) more.
+    // A rigid bore is stiffer than a shaft, and a shaft is stiffer where the torque leaves it at both ends. Beside the compliance of the teeth, the body turns
+    // by φ = T/(4 π G b) (1/R² − 1/r²) around a bore and (4/(3 R²) − 1/r²) around a shaft, and T b/(12 G J) more.
     assert!(
         bored.0 < on_shaft.0 && on_shaft.0 < at_one_end.0,
         "{bored:?} {on_shaft:?} {at_one_end:?}"
@@ -1160,7 +1160,7 @@ fn a_component_whose_values_stand_in_another_file_is_refused_by_its_name_and_nev
         .split_once(r#"" type="shaft_section""#)
         .and_then(|(before, _)| before.rsplit_once(r#"id=""#)?.1.parse().ok())
         .expect("a section");
-    // Stage, gear, what is said of it there, flank, tool, settings, relief and material.
+    // Stage, gear, and its flank, tool, settings, relief and material in the model.
     let cases = [2, 10, 11, 12, 30, 31, 32, 33].map(|id| (CASE_2, id));
     for (model, id) in cases {
         let words = ["another file", "./database.rexs, component 7"];
@@ -1230,7 +1230,7 @@ fn the_protuberance_of_the_hob_is_read_with_its_height_or_its_angle_and_the_stoc
     let stepped = read(&steps);
     let ground = stepped["grinding_stock_um"].as_f64().expect("a number");
     assert!((ground - 100.0).abs() < 1e-6, "{stepped}");
-    // What is left says the stock as well; without either nothing is ground off.
+    // The rest gives the stock as well; without either nothing is ground off.
     let rest = said("remaining_protuberance", "mm", "0.02");
     let flank = attribute("normal_pressure_angle");
     let plain = hobbed(&(amount.clone() + &height), &[]);
@@ -1301,7 +1301,7 @@ fn the_protuberance_of_the_hob_is_read_with_its_height_or_its_angle_and_the_stoc
     assert!(from.ends_with("protuberance_amount"), "{error:?} {from}");
 }
 
-/// What the profile of the driving gear takes off at a diameter in mm, in um.
+/// Material removed from the profile of the driving gear at a diameter in mm, in um.
 fn removed(imported: &Import, diameter: f64) -> f64 {
     let submission = parse(&imported.submission).expect("valid");
     let gear = submission.case().pair.gear(Member::Driving);

@@ -1,4 +1,4 @@
-//! Whether the fields of a submission go together: torques, interface, span, forces and size.
+//! Checks of fields against each other: torques, interface, span, forces and size.
 
 use meshwright_engine::analysis::{Case, Method};
 use meshwright_engine::gear::{GearPair, Member, SpurGear};
@@ -16,7 +16,7 @@ use crate::units::{Side, plain, rounded_inward};
 /// The most positions times torques of one submission.
 pub const MOST_POSITIONS: u64 = 20_000;
 
-/// The same of the projected methods on teeth that do not deviate: they solve one mesh period, and add what holes do to it at each position.
+/// The same for the projected methods on teeth that do not deviate: they solve one mesh period, and add the effect of holes at each position.
 pub const MOST_PROJECTED_POSITIONS: u64 = 200_000;
 
 /// The most mesh periods of a run-up: of its true period, at all speeds, under all torques.
@@ -50,7 +50,7 @@ impl SubmissionDocument {
         }
     }
 
-    /// Refuses what three dimensions have no choice of.
+    /// Refuses choices that three dimensions do not have.
     pub(super) fn refuse_plane_choices(&self, errors: &Errors) {
         let solver = matches!(
             self.resolution.contact_solver,
@@ -101,7 +101,7 @@ impl SubmissionDocument {
                 );
                 errors.push(FieldError::new(pointer, Code::MissingField, detail));
             }
-            // The usual table ends at what the teeth bear.
+            // The default table ends at the load that the teeth bear.
             None => {}
             Some(given) if self.dynamics.is_some() && given < largest => {
                 let detail = format!(
@@ -305,7 +305,7 @@ impl SubmissionDocument {
     }
 }
 
-/// So many of what is called `one`, in words.
+/// Count and noun in words, from the singular `one`.
 fn counted(count: u64, one: &str) -> String {
     format!("{count} {one}{}", if count == 1 { "" } else { "s" })
 }

@@ -26,7 +26,7 @@ words! {
 }
 
 document! {
-    /// What is asked: a gear pair, torques, and how to compute. Unknown fields are refused.
+    /// A request: a gear pair, torques, and the way to compute. Unknown fields are refused.
     pub(crate) struct SubmissionDocument as "Submission", "Submission" {
         /// How the curves are computed.
         pub(super) method: Method = word("Method"),
@@ -45,17 +45,17 @@ document! {
             number("Speed of the driving gear", "1/min", 1e-3, 1e6),
             "no frequencies beside the orders",
         ),
-        /// Whether the largest von Mises stress at the tensile root fillets and at the edges of the holes is told too, position by position, and
-        /// where it is. The methods `flexible` and `three_dimensional` tell it; with another one it is refused.
+        /// Also computes the largest von Mises stress at the tensile root fillets and at the edges of the holes, position by position, and its place. The
+        /// methods `flexible` and `three_dimensional` compute it; with another one it is refused.
         pub(super) stress: bool = flag("Stress", false),
         /// The rows in which three dimensions tell the load along the face.
         pub(super) face_load: FaceRows = word("Load along the face").or(FaceRows::Mean),
-        /// Whether results have a table of the force between the gears over mesh position and approach, for run-ups and other programs. It is
-        /// computed over the true period, and its positions times its loads count as positions of the submission.
+        /// Adds a table of the force between the gears over mesh position and approach to the results, for run-ups and other programs. It is computed over the
+        /// true period, and its positions times its loads count as positions of the submission.
         pub(super) force_table: Option<ForceTableQuestion> =
             absent(nested("ForceTableRequest"), "no table"),
-        /// Whether each curve has the motion of the gears over speed: run up and down, with resonances, contact loss and jumps. It needs a
-        /// force table, and the usual one stands in where none is asked for.
+        /// Adds the motion of the gears over speed to each curve: run up and down, with resonances, contact loss and jumps. It needs a force table; the default
+        /// one is computed if none is requested.
         pub(super) dynamics: Option<DynamicsQuestion> =
             absent(nested("DynamicsRequest"), "no run-up"),
         /// Whether results have the natural modes of both gears, and where the mesh meets them as they turn. The curves do not change.

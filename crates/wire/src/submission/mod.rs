@@ -1,4 +1,4 @@
-//! A submission: what is asked, checked once, with every default filled in.
+//! A submission: a request, checked once, with every default filled in.
 
 use meshwright_engine::analysis::blank_modes::{ModesRequest, blank_modes_estimate};
 use meshwright_engine::analysis::forces::{ForcesRequest, MORE_POSITIONS};
@@ -34,11 +34,11 @@ use crate::hash::sha256_hex;
 /// The version of the solver, which a result belongs to.
 pub const SOLVER_VERSION: &str = concat!("meshwright ", env!("CARGO_PKG_VERSION"));
 
-/// The version of the document of a submission: one more with every field that it gains, in whichever part. A process that reads only
-/// earlier ones leaves the job to others instead of refusing what it does not know.
+/// The version of the document of a submission: one more in a release that adds fields, in whichever part. A process that reads only earlier versions leaves
+/// the job to others instead of refusing fields that it does not know.
 pub const DOCUMENT_VERSION: i64 = 4;
 
-/// What is asked: a gear pair, torques, and how to compute.
+/// A request: a gear pair, torques, and the way to compute.
 ///
 /// A value of this type can be computed: its gears can be made and mesh, and the work is within the limits.
 #[derive(Debug, Clone, PartialEq)]
@@ -79,7 +79,7 @@ pub fn method_schema() -> utoipa::openapi::RefOr<utoipa::openapi::Schema> {
     ))
 }
 
-/// What a submission is for, which decides how large it may be.
+/// Use of a submission, which decides its limits of size.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Purpose {
     /// A job, which is queued.
@@ -183,7 +183,7 @@ impl Submission {
         Self::of_node_with(node, |_, _, _| Some(()))
     }
 
-    /// The same, once `finish` has made of the pair what cannot be written down beforehand. What prevents that it reports.
+    /// The same, after `finish` has added to the pair the parts that cannot be written down beforehand. Its faults are reported.
     pub fn of_node_with(
         node: &Node,
         finish: impl FnOnce(&mut PairDocument, Method, &Errors) -> Option<()>,
@@ -198,14 +198,14 @@ impl Submission {
         errors.settle(read)
     }
 
-    /// What is wrong with the fields of a submission, each by itself. Whether they go together is not looked at.
+    /// Faults of the fields of a submission, each by itself, without checks against each other.
     pub fn wrong_fields(node: &Node) -> Vec<FieldError> {
         let errors = Errors::default();
         SubmissionDocument::read(node, &Location::root(&errors), &EACH);
         errors.into_errors()
     }
 
-    /// Reads what is left of `reader`, and checks it.
+    /// Reads the remaining fields of `reader`, and checks them.
     pub(super) fn read(
         reader: ObjectReader<'_>,
         purpose: Purpose,
@@ -218,19 +218,19 @@ impl Submission {
         document.checked(purpose, errors)
     }
 
-    /// What the engine is asked.
+    /// The case of the engine.
     pub fn case(&self) -> &Case {
         &self.case
     }
 
-    /// What to know of the document itself: what of it is not taken as it is written. Then the warnings of the engine.
+    /// Warnings of the document itself, about values that are not taken as written; then those of the engine.
     pub(super) fn warnings(&self, of_engine: &[Warning]) -> Vec<WarningDocument> {
         let own = self.document.pair.digits_taken().into_iter();
         own.chain(of_engine.iter().map(WarningDocument::of))
             .collect()
     }
 
-    /// What the engine is asked beside the curves.
+    /// The request beside the curves.
     pub fn forces(&self) -> Option<&ForcesRequest> {
         self.forces.as_ref()
     }
@@ -256,8 +256,7 @@ impl Submission {
         serde_json::to_string(&self.document).expect("a submission is words and finite numbers")
     }
 
-    /// SHA-256, in hexadecimal, of what decides the result: the canonical document without its tags, and the solver's
-    /// version.
+    /// SHA-256, in hexadecimal, of all that decides the result: the canonical document without its tags, and the solver's version.
     pub fn input_hash(&self) -> String {
         let untagged = SubmissionDocument {
             tags: Vec::new(),

@@ -49,7 +49,7 @@ const FILES: [&str; 3] = [
     "fig-08-case-3.svg",
 ];
 
-/// What a panel shows of a curve.
+/// Curve of a panel.
 #[derive(Clone, Copy)]
 enum Quantity {
     TransmissionError,

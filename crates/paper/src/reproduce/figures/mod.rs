@@ -1,4 +1,4 @@
-//! The figures of the paper, drawn from what is computed. Figs. 1 and 4 are flow charts and hold nothing to compute.
+//! The figures of the paper, drawn from the computed results. Figs. 1 and 4 are flow charts without numbers.
 //!
 //! Read in this order: [`drawings`] (Figs. 2, 5 and 9), [`blanks`] (Fig. 3), [`cases`] (Figs. 6 to 8), [`designs`]
 //! (Figs. 10 and 11), [`sweeps`] (the torques).
@@ -14,13 +14,13 @@ use meshwright_engine::analysis::Curve;
 use super::computed::Computed;
 use meshwright_plot::Figure;
 
-/// A figure with what is said of it.
+/// A figure with its caption.
 pub(super) struct Illustration {
     /// The name of its file.
     pub(super) file: &'static str,
     /// Its title.
     pub(super) title: String,
-    /// What is seen, and where the paper differs.
+    /// Content, and differences from the paper.
     pub(super) caption: String,
     /// The figure.
     pub(super) svg: String,

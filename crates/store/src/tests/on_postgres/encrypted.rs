@@ -1,4 +1,4 @@
-//! What crosses the network to the server.
+//! Data that cross the network to the server.
 
 use super::*;
 use crate::OpenError;
@@ -8,7 +8,7 @@ async fn open(address: &str, settings: &str) -> Result<Store, OpenError> {
     Store::open(&DatabaseAddress::Postgres(format!("{address}?{settings}"))).await
 }
 
-/// What the server says of all our connections.
+/// The server's view of all our connections.
 async fn are_encrypted(store: &Store) -> bool {
     let Pool::Postgres(pool, _) = &store.readers else {
         panic!("a store on PostgreSQL");

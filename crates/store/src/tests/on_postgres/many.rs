@@ -24,7 +24,7 @@ async fn several<const N: usize>() -> [Store; N] {
     stores.try_into().unwrap()
 }
 
-/// What each does when all do it at the same time.
+/// Results when all do the same at the same time.
 async fn at_once<T: Send + 'static, F: Future<Output = T> + Send + 'static>(
     stores: &[Store],
     each: impl Fn(usize, Store) -> F + Clone + Send + 'static,
@@ -368,7 +368,7 @@ async fn ends_cancels_and_claims_of_one_study_at_once_count_every_design_once() 
                     .unwrap(),
             );
             if index == 0 && done == 8 {
-                // It is cancelled while the others claim and finish; where a transaction had to give way it is tried again.
+                // It is cancelled while the others claim and finish; a transaction that had to give way is tried again.
                 while let Err(error) = cancel(&store, id).await {
                     assert!(error.may_pass(), "{error:?}");
                 }
@@ -393,7 +393,7 @@ async fn ends_cancels_and_claims_of_one_study_at_once_count_every_design_once() 
 #[tokio::test(flavor = "multi_thread", worker_threads = 4)]
 async fn a_document_that_jobs_come_to_need_is_not_removed_under_them() {
     let stores = several::<4>().await;
-    // All compute the same text from different input, and delete what they have: the last one takes it, and the next makes it.
+    // All compute the same text from different input, and delete their jobs: the last one removes it, and the next makes it.
     at_once(&stores, async |index, store: Store| {
         for round in 0..15 {
             let job = NewJob {

@@ -10,7 +10,7 @@ async fn say(store: &Store, words: &'static str) {
     sqlx::raw_sql(words).execute(pool).await.unwrap();
 }
 
-/// Has every connection prepare what jobs are read and ended by.
+/// Has every connection prepare the statements that read and end jobs.
 async fn warm(store: &Store) {
     for i in 0..20 {
         let job = ended(store, 1, &format!("warm {i}")).await;

@@ -116,11 +116,11 @@ fn of_a_thousand_pairs_that_programs_write_no_more_than_ten_are_refused_each_for
         let code = problem.errors[0].code;
         assert!(accepted.contains(&code), "{number}: {:?}", problem.errors);
     }
-    // The table is one of what it is meant to show.
+    // The table contains enough of the cases that it is for.
     assert!(moved_back > 150 && helical > 300, "{moved_back} {helical}");
 }
 
-/// Whether printed digits left too little room for the other flanks.
+/// True if printed digits left too little room for the other flanks.
 fn is_moved_back(submission: &Submission) -> bool {
     submission.case().pair.moved_back() > 1e-10
 }

@@ -1,4 +1,4 @@
-//! What real drawings say of a gear: what is read, told to the engine, echoed and refused.
+//! Fields of real drawings: reading, conversion for the engine, echo and refusals.
 
 mod blank;
 mod generated;

@@ -1,4 +1,4 @@
-//! Spokes and outlines: what is read, handed to the engine and refused, and that a gear drawn in two ways, or in a drawing, is one gear.
+//! Spokes and outlines: reading, conversion for the engine and refusals; a gear drawn in two ways, or in a drawing, is one gear.
 
 use std::f64::consts::PI;
 

@@ -218,7 +218,7 @@ fn gears_at_the_bounds_of_teeth_and_of_pressure_angles_are_taken_and_one_beyond_
     let full = [0.0, 1.0, 1.25];
     let four = |z: u32| meshing([z, 60], 30.0, [[0.5, 0.75, 1.05], [-0.5, 1.0, 1.05]]);
     let steep = |alpha: f64| meshing([200, 400], alpha, [[0.0, 0.86, 0.905]; 2]);
-    // What the contact ratio is without undercut: (sqrt(r_a1² − r_b1²) + sqrt(r_a2² − r_b2²) − a sin α)/(π cos α).
+    // The contact ratio without undercut: (sqrt(r_a1² − r_b1²) + sqrt(r_a2² − r_b2²) − a sin α)/(π cos α).
     let unlost = |teeth: [f64; 2], alpha: f64, addendum: f64| {
         let alpha = alpha.to_radians();
         let reach = teeth.map(|z| {
@@ -395,7 +395,7 @@ fn hunting_teeth_on_uneven_blanks_are_computed_where_the_holes_superpose() {
 fn the_backlash_of_a_helical_pair_is_normal_and_its_transverse_one_stands_beside_it() {
     let thinner = json!({ "tooth_thickness_deviation_um": -69.282 });
     let pair = taken(&khk(125.0001, &thinner)).pair;
-    // Two teeth that are 69.282 um cos 30° = 60 um thinner in the normal section: 2 x 60 um cos 20°, and what the distance adds.
+    // Two teeth that are 69.282 um cos 30° = 60 um thinner in the normal section: 2 x 60 um cos 20°, and the part of the center distance.
     near(pair.backlash_mm, 0.11283, 6e-6);
     near(pair.backlash_line_of_action_mm, 0.12782, 6e-6);
     // j_wt of ISO 21771 stands at the working pitch circle, under the 23.1126 degrees of the handbook: over their cosine.
@@ -538,7 +538,7 @@ fn a_thickness_may_be_said_by_a_span_or_by_balls_and_at_most_once() {
     let balls = json!({ "ball_measurement": { "ball_diameter_mm": ball, "over_balls_mm": over } });
     let by_balls = taken(&straight(&balls)).pair;
     near(by_balls.backlash_mm, deviation.backlash_mm, 1e-9);
-    // A span over a tooth more or less is told with what the rack leaves.
+    // A span over a tooth more or less is refused with the length that the rack gives.
     let wrong = json!({ "span_measurement": { "teeth": 4, "length_mm": length } });
     let error = fault(
         &straight(&wrong),

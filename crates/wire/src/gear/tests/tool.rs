@@ -195,7 +195,7 @@ fn teeth_that_are_cut_away_by_a_deep_hob_name_what_raises_it() {
         "/pair/driving/profile_shift",
         Code::Undercut,
     );
-    // The rack's straight depth of 1 module (0.38 of tip rounding) less z sin²α/2, and what the hob stands deeper: 0.9 mm/(4 mm tan 20 degrees).
+    // The rack's straight depth of 1 module (0.38 of tip rounding) less z sin²α/2, and the deeper stand of the hob: 0.9 mm/(4 mm tan 20 degrees).
     let (sin, tan) = (20_f64.to_radians().sin(), 20_f64.to_radians().tan());
     let smallest = 1.25 - 0.38 * (1.0 - sin) - 3.0 * sin * sin + 0.9 / (4.0 * tan);
     near(error.nearest.expect("a shift"), smallest, 1e-3);

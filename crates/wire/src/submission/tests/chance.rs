@@ -78,7 +78,7 @@ fn whoever_follows_the_advice_on_real_teeth_arrives_at_a_submission() {
     advice_leads_from(&whole, 2000);
 }
 
-/// Changes a number or two of `whole`, so many times, and follows what is advised.
+/// Changes a number or two of `whole`, `times` times, and follows the advice.
 fn advice_leads_from(whole: &Value, times: usize) {
     let mut chance = Chance(0x2545_f491_4f6c_dd1d);
     let mut places = Vec::new();

@@ -1,4 +1,4 @@
-//! What a submission is read as, filled in with, and refused for.
+//! Reading of a submission, its defaults, and its refusals.
 
 mod chance;
 mod refusals;

@@ -1,4 +1,4 @@
-//! Each kind of bad value, and what is told of it.
+//! Each kind of bad value, and its refusal.
 
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -7,14 +7,14 @@ use super::case_2;
 use crate::Code;
 use crate::testing::{echo, fault, parse, put, refused, with};
 
-/// A value that is refused: where it is sent, and what is told.
+/// A value that is refused: place of the value, and the refusal.
 #[derive(Deserialize)]
 struct Refused {
     at: String,
     value: Value,
     told_at: String,
     code: Code,
-    /// Whether a value that would do is told.
+    /// True if the refusal has a nearest value.
     nearest: bool,
 }
 
@@ -69,7 +69,7 @@ fn the_nearest_values_together_make_a_submission() {
     for change in changes {
         let mut document = with(case_2(), change);
         assert!(parse(&document).is_err());
-        // What the first answer cannot know, because it needs a whole pair, comes with a later one.
+        // Faults that need a whole pair come with a later answer.
         for _ in 0..4 {
             let Err(problem) = parse(&document) else {
                 break;

@@ -1,4 +1,4 @@
-//! The schema of a submission against what is read and filled in.
+//! The schema of a submission against its reader and its defaults.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -33,7 +33,7 @@ fn every_field_of_the_schema_has_a_title_and_the_defaults_are_those_that_are_fil
             .and_then(Value::as_object)
             .expect("an object");
         let properties = schema["properties"].as_object().expect("properties");
-        // What is one of several ways to say the same is left out where another is taken.
+        // One of several ways to give the same quantity is left out where another is taken.
         let is_echoed = |field: &&String| {
             let ways = [
                 "tooth_thickness_deviation_normal_um",

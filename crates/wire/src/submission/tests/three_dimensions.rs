@@ -1,4 +1,4 @@
-//! What three dimensions take, what planes refuse of it, and what comes of a pair along its faces.
+//! Fields of three dimensions, their refusals in the plane, and results of a pair along its faces.
 
 use meshwright_engine::gear::FaceEnds;
 use meshwright_engine::library::Library;
@@ -379,7 +379,7 @@ fn faces_over_which_more_than_sixteen_pairs_of_teeth_mesh_are_computed_as_narrow
         narrow.0 < 17 && middle.0 > 17 && broad.0 > 20,
         "{narrow:?} {middle:?} {broad:?}"
     );
-    // Both ends of a face yield more, whatever its width: what a millimeter carries goes with one over the width, but for a percent.
+    // Both ends of a face are more compliant, whatever its width: the load of a millimeter is proportional to one over the width, within a percent.
     let share = (1.0 / 60.0 - 1.0 / 80.0) / (1.0 / 60.0 - 1.0 / 100.0);
     let between = narrow.1 + share * (broad.1 - narrow.1);
     assert!(
@@ -532,7 +532,7 @@ fn the_pattern_of_the_other_hand_under_the_other_lead_is_the_mirror_image() {
                     halves[strip / 20] += pressure;
                 }
             }
-            // What is taken off at the +z end leaves the load to the other.
+            // Material removed at the +z end moves the load to the other.
             assert!((halves[0] - halves[1]) * slope > 0.0, "{halves:?} {slope}");
         }
     }
@@ -633,7 +633,7 @@ fn a_plane_method_has_no_pattern_and_says_which_has() {
     );
 }
 
-/// K_Hbeta of each curve, and what would lower it.
+/// K_Hbeta of each curve, and the lead modification that would lower it.
 fn cures(submission: &Submission) -> Vec<(f64, [f64; 3])> {
     let results = solved(submission);
     let faces = (0..results.curves.len()).map(|curve| face_of(&results, curve));
