@@ -11,6 +11,7 @@ mod app;
 mod batch;
 mod blocking;
 mod body;
+mod campbell;
 mod client;
 mod contact_pattern;
 mod contract;

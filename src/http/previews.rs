@@ -4,7 +4,6 @@ use std::time::Duration;
 
 use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE, HeaderName};
 use axum::response::{IntoResponse, Response};
-use meshwright_engine::analysis;
 use meshwright_engine::run::Run;
 use meshwright_wire::{Code, Preview, Problem, is_plain};
 
@@ -80,7 +79,7 @@ async fn refuse_long(client: &Client, preview: Preview) -> Result<Preview, Probl
     #[expect(clippy::disallowed_methods, reason = "in `blocking`")]
     let estimated = blocking(client.name(), move |_| {
         let submission = &preview.submission;
-        let estimate = analysis::estimate(submission.case(), submission.forces());
+        let estimate = submission.estimate();
         (preview, estimate.seconds)
     });
     let (preview, seconds) = estimated.await?;

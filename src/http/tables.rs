@@ -20,6 +20,7 @@ use utoipa::{IntoParams, ToSchema};
 use super::answer::file;
 use super::app::App;
 use super::blocking::{blocking, goes_on};
+use super::campbell;
 use super::client::Client;
 use super::parameters::{IfNoneMatch, JobId, Parameters};
 use super::pictures::{self, Picture};
@@ -238,7 +239,7 @@ pub(super) struct TableParameters {
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/results/{table}", tag = "Results", operation_id = "get_table",
     params(
-        ("table" = String, Path, example = "ste.csv", description = "`ste`, `mesh-stiffness`, `spectrum`, `run-up` or `face-load`, with `.json`, `.csv` or `.svg`; or `load-share.svg`; or `hole-phase.svg`; or `force-table.csv`, `force-table.txt` (CombiTable2D), `force-table.mo` (a Modelica package), `force-table.fmu` (FMU 2.0, `application/octet-stream`); or `look-up-table.csv`, `look-up-table.txt`, which have one curve over the angle in SI units, datum and signs in their head."),
+        ("table" = String, Path, example = "ste.csv", description = "`ste`, `mesh-stiffness`, `spectrum`, `run-up` or `face-load`, with `.json`, `.csv` or `.svg`; or `load-share.svg`; or `hole-phase.svg`; or `force-table.csv`, `force-table.txt` (CombiTable2D), `force-table.mo` (a Modelica package), `force-table.fmu` (FMU 2.0, `application/octet-stream`); or `look-up-table.csv`, `look-up-table.txt`, which have one curve over the angle in SI units, datum and signs in their head; or `campbell.csv`, the crossings of the mesh with the natural modes of both gears, or `campbell.svg`, their diagram."),
         TableParameters,
         IfNoneMatch,
     ),
@@ -342,6 +343,14 @@ fn make(
         File::LookUp(form) => look_up_table(&results, &curves, form, name),
         File::Forces(form) => forces(&results, form, name),
         File::Fmu => packed(&results, name),
+        File::CampbellTable => {
+            let modes = results.modes.as_ref().ok_or_else(no_modes)?;
+            Ok(file("text/csv; charset=utf-8", name, campbell::csv(modes)))
+        }
+        File::CampbellDiagram => {
+            let svg = campbell::draw(&results).ok_or_else(no_modes)?;
+            Ok(pictures::answer(svg))
+        }
     }
 }
 
@@ -363,6 +372,11 @@ fn look_up_table(
         look_up::Form::Text => "text/plain; charset=utf-8",
     };
     Ok(file(media_type, name, table))
+}
+
+fn no_modes() -> Problem {
+    let detail = "These results have no natural modes: the submission asks for none.";
+    Problem::new(Code::NotFound, detail)
 }
 
 fn no_forces() -> Problem {
@@ -405,10 +419,12 @@ enum File {
     LookUp(look_up::Form),
     Forces(force_table::Form),
     Fmu,
+    CampbellTable,
+    CampbellDiagram,
 }
 
 #[rustfmt::skip]
-const FILES: [(&str, File); 23] = [
+const FILES: [(&str, File); 25] = [
     ("ste.json", File::Table(Table::TransmissionError, Form::Json)),
     ("ste.csv", File::Table(Table::TransmissionError, Form::Csv)),
     ("ste.svg", File::Picture(Picture::TransmissionError)),
@@ -432,6 +448,8 @@ const FILES: [(&str, File); 23] = [
     ("force-table.txt", File::Forces(force_table::Form::Text)),
     ("force-table.mo", File::Forces(force_table::Form::Modelica)),
     ("force-table.fmu", File::Fmu),
+    ("campbell.csv", File::CampbellTable),
+    ("campbell.svg", File::CampbellDiagram),
 ];
 
 impl File {
@@ -441,8 +459,9 @@ impl File {
             Self::Table(_, Form::Json) => "application/json",
             Self::Table(_, Form::Csv)
             | Self::LookUp(look_up::Form::Csv)
-            | Self::Forces(force_table::Form::Csv) => "text/csv",
-            Self::Picture(_) | Self::HolePhase => "image/svg+xml",
+            | Self::Forces(force_table::Form::Csv)
+            | Self::CampbellTable => "text/csv",
+            Self::Picture(_) | Self::HolePhase | Self::CampbellDiagram => "image/svg+xml",
             Self::LookUp(look_up::Form::Text)
             | Self::Forces(force_table::Form::Text | force_table::Form::Modelica) => "text/plain",
             Self::Fmu => "application/octet-stream",

@@ -1,10 +1,10 @@
 //! The JSON documents of the interface as types, in the units of those who read them.
 //!
-//! Read in this order: [`problem`] (errors), [`submission`] with its parts [`pair`], [`gear`] and [`resolution`], [`forces`] (the request), [`materials`] by
-//! their names; [`geometry`], [`outline`], [`edges`], [`contact_pattern`], [`warning`], [`results`] and `rexs` (the answer), [`solve`](mod@solve) (from the
-//! one to the other) and [`examples`](mod@examples); [`preview`], a submission that is answered at once; [`draw`], teeth at random. [`declare`], [`units`],
-//! [`size`], `edit` and [`mod@pointer`] support them: the one declaration of each object, conversions, limits of size, changes in place, and places in a
-//! submission. Many submissions at once are the crate `studies`, which knows this one.
+//! Read in this order: [`problem`] (errors), [`submission`] with its parts [`pair`], [`gear`] and [`resolution`], [`forces`] and [`modes`] (the request),
+//! [`materials`] by their names; [`geometry`], [`outline`], [`edges`], [`contact_pattern`], [`warning`], [`results`] and `rexs` (the answer),
+//! [`solve`](mod@solve) (from the one to the other) and [`examples`](mod@examples); [`preview`], a submission that is answered at once; [`draw`], teeth at
+//! random. [`declare`], [`units`], [`size`], `edit` and [`mod@pointer`] support them: the one declaration of each object, conversions, limits of size, changes in
+//! place, and places in a submission. Many submissions at once are the crate `studies`, which knows this one.
 //!
 //! This is the only place where domain data meets serde, and where mm, um, degrees, GPa and MPa meet SI.
 
@@ -25,6 +25,7 @@ pub mod forces;
 pub mod gear;
 mod interface;
 pub mod materials;
+pub mod modes;
 pub mod pair;
 pub mod resolution;
 pub mod running;

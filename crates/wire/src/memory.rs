@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::Mutex;
 
-use meshwright_engine::analysis::{self, Case, Method, Resolution};
+use meshwright_engine::analysis::{Case, Method, Resolution};
 use meshwright_engine::assembly::FaceResolution;
 use meshwright_engine::gear::{HoleShape, Member, SolidGear, SpurGear};
 use meshwright_engine::grid::GridLevel;
@@ -117,10 +117,10 @@ const KEPT: usize = 8;
 fn estimated_mb(submission: &Submission) -> u64 {
     let case = submission.case();
     let estimate = || {
-        let estimate = analysis::estimate(case, submission.forces());
+        let estimate = submission.estimate();
         estimate.memory.div_ceil(1_000_000)
     };
-    if submission.forces().is_some() {
+    if submission.forces().is_some() || submission.modes().is_some() {
         return estimate();
     }
     let asked = Asked::of(case);
@@ -154,6 +154,7 @@ pub fn too_much_memory(needed_mb: u64, limit_mb: u64) -> Problem {
 mod tests {
     use std::f64::consts::TAU;
 
+    use meshwright_engine::analysis;
     use serde_json::{Value, json};
 
     use super::*;

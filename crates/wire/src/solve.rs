@@ -1,5 +1,6 @@
 //! From a submission to its results, or to its validation.
 
+use meshwright_engine::analysis::blank_modes::blank_modes;
 use meshwright_engine::analysis::contact_pattern::ContactPattern;
 use meshwright_engine::analysis::fields::{Fields, fields};
 use meshwright_engine::analysis::{self, AnalysisError, face_fields};
@@ -37,10 +38,14 @@ pub fn solve(submission: &Submission, library: &Library, run: &Run) -> Result<Re
                 .map(|(analysis, forces)| (analysis, Some(forces)))
         }
     };
-    match answer {
-        Ok((analysis, forces)) => Ok(Results::of(submission, &analysis, forces.as_ref())),
-        Err(error) => Err(problem_of(&error)),
-    }
+    let (analysis, forces) = answer.map_err(|error| problem_of(&error))?;
+    let results = Results::of(submission, &analysis, forces.as_ref());
+    let Some(request) = submission.modes() else {
+        return Ok(results);
+    };
+    let modes = blank_modes(submission.case(), request, run);
+    let modes = modes.map_err(|error| problem_of(&error))?;
+    Ok(results.with_modes(submission, &modes))
 }
 
 /// Displacements and stresses in both gears, as the method sees them.
@@ -290,7 +295,7 @@ pub struct Validation {
 document! {
     /// Estimated cost of a computation.
     pub struct EstimateDocument as Estimate, "Estimate" answer of (submission: &Submission) with {
-        let estimate = analysis::estimate(submission.case(), submission.forces());
+        let estimate = submission.estimate();
     } {
         /// Unknowns of both gears before condensation.
         degrees_of_freedom: u64 = estimate.degrees_of_freedom,

@@ -10,6 +10,7 @@ use meshwright_engine::gear::Member;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::results::{CrossingDocument, ModeDocument};
 use super::units::{Side, plain, rounded_to_unit, significant, to_mm, to_mpa, to_n_per_mm, to_um};
 
 /// A warning: the result stands, but with something to know.
@@ -63,6 +64,8 @@ pub enum WarningCode {
     LoadBeyondForceTable,
     /// Rims and teeth have inertia outside the webs that carry them, which the motion takes to stand on the hubs.
     RimInertiaOnHub,
+    /// Orders of the mesh meet natural modes of a gear within the speeds asked.
+    ModesMet,
     /// A tip corner carries load off the line of action.
     TipCornerContact,
     /// The contact reaches the fillet of a gear, where it is not followed.
@@ -415,6 +418,43 @@ impl WarningDocument {
 }
 
 impl WarningDocument {
+    /// Where the mesh meets `modes` of `gear`, crossing by crossing, if it does.
+    pub(super) fn of_crossings(gear: GearName, modes: &[ModeDocument]) -> Option<Self> {
+        let mut crossings: Vec<(&ModeDocument, &CrossingDocument)> = modes
+            .iter()
+            .flat_map(|mode| mode.crossings.iter().map(move |crossing| (mode, crossing)))
+            .collect();
+        crossings.sort_by(|(_, one), (_, other)| {
+            one.driving_speed_rpm.total_cmp(&other.driving_speed_rpm)
+        });
+        let (_, first) = crossings.first()?;
+        let named = crossings.iter().map(|(mode, crossing)| {
+            format!(
+                "{} at {} 1/min ({} Hz, n = {}, {}, {})",
+                crossing.label,
+                plain(significant(crossing.driving_speed_rpm, 4)),
+                plain(significant(mode.frequency_hz, 4)),
+                mode.nodal_diameters,
+                mode.direction.words(),
+                crossing.wave.word()
+            )
+        });
+        let named: Vec<String> = named.collect();
+        Some(Self {
+            code: WarningCode::ModesMet,
+            value: Some(first.driving_speed_rpm),
+            unit: Some("1/min".into()),
+            detail: format!(
+                "Within the speeds asked the mesh meets natural modes of the {} gear: {}.",
+                gear.word(),
+                named.join("; ")
+            ),
+            gear: Some(gear),
+            changes: BTreeMap::new(),
+            guide: WarningCode::ModesMet.guide().map(Cow::from),
+        })
+    }
+
     /// That `value`, with its unit, is taken for `member`, which says fewer of its digits.
     pub(super) fn of_digits(
         member: Member,
@@ -441,7 +481,8 @@ impl WarningCode {
             Self::MotionUnbounded
             | Self::MotionAtEndOfSpeeds
             | Self::LoadBeyondForceTable
-            | Self::RimInertiaOnHub => Some("/guides/will-it-rattle-or-whine"),
+            | Self::RimInertiaOnHub
+            | Self::ModesMet => Some("/guides/will-it-rattle-or-whine"),
             Self::FitComesLoose => Some("/guides/what-speed-does-to-my-holes"),
             _ => None,
         }

@@ -10,12 +10,13 @@
 //! - [`stress`] (at roots and holes; along faces `face_stress`), [`fields`] (everywhere; along faces [`face_fields`]), [`contact_pattern`] (over the flanks);
 //! - `between` (a curve between its positions), `curve_parts` and [`curve`] with its `statistics`, [`largest_where`] (where its largest values stand), [`pressures`] (what they come to),
 //!   [`spectrum`] and [`single_flank`] with the `long_wave`; `windows` (stretches of a true period that is too long), [`mesh_wave`] and `pair_springs` (what they tell of the mesh orders);
-//! - [`evidence`], [`warning`], [`error`] and `answer` (all that comes out); [`forces`] (tables of force), [`at_speed`] (motion), [`rotors`] (gear bodies in torsion).
+//! - [`evidence`], [`warning`], [`error`] and `answer` (all that comes out); [`forces`] (tables of force), [`at_speed`] (motion), [`rotors`] (gear bodies in torsion), [`blank_modes`] (natural modes of both gears).
 
 mod analyze;
 mod answer;
 pub mod at_speed;
 mod between;
+pub mod blank_modes;
 pub mod case;
 mod checks;
 pub mod contact_pattern;

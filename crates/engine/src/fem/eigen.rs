@@ -360,7 +360,8 @@ impl Lanczos {
             let mut residual = combined(&self.answers, of);
             axpy(c64::new(-theta, 0.0), &vector, &mut residual);
             let residual = self.norm(&residual) / theta;
-            if !(residual < RESIDUAL) && !self.is_exhausted {
+            let is_done = residual < RESIDUAL || self.is_exhausted;
+            if !is_done {
                 break;
             }
             found.push(EigenPair {

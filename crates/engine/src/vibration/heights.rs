@@ -13,6 +13,8 @@ const PIECE: usize = 3;
 const SAME: f64 = 1e-6;
 /// The largest length of a piece, in depths of the narrowest part along the radius.
 const LONGEST: f64 = 3.0;
+/// The most pieces between two faces.
+const MOST_PIECES: f64 = 4.0;
 
 /// About which motions a half gear is asked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -71,7 +73,8 @@ impl Heights {
         ends.dedup_by(|next, one| *next - *one < SAME * width);
         let mut nodes = vec![ends[0]];
         for piece in ends.windows(2) {
-            let parts = ((piece[1] - piece[0]) / (LONGEST * depth)).ceil().max(1.0) as usize;
+            let parts = ((piece[1] - piece[0]) / (LONGEST * depth)).ceil();
+            let parts = parts.clamp(1.0, MOST_PIECES) as usize;
             let step = (piece[1] - piece[0]) / (2 * parts) as f64;
             nodes.extend((1..=2 * parts).map(|i| piece[0] + step * i as f64));
         }

@@ -65,10 +65,21 @@ impl Blank {
         let holes = section.holes();
         let reach = holes.iter().map(Hole::outer_reach).reduce(f64::max);
         let below = parts[0].inner_radius.max(reach.unwrap_or(0.0));
-        let outer = (root - module).max(f64::midpoint(root, below));
-        parts[0].outer_radius = outer;
-        let z = section.tooth_count() as usize;
-        let Some(reach) = reach else {
+        parts[0].outer_radius = (root - module).max(f64::midpoint(root, below));
+        let region = &section.data().blank;
+        Self::of_region(parts, region, gear.face_width(), section.tooth_count())
+    }
+
+    /// The blank of these parts, from outside to the bore, with the holes of `region`, under so many teeth.
+    pub(super) fn of_region(
+        parts: Vec<Layer>,
+        region: &BlankRegion,
+        face_width: f64,
+        tooth_count: u32,
+    ) -> Result<Self, GridError> {
+        let (outer, z) = (parts[0].outer_radius, tooth_count as usize);
+        let reach = region.holes.iter().map(Hole::outer_reach);
+        let Some(reach) = reach.reduce(f64::max) else {
             return Ok(Self {
                 section: Section::plain(&parts, z),
                 parts,
@@ -85,7 +96,7 @@ impl Blank {
             bore_radius: circles[0],
             core: Core::Bore,
             web: None,
-            ..section.data().blank.clone()
+            ..region.clone()
         };
         let count = region
             .pattern()
@@ -95,9 +106,9 @@ impl Blank {
         let per_tooth = 2.0 * around / z as f64;
         let grid = BlankGrid::of_region(
             &region,
-            gear.face_width(),
+            face_width,
             circles[1],
-            z as u32,
+            tooth_count,
             per_tooth,
             GridLevel::Coarse,
         )?;
@@ -122,7 +133,7 @@ impl Blank {
 impl Section {
     /// One of `sectors` of rings without holes.
     fn plain(parts: &[Layer], sectors: usize) -> Self {
-        let elements = LEAST_AROUND.div_ceil(sectors);
+        let elements = least_around(sectors) / sectors;
         let half = PI / sectors as f64;
         let steps = 2 * elements;
         let angles: Vec<f64> = (0..=steps)
@@ -200,6 +211,11 @@ impl Section {
             around,
         }
     }
+}
+
+/// Elements around a ring without holes of so many sectors.
+pub(super) fn least_around(sectors: usize) -> usize {
+    sectors * LEAST_AROUND.div_ceil(sectors)
 }
 
 /// Rings in the making, with nodes at `angles`, corners and middles in turn.

@@ -7,7 +7,7 @@ use meshwright_engine::analysis::ErrorEstimate;
 use serde_json::{Map, Value};
 
 use super::all;
-use super::unseen::does_not_see;
+use super::unseen::{MODES_DO_NOT_SEE, does_not_see};
 use crate::declare::document;
 use crate::submission::{SOLVER_VERSION, Submission};
 use crate::units::to_um;
@@ -17,7 +17,10 @@ document! {
     pub struct EvidenceDocument as Evidence, "Evidence"
     answer of (submission: &Submission, analysis: &Analysis) with {
         let evidence = &analysis.evidence;
-        let unseen = does_not_see(submission.case(), submission.forces());
+        let mut unseen = does_not_see(submission.case(), submission.forces());
+        if submission.modes().is_some() {
+            unseen.extend(MODES_DO_NOT_SEE);
+        }
     } {
         /// The version of the solver.
         solver_version: Cow<'static, str> = SOLVER_VERSION.into(),

@@ -35,9 +35,16 @@ impl Results {
         Some(MeshForces {
             table: ForceTable::new(pair.period_mesh_periods, table.load_n.clone(), flanks).ok()?,
             base_radii,
-            tooth_count: (TAU * base_radii[0] / (pair.base_pitch_mm * 1e-3)).round(),
+            tooth_count: self.tooth_counts()[0],
             method: self.method.to_string(),
         })
+    }
+
+    /// The teeth of the driving and the driven gear: their base circles over the base pitch.
+    pub fn tooth_counts(&self) -> [f64; 2] {
+        let pitch = self.pair.base_pitch_mm * 1e-3;
+        self.base_radii()
+            .map(|radius| (TAU * radius / pitch).round())
     }
 
     /// One curve of these results as a look-up table. `None` where it spans no whole true period: it could not be repeated.

@@ -7,6 +7,7 @@ mod exchanged;
 mod forces;
 mod hole_phase;
 mod largest_where;
+mod modes;
 mod spectrum;
 mod stress;
 mod unseen;
@@ -17,6 +18,7 @@ mod tests;
 use std::borrow::Cow;
 
 use meshwright_engine::analysis::Analysis;
+use meshwright_engine::analysis::blank_modes::MetMode;
 use meshwright_engine::analysis::forces::Forces;
 
 pub use curve::{
@@ -33,6 +35,7 @@ pub use forces::{
 };
 pub use hole_phase::{HolePhaseDocument, OverTurnDocument};
 pub use largest_where::{PressureStatistics, WhereDocument};
+pub use modes::{CrossingDocument, ModeDirection, ModeDocument, ModesDocument, WaveName};
 pub use spectrum::{NamedOrderDocument, OrderKindName, SpectrumDocument};
 pub use stress::{
     GearPeakStress, GearStressDocument, GearStressWhere, PeakStressDocument, StressDocument,
@@ -43,7 +46,7 @@ use super::geometry::{Frequencies, PairGeometry};
 use super::problem::{Code, Problem};
 use super::submission::Submission;
 use super::units::{known, one_or_null, rounded_json};
-use super::warning::WarningDocument;
+use super::warning::{GearName, WarningDocument};
 
 document! {
     /// Results of a submission. They are bit-identical for the same input and version.
@@ -79,6 +82,8 @@ document! {
         #[schema(required)]
         hole_phase: Option<HolePhaseDocument> =
             analysis.hole_phase.as_ref().map(HolePhaseDocument::of),
+        /// The natural modes of both gears; absent unless the submission asks for them.
+        modes?: ModesDocument = None,
         /// Evidence for the numbers, and their meaning.
         evidence: EvidenceDocument = EvidenceDocument::of(submission, analysis),
     }
@@ -92,6 +97,22 @@ impl Results {
     /// A text that is not JSON, or lacks fields that every version had.
     pub fn read(document: &str) -> serde_json::Result<Self> {
         serde_json::from_str(document)
+    }
+
+    /// The same with the natural modes of both gears, and a warning that names where the mesh meets them within the speeds asked.
+    pub(crate) fn with_modes(mut self, submission: &Submission, modes: &[Vec<MetMode>; 2]) -> Self {
+        let modes = ModesDocument::of(modes);
+        if submission
+            .modes()
+            .is_some_and(|request| request.speeds.is_some())
+        {
+            for gear in [GearName::Driving, GearName::Driven] {
+                self.warnings
+                    .extend(WarningDocument::of_crossings(gear, modes.of_gear(gear)));
+            }
+        }
+        self.modes = Some(modes);
+        self
     }
 
     /// The document as JSON, its numbers rounded to ten significant digits.

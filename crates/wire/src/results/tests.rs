@@ -2,6 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use meshwright_engine::analysis::RotationSpeed;
+use meshwright_engine::analysis::blank_modes::{Met, MetMode};
 use meshwright_engine::analysis::curve::{BlankFit, BlankSample, DecompositionParts, LoadShare};
 use meshwright_engine::analysis::hole_phase::{AtTurn, HolePhase};
 use meshwright_engine::analysis::largest_where::LargestPressure;
@@ -16,6 +18,8 @@ use meshwright_engine::contact::PeakPlace;
 use meshwright_engine::gear::Member;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
+use meshwright_engine::vibration::campbell::{Crossing, Wave};
+use meshwright_engine::vibration::{Direction, Mode};
 use serde_json::{Value, json};
 
 use super::*;
@@ -465,4 +469,71 @@ fn documents_of_other_versions_are_read_and_what_they_do_not_tell_is_never_writt
     assert_eq!(read.pair.path_of_contact.point_b.mesh_position, -0.2);
     assert!(read.pair.driving.form_diameter_mm.is_nan());
     assert!(read.to_json().is_err());
+}
+
+#[test]
+fn modes_stand_in_the_results_and_a_warning_names_their_crossings_within_the_speeds_asked() {
+    let mode = Mode {
+        frequency: 4000.0,
+        is_double: true,
+        direction: Direction::OutOfPlane,
+        nodal_diameters: 2,
+        nodal_circles: 0,
+        coriolis: 0.0,
+        residual: 0.0,
+        shape: Vec::new(),
+    };
+    let met = |wave, turns: f64| Met {
+        crossing: Crossing {
+            multiple: 1,
+            wave,
+            turns,
+        },
+        driving_speed: RotationSpeed(turns),
+    };
+    // 50 teeth: 4000/(50 + 2) and 4000/(50 - 2) turns a second.
+    let found = MetMode {
+        mode,
+        met: vec![
+            met(Wave::Backward, 4000.0 / 52.0),
+            met(Wave::Forward, 4000.0 / 48.0),
+        ],
+    };
+    let told = |dynamics: Value| {
+        let asked = [("/modes", json!({})), ("/dynamics", dynamics)];
+        let submission = parse(&with(example("test-case-2"), &asked)).expect("valid");
+        let results = Results::of(&submission, &analysis(submission.case()), None);
+        let results = results.with_modes(&submission, &[Vec::new(), vec![found.clone()]]);
+        let text = results.to_json().expect("finite");
+        serde_json::from_str::<Value>(&text).expect("JSON")
+    };
+    let range = json!({ "driving_speed_rpm": { "from": 0, "to": 6000 } });
+    let document = told(range);
+    let mode = &document["modes"]["driven"][0];
+    assert_eq!(mode["direction"], "out_of_plane");
+    assert_eq!(mode["wave_split"], 2.0);
+    assert_eq!(mode["crossings"][1]["driving_speed_rpm"], 5000.0);
+    assert_eq!(mode["crossings"][1]["label"], "H_Z2");
+    assert_eq!(mode["crossings"][1]["wave"], "forward");
+    let warnings = document["warnings"].as_array().expect("a list");
+    let warning = warnings
+        .iter()
+        .find(|warning| warning["code"] == "modes_met");
+    let warning = warning.expect("the mesh meets a mode");
+    assert_eq!(warning["gear"], "driven");
+    let detail = warning["detail"].as_str().expect("words");
+    for words in [
+        "H_Z2 at 4615 1/min",
+        "H_Z2 at 5000 1/min",
+        "4000 Hz",
+        "n = 2",
+        "out of the plane",
+    ] {
+        assert!(detail.contains(words), "{detail}");
+    }
+    let unseen = document["evidence"]["does_not_see"].to_string();
+    assert!(unseen.contains("in the natural modes"), "{unseen}");
+    // Without a range of speeds nothing is warned of.
+    let anywhere = told(Value::Null);
+    assert!(!anywhere["warnings"].to_string().contains("modes_met"));
 }

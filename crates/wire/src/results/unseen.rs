@@ -58,6 +58,13 @@ pub(super) fn does_not_see(case: &Case, forces: Option<&ForcesRequest>) -> Vec<&
         .collect()
 }
 
+/// What natural modes leave out.
+pub(super) const MODES_DO_NOT_SEE: [&str; 3] = [
+    "in the natural modes: shafts, bearings, housing, the mate and damping; each gear is by itself, and a gear of one piece with its shaft is held where the shaft begins",
+    "in the natural modes: that spinning stiffens a gear, and the helix of its teeth, which are straight ones of the same transverse section there",
+    "in the natural modes: that teeth couple motions of n nodal diameters with those of n - z, whose waves are shorter than two teeth",
+];
+
 /// Effects that a force table and a run-up leave out.
 fn forces_do_not_see(forces: Option<&ForcesRequest>) -> Vec<&'static str> {
     let mut unseen = Vec::new();

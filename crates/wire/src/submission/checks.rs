@@ -1,13 +1,15 @@
 //! Checks of fields against each other: torques, interface, span, forces and size.
 
-use meshwright_engine::analysis::{Faces, Method, Resolution};
+use meshwright_engine::analysis::{Case, Faces, Method, Resolution};
 use meshwright_engine::assembly::NearHoles;
 use meshwright_engine::gear::{GearPair, Member, SpurGear};
+use meshwright_engine::vibration::most_modes;
 
 use super::Purpose;
 use super::document::{OUTPUT_TORQUE, SubmissionDocument};
 use crate::declare::{Choice as _, Errors};
 use crate::forces::{DynamicsQuestion, ForceTableQuestion, SpeedRange, Speeds};
+use crate::modes::ModesQuestion;
 use crate::problem::{Code, FieldError};
 use crate::resolution::{ContactSolverDocument, ResolutionDocument};
 use crate::units::{Side, plain, rounded_inward};
@@ -168,6 +170,34 @@ impl SubmissionDocument {
         }
         if let Some(dynamics) = &self.dynamics {
             self.check_run_up(dynamics, pair, errors);
+        }
+    }
+
+    /// Refuses more modes than the grid of a gear carries, and gears that have no counterpart in three dimensions.
+    pub(super) fn check_modes(&self, case: &Case, errors: &Errors) {
+        let Some(modes) = &self.modes else {
+            return;
+        };
+        for member in Member::BOTH {
+            let z = case.pair.gear(member).tooth_count();
+            let most = most_modes(z);
+            if modes.count as usize > most {
+                let pointer = format!("/{}/{}", Self::modes.name, ModesQuestion::count.name);
+                let detail = format!(
+                    "{pointer} is {}; the grid of the {member} gear, with {z} teeth, carries {most} modes.",
+                    modes.count
+                );
+                errors
+                    .push(FieldError::new(pointer, Code::OutOfRange, detail).nearest(most as f64));
+                return;
+            }
+            if let Err(error) = case.solid_gear(member) {
+                let pointer = format!("/{}", Self::modes.name);
+                let detail = format!(
+                    "{pointer} takes the {member} gear in three dimensions, where it cannot be made: {error}."
+                );
+                errors.push(FieldError::new(pointer, Code::DiscretizationFailed, detail));
+            }
         }
     }
 

@@ -6,6 +6,7 @@ use crate::declare::{
     List, Number, Text, absent, document, flag, list, nested, number, text, word, words,
 };
 use crate::forces::{DynamicsQuestion, ForceTableQuestion};
+use crate::modes::ModesQuestion;
 use crate::pair::PairDocument;
 use crate::problem::Code;
 use crate::resolution::ResolutionDocument;
@@ -61,6 +62,8 @@ document! {
         /// one is computed if none is requested.
         pub(super) dynamics: Option<DynamicsQuestion> =
             absent(nested("DynamicsRequest"), "no run-up"),
+        /// Whether results have the natural modes of both gears, and where the mesh meets them as they turn. The curves do not change.
+        pub(super) modes: Option<ModesQuestion> = absent(nested("ModesRequest"), "no modes"),
         /// How finely and by which rules.
         pub(super) resolution: ResolutionDocument = nested("Resolution").or_defaults(),
         /// Short strings to find the job by. They do not change the result.

@@ -1,8 +1,9 @@
 //! A submission: a request, checked once, with every default filled in.
 
-use meshwright_engine::analysis::RotationSpeed;
+use meshwright_engine::analysis::blank_modes::{ModesRequest, blank_modes_estimate};
 use meshwright_engine::analysis::forces::{ForcesRequest, MORE_POSITIONS};
 use meshwright_engine::analysis::{Case, Faces, Method, Warning, windows_at_largest_steps};
+use meshwright_engine::analysis::{Estimate, estimate};
 use meshwright_engine::analysis::{FaceHoles, Model, SectionHoles};
 use meshwright_engine::assembly::FaceResolution;
 use meshwright_engine::gear::GearPair;
@@ -46,6 +47,7 @@ pub struct Submission {
     document: SubmissionDocument,
     case: Case,
     forces: Option<ForcesRequest>,
+    modes: Option<ModesRequest>,
 }
 
 impl serde::Serialize for Submission {
@@ -193,10 +195,14 @@ impl SubmissionDocument {
             table: table.data(largest, bearable),
             dynamics: self.dynamics.as_ref().map(DynamicsQuestion::data),
         });
+        let modes = self.modes.as_ref();
+        let modes = modes.map(|modes| modes.data(self.dynamics.as_ref()));
+        self.check_modes(&case, errors);
         Some(Submission {
             document: self,
             case,
             forces,
+            modes,
         })
     }
 }
@@ -269,6 +275,22 @@ impl Submission {
     /// The request beside the curves.
     pub fn forces(&self) -> Option<&ForcesRequest> {
         self.forces.as_ref()
+    }
+
+    /// The natural modes that are asked for beside the curves.
+    pub fn modes(&self) -> Option<&ModesRequest> {
+        self.modes.as_ref()
+    }
+
+    /// What it costs, its modes included.
+    pub fn estimate(&self) -> Estimate {
+        let mut estimate = estimate(&self.case, self.forces());
+        if self.modes.is_some() {
+            let modes = blank_modes_estimate(&self.case);
+            estimate.seconds += modes.seconds;
+            estimate.memory += modes.memory;
+        }
+        estimate
     }
 
     /// The document with every default filled in.

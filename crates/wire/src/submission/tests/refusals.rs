@@ -374,3 +374,36 @@ fn windows_lie_apart_in_a_true_period_that_is_longer() {
     let whole = parse(&case_2()).expect("valid").canonical_json();
     assert!(!whole.contains("window_starts"));
 }
+
+#[test]
+fn modes_are_filled_in_and_more_than_the_grid_of_a_gear_carries_are_refused_with_the_most() {
+    let of = |modes: Value| with(case_2(), &[("/modes", modes)]);
+    let submission = parse(&of(json!({}))).expect("valid");
+    assert_eq!(
+        echo(&submission)["modes"],
+        json!({ "count": 20, "highest_hz": null, "bore": "held" })
+    );
+    assert!(
+        submission
+            .modes()
+            .is_some_and(|request| request.speeds.is_none())
+    );
+    // 50 teeth: an order of each kind up to half as many.
+    let problem = parse(&of(json!({ "count": 51 }))).expect_err("too many");
+    let error = &problem.errors[0];
+    assert_eq!(
+        (error.pointer.as_str(), error.code),
+        ("/modes/count", Code::OutOfRange)
+    );
+    assert_eq!(error.nearest, Some(50.0));
+    assert!(parse(&of(json!({ "count": 50 }))).is_ok());
+    fault(&of(json!({ "count": 0 })), "/modes/count", Code::OutOfRange);
+    fault(
+        &of(json!({ "highest_hz": 0 })),
+        "/modes/highest_hz",
+        Code::OutOfRange,
+    );
+    // The estimate of the job has the modes in it.
+    let bare = parse(&case_2()).expect("valid").estimate();
+    assert!(submission.estimate().seconds > bare.seconds);
+}

@@ -1,0 +1,123 @@
+//! The natural modes of both gears of a case, and where the mesh meets them.
+
+use super::case::{Case, RotationSpeed};
+use super::error::AnalysisError;
+use super::estimate::Estimate;
+use crate::gear::{Helix, Member, SolidGear, SolidGearError};
+use crate::run::Run;
+use crate::vibration::campbell::Crossing;
+use crate::vibration::{self, Mode, ModesAsked, ModesError};
+
+/// Multiples of the mesh order that are looked at.
+pub const MULTIPLES: u32 = 5;
+
+/// The modes that are asked for, and the speeds at which it matters where the mesh meets them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ModesRequest {
+    /// The modes of each gear.
+    pub asked: ModesAsked,
+    /// The lowest and the highest speed of the driving gear; all speeds where there are none.
+    pub speeds: Option<[RotationSpeed; 2]>,
+}
+
+/// A speed at which the mesh meets a mode.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Met {
+    /// Multiple and wave; its turns are those of the gear.
+    pub crossing: Crossing,
+    /// The speed of the driving gear.
+    pub driving_speed: RotationSpeed,
+}
+
+/// A mode with the speeds at which the mesh meets it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MetMode {
+    /// The mode.
+    pub mode: Mode,
+    /// The speeds, order by order.
+    pub met: Vec<Met>,
+}
+
+impl Case {
+    /// A gear of the case with its extent along the axis: straight and as wide as its face where the model is plane.
+    ///
+    /// # Errors
+    ///
+    /// [`SolidGearError`] where a plane gear has no such counterpart: holes across the edge of a web.
+    pub fn solid_gear(&self, member: Member) -> Result<SolidGear, SolidGearError> {
+        match self.faces() {
+            Some(faces) => Ok(faces.pair.gear(member).clone()),
+            None => {
+                let data = self.pair.gear(member).data().clone();
+                SolidGear::new(data, Helix::STRAIGHT, 0.0, None)
+            }
+        }
+    }
+}
+
+/// The modes of the driving and the driven gear of `case`.
+///
+/// # Errors
+///
+/// [`AnalysisError::Discretization`] if a gear cannot be divided, and [`AnalysisError::Stopped`].
+pub fn blank_modes(
+    case: &Case,
+    request: &ModesRequest,
+    run: &Run,
+) -> Result<[Vec<MetMode>; 2], AnalysisError> {
+    let of = |member: Member| {
+        let failed = |reason: String| AnalysisError::Discretization { member, reason };
+        let gear = case
+            .solid_gear(member)
+            .map_err(|error| failed(error.to_string()))?;
+        match vibration::modes(&gear, request.asked, run) {
+            Ok(modes) => Ok(modes
+                .into_iter()
+                .map(|mode| met(mode, case, member, request))
+                .collect()),
+            Err(ModesError::Fem(crate::fem::FemError::Stopped(stopped))) => {
+                Err(AnalysisError::Stopped(stopped))
+            }
+            Err(error) => Err(failed(error.to_string())),
+        }
+    };
+    Ok([of(Member::Driving)?, of(Member::Driven)?])
+}
+
+/// `mode` of a gear of `case` with the speeds of `request` at which the mesh meets it.
+fn met(mode: Mode, case: &Case, member: Member, request: &ModesRequest) -> MetMode {
+    let z = case.pair.gear(member).tooth_count();
+    // Turns of the driving gear for each of this one.
+    let ratio = f64::from(z) / f64::from(case.pair.driving().tooth_count());
+    let is_asked = |met: &Met| {
+        request
+            .speeds
+            .is_none_or(|[from, to]| met.driving_speed.0 >= from.0 && met.driving_speed.0 <= to.0)
+    };
+    let met = mode
+        .crossings(z, MULTIPLES)
+        .into_iter()
+        .map(|crossing| Met {
+            crossing,
+            driving_speed: RotationSpeed(crossing.turns * ratio),
+        });
+    MetMode {
+        met: met.filter(is_asked).collect(),
+        mode,
+    }
+}
+
+/// What [`blank_modes`] of `case` adds to what the case costs.
+pub fn blank_modes_estimate(case: &Case) -> Estimate {
+    let of = |member| {
+        let gear = case.solid_gear(member);
+        gear.map_or([0.0; 2], |gear| vibration::estimate(&gear))
+    };
+    let both = Member::BOTH.map(of);
+    Estimate {
+        degrees_of_freedom: 0,
+        // One gear after the other.
+        memory: both.iter().map(|[_, bytes]| *bytes).fold(0.0, f64::max) as u64,
+        seconds: both.iter().map(|[seconds, _]| seconds).sum(),
+    }
+}
