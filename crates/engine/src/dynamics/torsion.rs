@@ -220,13 +220,11 @@ mod tests {
         );
         let inertia = rotor.inertia_of_rings() + rotor.outer;
         let turned: f64 = modes.iter().map(|mode| mode.turn * mode.turn).sum();
-        assert!(
-            turned < inertia && turned > 0.98 * inertia,
-            "{turned} {inertia}"
-        );
+        // The highest modes are integrated to 1e-4.
+        assert!((turned / inertia - 1.0).abs() < 0.01, "{turned} {inertia}");
         // The first alone is the rim on its web, nearly: ω² = 1/(twist · J), J of rim, teeth and a part of the web.
         let rim = rotor.rings[1].polar_moment() * rotor.density + rotor.outer;
         let first = modes[0].frequency.powi(2) * twist * rim;
-        assert!((0.95..1.0).contains(&first), "{first}");
+        assert!((0.9..1.0).contains(&first), "{first}");
     }
 }
