@@ -46,25 +46,25 @@
 //!    frame that turns with the helix. Teeth, rim, web and hub are condensed part by part, order by order around the circle; where parts of unlike
 //!    width meet, the displacements of the narrower one are those of the wider ([`ring::solid::joint`]). A web with holes takes its sector or its whole grid,
 //!    as in the plane ([`ring::solid::web`]).
-//! 3. **Flanks that give way** ([`contact::face::FlankYield`], [`assembly::FaceYield`]). On a flank are functions of roll length and z; between
-//!    them stands the smooth compliance of the gear, of each tooth and of its neighbors. What is singular is left out of it and added in closed form: a
-//!    half space under each line of contact, and what a flank lacks of one at its tip and at both ends of its face.
+//! 3. **Compliance of flanks** ([`contact::face::FlankYield`], [`assembly::FaceYield`]). On a flank are functions of roll length and z; between
+//!    them stands the smooth compliance of the gear, of each tooth and of its neighbors. Singular parts are left out of it and added in closed form: a
+//!    half space under each line of contact, and the difference of a flank from one at its tip and at both ends of its face.
 //! 4. **Contact** ([`contact::face`]). Lines are cut into slices. A slice is a contact of the plane: a nonlinear spring between the flanks, whose
 //!    force over its depth is Hertz's, or that of the plane's cells where a tip, a fillet or a kink is near ([`contact::face::spring`]). Newton's method finds the depths
 //!    at which springs, compliance and load are in balance.
-//! 5. **Methods** ([`analysis`]). Both whole gears at every position (`three_dimensional`), or over one mesh period, with the first order of what holes
-//!    change added for each period (`three_dimensional_projected`). Stresses at roots and around holes, and fields, come from the same factors
+//! 5. **Methods** ([`analysis`]). Both whole gears at every position (`three_dimensional`), or over one mesh period, with the first-order effect of holes
+//!    added for each period (`three_dimensional_projected`). Stresses at roots and around holes, and fields, come from the same factors
 //!    ([`assembly::FaceRoots`], [`assembly::face_holes`], [`assembly::FaceInside`]).
 //!
-//! A face is cut as finely as `contact::face::SLICES` says; with straight teeth, even leads and a blank as wide as the face it tells what the plane
-//! tells of narrow (plane stress) and wide (plane strain) faces, which tests hold.
+//! `contact::face::SLICES` sets the cuts of a face; with straight teeth, even leads and a blank as wide as the face the results are those of the plane for
+//! narrow (plane stress) and wide (plane strain) faces, which tests check.
 //!
-//! # What else there is
+//! # Further rooms
 //!
-//! Where the rest of the paper went: the inner unknowns of the annulus (K_in,in and K_in,ed of eqs. 11 and 12) are eliminated
-//! exactly with every blank ([`fem::condensation`]); what is left of it on the circle R_w is [`ring::annulus`], on which
-//! `analysis::decomposition` puts the displacement of the whole gear. The frequency f_0 (eq. 2) is that of the true period ([`gear::GearPair::period`]), the
-//! first order of a [`analysis::spectrum::Spectrum`]. M and C (eq. 8) are dropped: everything but [`dynamics`] is quasi-static.
+//! The rest of the paper: the inner unknowns of the annulus (K_in,in and K_in,ed of eqs. 11 and 12) are eliminated exactly with every blank
+//! ([`fem::condensation`]); its remainder on the circle R_w is [`ring::annulus`], on which `analysis::decomposition` puts the displacement of the whole gear.
+//! The frequency f_0 (eq. 2) is that of the true period ([`gear::GearPair::period`]), the first order of a [`analysis::spectrum::Spectrum`]. M and C (eq. 8)
+//! are dropped: everything but [`dynamics`] is quasi-static.
 //!
 //! *Mesh* always means gear teeth in engagement; finite elements live on a [`grid::Grid`].
 //!

@@ -54,7 +54,7 @@ pub fn gauss_legendre(count: usize) -> Vec<(f64, f64)> {
     (0..count).map(&mut point).collect()
 }
 
-/// The shares of three `places` in what is `at` a fourth, by the parabola through them.
+/// The weights of three `places` in the value `at` a fourth, by the parabola through them.
 pub fn parabola(places: [f64; 3], at: f64) -> [f64; 3] {
     [[0, 1, 2], [1, 0, 2], [2, 0, 1]].map(|[own, a, b]| {
         let [own, a, b] = [own, a, b].map(|i| places[i]);

@@ -3,7 +3,7 @@
 use nalgebra::SimdRealField;
 pub(crate) use pulp::NullaryFnOnce as Loops;
 
-/// A number, or several side by side; what is computed of it is computed of each of them, to the bit as of it alone.
+/// A number, or several side by side; each is computed to the same bits as by itself.
 pub(crate) trait Numbers: SimdRealField<Element = f64> + Copy {}
 
 impl<T: SimdRealField<Element = f64> + Copy> Numbers for T {}

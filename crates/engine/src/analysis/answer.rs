@@ -1,4 +1,4 @@
-//! What is answered to a case: its curves, how good they are, and what a reader of them should know.
+//! The answer to a case: curves, evidence and warnings.
 
 use super::curve::Curve;
 use super::evidence::Evidence;
@@ -14,6 +14,6 @@ pub struct Analysis {
     pub evidence: Evidence,
     /// How the holes of both gears stand best, where they excite one order together.
     pub hole_phase: Option<HolePhase>,
-    /// What a reader should know.
+    /// Warnings for the reader.
     pub warnings: Vec<Warning>,
 }

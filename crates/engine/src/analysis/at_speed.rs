@@ -1,4 +1,4 @@
-//! What the mesh of a case does at speed.
+//! Motion of a case's mesh at speed.
 
 use std::f64::consts::PI;
 
@@ -33,11 +33,11 @@ pub struct DynamicsRequest {
     pub blank_modes: Option<u32>,
     /// ζ of these modes.
     pub blank_damping_ratio: f64,
-    /// Whether to run up, and whether to run down.
+    /// Directions: run-up, and run-down.
     pub sweeps: [bool; 2],
 }
 
-/// What the mesh does at speed under the torque of one curve.
+/// Motion at speed under the torque of one curve.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CurveDynamics {
     /// m_e in kg.
@@ -228,7 +228,7 @@ fn per_mesh_period(pair: &GearPair, order: f64) -> f64 {
     order / f64::from(pair.driven().tooth_count())
 }
 
-/// The orders that are given: those that are known, and what else stands out of the static curve but for the mesh, as far as there is room.
+/// The orders of the motion: the known ones, and others that stand out of the static curve except those of the mesh, as far as there is room.
 fn orders_at_speed(pair: &GearPair, curve: &Curve) -> Vec<(String, f64)> {
     let mut orders = known(pair);
     let most = most_orders(pair);

@@ -1,6 +1,7 @@
 //! The natural modes of both gears of a case, and where the mesh meets them.
 
-use super::case::{Case, RotationSpeed};
+use super::case::Case;
+use super::running::RotationSpeed;
 use super::error::AnalysisError;
 use super::estimate::Estimate;
 use crate::gear::{Helix, Member, SolidGear, SolidGearError};

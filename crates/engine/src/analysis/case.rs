@@ -1,4 +1,4 @@
-//! What is asked: a pair, the torques and how to compute.
+//! The request: a pair, torques and the way to compute.
 
 use super::running::{RotationSpeed, Running};
 use crate::assembly::FaceResolution;
@@ -14,18 +14,18 @@ pub enum Method {
     Flexible,
     /// Rigid blanks plus fitted blank rotations: section 3 of the paper.
     Decomposition,
-    /// The contact of round blanks plus the exact first-order term of what holes change around them.
+    /// The contact of round blanks plus the exact first-order term of the holes.
     ProjectedDecomposition,
     /// Closed-form compliances on the theoretical lines of contact: eqs. 4 and 5.
     LoadDistribution,
     /// Both whole gears flexible in three dimensions, contact along the faces.
     ThreeDimensional,
-    /// The same of blanks that are alike all around, plus the first-order term of what holes change around them.
+    /// The same for blanks that are rotationally symmetric, plus the first-order term of the holes.
     ThreeDimensionalProjected,
 }
 
 impl Method {
-    /// Whether it sees the gears along their faces, and not only a section of them.
+    /// True if it takes the gears along their faces into account, not only a section of them.
     pub fn sees_faces(self) -> bool {
         matches!(
             self,
@@ -33,7 +33,7 @@ impl Method {
         )
     }
 
-    /// Whether it solves blanks that are alike all around, and adds what holes change at first order.
+    /// True if it solves rotationally symmetric blanks and adds the first-order effect of holes.
     pub fn is_projected(self) -> bool {
         matches!(
             self,
@@ -41,7 +41,7 @@ impl Method {
         )
     }
 
-    /// Whether it finds stresses at roots and holes.
+    /// True if it computes stresses at roots and holes.
     pub fn computes_stress(self) -> bool {
         matches!(self, Self::Flexible | Self::ThreeDimensional)
     }
@@ -54,7 +54,7 @@ impl Method {
         )
     }
 
-    /// Whether it sees the holes of the blanks.
+    /// True if it takes the holes of the blanks into account.
     pub fn sees_holes(self) -> bool {
         self != Self::LoadDistribution
     }
@@ -91,11 +91,11 @@ pub struct Resolution {
     pub blank_positions: u32,
     /// The interface radius R_w of each gear that has holes, in meters; `None` for its default.
     pub interface_radii: [Option<f64>; 2],
-    /// Whether to add a second run at another grid level for the discretization error.
+    /// Adds a second run at another grid level for the discretization error.
     pub error_estimate: bool,
 }
 
-/// What a pair is along its faces, and how finely that is computed.
+/// A pair along its faces, and the resolution there.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Faces {
     /// The pair, whose section is that of its case.
@@ -104,9 +104,9 @@ pub struct Faces {
     pub resolution: FaceResolution,
     /// Slices into which the common face is cut.
     pub slices: usize,
-    /// Whether the result has the load along the face at every position, and not only in the mean.
+    /// Keeps the load along the face at every position, not only its mean.
     pub at_each_position: bool,
-    /// Whether the lead is looked for that would even the load along the face.
+    /// Searches the lead that would make the load even along the face.
     pub cure: bool,
 }
 
@@ -117,27 +117,27 @@ pub enum Model {
     Section(SectionHoles),
     /// Elastic gears along their faces.
     Faces(Box<Faces>, FaceHoles),
-    /// Formulas for what gears yield, on the theoretical lines of contact: eqs. 4 and 5. They see no holes.
+    /// Formulas for the compliance of gears, on the theoretical lines of contact: eqs. 4 and 5. They have no holes.
     Formulas(Formulas),
 }
 
-/// What holes do to the contact of a section.
+/// Effect of holes on the contact of a section.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SectionHoles {
     /// All that they do: section 2 of the paper.
     Whole,
-    /// What they change at first order about blanks that are alike all around.
+    /// First-order effect beside rotationally symmetric blanks.
     FirstOrder,
     /// How they let a rigid rim turn, fitted to a sinusoid: section 3 of the paper.
     Fitted,
 }
 
-/// What holes do to the contact along faces.
+/// Effect of holes on the contact along faces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FaceHoles {
     /// All that they do.
     Whole,
-    /// What they change at first order about blanks that are alike all around.
+    /// First-order effect beside rotationally symmetric blanks.
     FirstOrder,
 }
 
@@ -162,7 +162,7 @@ pub(super) struct Place {
     pub(super) position: f64,
     /// Which contact it is.
     pub(super) contact: usize,
-    /// So many mesh periods later.
+    /// Offset in mesh periods.
     pub(super) later: i64,
 }
 
@@ -194,7 +194,7 @@ pub struct Case {
     pub resolution: Resolution,
     /// Where windows of the span begin, in whole mesh periods; empty: the span begins at the first position.
     pub windows: Vec<u32>,
-    /// Whether the largest stresses at roots and holes are asked for.
+    /// Computes the largest stresses at roots and holes.
     pub stress: bool,
     /// The speed of the driving gear, if frequencies are wanted.
     pub driving_speed: Option<RotationSpeed>,
@@ -229,13 +229,13 @@ impl Case {
             .unwrap_or_else(|| self.pair.period())
     }
 
-    /// Whether the span is a whole multiple of the true period, so that a spectrum exists.
+    /// True if the span is a whole multiple of the true period, so that a spectrum exists.
     pub fn covers_whole_periods(&self) -> bool {
         self.span().is_multiple_of(self.pair.period())
     }
 
-    /// The same of the pair as drawn, for what its holes alone make of their order in the spectrum; `None` where no teeth deviate, or there is no spectrum.
-    /// It goes by the same method, which takes at most as long again. Along faces, where a contact takes longest, it goes by that of the first order.
+    /// The same for the pair as drawn, for the part of the holes alone in their order of the spectrum; `None` where no teeth deviate, or there is no spectrum.
+    /// It uses the same method, and takes at most as long again. Along faces, where a contact takes longest, it uses the first-order method.
     pub(super) fn holes_alone(&self) -> Option<Self> {
         let is_told = self.covers_whole_periods() && self.method().sees_holes();
         if !is_told || self.pair.is_as_drawn() || self.holed().is_empty() {
@@ -356,7 +356,7 @@ impl Case {
         }
     }
 
-    /// What holds at the repeating positions, over the whole span.
+    /// Values at the repeating positions, continued over the whole span.
     pub(super) fn repeated<T: Clone>(&self, period: impl Iterator<Item = T> + Clone) -> Vec<T> {
         period.cycle().take(self.positions()).collect()
     }

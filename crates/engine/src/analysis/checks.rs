@@ -4,10 +4,9 @@ use super::case::Case;
 
 /// Where the projection is held to exact solutions: fractions of the mesh period, and mesh periods for each of them, at most.
 ///
-/// The term is exact while the same cells touch. What it leaves out is where holes let a pair touch earlier or later: at the fractions
-/// at which the stiffness of round blanks changes most, in some periods and not in others. On the paper's cases, and on a polymer gear
-/// with five large holes, these hold from 0.7 to all of the largest difference; positions at which the term itself is largest hold
-/// nothing of it.
+/// The term is exact while the same cells touch. It leaves out that holes let a pair touch earlier or later: at the fractions at which the stiffness of round
+/// blanks changes most, in some periods and not in others. On the paper's cases, and on a polymer gear with five large holes, these positions contain 0.7 to
+/// all of the largest difference; positions at which the term itself is largest contain nothing of it.
 const CHECKED: [usize; 2] = [4, 6];
 
 /// Exact solutions to which the projection is held: how many are known before where.
@@ -23,7 +22,7 @@ impl Checks {
         periods: 0,
     };
 
-    /// Those of `case`: none where nothing is projected.
+    /// Checks of `case`: none where nothing is projected.
     pub(super) fn of(case: &Case) -> Self {
         if case.holed().is_empty() {
             return Self::NONE;
@@ -39,7 +38,7 @@ impl Checks {
         (self.fractions * self.periods) as u64
     }
 
-    /// Those that are the first at their fraction of the mesh period.
+    /// Number of positions that are the first at their fraction of the mesh period.
     pub(super) fn first_solutions(self) -> u64 {
         self.fractions as u64
     }

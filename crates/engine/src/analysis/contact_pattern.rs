@@ -158,7 +158,7 @@ impl FlankBands {
         self.base_radius.hypot(roll_length)
     }
 
-    /// The band at a roll length; the last one for what lies beyond.
+    /// The band at a roll length; the last one for lengths beyond.
     fn band(&self, roll_length: f64) -> usize {
         let height = (self.radius(roll_length) - self.ends[0]) / (self.ends[1] - self.ends[0]);
         ((height * BANDS as f64).max(0.0) as usize).min(BANDS - 1)
@@ -172,7 +172,7 @@ struct Touch {
     pressure: Pressure,
 }
 
-/// What maps are made on.
+/// Grid of a map.
 struct Map<'a> {
     faces: &'a Faces,
     flanks: &'a [FlankBands; 2],
@@ -242,7 +242,7 @@ impl Map<'_> {
     }
 }
 
-/// Marks the bands between two, neither of them included, with what lies between their pressures.
+/// Fills the bands between two, neither of them included, with interpolated pressures.
 fn between(
     (from, one): (usize, Pressure),
     (to, other): (usize, Pressure),

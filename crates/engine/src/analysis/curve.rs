@@ -1,4 +1,4 @@
-//! What comes out: curves over mesh position.
+//! Results: curves over mesh position.
 
 use super::mesh_wave::MeshWave;
 use super::pressures::CurvePressures;
@@ -28,7 +28,7 @@ pub struct BlankSample {
     pub rotation: f64,
 }
 
-/// What the decomposition found for one holed blank: A + B cos(N θ + phase), eq. 13.
+/// The decomposition's fit for one holed blank: A + B cos(N θ + phase), eq. 13.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BlankFit {
     /// The gear.
@@ -81,19 +81,19 @@ pub struct DecompositionParts {
     pub blanks: Vec<BlankFit>,
 }
 
-/// What would even the load along the face: a further modification of the driving leads. Lengths are in meters.
+/// Lead that makes the load even along the face: a further modification of the driving leads. Lengths are in meters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LeadCure {
-    /// What is taken off at the end at +z, linear from nothing at that at −z.
+    /// Removed at the end at +z, linear from zero at the end at −z.
     pub slope: f64,
-    /// What is taken off at both ends, a parabola.
+    /// Removed at both ends, a parabola.
     pub crowning: f64,
     /// K_Hβ with it.
     pub face_load_factor: f64,
 }
 
 impl LeadCure {
-    /// What `lead` makes of a face load factor.
+    /// The lead `lead` with the face load factor that it gives.
     pub(super) fn of(lead: EvenLead, face_load_factor: f64) -> Self {
         Self {
             slope: lead.slope,
@@ -139,7 +139,7 @@ pub struct Curve {
     pub pairs_in_contact: Vec<u32>,
     /// The largest contact pressure in Pa; `None` where a sharp tip corner carries, at which it has no limit.
     pub peak_contact_pressure: Vec<Option<f64>>,
-    /// What the pressures come to.
+    /// Summary of the pressures.
     pub pressures: CurvePressures,
     /// The share of each pair that ever carries load, by rising offset.
     pub load_shares: Vec<LoadShare>,

@@ -1,4 +1,4 @@
-//! A curve put together from what a method finds at each position.
+//! Assembly of a curve from the results of a method at each position.
 
 use super::Case;
 use super::between::Sections;
@@ -11,13 +11,13 @@ use super::spectrum::Spectrum;
 use super::stress::GearStresses;
 use crate::contact::MeshContact;
 
-/// What a method finds at each position of one torque.
+/// Results of a method at each position of one torque.
 pub(super) struct CurveParts {
     pub(super) transmission_error: Vec<f64>,
     pub(super) stiffness: Vec<f64>,
     /// δ and k between the positions.
     pub(super) sections: Sections,
-    /// What the driver gives, over r_b1.
+    /// Torque on the driving gear over r_b1.
     pub(super) driving_load: Vec<f64>,
     pub(super) pairs_in_contact: Vec<u32>,
     pub(super) peak_contact_pressure: Vec<Option<f64>>,
@@ -81,7 +81,8 @@ impl CurveParts {
 }
 
 impl CurveParts {
-    /// What is `found` under `load` at the first positions of `case`, after which it repeats, and `between` them; its curve is that of `sections`.
+    /// Parts of a curve from the results `found` under `load` at the first positions of `case`, after which it repeats, and `between` them; its curve is that
+    /// of `sections`.
     pub(super) fn of<K>(
         (case, load): (&Case, f64),
         found: &Found<K>,

@@ -41,7 +41,7 @@ struct HoledBlank<'a> {
 pub(super) fn solve(setup: Setup<'_>, pass: &Pass) -> Result<Analysis, AnalysisError> {
     let case = setup.case;
     let rigid = ModeledPair::new(setup, Blanks::HoledRigid)?;
-    // How a blank turns under its hub is fitted as drawn: what teeth deviate is in δ_wh.
+    // The turn of a blank under its hub is fitted as drawn: deviations of the teeth are in δ_wh.
     let drawn = Case {
         pair: case.pair.as_drawn(),
         ..case.clone()

@@ -79,7 +79,7 @@ pub enum AnalysisError {
         formula: Formula,
         /// The gear whose part it is; `None` for the pair.
         member: Option<Member>,
-        /// What it gives, in m/N: not positive, or no number.
+        /// Compliance in m/N: not positive, or not a number.
         compliance: f64,
     },
     /// The rows of a force table do not rise: a mistake of the method.
@@ -108,7 +108,7 @@ pub enum AnalysisError {
     Discretization {
         /// The gear.
         member: Member,
-        /// What failed, with its numbers.
+        /// The failure, with its numbers.
         reason: String,
     },
     /// The caller stopped the work.

@@ -1,4 +1,4 @@
-//! What a case will cost, known before it is computed.
+//! Cost of a case before it is computed.
 
 use super::at_speed::{run_up_cost, usual_stiffness};
 use super::case::Model;
@@ -39,10 +39,10 @@ const POSITION_MEMORY: f64 = 1e3;
 /// Patterns of force that a tooth exerts on the interface circle, about.
 const PATTERNS: f64 = 18.0;
 
-/// Memory that any case takes, in bytes, with what is kept of its flanks.
+/// Memory of any case in bytes, including the stored data of its flanks.
 const BASE_MEMORY: f64 = 56e6;
 
-/// What a case will cost.
+/// Cost of a case.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Estimate {
     /// Unknowns of both gears before condensation.
@@ -53,7 +53,7 @@ pub struct Estimate {
     pub seconds: f64,
 }
 
-/// Estimates what `case` will cost with its `forces`; the grids are divided, nothing is solved. A gear whose grid fails counts as nothing.
+/// Estimates the cost of `case` with its `forces`; the grids are divided, nothing is solved. A gear whose grid fails costs nothing.
 pub fn estimate(case: &Case, forces: Option<&ForcesRequest>) -> Estimate {
     let plan = Plan::of(case);
     let mut estimate = Estimate {
@@ -86,7 +86,7 @@ pub fn estimate(case: &Case, forces: Option<&ForcesRequest>) -> Estimate {
     estimate
 }
 
-/// Adds what the contacts of `plan` cost.
+/// Adds the cost of the contacts of `plan`.
 fn add_contacts(estimate: &mut Estimate, plan: &Plan) {
     let case = &plan.case;
     let positions = (case.positions() * case.output_torques.len()) as u64;
@@ -114,7 +114,7 @@ fn add_contacts(estimate: &mut Estimate, plan: &Plan) {
     };
 }
 
-/// Adds what the plane gears of `plan` cost, and what they answer to contacts.
+/// Adds the cost of the plane gears of `plan`, and of their answers to contacts.
 fn add_gears(estimate: &mut Estimate, plan: &Plan) {
     for (number, pass) in plan.passes.iter().enumerate() {
         for member in Member::BOTH {
@@ -132,7 +132,7 @@ fn add_gears(estimate: &mut Estimate, plan: &Plan) {
                 estimate.memory += gear.memory / 4;
             }
             if pass.stress {
-                // It is made once more, with rows that lead inside.
+                // It is made once more, with the rows of its inside.
                 estimate.seconds += gear.seconds;
                 estimate.memory += gear.memory / 4;
                 let teeth = f64::from(plan.case.pair.gear(member).tooth_count());
@@ -176,7 +176,7 @@ const HOLED_MEMORY: f64 = 24.0;
 /// Nodes of a tooth and its rim in a section, about.
 const SECTION_NODES: f64 = 330.0;
 
-/// Adds what the gears of `plan` cost along their `faces`, and what they answer to contacts.
+/// Adds the cost of the gears of `plan` along their `faces`, and of their answers to contacts.
 fn add_faces(estimate: &mut Estimate, plan: &Plan, faces: &Faces) {
     let case = &plan.case;
     let [per_gear, per_web, _] = FACE_SECONDS;
@@ -324,7 +324,7 @@ fn of_gear(case: &Case, member: Member, pass: &Pass, again: u32) -> Estimate {
     // One model has this blank flexible; in another that stands beside it all teeth are coupled alike.
     let joined = f64::from(1 + again);
     let couplings = joined * rows + if pass.has_rigid_blanks() { 17.0 } else { 0.0 };
-    // At the most two matrices of all orders at once: the ring of teeth, and what is factorized.
+    // At most two matrices of all orders at once: the ring of teeth, and the matrix that is factorized.
     estimate.memory = (8.0
         * (2.0 * all * all
             + 2.0 * met * rows.min(32.0) * PATTERNS

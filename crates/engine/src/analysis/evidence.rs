@@ -1,9 +1,9 @@
-//! How good a result is: residuals, penetration, and what a finer run changes.
+//! Evidence for a result: residuals, penetration, and the change by a finer run.
 
 use super::Curve;
 use crate::contact::MeshContact;
 
-/// What a finer run changes, and what the positions leave open: the estimate of the discretization error, largest over the torques.
+/// Estimate of the discretization error: the change by a finer run and the error of sampling, the largest over the torques.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ErrorEstimate {
     /// In the mean of δ, in meters.
@@ -68,7 +68,7 @@ impl Evidence {
 }
 
 impl ErrorEstimate {
-    /// The largest differences between the curves of two grid levels, and what their positions leave open.
+    /// The largest differences between the curves of two grid levels, and their errors of sampling.
     pub(super) fn between(curves: &[Curve], others: &[Curve]) -> Self {
         let largest = |value: fn(&Curve) -> f64, open: fn(&Curve) -> f64| {
             let pairs = curves.iter().zip(others);

@@ -60,7 +60,7 @@ pub fn section(
     of_gears(case, (output_torque, eta), parts, run, field_of)
 }
 
-/// What `field_of` makes of both gears.
+/// Result of `field_of` for both gears.
 fn of_gears<T: Send>(
     case: &Case,
     (output_torque, eta): (f64, f64),

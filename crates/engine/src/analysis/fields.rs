@@ -18,8 +18,7 @@ use crate::ring::teeth::FARTHEST_COUPLED;
 use crate::run::Run;
 use crate::touch::placement::{Placement, Section};
 
-/// What goes on in one gear, node by node, where it stands at a mesh position: the driving axis is the origin, the driven one lies on
-/// the x axis.
+/// Fields of one gear, node by node, where it stands at a mesh position: the driving axis is the origin, the driven one lies on the x axis.
 ///
 /// Each tooth and the blank have nodes of their own where they meet.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -1,5 +1,5 @@
-//! What holes change at first order, in the plane and along faces alike: the pair whose blanks are alike all around repeats with the mesh
-//! period, and what the holes yield more under its forces is added position by position.
+//! First-order effect of holes, the same in the plane and along faces: the pair with rotationally symmetric blanks repeats with the mesh period, and the
+//! further compliance of the holes under its forces is added position by position.
 //!
 //! ```text
 //! δ = δ_0 + qᵀ ΔH p,   1/k = 1/k_0 + qᵀ ΔH q,   ΔH = H − H_0
@@ -13,8 +13,8 @@ use super::found::Found;
 use super::plan::Sweep;
 use crate::contact::MeshContact;
 
-/// What is found by `sweep` of `case` where round blanks have these `contacts` and this `stiffness`: `round` says qᵀ H_0 p and qᵀ H_0 q of the forces of
-/// each contact, `whole` the same with H at a place of the curve.
+/// Results of the `sweep` of `case` where round blanks have these `contacts` and this `stiffness`: `round` gives qᵀ H_0 p and qᵀ H_0 q of the forces of each
+/// contact, `whole` the same with H at a place of the curve.
 pub(super) fn with_holes<K>(
     (case, sweep): (&Case, &Sweep),
     (contacts, stiffness): (Vec<MeshContact>, &[f64]),

@@ -1,4 +1,4 @@
-//! The force table of a case, by its own method, and what is answered with it.
+//! The force table of a case, by its own method, and its further results.
 
 use super::analyze::{answered, carried_out};
 use super::at_speed::{CurveDynamics, DynamicsRequest, dynamics};
@@ -40,7 +40,7 @@ impl ForceTableRequest {
     }
 }
 
-/// What is asked beside the curves.
+/// Requests beside the curves.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForcesRequest {
     /// The table.
@@ -49,12 +49,12 @@ pub struct ForcesRequest {
     pub dynamics: Option<DynamicsRequest>,
 }
 
-/// What is answered beside the curves.
+/// Results beside the curves.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Forces {
     /// The table.
     pub table: ForceTable,
-    /// What the mesh does at speed, one entry a curve, where it was asked for.
+    /// Motion at speed, one entry a curve, if requested.
     pub dynamics: Vec<CurveDynamics>,
 }
 
@@ -89,7 +89,7 @@ pub fn analyze_with_forces(
     Ok((analysis, Forces { table, dynamics }))
 }
 
-/// What is computed of a table.
+/// Plan of a table.
 pub(super) struct TablePlan {
     loads: Vec<f64>,
     /// Its rows.
@@ -176,7 +176,7 @@ struct OtherFlank {
 }
 
 impl OtherFlank {
-    /// Those of `rows`.
+    /// The plan of `rows`.
     fn of(rows: &Case) -> Self {
         let pair = rows.pair.mirror_image();
         let per_period = f64::from(rows.resolution.positions_per_mesh_period);
@@ -188,7 +188,7 @@ impl OtherFlank {
         if let Model::Faces(faces, _) = &mut mirrored.model {
             faces.pair = faces.pair.turned_over();
         }
-        // So that the positions of the mirror image are those of the table.
+        // The positions of the mirror image are then those of the table.
         mirrored.resolution.first_position = later.fract() / per_period;
         Self {
             mirrored: Plan::of_rows(&mirrored),
@@ -196,7 +196,7 @@ impl OtherFlank {
         }
     }
 
-    /// What the other flanks yield at the first `count` positions of the table, of what the mirror image does.
+    /// Compliance of the other flanks at the first `count` positions of the table, from those of the mirror image.
     fn turned(&self, mirrored: &FlankRows, count: usize) -> FlankRows {
         let turned = |rows: &[Vec<f64>], value: &dyn Fn(f64) -> f64| -> Vec<Vec<f64>> {
             let row = |row: &Vec<f64>| {

@@ -1,4 +1,4 @@
-//! What a method finds at some positions under one load.
+//! Results of a method at some positions under one load.
 
 use super::AnalysisError;
 use super::between::{Sample, Watched};
@@ -6,11 +6,11 @@ use super::case::Case;
 use super::plan::Sweep;
 use crate::contact::{Contradiction, MeshContact};
 
-/// What is found at the positions of a sweep under one load.
+/// Results at the positions of a sweep under one load.
 pub(super) struct Found<K = ()> {
     /// The contact at each.
     pub(super) contacts: Vec<MeshContact>,
-    /// What the method keeps of each beside.
+    /// Further results of the method at each.
     pub(super) kept: Vec<K>,
     /// δ and k at all places in the curve at which these contacts are.
     pub(super) transmission_error: Vec<f64>,
@@ -29,13 +29,13 @@ impl Kept for () {
     }
 }
 
-/// What is found at positions between those of a sweep.
+/// Results at positions between those of a sweep.
 pub(super) struct Between<K> {
     /// The mesh positions, in no order.
     pub(super) positions: Vec<f64>,
     /// The contact at each.
     pub(super) contacts: Vec<MeshContact>,
-    /// What the method keeps of each; empty if it keeps nothing.
+    /// Further results of the method at each; empty if it has none.
     pub(super) kept: Vec<K>,
 }
 
@@ -49,7 +49,7 @@ impl<K> Between<K> {
         }
     }
 
-    /// Adds what is `found` at `positions`.
+    /// Adds the results `found` at `positions`.
     pub(super) fn add(&mut self, positions: &[f64], found: Found<K>) {
         self.positions.extend(positions);
         self.contacts.extend(found.contacts);
@@ -58,7 +58,7 @@ impl<K> Between<K> {
 }
 
 impl<K: Kept> Found<K> {
-    /// At each of `positions`, at which its contacts stand, the largest pressures and what else is watched.
+    /// The largest pressures and the other watched values at each of `positions`, where its contacts stand.
     pub(super) fn watched(&self, positions: &[f64]) -> Vec<Watched> {
         let each = positions.iter().zip(&self.contacts).enumerate();
         each.map(|(i, (position, contact))| {
@@ -96,7 +96,7 @@ impl Found {
 }
 
 impl<K> Found<K> {
-    /// Refuses what deflects too far with what a method adds to its contacts.
+    /// Refuses deflections, with the terms that a method adds to its contacts, that are too large.
     pub(super) fn check(&self, case: &Case, sweep: &Sweep) -> Result<(), AnalysisError> {
         let module = case.pair.driving().data().rack.module;
         let places = sweep.places(case).into_iter().zip(&self.transmission_error);
@@ -108,7 +108,7 @@ impl<K> Found<K> {
         Ok(())
     }
 
-    /// What is known of the curve at these places.
+    /// Samples of the curve at these places.
     pub(super) fn samples(&self, case: &Case, sweep: &Sweep) -> Vec<Sample> {
         let places = sweep.places(case);
         Sample::of(

@@ -35,7 +35,7 @@ pub struct LargestWhere {
 }
 
 impl LargestPressure {
-    /// The largest of what is found at each of some positions: mesh position, pressure and place. None where a pressure has no limit.
+    /// The largest of values at some positions: mesh position, pressure and place. `None` where a pressure has no limit.
     pub(super) fn of(
         found: impl Iterator<Item = (f64, Option<f64>, Option<PeakPlace>)>,
     ) -> Option<Self> {
@@ -73,8 +73,7 @@ impl LargestPressure {
         }
     }
 
-    /// The gear of `pair` a kink of whose profile stands within the contact, so sharp that it makes the pressure what it is, and the diameter of
-    /// that kink.
+    /// The gear of `pair` with a kink of its profile within the contact, sharp enough to decide the pressure, and the diameter of that kink.
     pub(super) fn kink(&self, pair: &GearPair) -> Option<(Member, f64)> {
         let PeakPlace {
             roll_lengths,

@@ -97,8 +97,8 @@ fn contact(pair: &GearPair, eta: f64, shared: &Shared, load: f64) -> MeshContact
     }
 }
 
-/// The contact of `formulas` at the mesh position `eta` as the load vanishes: what this route does not see of tips beside the line of contact does
-/// not touch here either.
+/// The contact of `formulas` at the mesh position `eta` as the load vanishes. Tips beside the line of contact, which this method does not have, do not touch
+/// here either.
 pub(super) fn light(formulas: &PairFormulas, eta: f64) -> Result<MeshContact, AnalysisError> {
     let (transmission_error, offsets) = touch(&formulas.pairs_at(eta)?);
     let pair = |offset: i32| (i64::from(offset) + eta.floor() as i64, None);

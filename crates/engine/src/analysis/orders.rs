@@ -1,8 +1,8 @@
-//! What the orders of a spectrum are: of the mesh, of holes, of revolutions, and the sidebands that these make about the mesh.
+//! The orders of a spectrum: of the mesh, of holes, of revolutions, and the sidebands of these about the mesh.
 
 use crate::gear::{GearPair, Member, SpurGear};
 
-/// What a line of the spectrum is.
+/// Kind of a line of the spectrum.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum OrderKind {
     /// The mesh, k times.
@@ -10,7 +10,7 @@ pub enum OrderKind {
         /// k.
         harmonic: u32,
     },
-    /// So many times the order of a cause: n per N holes, or n per revolution.
+    /// Multiple of the order of a cause: n per N holes, or n per revolution.
     Cause {
         /// The cause.
         cause: OrderCause,
@@ -28,10 +28,10 @@ pub enum OrderKind {
     },
 }
 
-/// What repeats with the turning of gears, beside the mesh.
+/// Causes that repeat with the turning of gears, beside the mesh.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OrderCause {
-    /// Whether it is alike at each of the holes, or only once a revolution, as eccentricity, pitch deviations and what cutting leaves are.
+    /// True if it is the same at each of the holes; false if it comes once a revolution, as eccentricity, pitch deviations and errors of cutting do.
     pub holes: bool,
     /// The gears that make this order, by the order of [`Member::BOTH`].
     pub gears: Vec<Member>,
@@ -69,7 +69,7 @@ struct Family {
 }
 
 impl Family {
-    /// What `multiple` of it is called: 2N1 of holes, 2 or 2(1) of revolutions.
+    /// Label of its `multiple`: 2N1 of holes, 2 or 2(1) of revolutions.
     fn called(&self, multiple: u32) -> String {
         match (self.cause.holes, multiple) {
             (true, 1) => self.name.clone(),
@@ -135,7 +135,7 @@ impl Orders {
         known
     }
 
-    /// What any order is, if it is a whole multiple of what turns in the pair: of holes first, then near the mesh, then of revolutions.
+    /// Kind of any order that is a whole multiple of a cause in the pair: of holes first, then near the mesh, then of revolutions.
     pub(super) fn describe(&self, order: f64) -> Option<KnownOrder> {
         if let Some(k) = whole(order / self.mesh) {
             return Some(self.mesh(k));
@@ -232,7 +232,7 @@ fn hole_order(gear: &SpurGear) -> Option<u32> {
     }
 }
 
-/// Whether only a whole revolution of `gear` brings back what its teeth or its holes do.
+/// True if the effect of teeth or holes of `gear` repeats only after a whole revolution.
 fn repeats_once(gear: &SpurGear) -> bool {
     let unequal = gear.hole_repeats() == 1 && gear.holes().len() > 1;
     unequal || !gear.deviations().is_none()

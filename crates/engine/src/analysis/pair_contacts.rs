@@ -50,8 +50,8 @@ impl<'a> ModeledPair<'a> {
             .contacts(&spec, &self.model, self.setup.run)?)
     }
 
-    /// What is found by `sweep` under `load`. Contacts of a drawn pair are asked for once: all members of a population are made to one drawing, and no two
-    /// of them alike.
+    /// Results of `sweep` under `load`. Contacts of a drawn pair are computed once: all members of a population have one drawing, and no two of them are the
+    /// same.
     pub(super) fn found(&self, load: f64, sweep: &Sweep) -> Result<Found, AnalysisError> {
         let Setup {
             case,

@@ -1,5 +1,5 @@
-//! What a method will compute of a case. It is declared here alone: the methods execute it, progress is counted by it, and
-//! [`estimate`](super::estimate()) prices it.
+//! Computation plan of a method for a case. It is declared here alone: the methods execute it, progress counts it, and [`estimate`](super::estimate()) prices
+//! it.
 
 use super::AnalysisError;
 use super::between::{MOST_FOR_PEAKS, Refinement, Sample, Sections, most_further};
@@ -20,9 +20,9 @@ const TORQUE_STEP: f64 = 0.01;
 /// The positions at which leads are tried that would even the load: as many as a mesh period has at least.
 const TRIED: usize = 8;
 
-/// What is computed of a case.
+/// Computation plan of a case.
 pub(super) struct Plan {
-    /// What is asked.
+    /// The request.
     pub(super) case: Case,
     /// The contacts under torque 0.
     pub(super) light: Sweep,
@@ -41,20 +41,20 @@ fn compared_along_faces(level: GridLevel) -> GridLevel {
     }
 }
 
-/// What is computed at one grid level, under each torque.
+/// Computations at one grid level, under each torque.
 pub(super) struct Pass {
     pub(super) level: GridLevel,
     /// The contacts behind the curves.
     pub(super) curve: Sweep,
-    /// Those on rigid blanks, which the curves have beside.
+    /// Positions on rigid blanks, which the curves have beside.
     pub(super) rigid: Sweep,
-    /// Those that show how a holed blank turns: with it flexible, and once more with all holed blanks rigid.
+    /// Positions that show the turn of a holed blank: with it flexible, and once more with all holed blanks rigid.
     pub(super) samples: Vec<(Member, Sweep)>,
     /// Exact solutions beside those of round blanks.
     pub(super) checks: Checks,
     /// Positions at which leads are tried that would even the load along the face.
     pub(super) evened: Vec<f64>,
-    /// Whether gears answer to each contact with their stresses.
+    /// True if gears answer to each contact with their stresses.
     pub(super) stress: bool,
 }
 
@@ -89,7 +89,7 @@ impl Further {
         repeats_after: 1,
     };
 
-    /// Those of a curve of so many positions, whose contacts repeat after so many mesh periods.
+    /// The sweep of a curve with this number of positions, whose contacts repeat after this number of mesh periods.
     fn of(positions: usize, repeats_after: u32) -> Self {
         Self {
             most: most_further(positions, repeats_after),
@@ -213,7 +213,7 @@ impl Pass {
         self.each(Sweep::solutions) + self.checks.solutions()
     }
 
-    /// Those of them that are the first at their fraction of the mesh period: what the pair has in common there is found with them.
+    /// Number of positions that are the first at their fraction of the mesh period: the common part of the pair is computed there with them.
     pub(super) fn first_solutions(&self) -> u64 {
         self.each(Sweep::first_solutions) + self.checks.first_solutions()
     }
@@ -224,7 +224,7 @@ impl Pass {
         count(&self.curve) + count(&self.rigid) + samples
     }
 
-    /// Whether holed blanks also stand as rigid ones.
+    /// True if holed blanks are also modelled as rigid ones.
     pub(super) fn has_rigid_blanks(&self) -> bool {
         self.curve.blanks == Blanks::HoledRigid || !self.rigid.positions.is_empty()
     }
@@ -303,12 +303,12 @@ impl Sweep {
             left -= positions.len();
             solve(&self.at(positions))
         })?;
-        // What was not needed is done.
+        // Positions that were not needed count as done.
         run.reached(self.at_each() * left as u64)?;
         Ok(sections)
     }
 
-    /// Counts as done what was not needed to find peaks, of which so many positions were `solved`.
+    /// Counts positions that were not needed for peaks as done; `solved` of them were needed.
     pub(super) fn peaks_searched(&self, solved: usize, run: &Run) -> Result<(), AnalysisError> {
         let left = self.further.for_peaks.saturating_sub(solved);
         Ok(run.reached(self.at_each() * left as u64)?)
@@ -329,7 +329,7 @@ impl Sweep {
         Ok(rise.unwrap_or_else(|| contacts.iter().map(|contact| contact.stiffness).collect()))
     }
 
-    /// The stiffness under `load` by a central difference of what δ is `at` a smaller and a larger one; `None` where it is that of contacts.
+    /// The stiffness under `load` by a central difference of δ `at` a smaller and a larger one; `None` where it is that of contacts.
     pub(super) fn stiffness_by_step(
         &self,
         load: f64,

@@ -1,4 +1,4 @@
-//! What the pressures of a curve come to.
+//! Summary of the pressures of a curve.
 
 use super::Case;
 use super::largest_where::LargestPressure;
@@ -6,7 +6,7 @@ use crate::contact::MeshContact;
 use crate::flank::half_plane::{hertz, logarithm_factor};
 use crate::gear::{Member, PlaneState};
 
-/// What the pressures of a curve come to over its span, between its positions too.
+/// Summary of the pressures of a curve over its span, between its positions too.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct CurvePressures {
     /// The largest pressure and where it stands; `None` where one has no limit, and without load.
@@ -21,7 +21,7 @@ pub struct CurvePressures {
 }
 
 impl CurvePressures {
-    /// Those of `contacts` of `case` under `load`: the mesh position and the contact at each, which repeat after so many mesh periods.
+    /// Summary of the `contacts` of `case` under `load`: the mesh position and the contact at each, which repeat after a number of mesh periods.
     pub(super) fn of<'a>(
         (case, load): (&Case, f64),
         contacts: impl Iterator<Item = (f64, &'a MeshContact)> + Clone,

@@ -17,9 +17,8 @@ use crate::gear::Member;
 
 /// The exact first-order term of the holes, sidebands included ([`super::first_order`]).
 ///
-/// H_0 is the mean of H over the teeth: the contact that it has repeats each mesh period and is solved over one. About the
-/// rigid blank (H_0 of wh) the same term is exact too, but what it leaves out grows with the square of the blank's whole
-/// compliance instead of its fluctuation: the peak-to-peak of cases 1 and 3 is then 8 % off.
+/// H_0 is the mean of H over the teeth: its contact repeats each mesh period and is solved over one. About the rigid blank (H_0 of wh) the same term is exact
+/// too, but its remainder grows with the square of the blank's whole compliance instead of its fluctuation: the peak-to-peak of cases 1 and 3 is then 8 % off.
 pub(super) fn solve(setup: Setup<'_>, pass: &Pass) -> Result<Analysis, AnalysisError> {
     let Setup { case, run, .. } = setup;
     let rigid = ModeledPair::new(setup, Blanks::HoledRigid)?;
@@ -74,7 +73,7 @@ pub(super) fn round_average(whole: &PairModel, holed: &[Member]) -> PairModel {
     })
 }
 
-/// qᵀ X p and qᵀ X q of `members` for the loads of `pairs` in the mesh period `period`: what their blanks yield.
+/// qᵀ X p and qᵀ X q of `members` for the loads of `pairs` in the mesh period `period`: displacement by their blanks.
 pub(super) fn yielded(
     model: &PairModel,
     members: &[Member],

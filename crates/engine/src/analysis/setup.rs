@@ -1,4 +1,4 @@
-//! What every method by finite elements works with.
+//! Basis of every method by finite elements.
 
 use super::plan::Sweep;
 use super::running::RestingStresses;
@@ -10,14 +10,14 @@ use crate::gear::PairDeviations;
 use crate::grid::GridLevel;
 use crate::run::Run;
 
-/// Contacts at the positions of a sweep, what is kept of each, and the stiffness there.
+/// Contacts at the positions of a sweep, a value of each, and the stiffness there.
 pub(super) type Solved<T> = (Vec<MeshContact>, Vec<T>, Vec<f64>);
 
 /// A case, how its pair is modeled, who provides the parts of the model, and the handle of the run.
 #[derive(Clone, Copy)]
 pub(super) struct Setup<'a> {
     pub(super) case: &'a Case,
-    /// What the teeth of its pair deviate by.
+    /// Deviations of the teeth of its pair.
     pub(super) deviations: &'a PairDeviations,
     /// How its gears are stressed without load.
     pub(super) resting: Option<&'a [RestingStresses; 2]>,
@@ -61,7 +61,7 @@ impl<'a> Setup<'a> {
         Ok(self.spec(blanks).model(self.parts, self.run)?)
     }
 
-    /// The contacts of `model` at the positions of `sweep` under `load`, what `keep` takes of each, and the stiffness there.
+    /// The contacts of `model` at the positions of `sweep` under `load`, the value that `keep` takes of each, and the stiffness there.
     pub(super) fn solved<T: Send>(
         &self,
         model: &PairModel,

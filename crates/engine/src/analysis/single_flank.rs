@@ -1,4 +1,4 @@
-//! What single-flank testing finds of a transmission error, by the words of ISO/TR 10064-1.
+//! Results of single-flank testing from a transmission error, by the terms of ISO/TR 10064-1.
 
 use std::collections::VecDeque;
 
@@ -8,12 +8,12 @@ use super::long_wave::LongWave;
 /// Places in a mesh period, at least, between which δ is taken as straight.
 const TRACED: usize = 400;
 
-/// The parts of δ by how fast they come and go, in meters. What the span does not show is `None`: but for the first it takes whole true periods.
+/// Parts of δ by their wavelength, in meters. Parts that the span does not contain are `None`: all but the first need whole true periods.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SingleFlank {
     /// f_i′, the largest range in any stretch of one mesh period.
     pub tooth_to_tooth: f64,
-    /// f_l′, the peak-to-peak of what has fewer than half a cycle in a mesh period.
+    /// f_l′, the peak-to-peak of the part with fewer than half a cycle in a mesh period.
     pub long_wave: Option<f64>,
     /// f_k′, the peak-to-peak of the rest.
     pub short_wave: Option<f64>,
@@ -22,7 +22,7 @@ pub struct SingleFlank {
 }
 
 impl SingleFlank {
-    /// Those of the curve of `sections`; `resampled` is δ at equal steps over it, as many in each mesh period, where it is whole true periods.
+    /// Parts of the curve of `sections`; `resampled` is δ at equal steps over it, as many in each mesh period, where it is whole true periods.
     pub(super) fn of(sections: &Sections, resampled: Option<&[f64]>) -> Self {
         let traced = sections.traced(TRACED);
         let periods = sections.periods();
@@ -52,7 +52,7 @@ fn range(values: impl Iterator<Item = f64>) -> f64 {
     ends.1 - ends.0
 }
 
-/// The root mean square of what of `values` repeats with each of their `periods`: all harmonics of the mesh together.
+/// The root mean square of the part of `values` that repeats with each of their `periods`: all harmonics of the mesh together.
 fn repeating_rms(values: &[f64], periods: usize) -> f64 {
     let each = values.len() / periods;
     let means: Vec<f64> = (0..each)
@@ -69,7 +69,7 @@ fn repeating_rms(values: &[f64], periods: usize) -> f64 {
 
 /// The largest range of the rising places and values `traced` in any stretch of one mesh period; the curve may repeat after so many.
 fn range_within_a_period(traced: &[(f64, f64)], repeats: Option<f64>) -> f64 {
-    /// What is lost in the digits of a place.
+    /// Loss in the digits of a place.
     const ROUNDING: f64 = 1e-9;
     let first = traced.first().map_or(0.0, |first| first.0);
     let again = repeats.into_iter().flat_map(|periods| {
@@ -109,7 +109,7 @@ mod tests {
     use super::*;
     use crate::analysis::between::{PairState, Sample, Span};
 
-    /// What single-flank testing finds of `curve` over `periods` mesh periods after which it repeats or not.
+    /// Single-flank test of `curve` over `periods` mesh periods, after which it repeats or not.
     fn single_flank(curve: impl Fn(f64) -> f64, periods: u32, closes: bool) -> SingleFlank {
         const PER_PERIOD: u32 = 200;
         let span = Span::new(0.0, periods, PER_PERIOD, closes);
@@ -143,8 +143,8 @@ mod tests {
 
     fn assert_near(value: impl Into<Option<f64>>, expected: f64, what: &str) {
         let value = value.into().expect(what);
-        // Where pairs change, sections through 200 positions in a period err by up to a twentieth of what the curve does in a step, and lines between
-        // 400 places in a period by less.
+        // Where pairs change, sections through 200 positions in a period err by up to a twentieth of the change of the curve in a step, and lines between 400
+        // places in a period by less.
         assert!(
             (value - expected).abs() < 1e-3,
             "{what}: {value}, not {expected}"

@@ -14,7 +14,7 @@ pub struct NamedOrder {
     pub order: f64,
     /// For example `H_Z2`, `H_N`, `H_Z2+N2`, `H_1`, `H_Z2-1(1)`.
     pub label: String,
-    /// What it is.
+    /// Kind.
     pub kind: OrderKind,
     /// The amplitude of δ in meters.
     pub transmission_error: f64,

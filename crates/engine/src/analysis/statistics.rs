@@ -1,4 +1,4 @@
-//! What a curve comes to over its span.
+//! Statistics of a curve over its span.
 
 /// Mean, rms of the fluctuation and extremes of a curve over one span, between its positions too.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

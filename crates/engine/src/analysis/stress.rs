@@ -1,6 +1,6 @@
 //! The largest stresses at the roots of the teeth and at the edges of the holes, position by position.
 //!
-//! A free edge is stressed along itself only, so that the von Mises stress there is what stretches or presses it.
+//! A free edge is stressed along itself only: the von Mises stress there is the magnitude of that tension or compression.
 
 use std::f64::consts::TAU;
 
@@ -193,12 +193,12 @@ pub(super) struct RootStress {
     pub(super) peak: PeakStress,
     /// The first principal stress, and the smallest one.
     pub(super) principal: [f64; 2],
-    /// Whether it is beside the loaded flank of a loaded tooth or of its neighbor.
+    /// True beside the loaded flank of a loaded tooth or of its neighbor.
     pub(super) in_mesh: bool,
 }
 
 impl GearPeaks {
-    /// Those of all `roots` that are reached, and the largest of its holes.
+    /// Stresses of all `roots` within reach, and the largest of its holes.
     pub(super) fn of(roots: &[RootStress], hole: Option<PeakStress>) -> Self {
         let principal = |i: usize| {
             let each = roots.iter();
@@ -309,7 +309,7 @@ impl GearStresses {
         })
     }
 
-    /// Those of both gears, of the peaks at each position, and at others `between` these.
+    /// Stresses of both gears, from the peaks at each position, and at others `between` these.
     pub(super) fn of_positions(
         peaks: &[PositionPeaks],
         (places, between): (&[f64], &[PositionPeaks]),

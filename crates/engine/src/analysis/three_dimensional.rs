@@ -1,5 +1,5 @@
-//! The methods that see the faces: both whole gears in three dimensions, contact along moving lines; at every position, or over one mesh
-//! period with what holes change added at first order.
+//! Methods along the faces: both whole gears in three dimensions, contact along moving lines; at every position, or over one mesh period with the first-order
+//! effect of holes added.
 
 use std::sync::Arc;
 
@@ -88,7 +88,7 @@ pub(super) fn solve(
     })
 }
 
-/// What is kept of a contact along faces.
+/// Stored part of a contact along faces.
 #[derive(Clone)]
 struct FacePosition {
     contact: FaceContact,
@@ -103,7 +103,7 @@ impl Kept for FacePosition {
     }
 }
 
-/// What is `found`, with the largest stresses by the model of them.
+/// The results `found`, with the largest stresses by their model.
 fn with_stress(
     mut found: Found<FaceContact>,
     stress: Option<&FaceStressModel<'_>>,
@@ -129,7 +129,7 @@ struct OfFaces<'a> {
     whole: FaceModel,
     /// Both gears, alike all around.
     round: FaceModel,
-    /// Those that are not.
+    /// Gears that are not rotationally symmetric.
     uneven: Vec<Member>,
 }
 
@@ -154,7 +154,7 @@ impl<'a> OfFaces<'a> {
         Ok(Found::of_contacts(task, contacts, &stiffness).keeping(faces))
     }
 
-    /// By the contacts of gears that are alike all around, and what holes change of them at first order.
+    /// Results from the contacts of rotationally symmetric gears, and the first-order effect of holes on them.
     fn projected(&self, load: f64, sweep: &Sweep) -> Result<Found<FaceContact>, AnalysisError> {
         let (contacts, faces, stiffness) = self.contacts(&self.round, load, sweep)?;
         let loads: Vec<_> = faces.iter().map(|each| self.round.loads(each)).collect();
@@ -191,7 +191,7 @@ impl<'a> OfFaces<'a> {
     }
 }
 
-/// What the flanks of both gears yield.
+/// Compliance of the flanks of both gears.
 pub(super) fn yields(
     faces: &Faces,
     parts: &dyn Parts,

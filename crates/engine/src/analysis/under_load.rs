@@ -1,4 +1,4 @@
-//! What all methods do alike: torque by torque they solve the positions of their plan and some more between them, and say how good that is.
+//! The common part of all methods: torque by torque they solve the positions of their plan and some more between them, and collect evidence.
 
 use super::between::{PeakSearch, Sections};
 use super::case::Case;
@@ -13,8 +13,8 @@ use super::warning::{
 use super::{Analysis, AnalysisError};
 use crate::run::Run;
 
-/// The curve of `case` of what is `found` by `sweep` under `load`, and of what `solve` finds at further positions: at first at `kinks`, where the curve is known to
-/// have some. With what is found there.
+/// The curve of `case` from the results `found` by `sweep` under `load`, and from further positions of `solve`: first at `kinks`, where the curve is known to
+/// have some. Returns it with the further results.
 pub(super) fn parts_of<K: Kept>(
     (case, sweep, load): (&Case, &Sweep, f64),
     found: &Found<K>,
@@ -64,7 +64,7 @@ pub(super) fn parts_of<K: Kept>(
     ))
 }
 
-/// One load of a case, and what is learned under it beside the curve.
+/// One load of a case, and the evidence under it beside the curve.
 pub(super) struct UnderLoad<'a> {
     case: &'a Case,
     pass: &'a Pass,
@@ -80,7 +80,7 @@ pub(super) struct UnderLoad<'a> {
 }
 
 impl UnderLoad<'_> {
-    /// As [`parts_of`], of what is `found` by the pass; what its contacts say of themselves is noted.
+    /// As [`parts_of`], from the results `found` of the pass; the evidence of its contacts is noted.
     pub(super) fn parts<K: Kept>(
         &mut self,
         found: &Found<K>,
@@ -110,7 +110,7 @@ impl UnderLoad<'_> {
         self.decomposition_error = Some(remainder);
     }
 
-    /// Compares what is `found` by a projection with δ of `exact` solutions, at the positions at which it is least sure.
+    /// Compares the results `found` by a projection with δ of `exact` solutions, at the positions at which it is least certain.
     pub(super) fn check<K>(
         &mut self,
         found: &Found<K>,

@@ -1,4 +1,4 @@
-//! What a reader of a result should know beside the numbers.
+//! Warnings to read with the numbers of a result.
 
 use super::at_speed::CurveDynamics;
 use super::case::Model;
@@ -11,7 +11,7 @@ use crate::load_distribution::{FormulaRange, out_of_range};
 /// Backlash below this, in modules, counts as none.
 const NO_BACKLASH: f64 = 1e-6;
 
-/// There is a warning of tip clearances that are less than what the racks leave by more than this, in modules.
+/// Tip clearance below that of the racks by more than this, in modules, gives a warning.
 const LOST_TIP_CLEARANCE: f64 = 0.05;
 
 /// The least clearance that racks leave, in modules, where their addendum is not known because a tip diameter is given.
@@ -21,8 +21,8 @@ const CLEARANCE_OF_RACKS: f64 = 0.2;
 /// a plane does not see.
 const LIKE_WIDTHS: f64 = 1.5;
 
-/// Beyond these parts of the mean and of the peak-to-peak there is a warning of the error of the projected decomposition. Who asks for it asks what
-/// holes do to the fluctuation; at single positions case 1 of the paper is 4 % of it off, in its statistics 0.1 %.
+/// Parts of the mean and of the peak-to-peak beyond which the error of the projected decomposition gives a warning. Its users look at the effect of holes on
+/// the fluctuation; at single positions it is off by 4 % of that on case 1 of the paper, in its statistics by 0.1 %.
 const DOUBTFUL_PROJECTION: [f64; 2] = [0.01, 0.05];
 
 /// Beyond this part of the peak-to-peak there is a warning of what the fits of the decomposition leave of the turn of holed blanks.
@@ -43,13 +43,13 @@ const RIMS_MATTER: f64 = 0.05;
 /// A curve that fluctuates by a smaller part of its mean counts as one that fluctuates by so much: less is no concern of anyone.
 const LEAST_FLUCTUATION: f64 = 1e-3;
 
-/// From this part of the face width on a web, and from so many modules on the rim around it, is as a plane takes them, by what the variation of
-/// the transmission error makes of both; webs below the second part, and rims below the second number, are no matter for a plane.
+/// From this part of the face width on for a web, and from this number of modules on for the rim around it, the plane model holds, judged by the effect of both
+/// on the variation of the transmission error; webs below the second part, and rims below the second number, are outside of a plane model.
 pub const PLANE_WEB: [f64; 2] = [0.4, 0.2];
 /// See [`PLANE_WEB`].
 pub const PLANE_RIM: [f64; 2] = [3.5, 2.0];
 
-/// What a reader of the result should know beside the numbers.
+/// A warning to read with the numbers of the result.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Warning {
     /// The teeth fit without any backlash; only the loaded flanks are solved.
@@ -120,7 +120,7 @@ pub enum Warning {
         /// The largest share of the load that such a contact carries.
         largest_share: f64,
     },
-    /// The contact reaches the fillet of a gear, where it is not followed: the load at its end is not what it would be.
+    /// The contact reaches the fillet of a gear, where it is not followed: the load at its end is wrong.
     ContactReachesFillet {
         /// The gear whose fillet is reached.
         member: Member,
@@ -157,7 +157,7 @@ pub enum Warning {
         /// The pressure in Pa.
         pressure: f64,
     },
-    /// So few positions a mesh period give the orders of its higher multiples wrongly, or leave the peak-to-peak open.
+    /// Too few positions a mesh period: the orders of its higher multiples are wrong, or the peak-to-peak is open.
     FewPositions {
         /// The positions.
         positions: u32,
@@ -182,13 +182,13 @@ pub enum Warning {
         /// The speed of the driving gear from which the mean pressure of the fit is gone, in revolutions per second.
         speed: f64,
     },
-    /// What the first-order term of the projected decomposition leaves out shows in its curve.
+    /// The remainder of the projected decomposition's first-order term shows in its curve.
     ProjectionDoubtful {
         /// The largest difference to the exact δ that was found, in meters.
         error: f64,
-        /// What part of the mean of its curve that is.
+        /// Its part of the mean of the curve.
         part_of_mean: f64,
-        /// What part of its peak-to-peak.
+        /// Its part of the peak-to-peak of the curve.
         part_of_peak_to_peak: f64,
     },
     /// What one harmonic for each holed blank leaves out shows in the curve of the decomposition.
@@ -200,7 +200,7 @@ pub enum Warning {
     },
 }
 
-/// What a reader should know of a case before it is computed.
+/// Warnings of a case before it is computed.
 pub fn warnings(case: &Case) -> Vec<Warning> {
     let pair = &case.pair;
     let mut warnings = Vec::new();
@@ -265,7 +265,7 @@ fn small_tip_clearance(pair: &GearPair, member: Member) -> Option<Warning> {
     let module = pair.gear(member).normal_rack().module;
     let dedendum = |member: Member| pair.gear(member.other()).data().rack.dedendum;
     let of_racks = dedendum(member) - addendum_of_rack(pair, member);
-    // Rounding of what was typed at the limit is not below it.
+    // The rounding of a value typed at the limit is not below it.
     let is_lost = of_racks - clearance > LOST_TIP_CLEARANCE * module * (1.0 + 1e-9);
     let shortening = pair.usual_tip_shortening();
     is_lost.then(|| Warning::SmallTipClearance {
@@ -301,7 +301,7 @@ fn web_outside_plane(gear: &SpurGear, member: Member) -> Option<Warning> {
         .filter(|web| web.thickness < gear.face_width())?;
     let web = drawn.thickness / gear.face_width();
     let rim = (gear.root_radius() - drawn.outer_radius) / gear.data().rack.module;
-    // Rounding of what was typed at the limit is not below it.
+    // The rounding of a value typed at the limit is not below it.
     let below = |value: f64, [limit, _]: [f64; 2]| value < limit * (1.0 - 1e-9);
     (below(web, PLANE_WEB) || below(rim, PLANE_RIM)).then_some(Warning::WebOutsidePlaneModel {
         member,
@@ -462,7 +462,7 @@ pub(super) fn warn_of_motions(
                 .map(|((runs_away, force), speed)| (*speed, (!runs_away).then(|| force / largest)))
         })
     });
-    // Speeds, and what of the largest load of the table the force comes to; `None` where the motion is not bounded.
+    // Speeds, and the largest force as a multiple of the table's largest load; `None` where the motion is not bounded.
     let seen: Vec<(f64, Option<f64>)> = seen.collect();
     let unbounded = seen.iter().filter(|(_, ratio)| ratio.is_none());
     let found = ends(unbounded.map(|(speed, _)| *speed));

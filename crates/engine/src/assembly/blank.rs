@@ -17,7 +17,7 @@ const MOST_ELEMENTS_PER_TOOTH: f64 = 10.0;
 /// Elements along the interface circle of a holed blank, at least.
 const ELEMENTS_AROUND_HOLES: f64 = 400.0;
 
-/// What a blank depends on.
+/// Specification of a blank.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BlankSpec {
     gear: SpurGear,
@@ -67,7 +67,7 @@ impl BlankSpec {
         Ok(self.make_with(&self.grid()?, &[], run)?.0)
     }
 
-    /// Makes it of its `grid`, and with it what the functionals `asked` of its sector 0 become.
+    /// Makes it from its `grid`, with the values of the functionals `asked` of its sector 0.
     pub(super) fn make_with(
         &self,
         grid: &BlankGrid,

@@ -20,7 +20,7 @@ pub struct CutGear {
 /// A flexible blank.
 pub(super) struct CutBlank {
     blank: Arc<BlankSubstructure>,
-    /// What its highest orders find, where that is another one.
+    /// The web by its highest orders, where that is another one.
     solid: Option<Arc<BlankSubstructure>>,
     pub(super) hole_angle: f64,
 }
@@ -55,7 +55,7 @@ impl CutGear {
         self.blank.as_ref().map(of).transpose()
     }
 
-    /// What the loads on its flanks are on the loading modes of each tooth.
+    /// Loads on its flanks, in terms of the loading modes of each tooth.
     pub fn modal_loads(&self, loads: &[FlankLoad]) -> Vec<(usize, Vec<f64>)> {
         let flank = &self.teeth.flank;
         let modal = |load: &FlankLoad| (load.tooth, flank.modal_loads(&load.forces));

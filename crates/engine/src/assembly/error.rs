@@ -11,7 +11,7 @@ pub enum PartError {
     /// Its grid could not be made.
     #[error(transparent)]
     Grid(#[from] GridError),
-    /// It could not be condensed.
+    /// The condensation failed.
     #[error(transparent)]
     Fem(#[from] FemError),
     /// The caller stopped the work.

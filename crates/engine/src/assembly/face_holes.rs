@@ -1,7 +1,7 @@
 //! How the edges of the holes of a solid gear are stressed under loads on its flanks.
 //!
-//! Loads move the outer circle of the web ([`super::face_yield`]), and that moves the nodes along the holes, sector by sector; what stretches
-//! their surface says the stress ([`crate::fem::surface`]).
+//! Loads move the outer circle of the web ([`super::face_yield`]), and that moves the nodes along the holes, sector by sector; the strain along their surface
+//! gives the stress ([`crate::fem::surface`]).
 
 use std::f64::consts::TAU;
 
@@ -19,7 +19,7 @@ use crate::run::Run;
 /// The edges of the holes of a gear, by the loads on its flanks.
 #[derive(Debug)]
 pub struct FaceHoles {
-    /// Those of one sector.
+    /// Edges of one sector.
     edges: Surface,
     classes: Vec<ClassRows>,
     sector_count: usize,
@@ -36,7 +36,7 @@ pub struct HoleAnswer<'a> {
 }
 
 impl FaceHoles {
-    /// Those of the gear of `spec`, which move by the orders up to `largest` of the outer circle of its web.
+    /// Edges of the gear of `spec`, which move by the orders up to `largest` of the outer circle of its web.
     ///
     /// # Errors
     ///
@@ -171,7 +171,7 @@ pub(super) mod tests {
                 phase,
                 edges,
             };
-            // Tension σ along the direction `along`: what it stretches on the circle, even across the plate but for what thins it.
+            // Tension σ along the direction `along`: strain on the circle, even across the plate except for its thinning.
             let (sigma, along) = (100e6, 0.9_f64);
             let (mean, apart) = (0.35 * sigma / 210e9, 0.65 * sigma / 210e9);
             let m = axial.len();

@@ -1,4 +1,4 @@
-//! What goes on all through a solid gear whose flanks are loaded: how every part of it moves.
+//! Motion of a whole solid gear whose flanks are loaded, part by part.
 //!
 //! The ring of teeth tells how the sides of the teeth and the interface circle move ([`crate::ring::solid::gear`]); that moves the teeth inside,
 //! and the rim below, and so on from circle to circle down to the bore or the shaft, order by order where a part is alike all around, and sector by
@@ -95,7 +95,7 @@ impl FaceInside {
         })
     }
 
-    /// What presses the flank of `tooth` where these forces act.
+    /// Loads on the flank of `tooth` from these forces.
     pub fn forces(
         &self,
         tooth: usize,
@@ -406,7 +406,7 @@ impl MovedParts {
     }
 }
 
-/// What `of` makes of the orders 0 … below `count`.
+/// Result of `of` for the orders 0 … below `count`.
 fn each_order<T: Send>(
     count: usize,
     of: impl Fn(usize) -> Result<T, FemError> + Send + Sync,

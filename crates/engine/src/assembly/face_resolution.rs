@@ -62,7 +62,7 @@ impl FaceResolution {
         }
     }
 
-    /// What a face of so many `modules` is resolved by: one that is narrower than its teeth are high has no polynomials finer than their grid.
+    /// The resolution of a face of `modules` modules: a face narrower than its teeth are high has no polynomials finer than their grid.
     pub(super) fn of_width(self, modules: f64) -> Self {
         let order = (self.face_order as f64 * (modules / WIDE).min(1.0)).ceil() as usize;
         Self {
@@ -71,7 +71,7 @@ impl FaceResolution {
         }
     }
 
-    /// The degree of the pieces across a rim that is broken at the faces of its web: what half of the whole face asks for.
+    /// The degree of the pieces across a rim that is broken at the faces of its web: that of half of the whole face.
     pub fn piece_order(self) -> usize {
         self.face_order / 2 + 1
     }

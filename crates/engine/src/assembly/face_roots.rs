@@ -24,8 +24,8 @@ use crate::run::Run;
 /// How far from a loaded tooth, in teeth, the roots are stressed by it.
 const REACH: usize = 10;
 
-/// Places on a fillet that are nearer to a contact are stressed by that rather than by the bending of the tooth, and are left out: in the section, in
-/// modules; and along the face, as a part of its width over the degree of its functions, which blur what is nearer.
+/// Places on a fillet nearer to a contact are stressed by that contact rather than by the bending of the tooth, and are left out: in the section, in modules;
+/// and along the face, as a part of its width over the degree of its functions, which blur shorter distances.
 pub(crate) const UNDER_CONTACT: f64 = 0.6;
 const BLURRED: f64 = 1.0;
 
@@ -39,10 +39,10 @@ pub struct FaceRoots {
     tooth_count: usize,
     /// The displacements of the fillets of a tooth by the forces on the nodes of its own flank.
     own: Mat<f64>,
-    /// Those of the tooth d places counter-clockwise of a loaded one, for d from −reach to reach, by forces on the lower functions on its flank;
-    /// that of d = 0 is empty.
+    /// Rows of the tooth d places counter-clockwise of a loaded one, for d from −reach to reach, by forces on the lower functions on its flank; that of d = 0
+    /// is empty.
     others: Vec<Mat<f64>>,
-    /// Those of tooth 0 by forces on the outer circle of a web with holes, a column for each displacement.
+    /// Rows of tooth 0 by forces on the outer circle of a web with holes, a column for each displacement.
     by_web: Option<Mat<f64>>,
     degrees_of_freedom: u64,
 }
@@ -168,7 +168,7 @@ impl FaceRoots {
         })
     }
 
-    /// What presses the flank of `tooth` where these forces act.
+    /// Loads on the flank of `tooth` from these forces.
     pub fn forces(
         &self,
         tooth: usize,
@@ -177,7 +177,7 @@ impl FaceRoots {
         self.pressed.forces(tooth, pressing)
     }
 
-    /// The roots under `loads`; `yields` are those of the same gear, and say what holes change.
+    /// The roots under `loads`; `yields` are the flanks' compliances of the same gear, with the effect of holes.
     pub fn under<'a>(
         &'a self,
         yields: Option<&'a FaceYield>,
@@ -298,7 +298,7 @@ impl Nearness {
         ])
     }
 
-    /// Whether two places are so near to each other that a contact at one of them is felt at the other for itself.
+    /// True if two places are so near to each other that a contact at one of them acts at the other by itself.
     fn are_near(&self, (one, z): (Vector, f64), (other, y): (Vector, f64)) -> bool {
         let [flat, high] = self.0;
         (z - y).abs() < high && (one - other).norm() < flat

@@ -1,4 +1,4 @@
-//! What the loaded flanks of one gear yield, all across their face.
+//! Compliance of the loaded flanks of one gear, across their whole face.
 
 use std::sync::Arc;
 
@@ -19,21 +19,21 @@ use crate::ring::solid::tooth::{SolidTooth, flank_compliance_alone};
 use crate::ring::teeth::FARTHEST_COUPLED;
 use crate::run::Run;
 
-/// What the yield of a face depends on.
+/// Specification of a face's compliance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FaceYieldSpec {
     gear: SolidGear,
     resolution: FaceResolution,
 }
 
-/// What the flanks of a gear yield without its holes, and what the circle outside of these would answer.
+/// Compliance of a gear's flanks without its holes, and the response of the circle outside of these.
 #[derive(Debug)]
 pub struct PlainFace {
     /// The squares of the roll lengths at which the flank begins and ends.
     squares: [f64; 2],
-    /// What it yields beside a half space where it ends.
+    /// Further compliance beside that of a half space at the ends of the face.
     ends: FlankEnds,
-    /// What tooth d yields to tooth 0, d = 0 … [`farthest`], or half way around.
+    /// Compliance between tooth d and tooth 0, d = 0 … [`farthest`], or half way around.
     blocks: Vec<Mat<f64>>,
     /// The stiffness of each order of the interface circle.
     stiffness_below: Vec<Mat<c64>>,
@@ -41,13 +41,13 @@ pub struct PlainFace {
     degrees_of_freedom: u64,
 }
 
-/// What the loaded flanks of one gear yield, all across their face: everything but the half space under each load.
+/// Compliance of the loaded flanks of one gear, across their whole face: all but the half space under each load.
 ///
 /// The yield of tooth i at the roll length s and the height z, along the normal into the tooth, is
 ///
 /// ```text
 /// u_i(s, z) = Σ over the forces N on (j, s', z') of  basis(s, z)ᵀ smooth[i, j] basis(s', z') N
-///           + Σ over those on tooth i itself of  (1 − ν²)/(π E) N / √(perp² + gen²) + what flanks yield at their ends
+///           + Σ over those on tooth i itself of  (1 − ν²)/(π E) N / √(perp² + gen²) + the further compliance at their ends
 /// perp = (s² − s'²)/(2 r_b) − τ (s + s')/2 (z − z'),   gen = (z − z')/cos β_b
 /// ```
 ///
@@ -57,7 +57,7 @@ pub struct FaceYield {
     axial: AxialBasis,
     tooth_count: usize,
     plain: Arc<PlainFace>,
-    /// What holes change.
+    /// Effect of holes.
     holes: Option<HoledChange>,
 }
 
@@ -105,7 +105,7 @@ impl FaceYieldSpec {
         Stack::new(&self.gear, self.resolution)
     }
 
-    /// Makes it of what its [`Stack`] yields, `plain`.
+    /// Makes it from the compliance of its [`Stack`], `plain`.
     ///
     /// # Errors
     ///
@@ -190,7 +190,7 @@ impl PlainFace {
 }
 
 impl FaceYield {
-    /// What the flanks of `gear` yield, every part of it made anew.
+    /// Compliance of the flanks of `gear`, with every part made anew.
     ///
     /// # Errors
     ///
@@ -200,8 +200,8 @@ impl FaceYield {
         spec.make(Arc::new(PlainFace::new(&spec.stack(), run)?), run)
     }
 
-    /// What the flank of one tooth alone yields: a sector of the gear from `inner_radius` outward whose sides are free and whose inner
-    /// circle is held. No gear is like this, but what others compute of one tooth often is.
+    /// Compliance of the flank of one tooth alone: a sector of the gear from `inner_radius` outward whose sides are free and whose inner circle is held. No
+    /// real gear is like this, but published solutions of one tooth often are.
     ///
     /// # Errors
     ///
@@ -270,14 +270,13 @@ impl FaceYield {
         }
     }
 
-    /// What a unit force moves a point on the same flank, a roll length and a height, by its ends: beside the smooth compliance and a half
-    /// space; the force spread over a piece of a contact line of the length `along` about another such point.
+    /// Displacement of a point on the same flank, a roll length and a height, by a unit force, from its ends: beside the smooth compliance and a half space;
+    /// the force is spread over a piece of a contact line of the length `along` about another such point.
     pub fn at_ends(&self, point: (f64, f64), loaded: (f64, f64), along: f64) -> f64 {
         self.plain.ends.of_piece(point, loaded, along)
     }
 
-    /// What the functions of the listed teeth yield to each other, in m/N: symmetric, a block for each two of them. Teeth count
-    /// counter-clockwise from any, modulo Z.
+    /// Compliance between the functions of the listed teeth, in m/N: symmetric, a block for each two of them. Teeth count counter-clockwise from any, modulo Z.
     ///
     /// # Panics
     ///
@@ -316,7 +315,7 @@ impl FaceYield {
         }
     }
 
-    /// What holes change, if there are any.
+    /// Effect of holes, if there are any.
     pub(super) fn holes(&self) -> Option<&HoledChange> {
         self.holes.as_ref()
     }
@@ -333,7 +332,7 @@ impl FaceYield {
         self.holes.as_ref().map_or(1, HoledChange::repeats_after)
     }
 
-    /// The same with what holes change in the mean over the teeth: alike all around.
+    /// The same with the effect of holes averaged over the teeth: rotationally symmetric.
     pub fn round_average(&self) -> Self {
         Self {
             holes: self.holes.as_ref().map(HoledChange::round_average),
@@ -359,7 +358,7 @@ fn farthest(gear: &SolidGear) -> usize {
     FARTHEST_COUPLED + winding.ceil() as usize
 }
 
-/// What each tooth up to so many places away yields to the loads of tooth 0.
+/// Compliance of each tooth up to a number of places away under the loads of tooth 0.
 fn blocks(
     tooth: &SolidTooth,
     classes: &[ClassAnswers],
@@ -417,7 +416,7 @@ mod tests {
         FaceYield::of(gear, COARSE, &Run::unattended()).expect("definite")
     }
 
-    /// What (s, z) of tooth `i` yields to a unit force at (s', z') of tooth `j`, without the half space.
+    /// Displacement at (s, z) of tooth `i` by a unit force at (s', z') of tooth `j`, without the half space.
     fn between(
         face: &FaceYield,
         (i, s, z): (usize, f64, f64),
@@ -519,15 +518,15 @@ mod tests {
                 for (tooth, t, y) in [(0, s, -z), (1, s, z), (2, s, 0.0)] {
                     let a = between(&one, (tooth, s, z), (0, t, y));
                     let b = between(&other, (tooth, s, z), (0, t, y));
-                    // Of the largest, some 1e-9 m/N: what a polynomial of degree 4 in a still frame misses of one that turns.
+                    // Relative to the largest, some 1e-9 m/N: the error of a polynomial of degree 4 in a still frame for one that turns.
                     assert!((a - b).abs() < 4e-3 * 1e-9, "{beta}: {a:e} {b:e}");
                 }
             }
         }
     }
 
-    /// The mean over the face of what tooth 1 yields to a load on tooth 0 that is even over the face, times the face width: of a
-    /// straight gear whose face is so wide, and of the plane with Young's modulus and Poisson's ratio as given.
+    /// The mean over the face of the displacement of tooth 1 by a load on tooth 0 that is even over the face, times the face width: of a straight gear of this
+    /// face width, and of the plane with Young's modulus and Poisson's ratio as given.
     fn neighbor(
         face_width: f64,
         plane: (f64, f64),
@@ -574,7 +573,7 @@ mod tests {
         let (blank, _) = made.expect("definite");
         let coupling =
             Coupling::on_blank(&ring, &blank, section.hole_angle(), 2, &run).expect("definite");
-        // Tooth 1 and, before it, tooth 0: what tooth 0 yields to tooth 1 is what tooth 1 yields to it.
+        // Tooth 1 and, before it, tooth 0: the compliance from tooth 0 to tooth 1 is that from tooth 1 to it.
         let (x, _) = coupling.block(0, 1);
         let h = &tooth.modes * x * tooth.modes.transpose();
         // Between the nodes around s, linearly: the neighbor's yield is smooth.

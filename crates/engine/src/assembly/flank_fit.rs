@@ -1,4 +1,4 @@
-//! How what a flank yields from node to node becomes a polynomial over it.
+//! Fit of polynomials to a flank's compliance between nodes.
 
 use faer::Mat;
 use faer::traits::ComplexField;
@@ -10,8 +10,8 @@ use crate::flank::polynomials::{OTHER_DEGREE, OWN_DEGREE, projecting};
 use crate::gear::SolidGear;
 use crate::quadrature::{gauss_legendre, parabola};
 
-/// How values at the nodes of a flank become polynomials over it: the nearest to what the grid has between its nodes, in the mean along
-/// the flank. Loads go the same way, so that what the grid makes of loads that stand on single nodes does not count.
+/// Fit of polynomials to values at the nodes of a flank: the nearest to the grid's interpolation between its nodes, in the mean along the flank. Loads are
+/// converted in the same way, so that the grid's response to loads on single nodes does not count.
 pub(super) struct FlankFit<'a> {
     gear: &'a SolidGear,
     pub(super) axial: &'a AxialBasis,
@@ -52,8 +52,8 @@ impl<'a> FlankFit<'a> {
         own
     }
 
-    /// The polynomials nearest to values at the nodes, a row each: the mean along the flank of each with what a node's value is between the
-    /// nodes, a parabola over an element.
+    /// The polynomials nearest to values at the nodes, a row each: the mean along the flank of each with the interpolation of a node's value, a parabola over
+    /// an element.
     fn nearest(&self) -> Mat<f64> {
         let mut nearest = Mat::zeros(OWN_DEGREE + 1, self.roll_lengths.len());
         let [from, to] = self.squares;

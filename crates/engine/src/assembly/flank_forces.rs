@@ -15,7 +15,7 @@ pub(super) struct PressedFlank {
     pub(super) roll_lengths: Vec<f64>,
 }
 
-/// What presses the flank of one tooth, on its nodes and on the functions over it.
+/// Loads on the flank of one tooth, on its nodes and on the functions over it.
 #[derive(Debug, Clone)]
 pub struct FlankForces {
     pub(super) tooth: usize,
@@ -34,7 +34,7 @@ impl FlankForces {
 }
 
 impl PressedFlank {
-    /// What presses the flank of `tooth` where these forces act.
+    /// Loads on the flank of `tooth` from these forces.
     pub(super) fn forces(
         &self,
         tooth: usize,

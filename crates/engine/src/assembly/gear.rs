@@ -10,7 +10,7 @@ use crate::ring::blank::BlankSubstructure;
 use crate::ring::body::Coupling;
 use crate::run::Run;
 
-/// What a gear depends on.
+/// Specification of a gear.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GearSpec {
     /// Its teeth.

@@ -1,4 +1,4 @@
-//! What holes change of the yield of flanks: a change of few unknowns, those of the web's outer circle.
+//! Effect of holes on the compliance of flanks: a change of few unknowns, those of the web's outer circle.
 //!
 //! With the web's stiffness S + ΔS instead of S, C the compliance of the whole gear without holes on that circle and q_j its answer to
 //! tooth j, teeth yield to each other by −q_iᵀ (I + ΔS C)⁻¹ ΔS q_j more. Teeth, rim and plain web stay as they are.
@@ -25,11 +25,11 @@ use crate::ring::solid::revolution::add_block;
 use crate::ring::solid::web::{HoledRing, condensed_blocks, conjugate_below_zero, of_order};
 use crate::run::Run;
 
-/// Elements around the web for each order in which holes are seen, at most so many; and what high orders need of them, two for a wavelength.
+/// Elements around the web for each order in which holes are taken into account; high orders need two for a wavelength.
 const ELEMENTS_PER_ORDER: f64 = 5.0;
 const USUAL_ELEMENTS: f64 = 70.0;
 const ELEMENTS_PER_HIGH_ORDER: f64 = 2.0;
-/// The thinnest ligament, in half widths of the narrowest hole, in which a coarse grid follows what bends: thinner ones are divided twice as finely.
+/// The thinnest ligament, in half widths of the narrowest hole, whose bending a coarse grid follows: thinner ones are divided twice as finely.
 const THIN: f64 = 0.35;
 
 /// The outer circle of a web as the teeth see it, while the web has no holes.
@@ -50,7 +50,7 @@ pub(crate) struct SeenWeb {
     follows: Vec<Mat<c64>>,
 }
 
-/// What holes change of the yield of flanks.
+/// Effect of holes on the compliance of flanks.
 #[derive(Debug, Clone)]
 pub(crate) struct HoledChange {
     tooth_count: usize,
@@ -96,7 +96,7 @@ impl SeenWeb {
                     sum += block * faer::Scale(c64::new(share, 0.0));
                 }
             }
-            // Those that the interface circle does not carry see it held.
+            // For orders that the interface circle does not have, it is held.
             for (k, order) in orders.iter().enumerate() {
                 let held = &web.of[order.unsigned_abs() as usize].held;
                 add_block(
@@ -135,14 +135,14 @@ impl SeenWeb {
         self.largest
     }
 
-    /// What a force of `order`, given as that of its absolute value, on the web's outer circle is on the interface circle.
+    /// Force of `order`, given as that of its absolute value, on the web's outer circle, transferred to the interface circle.
     pub(crate) fn on_interface(&self, order: i64, force: &Mat<c64>) -> Mat<c64> {
         let on = self.follows[order.unsigned_abs() as usize].adjoint() * force;
         conjugate_below_zero(&on, order)
     }
 
-    /// The answer of the web's outer circle to what `circles` say of the interface circle: orders of each class, and what these answer to
-    /// functions on tooth 0. `onto` makes rows for other functions of columns for these.
+    /// The response of the web's outer circle to the `circles` of the interface circle: orders of each class, and their response to functions on tooth 0.
+    /// `onto` makes rows for other functions from columns for these.
     pub(crate) fn answers_to<'a>(
         &self,
         circles: impl Iterator<Item = (&'a [i64], &'a Mat<c64>)>,
@@ -272,7 +272,7 @@ impl HoledChange {
         turned(amplitudes, 0..=self.largest, self.size, angle)
     }
 
-    /// What tooth `i` yields more to the functions of tooth `j`.
+    /// Further compliance of tooth `i` under the functions of tooth `j`.
     pub(crate) fn between(&self, i: usize, j: usize) -> Mat<f64> {
         let (z, known) = (self.tooth_count, j % self.changes.len());
         let seen = (i + z - (j - known)) % z;
@@ -320,14 +320,14 @@ impl HoledChange {
     }
 }
 
-/// The section of a web with its holes, and what carries it.
+/// The section of a web with its holes, and its support.
 pub(super) struct HoledSection {
     pub(super) grid: BlankGrid,
     /// Where hole 0 of a pattern stands.
     pub(super) phase: f64,
     /// The largest order that its circles are asked for.
     largest: usize,
-    /// What carries each order 0 … of its inner circle; `None` where that is held.
+    /// Stiffness under each order 0 … of its inner circle; `None` where that is held.
     hub: Option<Vec<Mat<c64>>>,
     material: Material,
     axial: AxialBasis,
@@ -354,7 +354,7 @@ impl HoledSection {
         })
     }
 
-    /// It as a prism.
+    /// The web as a prism.
     pub(super) fn prism(&self) -> Prism<'_> {
         Prism {
             grid: &self.grid.grid,

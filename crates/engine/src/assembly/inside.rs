@@ -1,4 +1,4 @@
-//! What goes on inside a gear whose flanks are loaded: functionals of its displacements, such as the stress along an edge.
+//! The inside of a gear whose flanks are loaded: functionals of its displacements, such as the stress along an edge.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use crate::ring::teeth_recovery::TeethRecovery;
 use crate::ring::tooth::ToothSubstructure;
 use crate::run::Run;
 
-/// A gear that can be asked what goes on inside it.
+/// A gear with functionals of its inside.
 pub struct Inside {
     cut: CutGear,
     in_tooth: TeethRecovery,
@@ -113,7 +113,7 @@ impl<'a> LoadedGear<'a> {
 }
 
 impl Answer<'_> {
-    /// What was asked of a tooth, in tooth `tooth`.
+    /// Values of the functionals of a tooth, in tooth `tooth`.
     pub fn in_tooth(&self, tooth: usize) -> Vec<f64> {
         let own = self.loads.iter().find(|load| load.tooth == tooth);
         let own = own.map_or(&[][..], |load| &load.forces);
@@ -144,7 +144,7 @@ impl Answer<'_> {
         )
     }
 
-    /// What was asked of the blank, in sector `sector`; nothing of a rigid one.
+    /// Values of the functionals of the blank, in sector `sector`; none of a rigid one.
     pub fn in_blank(&self, sector: usize) -> Vec<f64> {
         let Inside { cut, in_blank, .. } = self.inside;
         let both = cut.blank.as_ref().zip(in_blank.as_ref());

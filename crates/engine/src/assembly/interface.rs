@@ -30,9 +30,8 @@ pub fn default_interface_radius(gear: &SpurGear) -> f64 {
 /// The orders that the interface circle carries: on its way from the root circle the field of the teeth falls by
 /// e^(−n (r_f − R_w)/R_w), at the standard level to e⁻⁴·⁵ of it for the first order that is left out.
 ///
-/// What is left out shows with the square of that: on the fine grid the mean STE of the paper's cases moves by 2e-6 from
-/// 4.5 to 6.5, and by 2e-8 from there to 9.75. More orders than the blank's grid resolves do harm: on the standard grid the
-/// rms of case 1 is 4e-4 off the fine one's with 4.5, and 2e-3 with 6.5.
+/// The truncation error goes with the square of that: on the fine grid the mean STE of the paper's cases moves by 2e-6 from 4.5 to 6.5, and by 2e-8 from there
+/// to 9.75. More orders than the blank's grid resolves do harm: on the standard grid the rms of case 1 is 4e-4 off the fine one's with 4.5, and 2e-3 with 6.5.
 pub fn harmonics(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Harmonics {
     let z = gear.tooth_count() as usize;
     let depth = gear.root_radius() - interface_radius;

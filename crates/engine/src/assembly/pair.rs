@@ -71,7 +71,7 @@ impl PairSpec {
         CutGear::new(spec, parts, run).map_err(|error| error.of(member))
     }
 
-    /// The model, and its unknowns before condensation, of what `parts` provides.
+    /// The model, and its unknowns before condensation, from the parts of `parts`.
     ///
     /// # Errors
     ///

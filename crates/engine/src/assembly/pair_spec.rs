@@ -1,4 +1,4 @@
-//! What a pair of gears ready for contact depends on.
+//! Specification of a pair of gears ready for contact.
 
 use super::gear::GearSpec;
 use super::interface::interface_radius;
@@ -12,14 +12,14 @@ use crate::grid::GridLevel;
 pub enum Blanks {
     /// Both, as drawn.
     Flexible,
-    /// Those without holes; holed ones are rigid inside R_w (paper: wh).
+    /// Blanks without holes; holed ones are rigid inside R_w (paper: wh).
     HoledRigid,
     /// As [`Blanks::HoledRigid`], but the holed blank of one gear takes part.
     OnlyHoledOf(Member),
 }
 
 impl Blanks {
-    /// Whether the blank of `member` takes part if it has holes.
+    /// True if the blank of `member` takes part although it has holes.
     fn take_holed(self, member: Member) -> bool {
         match self {
             Self::Flexible => true,
@@ -42,7 +42,7 @@ pub struct Modeling {
     pub solver: ContactSolver,
 }
 
-/// What a model of a pair depends on.
+/// Specification of a model of a pair.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PairSpec {
     pub(super) gears: [GearSpec; 2],
@@ -77,7 +77,7 @@ impl PairSpec {
         }
     }
 
-    /// What its contact depends on but for the blanks.
+    /// Specification of its contact without the blanks.
     pub(super) fn drawn(&self) -> FlanksSpec {
         FlanksSpec {
             pair: self.flanks.clone(),
@@ -86,7 +86,7 @@ impl PairSpec {
     }
 }
 
-/// What the contact of flanks depends on, whatever carries their teeth and however each of these deviates.
+/// Specification of the contact of flanks, for any support and any deviations of their teeth.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FlanksSpec {
     /// The pair as drawn, without its blanks.
@@ -95,7 +95,7 @@ pub struct FlanksSpec {
     pub teeth: [TeethSpec; 2],
 }
 
-/// What the contacts of a pair at some positions depend on.
+/// Specification of the contacts of a pair at some positions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactsSpec {
     /// The transmitted load F in N.
@@ -104,7 +104,7 @@ pub struct ContactsSpec {
     pub positions: Vec<f64>,
     /// The drawn pair.
     pub pair: PairSpec,
-    /// What its teeth deviate by.
+    /// Deviations of its teeth.
     pub deviations: PairDeviations,
 }
 

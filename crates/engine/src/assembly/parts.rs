@@ -20,10 +20,9 @@ use crate::gear::Member;
 use crate::ring::blank::BlankSubstructure;
 use crate::run::Run;
 
-/// Who provides parts: whoever makes them all ([`MakeAll`]), or keeps what others have made ([`crate::library::Library`]).
+/// Providers of parts: one that makes them all ([`MakeAll`]), and one that keeps parts made before ([`crate::library::Library`]).
 ///
-/// A part is a function of its spec: whoever provides it, it has the same bits. A provider overrides what it does better than
-/// making the part anew.
+/// A part is a function of its spec: from any provider it has the same bits. A provider overrides the parts that it has without making them anew.
 pub trait Parts: Sync {
     /// The teeth of `spec`.
     ///
@@ -64,7 +63,7 @@ pub trait Parts: Sync {
         spec.make(teeth, solid.transpose()?, run).map(Arc::new)
     }
 
-    /// What the flanks of a solid gear yield without holes.
+    /// Compliance of a solid gear's flanks without holes.
     ///
     /// # Errors
     ///
@@ -73,7 +72,7 @@ pub trait Parts: Sync {
         PlainFace::new(spec, run).map(Arc::new)
     }
 
-    /// What the flanks of a solid gear yield.
+    /// Compliance of a solid gear's flanks.
     ///
     /// # Errors
     ///
@@ -109,12 +108,12 @@ pub trait Parts: Sync {
         Ok(made.transpose()?.map(Arc::new))
     }
 
-    /// What is known of the flanks of `spec`: a place for it, if nothing is.
+    /// Store of the flanks of `spec`: an empty one, if nothing is known.
     fn flanks(&self, _spec: &FlanksSpec) -> Arc<DrawnFlanks> {
         Arc::default()
     }
 
-    /// What is known of compliances on the flanks of `spec`: a place for it, if nothing is.
+    /// Store of compliances on the flanks of `spec`: an empty one, if nothing is known.
     fn compliances(&self, _spec: &PairSpec) -> Arc<Compliances> {
         Arc::default()
     }
@@ -141,7 +140,7 @@ pub struct MakeAll;
 
 impl Parts for MakeAll {}
 
-/// Makes the gears that are `wanted` of what `parts` provides, in parallel; a part that they share is asked for once.
+/// Makes the `wanted` gears from the parts of `parts`, in parallel; a part that they share is made once.
 ///
 /// # Errors
 ///

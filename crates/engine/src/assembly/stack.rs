@@ -42,7 +42,7 @@ pub struct Stack {
     pub(crate) gear: SolidGear,
     /// The functions across the face, of teeth and rim.
     pub(crate) face: AxialBasis,
-    /// Where the teeth meet what carries them.
+    /// Radius of the circle on which the teeth meet their support.
     pub(crate) interface_radius: f64,
     /// From the rim to the bore, or through the shaft to the axis.
     pub(crate) layers: Vec<Layer>,
@@ -79,7 +79,7 @@ impl Stack {
         }
         let is_holed = !section.holes().is_empty();
         let hole_orders = is_holed.then(|| joints.orders(root, section.holes(), resolution));
-        // A shaft that is as wide as what stands on it goes on inside as this does.
+        // A shaft as wide as the part on it continues inside as this part.
         if let [.., above, shaft] = layers.as_slice()
             && gear.shaft().is_some()
             && above.heights == shaft.heights
@@ -168,7 +168,7 @@ impl Stack {
         0.0
     }
 
-    /// What carries `order` on the inner circle of layer `index`, on the functions across that layer, whose frame turns by `twist`.
+    /// Stiffness under `order` on the inner circle of layer `index`, on the functions across that layer, whose frame turns by `twist`.
     pub(crate) fn below(
         &self,
         index: usize,
@@ -189,14 +189,14 @@ struct Joints {
     interface_radius: f64,
     /// The inner and the outer circle of the part in which holes stand.
     holed: [f64; 2],
-    /// Whether that is an inner part of the rim.
+    /// True for an inner part of the rim.
     is_in_rim: bool,
-    /// Whether something else carries it: else it is held there.
+    /// True if another part carries it; otherwise it is held there.
     is_carried: bool,
 }
 
 impl Joints {
-    /// Those of a gear of the root radius and the module, with `layers` below its root circle and these `holes`.
+    /// Ports of a gear of the root radius and the module, with `layers` below its root circle and these `holes`.
     fn of(layers: &[Layer], (root, module): (f64, f64), holes: &[Hole]) -> Self {
         let interface_above = |radius: f64| (root - module).max(f64::midpoint(root, radius));
         let rim = &layers[0];
@@ -227,8 +227,8 @@ impl Joints {
         ((needed - 1e-9).ceil() as usize).max(resolution.web_harmonics)
     }
 
-    /// The first order in which fields have fallen to what the resolution leaves out: those of the teeth on their way to `hole`, those of the hole on theirs to the
-    /// circles. The farther they go, the less of the stress is theirs.
+    /// The first order whose fields have decayed to the truncation of the resolution: those of the teeth on their way to `hole`, those of the hole on theirs to
+    /// the circles. The farther they go, the smaller is their part of the stress.
     fn orders_of(&self, root: f64, hole: &Hole, resolution: FaceResolution) -> f64 {
         let [of_teeth, of_holes] = resolution.hole_decays();
         let within =
@@ -257,7 +257,7 @@ pub struct NearHoles {
 }
 
 impl NearHoles {
-    /// Those of `gear`, if it has such.
+    /// Ports of `gear`, if it has such.
     pub fn of(gear: &SolidGear, resolution: FaceResolution) -> Option<Self> {
         let section = gear.section();
         let (root, module) = (section.root_radius(), gear.normal_rack().module);
@@ -362,7 +362,7 @@ fn functions_across(
 pub(crate) struct StackStiffness {
     /// The stiffness of each order 0 … M on the interface circle, without holes.
     pub(crate) stiffness: Vec<Mat<c64>>,
-    /// What stands between that circle and the web, where the web has holes.
+    /// The part between that circle and the web, where the web has holes.
     pub(crate) web: Option<WebPorts>,
 }
 

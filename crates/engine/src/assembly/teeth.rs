@@ -15,7 +15,7 @@ use crate::run::Run;
 /// A broken edge smaller than this, in modules, is a sharp one to the grid, whose elements there are half as large.
 const LEAST_EDGE: f64 = 0.02;
 
-/// What the teeth of a gear depend on.
+/// Specification of the teeth of a gear.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TeethSpec {
     gear: SpurGear,

@@ -21,7 +21,7 @@ const EXCHANGES_PER_POINT: usize = 20;
 /// Newton steps whose ends may leap; after them single points are wrong.
 const LEAPS: u32 = 4;
 
-/// What counts as no gap, relative to delta that the load alone could cause.
+/// Gap that counts as none, relative to the delta of the load alone.
 ///
 /// Rounding in H p leaves some 1e-15 of it.
 const RELATIVE_GAP_TOLERANCE: f64 = 1e-12;
@@ -240,7 +240,7 @@ impl<'a> Trial<'a> {
         self.problem.open(&mut self.gaps, pressing);
     }
 
-    /// Whether `point` belongs into the set, judged by its force if it is held and by its gap if it is free.
+    /// True if `point` belongs to the set, judged by its force if it is held and by its gap if it is free.
     fn should_touch(&self, point: usize) -> bool {
         if self.active[point] {
             self.forces[point] > self.force_tolerances[point]
@@ -317,7 +317,7 @@ impl<'a> Trial<'a> {
         }
     }
 
-    /// Whether nobody pulls and nobody penetrates: the Signorini conditions hold.
+    /// True if nothing pulls and nothing penetrates: the Signorini conditions hold.
     fn is_contact(&self) -> bool {
         (0..self.active.len()).all(|point| self.should_touch(point) == self.active[point])
     }
@@ -418,7 +418,7 @@ mod tests {
 
     #[test]
     fn a_parabola_is_found_in_few_steps_from_any_set() {
-        // Cells of width 1 on a half plane: what one opens at another falls with the logarithm of their distance, whose integral is x ln|x| − x.
+        // Cells of width 1 on a half plane: the displacement of one by another falls with the logarithm of their distance, whose integral is x ln|x| − x.
         let points = 80;
         let opened = |x: f64| {
             let integral = |x: f64| x * x.abs().ln() - x;

@@ -28,7 +28,7 @@ use super::problem::{ContactError, ContactProblem, ContactSolution, Equilibrium,
 use crate::gear::{GearPair, Member};
 use crate::run::Run;
 
-/// Newton steps of full length for one set of multipliers; what has not settled then steps to the least Phi.
+/// Newton steps of full length for one set of multipliers; after them steps go to the least Phi.
 const FULL_STEP_LIMIT: u32 = 30;
 
 /// Newton steps for one set of multipliers, in all.
@@ -37,7 +37,7 @@ const STEP_LIMIT: u32 = 500;
 /// Bisections that find the least Phi along a line; an f64 has no more digits.
 const BISECTIONS: u32 = 60;
 
-/// What counts as no gap, relative to delta that the load alone could cause: rounding in H p.
+/// Gap that counts as none, relative to the delta of the load alone: rounding in H p.
 const ROUNDING: f64 = 1e-13;
 
 /// Penalty, tolerance and limit of the augmented Lagrangian.
@@ -65,8 +65,8 @@ pub fn default_penalty(pair: &GearPair) -> f64 {
 
 /// Solves the contact under `load` (N, positive) by the augmented Lagrangian, starting without multipliers.
 ///
-/// Every force, and delta, is inexact by what a gap of [`AugmentedLagrangian::gap_tolerance`] makes. The tangent
-/// is that of rigid contact on the set found, without the springs.
+/// Every force, and delta, is inexact by the effect of a gap of [`AugmentedLagrangian::gap_tolerance`]. The tangent is that of rigid contact on the final set,
+/// without the springs.
 ///
 /// # Errors
 ///
@@ -164,7 +164,7 @@ impl Springs {
         &self.compliance * forces + &self.gaps_at_touch - delta * &self.arms
     }
 
-    /// What each spring would push with if it could pull as well: lambda - kappa g, in N.
+    /// Force of each spring if it could pull as well: lambda - kappa g, in N.
     fn pushes(&self, multipliers: &DVector<f64>, gaps: &DVector<f64>) -> DVector<f64> {
         multipliers - self.penalty * gaps
     }
@@ -308,7 +308,7 @@ impl Springs {
 
     /// Delta at which the springs carry the load on bodies deformed by `forces`, and the springs then pressed.
     ///
-    /// It minimizes Phi over delta, and leaves at least one spring pressed.
+    /// Minimizes Phi over delta, and leaves at least one spring pressed.
     fn balance_delta(&self, multipliers: &DVector<f64>, forces: &DVector<f64>) -> (f64, Vec<bool>) {
         let pushes = self.pushes(multipliers, &self.gaps(forces, 0.0));
         let (w, kappa) = (&self.arms, self.penalty);

@@ -1,4 +1,4 @@
-//! Contact cells on the pairs that come near, the compliance between them, and what a solution on them says of the mesh.
+//! Contact cells on the pairs that come near, the compliance between them, and the summary of a solution on them.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -39,7 +39,7 @@ const MULTIPLIER_UPDATES: u32 = 2000;
 const MOST_HALVED: u32 = 3;
 const MOST_TO_HALVE: usize = 128;
 
-/// What the cells of a pair lack.
+/// Deficits of the cells of a pair.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Lack {
     /// More cells; or the same, moved so far ([`Extent::moved`]) that a contact narrower than they reach lies among them.
@@ -142,7 +142,7 @@ impl PlacedCells {
 }
 
 impl<'a> ContactCells<'a> {
-    /// Those of `placed`, at a mesh position of `deviating`.
+    /// Cells of `placed`, at a mesh position of `deviating`.
     ///
     /// # Errors
     ///
@@ -187,7 +187,7 @@ impl<'a> ContactCells<'a> {
         })
     }
 
-    /// What the compliance of these cells depends on beside the cells themselves: how the blanks stand under their teeth.
+    /// Key of the compliance of these cells beside the cells themselves: the places of the blanks under their teeth.
     pub(super) fn teeth_like(&self) -> [usize; 2] {
         Member::BOTH.map(|member| {
             let coupling = &self.deviating.model.gears[member.index()].coupling;
@@ -272,7 +272,7 @@ impl<'a> ContactCells<'a> {
         &self.deviating.model.pair
     }
 
-    /// What the `solution` of their `problem` under `load` says of the mesh, and what penetrates under it.
+    /// Summary of the mesh from the `solution` of their `problem` under `load`, and its penetration.
     ///
     /// # Errors
     ///
@@ -350,7 +350,7 @@ impl<'a> ContactCells<'a> {
         }
     }
 
-    /// How δ follows what the teeth in reach deviate by, under the contact of `solution`, pair by pair.
+    /// Derivative of δ to the deviations of the teeth in reach, under the contact of `solution`, pair by pair.
     ///
     /// The derivative of δ by a gap is q = dp/dF at its cell ([`ContactSolution::load_derivative`]): gaps that open by dg let the driven gear
     /// lag by qᵀ dg more, whatever opens them; arms that change by dw add −δ qᵀ dw − pᵀ dw/k. A tooth that is not listed has no influence here.
@@ -402,7 +402,7 @@ impl<'a> ContactCells<'a> {
             .collect()
     }
 
-    /// What the `forces` on all cells load the interfaces of each pair with, one column each.
+    /// Loads of the `forces` on all cells on the interfaces of each pair, one column each.
     pub fn loads(&self, forces: &[&[f64]]) -> Vec<PairLoads> {
         self.ranges()
             .map(|(placed, range)| {
@@ -417,7 +417,7 @@ impl<'a> ContactCells<'a> {
             .collect()
     }
 
-    /// What the `forces` on all cells are on the flanks of `member`, tooth by tooth of those that carry any.
+    /// The `forces` on all cells as loads on the flanks of `member`, tooth by tooth of those that carry any.
     pub fn flank_loads(&self, member: Member, forces: &[f64]) -> Vec<FlankLoad> {
         let (gear, pair) = (member.index(), &self.deviating.model.pair);
         let flank = &self.deviating.model.gears[gear].flank;
@@ -438,8 +438,8 @@ impl<'a> ContactCells<'a> {
 
     /// The cells that are likely to touch, judged by a contact of about the same pairs.
     ///
-    /// All pairs move by what the load yields beside it; from there each is taken for a spring as stiff as it was, and under what it so
-    /// carries it touches wherever its gap is no deeper than such a force closed before.
+    /// All pairs move by the displacement of the load beside it. From there each is taken for a spring of its earlier stiffness, and under the load that it
+    /// carries so, it touches wherever its gap is no deeper than such a force closed before.
     fn touching(&self, warm: &WarmStart, load: f64) -> Option<Vec<bool>> {
         let known: Vec<&WarmPair> = self
             .placed
@@ -467,7 +467,7 @@ impl<'a> ContactCells<'a> {
             .map(|&((_, touch), (spring, _))| (touch, spring))
             .collect();
         rising.sort_by(|a, b| a.0.total_cmp(&b.0));
-        // δ, less what all move, at which the springs that it reaches carry the load.
+        // δ, less the common motion, at which the springs that it reaches carry the load.
         let (mut stiffness, mut moment, mut delta) = (0.0, 0.0, f64::INFINITY);
         for (touch, spring) in rising {
             if touch >= delta {
@@ -492,7 +492,7 @@ impl<'a> ContactCells<'a> {
         Some(touching.collect())
     }
 
-    /// What the cells of pairs lack. They lack room if the contact reaches beyond them or flanks penetrate beside them, and there is room for more. If no
+    /// Deficits of the cells of pairs. They lack room if the contact reaches beyond them or flanks penetrate beside them, and there is room for more. If no
     /// pair lacks room, cells between which flanks penetrate deeper than `deep` lack half their width.
     pub(super) fn lacks(
         &self,
@@ -527,7 +527,7 @@ impl<'a> ContactCells<'a> {
         halves.map(|placed| (placed.pair, Lack::Halves)).collect()
     }
 
-    /// What a force in the middle of one pair yields in the middle of the next, in the mean.
+    /// Displacement in the middle of the next pair by a force in the middle of one, in the mean.
     fn between(&self, problem: &ContactProblem) -> Option<f64> {
         let middles = self
             .ranges()
@@ -549,7 +549,7 @@ impl<'a> ContactCells<'a> {
     ) -> WarmStart {
         let delta = solution.transmission_error;
         let between = self.between(problem).unwrap_or(last.between);
-        // What all pairs move together, whoever of them carries.
+        // Common motion of all pairs, whichever of them carries.
         let shared = between * load;
         let pairs = self.ranges().filter_map(|(placed, range)| {
             let forces = &solution.forces[range];

@@ -15,7 +15,7 @@ use crate::touch::meeting::Probes;
 /// Stretches spread over the flanks beside the cells.
 const BESIDE: usize = 48;
 
-/// What penetrates under a solution.
+/// Penetration under a solution.
 #[derive(Default)]
 pub(super) struct Penetration {
     /// The largest penetration, in meters; zero if everything is open.
@@ -66,7 +66,7 @@ pub(super) struct CheckedStretches {
     pub(super) stretches: Vec<CheckedStretch>,
     /// The probes of those that have one, by the flank on which they lie: that of the seat of the pair, and the other one.
     pub(super) probes: [Probes; 2],
-    /// Row by row what unit forces on the cells of the pair do to each with the interfaces held, and W V of each gear.
+    /// Displacements of each by unit forces on the cells of the pair, row by row with the interfaces held, and W V of each gear.
     pub(super) yields: Vec<f64>,
 }
 
@@ -91,14 +91,14 @@ impl Carrying {
         }
     }
 
-    /// Whether the cell `i` may carry.
+    /// True if the cell `i` may carry.
     pub(super) fn holds(self, i: usize) -> bool {
         (self.from..self.to).contains(&i)
     }
 }
 
 impl CheckedStretches {
-    /// Those at the flanks of `facing`, seen by `view`, whose gap as drawn is within `reach`.
+    /// Stretches at the flanks of `facing`, seen by `view`, whose gap as drawn is within `reach`.
     pub(super) fn new(
         flanks: &PairFlanks<'_>,
         view: &View<'_>,
@@ -172,7 +172,7 @@ impl CheckedStretches {
         Self::at(flanks, cells, checked)
     }
 
-    /// Those `checked` beside `cells`.
+    /// The stretches `checked` beside `cells`.
     fn at(
         flanks: &PairFlanks<'_>,
         cells: &PairCells,

@@ -10,13 +10,13 @@ use super::memo::Memo;
 use super::pair_cells::CellsSpec;
 use crate::fem::dense::entries;
 
-/// What compliances may take, in bytes: two hundred of eighty cells.
+/// Limit of compliances in bytes: two hundred of eighty cells.
 const MOST_BYTES: usize = 10 << 20;
 
-/// What cores may take, in bytes: two thousand of forty touching cells.
+/// Limit of cores in bytes: two thousand of forty touching cells.
 const MOST_CORE_BYTES: usize = 36 << 20;
 
-/// What the compliance of the cells of a model depends on.
+/// Specification of the compliance of a model's cells.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(super) struct StatedCells {
     /// The pairs, numbered from the reference pair of the mesh period, and their cells.
@@ -85,7 +85,7 @@ impl Compliances {
 }
 
 impl Known {
-    /// The factor of what of it belongs to the rising points of `set`; `None` where that is not positive definite.
+    /// The factor of its part at the rising points of `set`; `None` where that is not positive definite.
     pub(super) fn factor(&self, set: &[usize]) -> Option<Factor> {
         let blocks = core_of(set);
         let core = self.cores.get((self.number, blocks), |(_, blocks)| {

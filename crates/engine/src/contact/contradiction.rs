@@ -46,7 +46,7 @@ impl Contradiction {
     /// [`Contradiction::Deflection`].
     pub fn of_deflection(deflection: f64, module: f64) -> Result<(), Self> {
         let most = MOST_DEFLECTION * module;
-        // What is no number is not within any limit.
+        // A value that is not a number is not within any limit.
         if deflection.abs() <= most {
             Ok(())
         } else {

@@ -1,13 +1,13 @@
-//! What the teeth of a gear yield together, on whatever touches: cells in the plane, slices along faces.
+//! Common compliance of the teeth of a gear, on anything that touches: cells in the plane, slices along faces.
 //!
-//! The flank of tooth i follows what it has in common with its gear by the rows of S_i: under forces on tooth j it moves by S_i X_ij S_jᵀ of them.
+//! The flank of tooth i follows the common motion of its gear by the rows of S_i: under forces on tooth j it moves by S_i X_ij S_jᵀ of them.
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatRef, Par};
 
 use super::mesh_contact::PairLoads;
 
-/// What touches of one pair.
+/// The touching part of one pair.
 pub(super) struct Touching<'a> {
     /// The pair n.
     pub(super) pair: i64,
@@ -41,7 +41,7 @@ pub(super) fn add_coupled<'x>(
     }
 }
 
-/// Makes what is above the diagonal of `h` what is below it.
+/// Copies the part of `h` above the diagonal to the part below it.
 pub(super) fn mirror(h: &mut Mat<f64>) {
     for column in 1..h.ncols() {
         for row in 0..column {

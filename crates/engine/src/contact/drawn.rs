@@ -1,4 +1,4 @@
-//! What two flanks as drawn have of contact, whatever carries the teeth and however each of them deviates.
+//! Contact data of two flanks as drawn, for any support and any deviations of the teeth.
 //!
 //! Cells, the compliance of the teeth alone and the places where penetration is looked for depend on the flanks, the load and how long ago the
 //! pair passed the pitch point. Models of one pair on other blanks, or with other deviations, share them.
@@ -13,20 +13,20 @@ use crate::gear::Member;
 use crate::touch::facing::{Facing, View, nearer_tip};
 use crate::touch::placement::Placement;
 
-/// What cells, and the stretches that are checked beside them, may take, in bytes each: two loads at forty positions a mesh period.
+/// Limit of cells, and of the stretches that are checked beside them, in bytes each: two loads at forty positions a mesh period.
 const MOST_BYTES: usize = 12 << 20;
 
-/// What facings may take, in bytes.
+/// Limit of facings in bytes.
 const MOST_FACING_BYTES: usize = 2 << 20;
 
-/// The factor by which the gap within which stretches are checked grows, so that these are the same whoever asks for them first. It bounds what is checked in
-/// vain, and changes no digit of a contact that penetrates nowhere.
+/// The factor by which the gap within which stretches are checked grows, so that these do not depend on the first request. It bounds the needless checks, and
+/// changes no digit of a contact that penetrates nowhere.
 const REACH_STEP: f64 = 3.0;
 
 /// Stretches are checked at least so far beyond the least gap, in meters.
 const LEAST_REACH: f64 = 1e-9;
 
-/// The flanks of one pair as drawn, with what was found of them; shared between threads.
+/// The flanks of one pair as drawn, with their computed data; shared between threads.
 #[derive(Debug)]
 pub struct DrawnFlanks {
     facings: Memo<(u64, Member), Option<Facing>>,

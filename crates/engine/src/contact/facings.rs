@@ -26,7 +26,7 @@ const DISPLACED: f64 = 0.25;
 pub(super) struct Facings<'a> {
     deviating: DeviatingPair<'a>,
     fraction: f64,
-    /// Whether nothing deviates.
+    /// True if nothing deviates.
     as_drawn: bool,
     /// How far the gears run out together, in phases.
     runout: f64,
@@ -113,7 +113,7 @@ impl Near {
         (along, inclination(seat) - inclination(mate))
     }
 
-    /// Whether the slopes of its teeth in mesh period `period` of `deviating` take the contact as far as the tip of the seat's mate.
+    /// True if the slopes of its teeth in mesh period `period` of `deviating` take the contact as far as the tip of the seat's mate.
     fn is_inclined_to_mate_tip(&self, deviating: DeviatingPair<'_>, period: i64) -> bool {
         let Some(facing) = self.drawn.facing() else {
             return false;
@@ -199,7 +199,7 @@ impl<'a> Facings<'a> {
         }
     }
 
-    /// Whether nothing deviates.
+    /// True if nothing deviates.
     pub(super) fn are_as_drawn(&self) -> bool {
         self.as_drawn
     }
@@ -376,7 +376,7 @@ struct Shifts {
 }
 
 impl Shifts {
-    /// Those of pair `n` from `phase` on: the driving flank touches where the common tangent of both base circles meets it.
+    /// Facings of pair `n` from `phase` on: the driving flank touches where the common tangent of both base circles meets it.
     fn of(DeviatingPair { model, deviations }: DeviatingPair<'_>, phase: f64, n: i64) -> Self {
         let gears = &model.pair;
         let angles = placement::angles(gears, phase);

@@ -1,7 +1,7 @@
 //! The Cholesky factor of the compliance of the points that touch, most of it kept from sets that differ at their ends.
 //!
-//! A set is given as its core, all blocks of [`BLOCK`] points that it holds whole, and the points beside. The factor of a core and what
-//! each point beside adds to it are found once. The result depends on the set alone, whatever was kept.
+//! A set is given as its core, all blocks of [`BLOCK`] points that it contains whole, and the points beside. The factor of a core and the contribution of each
+//! point beside are computed once. The result depends on the set alone, whatever was stored.
 
 use std::sync::{Arc, OnceLock};
 
@@ -14,7 +14,7 @@ use crate::wide::{Loops, wide};
 /// Points that enter and leave a core together.
 const BLOCK: usize = 4;
 
-/// The factor of a core, and of each point beside what it has below it.
+/// The factor of a core, and the entries of each point beside below it.
 #[derive(Debug)]
 pub(super) struct Core {
     points: Vec<usize>,
@@ -183,7 +183,7 @@ impl Factor {
     }
 }
 
-/// The factor of what is left of the points beside a core once that is eliminated.
+/// The factor of the Schur complement of the points beside a core.
 struct Rest<'a> {
     compliance: &'a Mat<f64>,
     points: &'a [usize],

@@ -11,7 +11,7 @@ use crate::touch::facing::Facing;
 /// touching; δ moves by less.
 pub(super) const TOGETHER: f64 = 1e-9;
 
-/// Steps to the touching flanks; each squares what is left.
+/// Steps to the touching flanks; each squares the remainder.
 const MOST_STEPS: u32 = 20;
 
 /// Where the flanks of one pair touch first as the driven gear turns back.

@@ -1,4 +1,4 @@
-//! A bounded store of parts by what they depend on.
+//! A bounded store of parts by their specifications.
 
 use std::collections::{HashMap, VecDeque};
 use std::fmt;
@@ -56,7 +56,7 @@ impl<S: Hash + Eq + Clone, P> Memo<S, P> {
         made
     }
 
-    /// What its parts take, in bytes.
+    /// Size of its parts in bytes.
     pub(super) fn bytes(&self) -> usize {
         self.kept().bytes
     }

@@ -32,8 +32,8 @@ pub struct MeshContact {
     pub touch: f64,
     /// dF/dδ in N/m with the active set held.
     pub stiffness: f64,
-    /// What the driver has to give: the torque on the driving gear over r_b1. It is F where all contact is on unmodified flanks on the line of
-    /// action; elsewhere arms differ.
+    /// Load of the driver: the torque on the driving gear over r_b1. It is F where all contact is on unmodified flanks on the line of action; elsewhere arms
+    /// differ.
     pub driving_load: f64,
     /// The pairs that came near, by n.
     pub pairs: Vec<PairContact>,
@@ -67,7 +67,7 @@ pub struct MeshCells {
     pub solution: ContactSolution,
 }
 
-/// How δ follows what the teeth of one pair deviate by, in meters for a meter: the derivative while the same cells touch.
+/// Derivative of δ to the deviations of one pair's teeth, in meters for a meter, while the same cells touch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PairInfluence {
     /// The pair n.
@@ -80,7 +80,7 @@ pub struct PairInfluence {
     pub by_profile_slope: [f64; 2],
 }
 
-/// What a contact loads the interfaces of one tooth pair with.
+/// Loads of a contact on the interfaces of one tooth pair.
 #[derive(Debug, Clone)]
 pub struct PairLoads {
     /// The pair, numbered from the reference pair of the period.
@@ -89,7 +89,7 @@ pub struct PairLoads {
     pub loads: [Mat<f64>; 2],
 }
 
-/// What a contact presses one tooth with.
+/// Loads of a contact on one tooth.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FlankLoad {
     /// The tooth.
@@ -100,7 +100,7 @@ pub struct FlankLoad {
     pub forces: Vec<f64>,
 }
 
-/// What carries load: a cell in the plane, a slice along faces.
+/// A loaded place: a cell in the plane, a slice along faces.
 pub(super) struct Spot {
     /// The force p in N, and the gap g that is left under it.
     pub(super) force: f64,
@@ -123,7 +123,7 @@ impl PairContact {
 }
 
 impl MeshContact {
-    /// What `spots` that carry `load` say of their contact; `peak` is `None` where a sharp corner carries.
+    /// Summary of the contact of `spots` that carry `load`; `peak` is `None` where a sharp corner carries.
     pub(super) fn of_spots(
         load: f64,
         spots: impl Iterator<Item = Spot>,

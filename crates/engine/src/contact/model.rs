@@ -51,20 +51,20 @@ pub struct PairModel {
     pub solver: ContactSolver,
     /// By which a solver of many steps is stopped.
     pub run: Run,
-    /// What is known of its flanks as drawn.
+    /// Stored data of its flanks as drawn.
     pub drawn: Arc<DrawnFlanks>,
-    /// What is known of compliances on them, with these gears.
+    /// Stored compliances on them, with these gears.
     pub compliances: Arc<Compliances>,
 }
 
-/// What one position leaves for the next: how each pair carried, and the transmission error.
+/// Warm start of one position for the next: the load of each pair, and the transmission error.
 ///
 /// Pairs are numbered from the reference pair of the position's own mesh period.
 #[derive(Debug, Clone, Default)]
 pub struct WarmStart {
     /// The transmission error; `None` at a cold start.
     pub(super) transmission_error: Option<f64>,
-    /// What a force on one pair yields at the next, in m/N.
+    /// Displacement of the next pair by a force on one, in m/N.
     pub(super) between: f64,
     /// The pairs that carried.
     pub(super) pairs: Vec<WarmPair>,
@@ -74,7 +74,7 @@ pub struct WarmStart {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct WarmPair {
     pub(super) pair: i64,
-    /// Its force by how far δ went on from its touch, less what all pairs moved together.
+    /// Its force over the motion of δ since its touch, less the common motion of all pairs.
     pub(super) stiffness: f64,
     /// By how much it closed its gap at either end, beyond the touch, for each unit of force.
     pub(super) closed: [f64; 2],
@@ -113,17 +113,17 @@ pub enum PositionError {
     /// The contact solver failed.
     #[error(transparent)]
     Contact(#[from] ContactError),
-    /// It has found what contradicts its own evidence.
+    /// The solution contradicts its own evidence.
     #[error(transparent)]
     Contradicted(#[from] Contradiction),
 }
 
-/// One pair made to the drawings of a model: what its teeth deviate by beside what it shares with all others.
+/// One pair made to the drawings of a model: the deviations of its teeth beside the data that it shares with all others.
 #[derive(Debug, Clone, Copy)]
 pub struct DeviatingPair<'a> {
     /// The drawn pair.
     pub model: &'a PairModel,
-    /// What its teeth deviate by.
+    /// Deviations of its teeth.
     pub deviations: &'a PairDeviations,
 }
 

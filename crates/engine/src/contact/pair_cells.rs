@@ -14,13 +14,13 @@ use crate::touch::facing::{Facing, View};
 #[derive(Clone, Copy)]
 pub(super) struct PairFlanks<'a> {
     pub(super) pair: &'a GearPair,
-    /// Those of the driving and the driven gear.
+    /// Tables of the driving and the driven gear.
     pub(super) tables: [&'a FlankTable; 2],
     /// Cells in one patch.
     pub(super) cells_per_patch: usize,
 }
 
-/// What the cells of one pair of a model depend on; numbers by their bits.
+/// Specification of the cells of one pair of a model; numbers by their bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) struct CellsSpec {
     pub(super) phase: u64,
@@ -66,7 +66,7 @@ impl PairCells {
         })
     }
 
-    /// What `forces` on its cells load the interface of each gear with: Vᵀ Wᵀ p.
+    /// Loads of `forces` on its cells on the interface of each gear: Vᵀ Wᵀ p.
     #[inline(always)]
     pub(super) fn loads(&self, forces: &[f64]) -> [Vec<f64>; 2] {
         let presses = |force: &f64| *force != 0.0;
@@ -87,7 +87,7 @@ impl PairCells {
         loads
     }
 
-    /// What `forces` on its cells are on the unknowns of `flank`, that of the gear of index `gear`.
+    /// The `forces` on its cells as loads on the unknowns of `flank`, that of the gear of index `gear`.
     pub(super) fn nodal_forces(&self, flank: &FlankTable, gear: usize, forces: &[f64]) -> Vec<f64> {
         flank.nodal_forces(&points(&self.patch.cells, flank, gear), forces)
     }
@@ -100,7 +100,7 @@ impl PairCells {
     }
 }
 
-/// What unit forces on the cells of `patch` do to `cells` on the `stretches`, with the interfaces held, and W V of each gear at these cells.
+/// Displacements of `cells` on the `stretches` by unit forces on the cells of `patch`, with the interfaces held, and W V of each gear at these cells.
 pub(super) fn compliance(
     flanks: &PairFlanks<'_>,
     patch: &Patch,

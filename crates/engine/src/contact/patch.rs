@@ -25,8 +25,8 @@ const CELLS_A_KINK: usize = 6;
 const MANY_KINKS: usize = 4;
 const MOST_REFINED: usize = 4;
 
-/// So many cells lie on the cores of a pair at most. Under a light load the core of a corner may be thousands of times as narrow as that of another
-/// minimum, which is not covered as densely then.
+/// Maximum number of cells on the cores of a pair. Under a light load the core of a corner may be thousands of times as narrow as that of another minimum,
+/// which is not covered as densely then.
 const MOST_ON_CORES: f64 = 2048.0;
 
 /// By how much each cell beside the core is wider than the one before.
@@ -61,19 +61,19 @@ pub struct Patch {
     pub cells: Vec<Cell>,
     /// Where cells begin and end, by arc length on the seat's involute, and along the flank as it is.
     pub(super) ends_along: Vec<[f64; 2]>,
-    /// What ends the flanks where the first and the last cell reach so far.
+    /// The ends of the flanks that the first and the last cell reach.
     pub ends: [Option<RangeEnd>; 2],
     /// Where a flank has a kink, by arc length on the seat's involute, rising.
     kinks: Vec<f64>,
-    /// Those of them at which a flank ends in the corner of its undercut.
+    /// Places at which a flank ends in the corner of its undercut.
     corners: Vec<f64>,
     /// How each gear gives way near the contact.
     pub near_fields: [NearField; 2],
-    /// Whether the nominal contact lies past the seat's tip, off the path of contact.
+    /// True if the nominal contact lies past the seat's tip, off the path of contact.
     pub off_path: bool,
     /// The middle of each cell, to be followed.
     pub(super) probes: Probes,
-    /// What the mean gap of each cell is more than the gap there.
+    /// Excess of the mean gap of each cell over the gap there.
     pub(super) more: Vec<f64>,
 }
 
@@ -85,7 +85,7 @@ pub(super) struct Stretch {
     pub(super) along: [f64; 2],
     /// Its middle, to be followed.
     pub(super) probe: Probe,
-    /// What its mean gap is more than that at its middle.
+    /// Excess of its mean gap over that at its middle.
     pub(super) more: f64,
 }
 
@@ -275,7 +275,7 @@ impl Patch {
             + size_of_val(self.more.as_slice())
     }
 
-    /// Whether `arc` lies in a cell.
+    /// True if `arc` lies in a cell.
     pub(super) fn covers(&self, arc: f64) -> bool {
         self.cells.iter().any(|cell| {
             let [from, to] = [0, 1].map(|end| self.ends_along[cell.stretch + end][0]);
@@ -296,18 +296,18 @@ impl Patch {
             .chain(self.ends[1].is_none().then_some(last))
     }
 
-    /// Whether there is room for more cells.
+    /// True if there is room for more cells.
     pub(super) fn can_widen(&self) -> bool {
         self.open_ends().next().is_some()
     }
 
-    /// Whether contact of the `active` cells reaches one beside which there could be another.
+    /// True if contact of the `active` cells reaches one beside which there could be another.
     pub(super) fn overflows(&self, active: &[bool]) -> bool {
         self.open_ends().any(|i| active[i])
     }
 
-    /// How far the middle of the `active` cells lies from the middle of all, in halves of a contact's half-width, where they are one stretch that would
-    /// fit; cells reach 1.25 half-widths of the contact under the whole load to either side, so that this is about what [`Extent::moved`] counts in.
+    /// Distance of the middle of the `active` cells from the middle of all, in halves of a contact's half-width, where they are one stretch that would fit;
+    /// cells reach 1.25 half-widths of the contact under the whole load to either side, so that this is about the unit of [`Extent::moved`].
     pub(super) fn off_middle(&self, active: &[bool]) -> i32 {
         let ends = self.ends == [None, None] && self.cells.len() == self.ends_along.len() - 1;
         let (first, last) = (
@@ -354,7 +354,7 @@ impl Patch {
         [self.ends_along[first][0], self.ends_along[last + 1][0]]
     }
 
-    /// Whether the flanks are smooth under the `contact` of these cells and up to one more cell beside it.
+    /// True if the flanks are smooth under the `contact` of these cells and up to one more cell beside it.
     pub(super) fn is_smooth_under(&self, contact: &Range<usize>) -> bool {
         let [from, to] = self.reach(contact);
         let beside = (to - from) / contact.len() as f64;
@@ -383,7 +383,7 @@ impl Patch {
         largest
     }
 
-    /// Whether the contact of the `active` cells reaches a corner: the tip edge of a gear whose edge is `sharp`, or that of an undercut flank.
+    /// True if the contact of the `active` cells reaches a corner: the tip edge of a gear whose edge is `sharp`, or that of an undercut flank.
     pub(super) fn corner_carries(&self, active: &[bool], sharp: [bool; 2]) -> bool {
         let at_tip = self.ended_by(active).any(|end| match end {
             RangeEnd::Tip => sharp[self.seat.index()],
@@ -409,7 +409,7 @@ impl Patch {
         })
     }
 
-    /// What ends the contact of the `active` cells where it reaches an end of the flanks.
+    /// The ends of the flanks that the contact of the `active` cells reaches.
     fn ended_by(&self, active: &[bool]) -> impl Iterator<Item = RangeEnd> {
         let first = self.ends[0].filter(|_| active.first() == Some(&true));
         let last = self.ends[1].filter(|_| active.last() == Some(&true));
@@ -581,7 +581,7 @@ fn ending_at_kinks([from, to]: [f64; 2], width: f64, facing: &Facing) -> Vec<f64
     let count = ((to - from) / width).round().max(1.0) as usize;
     let width = (to - from) / count as f64;
 
-    // What cells become narrower towards, and how often they are halved.
+    // Places towards which cells become narrower, and the number of halvings.
     let is_tip = |end: RangeEnd| matches!(end, RangeEnd::Tip | RangeEnd::MateTip);
     let mut towards: Vec<(f64, u32)> = Vec::new();
     if from == range.from && is_tip(range.ends[0]) {
@@ -627,7 +627,7 @@ fn ending_at_kinks([from, to]: [f64; 2], width: f64, facing: &Facing) -> Vec<f64
         ends.push(place);
     }
     ends.sort_by(f64::total_cmp);
-    // A cell far narrower than those beside it would carry what pressure it likes. A kink is kept before other ends.
+    // The pressure of a cell far narrower than those beside it would be arbitrary. A kink is kept before other ends.
     let is_kink = |end: f64| towards.iter().any(|(place, _)| *place == end);
     ends.dedup_by(|after, before| {
         let away = nearest(*before).min(nearest(*after)).min(width);
@@ -711,8 +711,8 @@ fn narrow_towards(kink: f64, ends: &mut Vec<f64>, width: f64) {
     ends.sort_by(f64::total_cmp);
 }
 
-/// Takes away ends that leave a cell far narrower than those beside it, as where a kink stands just before or beyond the stretch: it would carry what
-/// pressure it likes. Kinks stay.
+/// Removes ends that leave a cell far narrower than those beside it, as where a kink stands just before or beyond the stretch: its pressure would be arbitrary.
+/// Kinks stay.
 fn leave_no_slivers(ends: &mut Vec<f64>, kinks: &[f64]) {
     let is_kink = |end: f64| kinks.contains(&end);
     let mut i = 1;
@@ -829,7 +829,7 @@ mod tests {
                 halved: 0,
             };
             let patch = Patch::new(&view, &facing, 2447.61, 8, extent);
-            // Those at the ends of the flanks apart.
+            // Cells at the ends of the flanks excepted.
             let widths: Vec<f64> = patch.cells.iter().map(|cell| cell.width).collect();
             for near in widths.windows(3) {
                 let narrow = near[1] / near[0].min(near[2]);

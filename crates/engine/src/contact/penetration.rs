@@ -1,4 +1,4 @@
-//! Whether anything penetrates under a solution: the whole flanks of all pairs in reach are checked, cells or not.
+//! Check for penetration under a solution: the whole flanks of all pairs in reach, cells or not.
 //!
 //! The solver knows only the cells that were placed. On all [`CheckedStretches`] this takes the gap under the forces found: g = g_0 − δ w + u. Elastic
 //! bodies give way where they are pressed, so that a stretch with g_0 > δ w stays open; of the others u is taken from the model.
@@ -21,7 +21,7 @@ pub(super) struct PlacedStretches {
 }
 
 impl PlacedStretches {
-    /// Those `checked` of the pair `placed` at a mesh position of `deviating`.
+    /// The stretches `checked` of the pair `placed` at a mesh position of `deviating`.
     pub(super) fn new(
         checked: Arc<CheckedStretches>,
         placed: &PlacedCells,
@@ -76,7 +76,7 @@ impl PlacedStretches {
     }
 }
 
-/// What penetrates under the forces of `solution` on `cells`, of the stretches that are `checked` pair by pair.
+/// Penetration under the forces of `solution` on `cells`, on the stretches that are `checked` pair by pair.
 pub(super) fn penetration(
     cells: &ContactCells<'_>,
     checked: &[PlacedStretches],
@@ -90,7 +90,7 @@ pub(super) fn penetration(
         if checked.stretches.is_empty() {
             continue;
         }
-        // What the forces are, and how the interfaces move under them.
+        // The forces, and the motion of the interfaces under them.
         let mut yielding = solution.forces[range.clone()].to_vec();
         yielding.extend(moved);
         let rows = checked.yields.chunks_exact(yielding.len());

@@ -53,7 +53,7 @@ pub fn contacts(
         .map(|contacts| contacts.into_iter().map(|(contact, ())| contact).collect())
 }
 
-/// As [`contacts`], with what `keep` takes of each beside.
+/// As [`contacts`], with the value that `keep` takes of each.
 ///
 /// # Errors
 ///
@@ -88,12 +88,12 @@ pub fn contacts_keeping<T: Send>(
     Ok(contacts.into_iter().map(|(_, contact)| contact).collect())
 }
 
-/// What `keep` takes of the contacts of many pairs at each of `positions` under `load`: pairs made to the drawing of `model` that deviate by
+/// The values that `keep` takes of the contacts of many pairs at each of `positions` under `load`: pairs made to the drawing of `model` that deviate by
 /// `members`, whose answers stand pair after pair. A pair has the same answer to the bit alone ([`contacts`]) and among any others.
 ///
-/// What the pairs have in common is found once and kept in `model`, fraction of the mesh period by fraction: some hundred pairs at a time, and
-/// positions that repeat a few fractions in every mesh period, cost little more than their contact solves. A pair with an error does
-/// not end the work of the others; a stopped `run` does.
+/// The common data of the pairs are computed once and stored in `model`, fraction of the mesh period by fraction: some hundred pairs at a time, and positions
+/// that repeat a few fractions in every mesh period, cost little more than their contact solves. A pair with an error does not end the work of the others; a
+/// stopped `run` does.
 ///
 /// # Errors
 ///

@@ -1,7 +1,7 @@
 //! The pressures of each pair: its contact in plane strain.
 //!
-//! A contact is far narrower than its face is wide, so that nothing moves along the face there, whatever the bodies behind it do. Each pair keeps the load P
-//! that it has in plane stress, and its flanks give way under the contact by λ times what they do in plane stress:
+//! A contact is far narrower than its face is wide, so that nothing moves along the face there, for any state of the bodies behind it. Each pair keeps the load
+//! P that it has in plane stress, and the compliance of its flanks under the contact is λ times that in plane stress:
 //!
 //! ```text
 //! λ = Σ (1 − ν²)/E / Σ 1/E
@@ -92,7 +92,7 @@ fn alone(
     Ok((ContactProblem::new(compliance, gaps, arms.to_vec())?, load))
 }
 
-/// What `forces` on the cells of `patch` press with, where a unit force on a cell of unit width presses with `one`.
+/// Pressures of `forces` on the cells of `patch`, where a unit force on a cell of unit width has the pressure `one`.
 fn pressures(patch: &Patch, forces: &[f64], one: f64) -> Vec<f64> {
     let cells = patch.cells.iter().zip(forces);
     cells

@@ -112,7 +112,7 @@ impl ContactProblem {
         Mat::as_ref(&self.compliance)
     }
 
-    /// Column `point` of H: what a unit force at that point does to every gap, in m/N.
+    /// Column `point` of H: change of every gap by a unit force at that point, in m/N.
     pub(super) fn compliance_column(&self, point: usize) -> &[f64] {
         self.compliance.col_as_slice(point)
     }
@@ -128,7 +128,7 @@ impl ContactProblem {
         }
     }
 
-    /// Adds to `gaps` what `forces` at their points open, four at a time.
+    /// Adds the openings of `forces` at their points to `gaps`, four at a time.
     pub(super) fn open(&self, gaps: &mut [f64], forces: impl Iterator<Item = (usize, f64)>) {
         let problem = self;
         wide(Opening {
@@ -187,7 +187,7 @@ impl<F: Iterator<Item = (usize, f64)>> Loops for Opening<'_, F> {
     }
 }
 
-/// Whether `gaps` and `arms` are those of so many points.
+/// Checks that `gaps` and `arms` have this number of points.
 fn check_points(
     rows: usize,
     columns: usize,
@@ -263,7 +263,7 @@ pub struct ContactSolution {
     pub gaps: Vec<f64>,
     /// The transmission error delta, in m, positive when the load makes the driven gear lag.
     pub transmission_error: f64,
-    /// Whether each point is in contact.
+    /// True for each point in contact.
     pub active: Vec<bool>,
     /// The derivative q = dp/dF = H_A^-1 w_A / k of each force to the load, zero off the active set A; and that of delta to each gap, dδ/dg.
     pub load_derivative: Vec<f64>,
@@ -281,7 +281,7 @@ pub struct ContactSolution {
     pub load_residual: f64,
 }
 
-/// What a solver has found, before its residuals are taken.
+/// Result of a solver before its residuals are computed.
 pub(super) struct Equilibrium {
     pub(super) forces: Vec<f64>,
     /// The transmission error beyond first touch, delta - delta_0, in m.
@@ -296,7 +296,7 @@ pub(super) struct Equilibrium {
 }
 
 impl Equilibrium {
-    /// Takes the residuals, from the problem as stated and not from what the solver believed.
+    /// Computes the residuals from the problem itself, not from the solver's state.
     pub(super) fn into_solution(self, problem: &ContactProblem, load: f64) -> ContactSolution {
         let (_, first_touch) = problem.first_touch();
         let (w, g_0, delta) = (problem.arms(), problem.gaps(), self.delta_beyond_touch);
@@ -379,11 +379,11 @@ pub enum ContactError {
     /// An infinity or no number at all.
     #[error("the {quantity} at point {point} is {value}")]
     NotFinite {
-        /// What it is.
+        /// Quantity.
         quantity: ContactQuantity,
         /// Where it is; for the compliance, the row.
         point: usize,
-        /// What stands there.
+        /// Value there.
         value: f64,
     },
     /// Two entries of the compliance that should be equal are not.

@@ -1,8 +1,8 @@
 //! The mesh at one fraction of its period: all that positions whole mesh periods apart have in common.
 //!
-//! Gears without their blanks repeat with every mesh period: the same flanks face each other across the same gaps. What
-//! differs is which teeth they belong to, and so how the blanks under them yield and how the teeth deviate. Cells and the compliance of the
-//! teeth themselves are therefore found once for a fraction of the mesh period, and each period adds W V X Vᵀ Wᵀ.
+//! Gears without their blanks repeat with every mesh period: the same flanks face each other across the same gaps. Only the teeth differ, and with them the
+//! compliance of the blanks under them and their deviations. Cells and the compliance of the teeth themselves are therefore computed once for a fraction of the
+//! mesh period, and each period adds W V X Vᵀ Wᵀ.
 
 use std::collections::BTreeMap;
 
@@ -17,10 +17,10 @@ use super::penetration::{PlacedStretches, penetration};
 use super::{ContactProblem, ContactSolution};
 use crate::touch::meeting::Standing;
 
-/// Pairs are solved together whose gap is within this much of what load brings together: a little more than touch.
+/// Pairs are solved together whose gap is within this multiple of the approach by the load: a little more than touch.
 const REACH: f64 = 1.1;
 
-/// What a guess of the reach leaves for the solution to move.
+/// Margin of a guess of the reach for the motion of the solution.
 const GUESS: f64 = 1.2;
 
 /// The mesh at one fraction of its period, under one load.
@@ -32,7 +32,7 @@ pub struct Stage<'a> {
     placed: Vec<PlacedCells>,
 }
 
-/// Flanks may penetrate between cells by so much of what load brings them together.
+/// Penetration allowed between cells, relative to the approach by the load.
 const DEEP: f64 = 1e-3;
 
 /// The flanks that touch in a mesh period before δ is `delta`. The first of them do at `touch`.
@@ -94,7 +94,7 @@ impl<'a> Stage<'a> {
         })
     }
 
-    /// The contact in mesh period `period`, summed up pair by pair, and what `keep` takes of it beside.
+    /// The contact in mesh period `period`, summed up pair by pair, and the value that `keep` takes of it.
     ///
     /// # Errors
     ///
@@ -110,7 +110,7 @@ impl<'a> Stage<'a> {
         })
     }
 
-    /// What `summary` makes of the contact in mesh period `period`, of its cells and their solution.
+    /// Value of `summary` for the contact in mesh period `period`, from its cells and their solution.
     pub(super) fn contact_with<T>(
         &mut self,
         period: i64,
@@ -227,7 +227,7 @@ impl<'a> Stage<'a> {
         Some(placed)
     }
 
-    /// Whether a δ of `needed` reaches pairs or minima beyond those `near` within `reach`.
+    /// True if a δ of `needed` reaches pairs or minima beyond those `near` within `reach`.
     fn reaches_more(&mut self, near: &[Near], reach: Reach, needed: f64) -> bool {
         let more = self.facings.within(reach.period, needed);
         more.len() > near.len()
@@ -251,7 +251,7 @@ impl<'a> Stage<'a> {
         cells.problem(&compliances.get(spec, || cells.compliance()))
     }
 
-    /// What penetrates under `solution` on `cells`.
+    /// Penetration under `solution` on `cells`.
     fn penetration(&self, cells: &ContactCells<'_>, solution: &ContactSolution) -> Penetration {
         let model = self.deviating.model;
         let delta = solution.transmission_error;

@@ -123,7 +123,7 @@ impl Laws {
         Self::new(self.forces.clone(), knots, self.touch)
     }
 
-    /// Whether the loaded flanks are apart in the pieces at `place`.
+    /// True if the loaded flanks are apart in the pieces at `place`.
     pub(super) fn is_apart(&self, place: usize) -> bool {
         place <= self.touch
     }
@@ -145,7 +145,7 @@ impl Response {
         let decay = (-half_damping * t).exp();
         let rest = square - half_damping * half_damping;
         let turned = rest * t * t;
-        // cos and sin(·)/·, or what they become past critical damping.
+        // cos and sin(·)/·, or their continuation past critical damping.
         let (cosine, sine) = if turned.abs() < 1e-6 {
             (
                 1.0 - turned / 2.0 + turned * turned / 24.0,

@@ -1,4 +1,4 @@
-//! What the mesh does to the gears at speed: forces over position and approach, and the motion that they make.
+//! Motion of the gears at speed: forces over position and approach, and the response to them.
 //!
 //! One torsional degree of freedom on the line of action, x = r_b1 θ_1 − r_b2 θ_2:
 //!
@@ -17,10 +17,9 @@
 //! - [`run_up`]: both branches over speed, and their amplitudes,
 //! - [`torsion`]: bodies that turn in themselves, and their lowest natural frequency on the mesh.
 //!
-//! Time is divided into steps. In each the shape of F is that of the middle of the step, and the static deflection δ_s(θ) under F_0, about
-//! which it stands, moves on evenly: u = x − δ_s obeys m u'' + c u' + G(u) = F_0 − c δ_s' with a law G that is piecewise linear and stays as it
-//! is, and from step to step u' takes up what δ_s' changes. Each piece has a closed form, so that a stiffness that is constant is met
-//! exactly, whatever the step; one that varies is met to second order.
+//! Time is divided into steps. In each the shape of F is that of the middle of the step, and the static deflection δ_s(θ) under F_0, about which it stands,
+//! moves on evenly: u = x − δ_s obeys m u'' + c u' + G(u) = F_0 − c δ_s' with a law G that is piecewise linear and constant in time. From step to step u' takes
+//! up the change of δ_s'. Each piece has a closed form, so that a constant stiffness is met exactly, whatever the step; a varying one is met to second order.
 
 pub mod bodies;
 pub mod coupled;

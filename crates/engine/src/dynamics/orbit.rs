@@ -8,10 +8,10 @@ use super::oscillator::{Oscillator, Seen, State};
 /// Newton steps before there is taken to be no periodic motion near.
 const MOST_STEPS: u32 = 16;
 
-/// What a periodic motion may miss its beginning by, over the scale of the motion.
+/// Largest difference between the end and the beginning of a periodic motion, over the scale of the motion.
 const CLOSED: f64 = 1e-11;
 
-/// So many periods a motion may take to repeat.
+/// Maximum number of periods after which a motion repeats.
 const MOST_PERIODS: u32 = 8;
 
 /// Time constants of free motion after which it has died away, at first and where that was not enough.
@@ -46,7 +46,7 @@ pub struct Orbit {
     pub periods: u32,
     /// The modulus of the largest multiplier; infinite where the motion was not found to repeat.
     pub multiplier: f64,
-    /// Whether the motion grows without bound.
+    /// True if the motion grows without bound.
     pub runs_away: bool,
 }
 
@@ -61,7 +61,7 @@ impl Orbit {
     };
 }
 
-/// What is large: of displacements and of velocities.
+/// Scales of displacements and of velocities.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scale {
     /// Of u.
@@ -71,7 +71,7 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// Whether a motion that comes to `u` has run away.
+    /// True if a motion that reaches `u` has run away.
     pub fn is_left_by(&self, u: f64) -> bool {
         u.is_nan() || u.abs() > RUN_AWAY * self.u
     }
@@ -146,7 +146,7 @@ pub trait Repeating {
                 self.over_period(&mut end, Some(&mut derivative), &mut |_| ());
             }
             let missed = DVector::from_fn(size, |i, _| end[i] - state[i]);
-            // (1 − M) step = what is missed.
+            // (1 − M) step = the remaining difference.
             let matrix = DMatrix::from_fn(size, size, |i, j| {
                 f64::from(u8::from(i == j)) - derivative[j][i]
             });
@@ -173,8 +173,7 @@ pub trait Repeating {
         None
     }
 
-    /// Where a motion that is at `from` settles: the stable periodic motion that continues `from` if there is one, else what it comes to in
-    /// time.
+    /// The limit of a motion at `from`: the stable periodic motion that continues `from` if there is one, otherwise its state after a long time.
     fn settled(&self, from: &Orbit, scale: Scale) -> Orbit {
         let scales = self.scales(scale);
         let mut state = from.state.clone();
@@ -211,7 +210,7 @@ pub trait Repeating {
             let mut later = state.clone();
             for repeats in 1..=most {
                 self.over_period(&mut later, None, &mut |_| ());
-                // What has settled comes back to where it was, and what has not is not looked for in vain.
+                // A settled motion comes back to its state; one that has not settled is not searched in vain.
                 if distance(&later, &state, &scales) > ASTRAY {
                     continue;
                 }

@@ -27,7 +27,7 @@ pub struct Step {
     pub law: usize,
     /// The force that acts during it.
     pub force: f64,
-    /// What the velocity takes up at its beginning.
+    /// Jump of the velocity at its beginning.
     pub kick: f64,
 }
 
@@ -48,7 +48,7 @@ pub struct Oscillator<'a> {
     pub steps: Vec<Step>,
 }
 
-/// What is seen at the end of a look.
+/// State at the end of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Seen {
     /// The step.
@@ -59,12 +59,12 @@ pub struct Seen {
     pub u: f64,
     /// G(u).
     pub force: f64,
-    /// Whether the loaded flanks have parted since the last look.
+    /// True if the loaded flanks have separated since the last step.
     pub apart: bool,
 }
 
 impl Oscillator<'_> {
-    /// The state a period after `state`, and its derivative to it; `see` is told what is seen on the way.
+    /// The state a period after `state`, and its derivative to it; `see` gets the states on the way.
     pub fn after_period(&self, state: State, mut see: impl FnMut(Seen)) -> (State, Monodromy) {
         let State { mut u, mut v } = state;
         let mut derivative = [[1.0, 0.0], [0.0, 1.0]];

@@ -30,13 +30,13 @@ pub struct Branch {
     pub load_factor: Vec<f64>,
     /// The largest force on either flank in N.
     pub largest_force: Vec<f64>,
-    /// Whether the loaded flanks part.
+    /// True where the loaded flanks separate.
     pub contact_lost: Vec<bool>,
     /// True periods after which the motion repeats; `None` where it was not found to.
     pub repeats: Vec<Option<u32>>,
     /// The amplitudes of x at the orders of the run-up, in m, order by order.
     pub orders: Vec<Vec<f64>>,
-    /// Whether the motion grows without bound; it is followed until it has run away.
+    /// True where the motion grows without bound; it is followed until it has run away.
     pub runs_away: Vec<bool>,
 }
 

@@ -61,9 +61,9 @@ impl Ladder {
 
 /// F(θ, δ) over the true period: the approach δ at each position under each of its loads, of both flanks.
 ///
-/// Between positions and between loads δ is linear in both; beyond the largest load it goes on straight. [`ForceTable::refined`] puts a
-/// smooth table between the rows that were computed. F follows by inversion: it is zero in the backlash, rises with δ, and has the
-/// energy V(η, δ) = ∫F dδ, from which both torques follow: what a closed path of θ and δ takes it gives back.
+/// Between positions and between loads δ is linear in both; beyond the largest load it is extrapolated linearly. [`ForceTable::refined`] puts a smooth table
+/// between the computed rows. F follows by inversion: it is zero in the backlash, rises with δ, and has the energy V(η, δ) = ∫F dδ, from which both torques
+/// follow: the work over a closed path of θ and δ is zero.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForceTable {
     /// Mesh periods after which it repeats.
@@ -74,7 +74,7 @@ pub struct ForceTable {
     other: FlankRows,
 }
 
-/// What one flank yields at equally spaced positions, a row each load.
+/// Compliance of one flank at equally spaced positions, a row each load.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct FlankRows {
     /// δ in m.
@@ -93,7 +93,7 @@ impl FlankRows {
     }
 }
 
-/// What the gears exert at a position and an approach.
+/// Forces of the gears at a position and an approach.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Forces {
     /// F = ∂V/∂δ in N.
@@ -243,7 +243,7 @@ impl ForceTable {
         }
     }
 
-    /// What the gears exert at the mesh position `eta` and the approach `delta`.
+    /// Forces of the gears at the mesh position `eta` and the approach `delta`.
     pub fn forces(&self, eta: f64, delta: f64) -> Forces {
         let between = self.between((eta / self.step()).rem_euclid(self.positions() as f64));
         let (loaded, other) = (&self.loaded.delta, &self.other.delta);
@@ -437,7 +437,7 @@ enum Course {
 }
 
 impl Stretch {
-    /// Those between `loads`, the first of which is 0, with these δ and these compliances.
+    /// Courses between `loads`, the first of which is 0, with these δ and these compliances.
     fn all(loads: &[f64], deltas: &[f64], compliances: &[f64]) -> Vec<Self> {
         let ends: Vec<[[f64; 3]; 2]> = (1..loads.len())
             .map(|j| [j - 1, j].map(|j| [loads[j], deltas[j], compliances[j]]))
@@ -488,7 +488,7 @@ impl Stretch {
 }
 
 impl Course {
-    /// So that δ and dδ/dF are met at its end.
+    /// Meets δ and dδ/dF at its end.
     fn from_nothing(&[[_, delta, _], [to, next, compliance]]: &[[f64; 3]; 2]) -> Self {
         let power = compliance * to / (next - delta);
         // Rounding apart, δ rises, and no faster than in proportion.
@@ -497,7 +497,7 @@ impl Course {
         }
     }
 
-    /// So that δ and dδ/dF are met at both ends.
+    /// Meets δ and dδ/dF at both ends.
     fn smooth(&[[from, delta, compliance], [to, next, less]]: &[[f64; 3]; 2]) -> Self {
         let (ratio, rise) = (to / from, next - delta);
         // Slopes over x: B + C + 2 D at its beginning.
@@ -516,7 +516,7 @@ impl Course {
         }
     }
 
-    /// So that δ is continuous where the courses from both ends, whose compliances fall by `fall` ln F, change; nothing if they do not meet.
+    /// Keeps δ continuous where the courses from both ends, whose compliances fall by `fall` ln F, change; `None` if they do not meet.
     fn kinked(ends: &[[f64; 3]; 2], fall: f64) -> Option<Self> {
         let &[from, to] = ends;
         // The course from the beginning, less that from the end, which rises up to the kink by less and less.
@@ -565,7 +565,7 @@ impl Between {
     }
 }
 
-/// What stands at `place` of a closed row, in steps of the row.
+/// Value at `place` of a closed row, in steps of the row.
 fn between_closed(row: &[f64], place: f64) -> f64 {
     let first = place.floor();
     let value = |k: i64| row[(first as i64 + k).rem_euclid(row.len() as i64) as usize];
@@ -578,7 +578,7 @@ fn between_closed(row: &[f64], place: f64) -> f64 {
     }
 }
 
-/// What stands under a load `part` of the way on from row `first` of the `values` under `loads`, four or more.
+/// Value under a load `part` of the way on from row `first` of the `values` under `loads`, four or more.
 fn between_open(
     loads: &[f64],
     value: impl Fn(usize) -> f64,
@@ -588,7 +588,7 @@ fn between_open(
     if part == 0.0 {
         return value(first);
     }
-    // The cubic over the load: what is in proportion stays so.
+    // The cubic over the load: proportional values stay proportional.
     let through = || {
         let begin = first.saturating_sub(1).min(loads.len() - 4);
         let nodes = begin..begin + 4;
@@ -607,11 +607,10 @@ fn between_open(
     kinked(about, part).unwrap_or_else(through)
 }
 
-/// What stands at `t` between the third and the fourth of six values, if δ has a kink there.
+/// Value at `t` between the third and the fourth of six values, if δ has a kink there.
 ///
-/// Where one more pair of teeth comes to carry, δ falls behind what it would be without: it is the lesser of two smooth branches, each
-/// of which is known on its own side. Each is continued by its parabola; where there is no kink, one of the two continuations passes
-/// below the value on the other side.
+/// Where one more pair of teeth begins to carry, δ falls behind its value without that pair: it is the lesser of two smooth branches, each of which is known on
+/// its own side. Each is continued by its parabola; where there is no kink, one of the two continuations passes below the value on the other side.
 fn kinked(values: [f64; 6], t: f64) -> Option<f64> {
     let parabola = |y: [f64; 3], u: f64| {
         y[0] * (u - 1.0) * (u - 2.0) / 2.0 - y[1] * u * (u - 2.0) + y[2] * u * (u - 1.0) / 2.0
@@ -713,8 +712,8 @@ pub(super) mod tests {
 
     #[test]
     fn rows_between_rows_that_rise_rise_too() {
-        // δ = c F, with a compliance c that is very small at two positions beside each other: a cubic through those around them is negative in between.
-        // The compliances that the loaded flank claims are ten times too large, so that what meets them turns back from row to row.
+        // δ = c F, with a compliance c that is very small at two positions beside each other: a cubic through those around them is negative in between. The
+        // compliances of the loaded flank are ten times too large, so that the curve that meets them turns back from row to row.
         let compliance = [1e-6, 1e-6, 1e-6, 1e-9, 1e-9, 1e-6, 1e-6, 1e-6];
         let loads = [0.0, 1.0, 2.0, 4.0, 8.0].to_vec();
         let rows = |factor: f64, from: f64| {

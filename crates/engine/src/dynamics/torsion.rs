@@ -60,7 +60,7 @@ pub struct Rotor {
     pub shear_modulus: f64,
     /// In kg/m³.
     pub density: f64,
-    /// The polar inertia in kg m² of what turns with the outer edge, which carries the teeth.
+    /// The polar inertia in kg m² that turns with the outer edge, which carries the teeth.
     pub outer: f64,
 }
 

@@ -1,7 +1,6 @@
 //! Functions along an axis: polynomials over a width, or pieces of them that join at given heights.
 //!
-//! A rim that is wider than its web bends sharply where the web's faces meet it; pieces of degree 4 that join there do what
-//! one polynomial of degree 16 does.
+//! A rim that is wider than its web bends sharply where the web's faces meet it; pieces of degree 4 that join there are as good as one polynomial of degree 16.
 
 use faer::Mat;
 
@@ -17,7 +16,7 @@ pub struct AxialBasis {
     mixing: Mat<f64>,
 }
 
-/// What a basis is over its width: C_pq = ∫ f_p f_q' dz and D_pq = ∫ f_p' f_q' dz; ∫ f_p f_q dz is the identity.
+/// Integrals of a basis over its width: C_pq = ∫ f_p f_q' dz and D_pq = ∫ f_p' f_q' dz; ∫ f_p f_q dz is the identity.
 #[derive(Debug, Clone)]
 pub struct AxialMatrices {
     /// C.
@@ -71,7 +70,7 @@ impl AxialBasis {
         [self.breaks[0], self.breaks[self.breaks.len() - 1]]
     }
 
-    /// Whether its functions are even and odd in turn about its middle, as one polynomial has them.
+    /// True if its functions are even and odd in turn about its middle, as those of one polynomial are.
     pub fn alternates(&self) -> bool {
         self.breaks.len() == 2
     }
@@ -253,7 +252,7 @@ mod tests {
 
     #[test]
     fn parts_integrate_by_parts() {
-        // C + Cᵀ is what the products are at the ends.
+        // C + Cᵀ are the products at the ends.
         for basis in bases() {
             let AxialMatrices { slope, .. } = basis.matrices();
             let [low, high] = basis.heights().map(|z| basis.values(z));

@@ -1,4 +1,4 @@
-//! Static condensation: the exact stiffness of a grid on the unknowns that are kept, and what depends on all others.
+//! Static condensation: the exact stiffness of a grid on the kept unknowns, and functionals of all others.
 //!
 //! The kept unknowns are ordered last, so that the trailing block L₂₂ of the sparse Cholesky factor gives the Schur
 //! complement S = L₂₂ L₂₂ᵀ without a single right-hand side. A functional b of all displacements takes one: with the kept ones
@@ -24,7 +24,7 @@ const FUNCTIONALS_AT_ONCE: usize = 64;
 pub struct Condensed {
     /// The stiffness on the unknowns (u_x, u_y) of each kept node in the order given, in N/m.
     pub stiffness: Mat<f64>,
-    /// The functionals asked for, one a row, by the same unknowns: what they are while no force acts on any other node.
+    /// The requested functionals, one a row, by the same unknowns: their values while no force acts on any other node.
     pub rows: Mat<f64>,
     /// The loads on all nodes as forces on the same unknowns, one load a row.
     pub loads: Mat<f64>,
@@ -65,8 +65,7 @@ pub fn condense(
     Ok(condense_with(part, grid, (material, thickness), kept, fixed, &[])?.stiffness)
 }
 
-/// Condenses `grid` as [`condense`] does, and says what each of the functionals `asked` becomes on the kept unknowns. Asking
-/// for none costs nothing.
+/// Condenses `grid` as [`condense`] does, with each of the functionals `asked` on the kept unknowns. No functionals cost nothing.
 ///
 /// # Errors
 ///

@@ -142,7 +142,7 @@ impl Factor {
         let mut solved = Mat::<f64>::zeros(self.symbolic.nrows(), asked.len());
         for (column, functional) in asked.iter().enumerate() {
             for &(node, weight) in functional.terms() {
-                // What is fixed does not move.
+                // Fixed nodes do not move.
                 let Some(node) = numbering.place(node) else {
                     continue;
                 };

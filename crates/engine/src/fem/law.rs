@@ -1,4 +1,4 @@
-//! The material law: what stress a strain makes.
+//! The material law: stress from strain.
 
 use crate::gear::Material;
 

@@ -1,4 +1,4 @@
-//! The kernel of finite elements: from the elements of a grid to what is left of it on some of its unknowns.
+//! The kernel of finite elements: from the elements of a grid to its stiffness on some of its unknowns.
 //!
 //! Read in this order: [`law`] (what strains stress), [`element`] (one element), `sparse` (the matrix of a grid) and `factor`,
 //! [`condensation`] (a grid's stiffness on the unknowns that are kept), [`recovery`] (displacements and stresses of the others), and

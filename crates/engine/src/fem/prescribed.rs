@@ -14,7 +14,7 @@ use crate::grid::Grid;
 /// Loads that go through the factor together.
 const AT_ONCE: usize = 16;
 
-/// What acts on a grid.
+/// Loads and prescribed displacements of a grid.
 #[derive(Debug, Clone, Default)]
 pub struct Load {
     /// How the moved nodes are moved, in meters: node by node, all unknowns of each.
@@ -29,7 +29,7 @@ pub struct Load {
 ///
 /// # Errors
 ///
-/// [`FemError::NotPositiveDefinite`] if the grid is degenerate, or what is moved does not hold it.
+/// [`FemError::NotPositiveDefinite`] if the grid is degenerate, or the prescribed nodes do not hold it.
 pub fn displacements(
     part: &'static str,
     grid: &Grid,

@@ -44,7 +44,7 @@ type Strains = SMatrix<f64, 6, UNKNOWNS>;
 pub struct Prism<'a> {
     /// The section at z = 0.
     pub grid: &'a Grid,
-    /// What it is made of.
+    /// Its material.
     pub material: &'a Material,
     /// τ: the turn of the section per length, in radians a meter.
     pub twist: f64,
@@ -52,7 +52,7 @@ pub struct Prism<'a> {
     pub axial: &'a AxialBasis,
 }
 
-/// What a prism is condensed to.
+/// Kept unknowns of a prism.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Interface<'a> {
     /// Nodes whose unknowns are kept.
@@ -63,14 +63,14 @@ pub struct Interface<'a> {
     pub fixed: &'a [u32],
 }
 
-/// A prism on the unknowns that are kept, and what becomes of displacements at points.
+/// A prism on its kept unknowns, and displacements at points.
 #[derive(Debug, Clone)]
 pub struct CondensedPrism {
     /// The stiffness on the kept unknowns, in N/m: node by node, component by component, function by function.
     pub stiffness: Mat<f64>,
     /// The displacements asked for, by the kept unknowns: a row for each point and function along the axis.
     pub rows: Mat<f64>,
-    /// Their compliance among each other with what is kept held, in m/N.
+    /// Their compliance among each other with the kept unknowns held, in m/N.
     pub held: Mat<f64>,
 }
 
@@ -79,7 +79,7 @@ pub struct CondensedPrism {
 pub struct NodeRows {
     /// By the kept unknowns.
     pub by_kept: Mat<f64>,
-    /// By forces on the points that were asked for, with what is kept held, in m/N.
+    /// By forces on the requested points, with the kept unknowns held, in m/N.
     pub by_points: Mat<f64>,
 }
 
@@ -162,8 +162,8 @@ impl Prism<'_> {
         Ok((condensed, rows))
     }
 
-    /// The unknowns of a node, in sets that do not stiffen each other. A straight body is its own image in its middle: what is even in the
-    /// plane and odd along the axis has nothing to do with the opposite.
+    /// The unknowns of a node, in sets that do not stiffen each other. A straight body is its own image in its middle: motions even in the plane and odd along
+    /// the axis do not couple with the opposite.
     fn independent(&self) -> Vec<Vec<usize>> {
         let functions = self.axial.len();
         let all = 0..self.unknowns_of_node();
@@ -219,7 +219,7 @@ impl Prism<'_> {
     }
 }
 
-/// Those unknowns of each node of a prism that have nothing to do with the others.
+/// Unknowns of each node of a prism that do not couple with the others.
 struct Independent<'a> {
     prism: &'a Prism<'a>,
     unknowns: Vec<usize>,
@@ -227,7 +227,7 @@ struct Independent<'a> {
 }
 
 impl Independent<'_> {
-    /// Adds what becomes of these unknowns to what all become.
+    /// Adds the condensed form of these unknowns to that of all.
     fn condense(
         &self,
         part: &'static str,
@@ -358,7 +358,7 @@ impl Independent<'_> {
         .collect()
     }
 
-    /// Columns of forces in the order of `factor`: `each` is handed what adds to them, by node, unknown of it and column.
+    /// Columns of forces in the order of `factor`: `each` gets the entries, by node, unknown of it and column.
     fn forces(
         &self,
         factor: &Factor,
@@ -379,7 +379,7 @@ impl Independent<'_> {
     }
 }
 
-/// An isotropic law in space: what the normal strains and the shears make.
+/// An isotropic law in space: stresses from normal strains and shears.
 pub(crate) struct Law3 {
     along: f64,
     across: f64,

@@ -289,7 +289,7 @@ pub struct Followers<'a> {
     pub weights: Mat<f64>,
 }
 
-/// The places of the nodes that move: interior ones first, kept ones and what others follow last, fixed ones nowhere.
+/// The places of the nodes that move: interior ones first, kept and coupled ones last, fixed ones nowhere.
 pub(super) struct Numbering {
     /// Of each node where its terms begin, and where they end.
     ranges: Vec<Range<usize>>,
@@ -344,7 +344,7 @@ impl Numbering {
         numbering
     }
 
-    /// Whether any node is held.
+    /// True if any node is held.
     pub(super) fn holds(&self) -> bool {
         self.holds
     }

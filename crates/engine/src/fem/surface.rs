@@ -1,7 +1,7 @@
 //! The stress on a free surface of a prism, over some edges of its section.
 //!
-//! Nothing acts across a free surface, so that what stretches it says all: with the surface a function of its length in the section and of z,
-//! the strains along it are those of the displacements of its own nodes, and the stresses those of a sheet. No other node is asked.
+//! Nothing acts across a free surface, so that its strain decides its stress: with the surface a function of its length in the section and of z, the strains
+//! along it are those of the displacements of its own nodes, and the stresses those of a sheet. No other node is needed.
 
 use nalgebra::{Matrix2, Vector3};
 

@@ -11,7 +11,7 @@ use crate::grid::{Element, ElementKind};
 /// Layers of elements across a prism, for each degree of its functions.
 const LAYERS_PER_DEGREE: f64 = 0.5;
 
-/// Second-order elements in space, and what goes on at their nodes.
+/// Second-order elements in space, and fields at their nodes.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Volume {
     /// Where the nodes lie before loading, in meters.
@@ -145,7 +145,7 @@ impl Prism<'_> {
             .collect()
     }
 
-    /// The sum over the `functions` along the axis of what each node has of them, in the axes of the section.
+    /// The sum over the `functions` along the axis of each node's values, in the axes of the section.
     fn in_section(&self, unknowns: &[f64], functions: &[f64]) -> Vec<Vector3<f64>> {
         let m = functions.len();
         let of_nodes = unknowns.chunks_exact(COMPONENTS * m).zip(&self.grid.nodes);

@@ -1,10 +1,9 @@
 //! The compliance near a sharp tip corner, at distances that no grid resolves.
 //!
-//! Seen from near by, a tooth at its tip corner is a wedge, and a wedge has no length of its own: nearer by a factor, the
-//! compliance between two points grows by C ln of the factor, with the compliance C of a wedge loaded at its apex (Michell). With the
-//! half plane's logarithm taken off as everywhere, R(x, y) − (c − C) ln m depends on the ratio of the distances x, y from the corner alone, m their
-//! mean, but for what the rest of the tooth adds in proportion to m. Both parts are read from the table at the distances m = d and 2 d that
-//! the grid resolves.
+//! Near its tip corner a tooth is a wedge, and a wedge has no length of its own: nearer by a factor, the compliance between two points grows by C ln of the
+//! factor, with the compliance C of a wedge loaded at its apex (Michell). With the half plane's logarithm subtracted as everywhere, R(x, y) − (c − C) ln m
+//! depends on the ratio of the distances x, y from the corner alone, m their mean, except for a part of the rest of the tooth in proportion to m. Both parts
+//! are read from the table at the distances m = d and 2 d that the grid resolves.
 
 use std::f64::consts::LN_2;
 
@@ -33,7 +32,7 @@ pub(crate) struct Corner {
 }
 
 impl Corner {
-    /// Reads what the table `smooth` on the nodes at `arcs` says of the tip corner of `gear`; `factor` is c.
+    /// Reads the law of the tip corner of `gear` from the table `smooth` on the nodes at `arcs`; `factor` is c.
     pub(crate) fn new(
         gear: &SpurGear,
         arcs: &[f64],
@@ -62,7 +61,7 @@ impl Corner {
         }
     }
 
-    /// Whether [`Corner::compliance`] knows of the point at an arc length, with any other one.
+    /// True if [`Corner::compliance`] covers the point at an arc length, with any other one.
     pub(crate) fn may_know(&self, arc: f64) -> bool {
         self.tip - arc < 2.0 * self.trusted
     }
@@ -80,7 +79,7 @@ impl Corner {
         let (first, weights) = cubic(place);
         let [near, far] = [0, 1].map(|i| &self.at[i][first..first + 4]);
         let rest = 1.0 - mean / self.trusted;
-        // From d on inward by the wedge's law, and what departs from that law between 2 d and d goes on in proportion.
+        // From d on inward by the wedge's law; the departure from that law between 2 d and d continues in proportion.
         let grown = (self.trusted / mean).ln() - rest * LN_2;
         let mut compliance = self.growth.map(|row| row.map(|growth| grown * growth));
         for ((near, far), weight) in near.iter().zip(far).zip(weights) {

@@ -1,8 +1,8 @@
 //! Where a flank is no half space: it ends at the tip of its tooth and at both ends of its face.
 //!
-//! A tooth is a wedge at its tip, which yields more than a half space there: in the plane by the logarithm of the distance from the corner,
-//! (C − c) ln (x + y), with Michell's compliance C of the wedge and c of the half plane ([`super::corner`] has it so). A load that stands as far beyond
-//! the tip, (C − c)/c as large, makes that logarithm of a long line, and of a short one what becomes of it in space.
+//! A tooth is a wedge at its tip, which is more compliant than a half space there: in the plane by the logarithm of the distance from the corner, (C − c) ln (x
+//! + y), with Michell's compliance C of the wedge and c of the half plane ([`super::corner`] has the derivation). An image load at the same distance beyond the
+//! tip, (C − c)/c as large, gives that logarithm for a long line, and for a short one its form in space.
 //!
 //! A face that is narrow against its teeth is a plate, which yields by the logarithm of plane stress as far as it is high, where a half space
 //! under a load so narrow would have nothing to tell beyond its width b. Of loads that are even across the face the half space knows
@@ -11,9 +11,9 @@
 //! (c/b) (asinh(b/d) − √(1 + d²/b²) + d/b)
 //! ```
 //!
-//! at the distance d, and a plate −(c/b) ln d. The difference is that of a wide face too, but for what is smooth.
+//! at the distance d, and a plate −(c/b) ln d. The difference is that of a wide face too, except for a smooth part.
 //!
-//! Both are taken off what the grid says and added again in the contact. Neither has to be exact: what they leave is smoother, and is fitted.
+//! Both are subtracted from the grid's compliance and added again in the contact. Neither has to be exact: the remainder is smoother, and is fitted.
 
 use std::f64::consts::PI;
 
@@ -23,7 +23,7 @@ use crate::gear::{Material, SolidGear};
 /// The distance, in modules, within which a load beyond the tip is blurred: contacts are wider.
 const BLUR: f64 = 0.02;
 
-/// What a flank yields beside a half space.
+/// Further compliance of a flank beside a half space.
 #[derive(Debug, Clone)]
 pub(crate) struct FlankEnds {
     base_radius: f64,
@@ -74,7 +74,7 @@ impl FlankEnds {
         }
     }
 
-    /// The distances between a point at the roll length `s` and a load at `loaded`, and what the half space makes of their inverse.
+    /// The distances between a point at the roll length `s` and a load at `loaded`, and the half space's factor of their inverse.
     pub(crate) fn direct(&self, s: f64, loaded: f64) -> Lines {
         let level = (s * s - loaded * loaded) / (2.0 * self.base_radius);
         let slope = self.twist * f64::midpoint(s, loaded);
@@ -86,7 +86,7 @@ impl FlankEnds {
         }
     }
 
-    /// The same if the load stands as far beyond the tip, and what is made of the inverse of the distances.
+    /// The same for the image load beyond the tip, with the factor of the inverse of the distances.
     pub(crate) fn beyond_tip(&self, s: f64, loaded: f64) -> (Lines, f64) {
         let level = (s * s - loaded * loaded) / (2.0 * self.base_radius);
         let below = self.below_tip(s) + self.below_tip(loaded);
@@ -105,7 +105,7 @@ impl FlankEnds {
         (self.tip * self.tip - s * s) / (2.0 * self.base_radius)
     }
 
-    /// What a unit force at the roll length `loaded`, even across the face, does at `s` as on a plate, less what a half space knows.
+    /// Displacement at `s` by a unit force at the roll length `loaded`, even across the face, as on a plate, less that of a half space.
     pub(crate) fn of_plate(&self, s: f64, loaded: f64) -> f64 {
         let Lines { stretch, reach, .. } = self.direct(s, loaded);
         let b = self.face_width;
@@ -113,7 +113,7 @@ impl FlankEnds {
         -self.plate / stretch * (((b + far) / self.module).ln() - (far - reach) / b)
     }
 
-    /// What a unit force does at the roll length `s` and the height `z` beside that of a half space, spread over a piece of the contact line of the
+    /// Displacement at the roll length `s` and the height `z` by a unit force beside that of a half space, spread over a piece of the contact line of the
     /// length `along` about the roll length and the height `loaded`.
     pub(crate) fn of_piece(&self, (s, z): (f64, f64), loaded: (f64, f64), along: f64) -> f64 {
         let (lines, factor) = self.beyond_tip(s, loaded.0);

@@ -22,17 +22,17 @@ pub fn hertz(load: f64, radius: f64, factors: f64, width: f64) -> (f64, f64) {
     (a, a / (PI * width * radius * factors))
 }
 
-/// How one gear gives way near a load on its flank, beyond what is smooth on the scale of its tooth.
+/// Local compliance of one gear near a load on its flank, beyond the part that is smooth on the scale of its tooth.
 ///
-/// The plane model spreads a load over the gear's whole face width at once. Where the mating gear is narrower, the load is pressed in
-/// over the common width only, and spreads on its way inward: the compression between the flank and the tooth's centerline is that of a body of
-/// the common width, what lies deeper yields as the gear's own width has it (Weber's approach, with his depth to the centerline). That is
-/// a lower bound of the wider gear's compliance, and makes Hertz's pressure depend on the common width alone.
+/// The plane model spreads a load over the gear's whole face width at once. Where the mating gear is narrower, the load is pressed in over the common width
+/// only, and spreads on its way inward: the compression between the flank and the tooth's centerline is that of a body of the common width; deeper parts have
+/// the compliance of the gear's own width (Weber's approach, with his depth to the centerline). That is a lower bound of the wider gear's compliance, and makes
+/// Hertz's pressure depend on the common width alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NearField {
     /// c of the gear's own width.
     own: f64,
-    /// What the common width adds to it.
+    /// Addition by the common width.
     added: f64,
     /// The length, one module, over which logarithms are taken; the flank table takes the same.
     scale: f64,
@@ -89,8 +89,8 @@ impl Entries {
     }
 }
 
-/// What a unit force spread over each of the stretches `loaded` adds by `fields` to the mean displacement of each of `stretches`: ends
-/// along the flank, the first of them nearer to the root.
+/// Additions by `fields` to the mean displacement of each of `stretches` from a unit force spread over each of the stretches `loaded`: ends along the flank,
+/// the first of them nearer to the root.
 pub fn near_compliance(
     fields: &[NearField],
     stretches: &[[f64; 2]],

@@ -1,5 +1,4 @@
-//! What a half space yields between lines along a flank, and what it does at the ends of one: the singular part of what a tooth yields under its
-//! own load.
+//! Compliance of a half space between lines along a flank, and at the ends of one: the singular part of a tooth's compliance under its own load.
 
 use std::f64::consts::PI;
 
@@ -106,7 +105,7 @@ impl HalfSpace {
         self.nearest(squares, degree, |s, loaded| self.between(s, loaded))
     }
 
-    /// The same of what is `between` two lines, symmetric, with a logarithm of their distance.
+    /// The same for the part `between` two lines, symmetric, with a logarithm of their distance.
     ///
     /// The logarithm of the distance d becomes smooth by d = L u³.
     fn nearest(
@@ -151,7 +150,7 @@ impl HalfSpace {
 }
 
 impl Products {
-    /// Those of `axial` at all distances at which its functions overlap.
+    /// Terms of `axial` at all distances at which its functions overlap.
     fn all(axial: &AxialBasis) -> Vec<Self> {
         let breaks = axial.breaks();
         let apart = breaks
@@ -227,7 +226,7 @@ mod tests {
         slope.hypot(1.0 / cos)
     }
 
-    /// What the level of two lines has to be multiplied by for their distance over κ.
+    /// Factor of the level of two lines for their distance over κ.
     fn lean_of(slope: f64, cos: f64) -> f64 {
         1.0 / cos / slope_of(slope, cos).powi(2)
     }
@@ -257,7 +256,7 @@ mod tests {
                 let lean = (tau * tip * cos).atan();
                 let away = (2.0 * tip * tip - s * s - loaded * loaded) / (2.0 * r_b) * lean.cos();
                 let softness = tip_softness(section);
-                // The mean over the face of what a half space knows, as for straight teeth.
+                // The mean over the face of the half space's compliance, as for straight teeth.
                 let (b, d) = (20e-3, (level * lean_of(slope, cos)).abs());
                 let plate = -2.0 / (PI * 210e9 * b)
                     * slope_of(slope, cos).recip()

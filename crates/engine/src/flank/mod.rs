@@ -1,11 +1,11 @@
-//! How the loaded flank of one tooth gives way: a smooth part from the finite elements, and in closed form what no grid resolves.
+//! Compliance of the loaded flank of one tooth: a smooth part from the finite elements, and in closed form the parts that no grid resolves.
 //!
 //! - [`table`]: the smooth part of a transverse section, interpolated between the nodes of the flank,
 //! - [`half_plane`]: the logarithm under cells, and Hertz's contact,
 //! - `corner`: the wedge at a sharp tip,
 //! - `polynomials`: the smooth part along a face, as polynomials of roll length,
-//! - `half_space`: what lines along a face yield to each other,
-//! - `ends`: what a flank lacks of a half space at its tip and at both ends of its face.
+//! - `half_space`: the compliance between lines along a face,
+//! - `ends`: the difference of a flank from a half space at its tip and at both ends of its face.
 
 pub(crate) mod corner;
 pub(crate) mod ends;

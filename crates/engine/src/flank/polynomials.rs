@@ -2,9 +2,9 @@
 
 use crate::quadrature::legendre;
 
-/// The degree up the flank of what a tooth yields under its own load, less the half space.
+/// The degree up the flank of a tooth's compliance under its own load, less the half space.
 pub(crate) const OWN_DEGREE: usize = 6;
-/// The degree up the flank of what it yields under the loads of others.
+/// The degree up the flank of its compliance under the loads of others.
 pub(crate) const OTHER_DEGREE: usize = 5;
 
 /// The Legendre polynomials in the square of the roll length, over the flank, and their derivatives by the roll length.
@@ -21,7 +21,7 @@ pub(crate) fn up_the_flank(
     (values, slopes)
 }
 
-/// The same values, each over its square's mean along the flank: what the nearest polynomials are found by.
+/// The same values, each over its square's mean along the flank: weights of the nearest polynomials.
 pub(crate) fn projecting(squares: [f64; 2], roll_length: f64, degree: usize) -> Vec<f64> {
     let (values, _) = up_the_flank(squares, roll_length, degree);
     let each = values.into_iter().enumerate();

@@ -1,9 +1,8 @@
 //! The compliance of one gear's loaded flanks, ready for contact cells of any size anywhere on them.
 //!
-//! The finite elements give the compliance between flank nodes. Between points nearer to each other than a few elements
-//! it is dominated by a logarithm that no grid resolves; what is left after the half plane's logarithm is taken off is
-//! smooth, on the scale of the tooth and of the distance to the tip corner. That smooth part R is tabulated on the flank
-//! nodes and interpolated; the logarithm is added in closed form for the cells at hand ([`super::half_plane`]).
+//! The finite elements give the compliance between flank nodes. Between points nearer to each other than a few elements a logarithm dominates that no grid
+//! resolves. The remainder after subtraction of the half plane's logarithm is smooth, on the scale of the tooth and of the distance to the tip corner. That
+//! smooth part R is tabulated on the flank nodes and interpolated; the logarithm is added in closed form for the cells at hand ([`super::half_plane`]).
 
 use faer::Mat;
 
@@ -148,8 +147,8 @@ impl FlankTable {
         compliance
     }
 
-    /// What `forces` at `points`, along their directions, are on the flank's unknowns: along the outward normal and towards the tip,
-    /// node by node, so that pressure is negative.
+    /// The `forces` at `points`, along their directions, as loads on the flank's unknowns: along the outward normal and towards the tip, node by node, so that
+    /// pressure is negative.
     pub fn nodal_forces(&self, points: &[FlankPoint], forces: &[f64]) -> Vec<f64> {
         let mut nodal = vec![0.0; self.modes.nrows()];
         for (point, force) in points.iter().zip(forces) {
@@ -162,7 +161,7 @@ impl FlankTable {
         nodal
     }
 
-    /// What `forces` on the flank's unknowns are on the loading modes.
+    /// The `forces` on the flank's unknowns, in terms of the loading modes.
     pub fn modal_loads(&self, forces: &[f64]) -> Vec<f64> {
         modal_loads(&self.modes, forces)
     }
@@ -215,7 +214,7 @@ fn weights(points: &[FlankPoint]) -> (usize, Mat<f64>) {
     (2 * first, weights)
 }
 
-/// Replaces the entries of the symmetric table `a` near its diagonal by what its farther ones say.
+/// Replaces the entries of the symmetric table `a` near its diagonal by an extrapolation from its farther ones.
 ///
 /// Along each antidiagonal the smooth part is even in the distance d between the nodes: a + b d² + c d⁴ through the
 /// distances 4, 8 and 12 bridges the nearer ones. Near the ends of the flank fewer distances fit, and the last few nodes

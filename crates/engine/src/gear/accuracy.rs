@@ -10,7 +10,7 @@ use super::{Eccentricity, SpurGear, ToothDeviations};
 /// The accuracy classes A of ISO 1328-1:2013, from the finest.
 pub const CLASSES: [u32; 2] = [1, 11];
 
-/// What ISO 1328-1:2013 allows a gear of an accuracy class, unrounded, in meters.
+/// Tolerances of ISO 1328-1:2013 for a gear of an accuracy class, unrounded, in meters.
 ///
 /// The formulas of the standard are for class 5, in µm of the reference diameter d, the module m_n and the face width b in mm; each
 /// class is √2 times as wide as the one before.
@@ -31,7 +31,7 @@ pub struct Tolerances {
 }
 
 impl Tolerances {
-    /// Those of `gear` in a class of [`CLASSES`].
+    /// Tolerances of `gear` in a class of [`CLASSES`].
     pub fn of(gear: &SpurGear, class: u32) -> Self {
         let mm = |length: f64| 1e3 * length;
         let (d, m_n, b) = (
@@ -113,7 +113,7 @@ impl Tolerances {
 /// A gear of an accuracy class as an inspector sees it: its teeth are measured from the bore and held to the tolerances.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inspection {
-    /// What the class allows.
+    /// Tolerances of the class.
     pub tolerances: Tolerances,
     tooth_count: u32,
     pressure_angle: f64,
@@ -124,14 +124,14 @@ pub struct Inspection {
 /// A gear that has passed, and so many gears that were made for it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Passed {
-    /// What its teeth deviate by.
+    /// Deviations of its teeth.
     pub teeth: ToothDeviations,
     /// The gears that were made, this one included.
     pub attempts: u32,
 }
 
 impl Inspection {
-    /// So many gears are made for one at most. Where one in a hundred passes, all of them fail two times of a thousand millions.
+    /// Maximum number of gears drawn for one. Where one in a hundred passes, all of them fail two times of a thousand millions.
     pub const MOST_ATTEMPTS: u32 = 2000;
 
     /// That of `gear` in a class of [`CLASSES`].
@@ -216,7 +216,7 @@ pub struct Normals {
 }
 
 impl Normals {
-    /// Those of a `seed`; each `stream` of it is independent of the others. Streams below 2^40 are those of first attempts.
+    /// Random numbers of a `seed`; each `stream` of it is independent of the others. Streams below 2^40 are those of first attempts.
     pub fn new(seed: u64, stream: u64) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         generator.set_stream(stream);
@@ -226,7 +226,7 @@ impl Normals {
         }
     }
 
-    /// Those of a further attempt at what is drawn from a `stream` first; attempt 0 is that.
+    /// Random numbers of a further attempt at the draw of a `stream`; attempt 0 is that stream.
     pub fn of_attempt(seed: u64, stream: u64, attempt: u32) -> Self {
         Self::new(seed, u64::from(attempt) << 40 | stream)
     }
@@ -403,7 +403,7 @@ mod tests {
             let expected = 20e-6 / 20_f64.to_radians().cos();
             assert!((found / expected - 1.0).abs() < 1e-3, "{found}");
         }
-        // What the flanks are turned by elsewhere, the runout along the normal at the reference circle, is this arc times cos α.
+        // The turn of the flanks elsewhere, the runout along the normal at the reference circle, is this arc times cos α.
         let mut data = paper_gear(29);
         data.deviations = made(Vec::new(), Some((10e-6, 0.7)));
         let eccentric = SpurGear::new(data).expect("a gear");
@@ -515,7 +515,7 @@ mod tests {
                 1.0,
             );
             let of_both = share(&|teeth| beyond(&teeth), 1.0);
-            // Four standard errors of 2000, and what the second program rounds.
+            // Four standard errors of 2000, and the rounding of the second program.
             assert!((of_pitch - alone).abs() < 0.05, "{teeth}: {of_pitch}");
             assert!((of_both - from_bore).abs() < 0.05, "{teeth}: {of_both}");
             if teeth == 150 {

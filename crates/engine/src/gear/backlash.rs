@@ -1,8 +1,8 @@
-//! What deviations and eccentricities leave of the backlash.
+//! Backlash with deviations and eccentricities.
 //!
-//! A tooth that is displaced as a whole takes nothing by itself: what its loaded flank closes its other flank opens. At a mesh position the loaded flanks
-//! touch where the pair that stands out most does, and the other flanks where the one that stands back most does. Only teeth in mesh at the same time
-//! count, and what is the same of all teeth counts nothing. An eccentric gear closes up on both flanks as it comes nearer to its mate.
+//! A tooth that is displaced as a whole takes nothing by itself: its loaded flank closes by as much as its other flank opens. At a mesh position the loaded
+//! flanks touch at the pair that stands out most, and the other flanks at the one that stands back most. Only teeth in mesh at the same time count, and a part
+//! common to all teeth does not count. An eccentric gear closes up on both flanks as it comes nearer to its mate.
 
 use std::f64::consts::PI;
 
@@ -16,8 +16,8 @@ const PLACES: u32 = 4;
 const ON_PATH: f64 = 1e-9;
 
 impl GearPair {
-    /// The least backlash over the true period, along the line of action as [`GearPair::backlash`]: what pitch deviations of teeth in mesh at the same
-    /// time, slopes that stand out and eccentricities leave of it.
+    /// The least backlash over the true period, along the line of action as [`GearPair::backlash`]: with pitch deviations of teeth in mesh at the same time,
+    /// slopes that stand out and eccentricities.
     pub fn least_backlash(&self) -> f64 {
         // Where the other flanks were moved back to touch, rounding leaves some last bits.
         (self.backlash() - self.taken_backlash(&self.deviations())).max(0.0)
@@ -35,7 +35,7 @@ impl GearPair {
         let tip_radii = self.driving().tip_radius() + self.driven().tip_radius();
         // Below the base circles together there is no line of action; the backlash decides the nearest distance.
         let is_possible = self.center_distance() > base_radii;
-        // What is taken hardly changes with the distance.
+        // The reduction hardly changes with the distance.
         let mut taken = if is_possible {
             self.taken_backlash(deviations)
         } else {
@@ -71,7 +71,7 @@ impl GearPair {
         }
         let (from, to) = self.phases_on_path();
         let later = self.other_flanks_later();
-        // Between where pairs come or go what is taken changes evenly.
+        // Between events of pairs the reduction changes evenly.
         let events = [from, to, later - to, later - from].map(|phase| phase - phase.floor());
         let eccentric = Member::BOTH
             .into_iter()
@@ -96,7 +96,7 @@ impl GearPair {
         most(found, at(between)).1
     }
 
-    /// What `deviations` take of the backlash at the mesh position `eta`.
+    /// Reduction of the backlash by `deviations` at the mesh position `eta`.
     fn taken_at(&self, deviations: &PairDeviations, eta: f64) -> f64 {
         let [driving, driven] = Member::BOTH.map(|member| deviations.of_gear(member));
         let (from, to) = self.phases_on_path();

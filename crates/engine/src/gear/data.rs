@@ -1,4 +1,4 @@
-//! What a drawing says of a spur gear, and why it cannot be made.
+//! Drawing data of a spur gear, and the reasons why it cannot be made.
 
 use super::{BlankRegion, Material, ModificationData, Rack, TipEdge, ToothDeviations};
 
@@ -23,7 +23,7 @@ pub enum ToolDepth {
     At(f64),
 }
 
-/// What a drawing says of a spur gear; [`super::SpurGear::new`] checks it.
+/// Drawing data of a spur gear; [`super::SpurGear::new`] checks it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GearData {
     /// The number of teeth Z.
@@ -40,13 +40,13 @@ pub struct GearData {
     pub tip_edge: TipEdge,
     /// The face width b.
     pub face_width: f64,
-    /// What is removed from the loaded flanks.
+    /// Material removed from the loaded flanks.
     pub modifications: Vec<ModificationData>,
     /// How teeth deviate from each other.
     pub deviations: ToothDeviations,
     /// The material of teeth and blank.
     pub material: Material,
-    /// What carries the teeth.
+    /// The blank.
     pub blank: BlankRegion,
 }
 

@@ -33,8 +33,8 @@ pub struct ToothLeads {
     pub removed: Vec<Vec<f64>>,
 }
 
-/// What each tooth deviates from its drawing, as measured. Lengths in meters, positive where the loaded flank stands farther towards its
-/// mate, so that it touches earlier. Empty lists are teeth without deviation.
+/// Measured deviations of each tooth from its drawing. Lengths in meters, positive where the loaded flank stands farther towards its mate, so that it touches
+/// earlier. Empty lists are teeth without deviation.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ToothDeviations {
     /// The cumulative pitch deviation F_p of each loaded flank, tooth 0 first: a transverse arc on the reference circle (ISO 1328-1).
@@ -56,7 +56,7 @@ pub struct ToothDeviations {
 }
 
 impl ToothDeviations {
-    /// The same said shortest: what deviates by nothing is not there.
+    /// The shortest form: lists of zeros become empty.
     pub(super) fn without_zeros(mut self) -> Self {
         if self.other_pitch() == self.cumulative_pitch {
             self.other_cumulative_pitch.clear();
@@ -77,12 +77,12 @@ impl ToothDeviations {
         self
     }
 
-    /// Whether every tooth stands as drawn, about the axis of rotation. Of a gear that exists.
+    /// True if every tooth stands as drawn, about the axis of rotation. Of a gear that has been checked.
     pub fn is_none(&self) -> bool {
         self.are_teeth_alike() && self.eccentricity.is_none()
     }
 
-    /// Whether no flank deviates. Of a gear that exists.
+    /// True if no flank deviates. Of a gear that has been checked.
     pub fn are_teeth_alike(&self) -> bool {
         self.cumulative_pitch.is_empty()
             && self.other_cumulative_pitch.is_empty()

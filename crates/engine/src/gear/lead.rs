@@ -1,4 +1,4 @@
-//! Lead modifications: what is removed from the loaded flanks along the face, alike at every roll length.
+//! Lead modifications: material removed from the loaded flanks along the face, the same at every roll length.
 //!
 //! As profile modifications they are measured along the base tangent, in the transverse section; z runs along the axis from the middle
 //! of the gear's own face.
@@ -27,7 +27,7 @@ impl FaceEnds {
     }
 }
 
-/// One modification of the leads of a gear as a drawing gives it; several add up. Lengths are in meters; what is removed is positive.
+/// One modification of the leads of a gear as a drawing gives it; several add up. Lengths are in meters; removed material is positive.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LeadModification {
     /// A parabola: nothing in the middle of the face, the amount C_β at both ends.
@@ -53,7 +53,7 @@ pub enum LeadModification {
     Table {
         /// Rising places along z.
         places: Vec<f64>,
-        /// What is removed at each.
+        /// Removed at each.
         removed: Vec<f64>,
     },
 }
@@ -84,7 +84,7 @@ pub enum LeadError {
 }
 
 impl LeadModification {
-    /// Whether it fits a face of `width`; `modification` is its place in the list.
+    /// Checks that it fits a face of `width`; `modification` is its place in the list.
     pub(super) fn check(&self, modification: usize, width: f64) -> Result<(), LeadError> {
         match self {
             Self::EndRelief { length, ends, .. } => {
@@ -150,7 +150,7 @@ impl LeadModification {
         }
     }
 
-    /// What is removed at `z` of a face of `width`.
+    /// Material removed at `z` of a face of `width`.
     pub fn removed(&self, z: f64, width: f64) -> f64 {
         match self {
             Self::Crowning { amount } => amount * (2.0 * z / width).powi(2),

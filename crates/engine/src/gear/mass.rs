@@ -27,7 +27,7 @@ impl SpurGear {
         own + self.mass() * self.deviations().displacement(0.0)
     }
 
-    /// What bore, holes and web take from the body inside the profile.
+    /// Moments of bore, holes and web, which are removed from the body inside the profile.
     fn taken_away(&self) -> Moments {
         self.data().blank.taken_away(self.face_width())
     }
@@ -84,8 +84,8 @@ impl SolidGear {
         self.section().polar_inertia() + self.added_by_hub()[1]
     }
 
-    /// The mass and the polar inertia that a hub of its own width has more than the section, in which what lies around the bore is as wide as
-    /// the face, or as thick as the web.
+    /// Mass and polar inertia that a hub of its own width adds to the section, in which the part around the bore is as wide as the face, or as thick as the
+    /// web.
     fn added_by_hub(&self) -> [f64; 2] {
         let Some(hub) = self.hub() else {
             return [0.0, 0.0];

@@ -1,4 +1,4 @@
-//! What a gear is made of, and what a plane state makes of it.
+//! Material of a gear, and its constants in a plane state.
 
 /// An isotropic, linearly elastic material.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,7 +13,7 @@ pub struct Material {
     pub yield_strength: Option<f64>,
 }
 
-/// What a plane problem takes for granted across the face width.
+/// Assumption of a plane problem across the face width.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum PlaneState {
     /// No stress across the face width: a narrow gear.
@@ -31,9 +31,9 @@ impl Material {
         yield_strength: None,
     };
 
-    /// The largest pressure in pascals of a contact along a line under which the material stays elastic: 1.67 times its yield strength (Tresca's shear, which is
-    /// largest 0.78 half-widths below the surface; Johnson, Contact Mechanics, 6.1). Where that is not known, 2 % of E for metals and 4 % for what gives way more,
-    /// about where hardened steel yields and where plastics bend their curve.
+    /// The largest pressure in pascals of a contact along a line under which the material stays elastic: 1.67 times its yield strength (Tresca's shear, which
+    /// is largest 0.78 half-widths below the surface; Johnson, Contact Mechanics, 6.1). Where that is not known, 2 % of E for metals and 4 % for softer
+    /// materials, about where hardened steel yields and where plastics bend their curve.
     pub fn elastic_contact_pressure(&self) -> f64 {
         const LINE_CONTACT: f64 = 1.67;
         const METAL_FROM: f64 = 60e9;

@@ -1,9 +1,10 @@
-//! What the drawing says: racks, flanks, teeth, their modifications and deviations, blanks and the pair they make.
+//! Geometry of the drawing: racks, flanks, teeth, their modifications and deviations, blanks and the pair.
 //!
-//! Read in this order: [`involute`] (one flank), [`rack`] (the tool and the fillet it leaves), [`modification`]
-//! and [`tip`] (what is taken off it), [`deviation`] (what teeth differ by) and [`accuracy`] (how far they may), [`blank`], [`material`], [`data`] (what a drawing says), [`thickness`] (how it says how thick teeth are),
-//! [`spur`], `mass` and `outline` (a whole gear), [`solid`] (the same with an extent along its axis), [`member`] and [`pair`] (two of them at a center distance), [`pair_deviations`] (what their teeth differ by), [`printed`] (what the last digits of a drawing leave open),
-//! [`lead`] and [`solid_pair`] (two of them along their faces).
+//! Read in this order: [`involute`] (one flank), [`rack`] (the tool and its fillet), [`modification`] and [`tip`] (material removed from it), [`deviation`]
+//! (differences between teeth) and [`accuracy`] (their tolerances), [`blank`], [`material`], [`data`] (drawing data), [`thickness`] (ways to give the tooth
+//! thickness), [`spur`], `mass` and `outline` (a whole gear), [`solid`] (the same with an extent along its axis), [`member`] and [`pair`] (two of them at a
+//! center distance), [`pair_deviations`] (deviations of their teeth), [`printed`] (the last digits of a drawing), [`lead`] and [`solid_pair`] (two of them
+//! along their faces).
 //!
 //! Every gear is described in its own frame: the center of the gear is the origin, the centerline of tooth 0 is the
 //! x axis, and the loaded flank of each tooth lies on its counter-clockwise side.

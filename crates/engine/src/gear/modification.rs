@@ -1,4 +1,4 @@
-//! Profile modifications: what is removed from the flank, normal to it.
+//! Profile modifications: material removed from the flank, normal to it.
 
 use super::Involute;
 
@@ -44,8 +44,7 @@ pub enum TablePlaces {
     Diameters(Vec<f64>),
 }
 
-/// One modification of the loaded flanks as a drawing gives it; several of a gear add up. Lengths are in meters; what is removed is
-/// positive.
+/// One modification of the loaded flanks as a drawing gives it; several of a gear add up. Lengths are in meters; removed material is positive.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ModificationData {
     /// A relief that grows towards the tip circle.
@@ -66,7 +65,7 @@ pub enum ModificationData {
     Table {
         /// Where the entries stand.
         places: TablePlaces,
-        /// What is removed at each.
+        /// Removed at each.
         removed: Vec<f64>,
     },
 }
@@ -205,7 +204,7 @@ pub(super) enum Modification {
 }
 
 impl Modification {
-    /// What is removed at the roll length `s` of `flank`, in meters.
+    /// Material removed at the roll length `s` of `flank`, in meters.
     pub(super) fn depth(&self, flank: &Involute, s: f64) -> f64 {
         match self {
             Self::Tip(relief) | Self::Root(relief) => {
@@ -285,7 +284,7 @@ impl Modification {
         }
     }
 
-    /// Whether it only ever bends the flank away from its mate, so that the gap keeps one least place.
+    /// True if it only ever bends the flank away from its mate, so that the gap keeps one least place.
     pub(super) fn is_convex(&self) -> bool {
         match self {
             Self::Tip(relief) | Self::Root(relief) => relief.amount >= 0.0,

@@ -162,7 +162,7 @@ impl GearPair {
         }
     }
 
-    /// The same pair on blanks without bores and holes: what is left to say where only flanks matter.
+    /// The same pair on blanks without bores and holes, for questions about flanks only.
     pub fn without_blanks(&self) -> Self {
         Self {
             driving: self.driving.without_blank(),
@@ -218,7 +218,7 @@ impl GearPair {
         2.0 * half_angle / self.driving.pitch_angle()
     }
 
-    /// Slices of the flanks of both gears, one meter long, in plane strain: what a contact is near a line of it.
+    /// Slices of the flanks of both gears, one meter long, in plane strain: the state of a contact near a line of it.
     pub(crate) fn plane_strain(&self) -> Self {
         Self {
             driving: self.driving.plane_strain(),
@@ -257,7 +257,7 @@ impl GearPair {
         Ok(moved_back)
     }
 
-    /// Whether the other gear's tips stay on the flank of `member`, or in what its undercut leaves free, and clear of its root.
+    /// True if the other gear's tips stay on the flank of `member`, or in the room of its undercut, and clear of its root.
     fn clears(&self, member: Member) -> bool {
         let (gear, other) = (self.gear(member), self.gear(member.other()));
         let on_flank = self.lowest_roll_length(member) >= gear.form_roll_length();
@@ -265,11 +265,11 @@ impl GearPair {
             && self.center_distance - other.tip_radius() > gear.root_radius()
     }
 
-    /// Whether the edges of the other gear's tips pass the undercut fillet of `member` without touching it.
+    /// True if the edges of the other gear's tips pass the undercut fillet of `member` without touching it.
     fn passes_fillet(&self, member: Member) -> bool {
         /// Places of the tip on its way through the space.
         const PLACES: u32 = 200;
-        /// What rounding may take off the distance, in modules.
+        /// Loss of the distance by rounding, in modules.
         const ROUNDING: f64 = 1e-6;
         let (gear, other) = (self.gear(member), self.gear(member.other()));
         let (fillet, a) = (gear.fillet(), self.center_distance);
@@ -429,8 +429,8 @@ impl GearPair {
         self.center_distance - gear.tip_radius() - other.root_radius()
     }
 
-    /// By how much gear programs shorten tips so that the clearance stays that of the racks, dedendum less addendum: what both shifts are more than the
-    /// center distance is more than that of unshifted gears. Not positive where nothing is lost.
+    /// Amount by which gear programs shorten tips so that the clearance stays that of the racks, dedendum less addendum: the excess of both shifts over that of
+    /// the center distance over that of unshifted gears. Not positive where no clearance is lost.
     pub fn usual_tip_shortening(&self) -> f64 {
         let shifted = Member::BOTH.map(|member| {
             let gear = self.gear(member);
@@ -444,8 +444,8 @@ impl GearPair {
         self.drawn_backlash() + self.moved_back
     }
 
-    /// By how much the other flanks are moved back from where they are drawn, along the line of action: what teeth that touch on both flanks lack of
-    /// room by no more than the last printed digits explain.
+    /// Distance by which the other flanks are moved back from where they are drawn, along the line of action: the negative backlash that the last printed
+    /// digits explain.
     pub fn moved_back(&self) -> f64 {
         self.moved_back
     }
@@ -462,7 +462,7 @@ impl GearPair {
         (pitch - thickness(Member::Driving) - thickness(Member::Driven)) * alpha_w.cos()
     }
 
-    /// What the teeth of both gears deviate by.
+    /// Deviations of the teeth of both gears.
     pub fn deviations(&self) -> PairDeviations {
         let teeth = Member::BOTH.map(|member| self.gear(member).deviations());
         PairDeviations::of([&self.driving, &self.driven], teeth)
@@ -524,7 +524,7 @@ impl GearPair {
         Member::BOTH.map(|member| self.tooth(member, n))
     }
 
-    /// Whether nothing of either gear deviates from its drawing: the contact on rigid blanks repeats with every mesh period.
+    /// True if nothing of either gear deviates from its drawing: the contact on rigid blanks repeats with every mesh period.
     pub fn is_as_drawn(&self) -> bool {
         Member::BOTH
             .into_iter()
@@ -543,7 +543,7 @@ impl GearPair {
 }
 
 impl PairDeviations {
-    /// What `teeth`, those of the driving and of the driven gear, do to the flanks of `pair`, whatever its own deviate by.
+    /// Effect of `teeth`, those of the driving and of the driven gear, on the flanks of `pair`, for any deviations of its own.
     ///
     /// # Errors
     ///

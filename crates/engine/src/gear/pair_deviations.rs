@@ -1,4 +1,4 @@
-//! What the flanks of two gears stand off their drawings, tooth by tooth.
+//! Deviations of the flanks of two gears from their drawings, tooth by tooth.
 
 use std::f64::consts::PI;
 
@@ -6,7 +6,7 @@ use super::lead::LeadModification;
 use super::modification::Modification;
 use super::{Eccentricity, Involute, Member, SpurGear, ToothDeviations, Vector};
 
-/// What the teeth of one gear deviate by along their normals, tooth by tooth.
+/// Deviations of the teeth of one gear along their normals, tooth by tooth.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GearDeviations {
     /// How far each flank is turned towards its mate, as a length on the base circle. Empty where all stand as drawn.
@@ -15,7 +15,7 @@ pub struct GearDeviations {
     other_turns: Vec<f64>,
     /// f_Hα of each flank. Empty where none is inclined.
     profile_slopes: Vec<f64>,
-    /// What each lead slope removes. Empty where none does.
+    /// Removal by each lead slope. Empty where there is none.
     lead_slopes: Vec<f64>,
     /// The traces of the profiles.
     profiles: Option<Profiles>,
@@ -39,7 +39,7 @@ impl GearDeviations {
         eccentricity: None,
     };
 
-    /// What `teeth`, lists of deviations that fit `gear`, do to its flanks.
+    /// Effect of `teeth`, lists of deviations that fit `gear`, on its flanks.
     pub(super) fn of(gear: &SpurGear, teeth: &ToothDeviations) -> Self {
         let teeth = teeth.clone().without_zeros();
         // An arc f on the reference circle turns the flank by f/r, which is f cos α along the base tangent.
@@ -81,7 +81,7 @@ impl GearDeviations {
         }
     }
 
-    /// Whether every tooth stands as drawn, about the axis of rotation.
+    /// True if every tooth stands as drawn, about the axis of rotation.
     pub fn is_none(&self) -> bool {
         self.turns.is_empty()
             && self.other_turns.is_empty()
@@ -126,7 +126,7 @@ impl GearDeviations {
         slopes.fold(0.0, most) + traces.fold(0.0, most)
     }
 
-    /// What of [`GearDeviations::at`] is alike all along the flank of `tooth`.
+    /// Part of [`GearDeviations::at`] that is the same all along the flank of `tooth`.
     pub fn turn(&self, tooth: usize) -> f64 {
         self.turns.get(tooth).copied().unwrap_or(0.0)
     }
@@ -165,8 +165,8 @@ impl GearDeviations {
         moved.x * normal.cos() + moved.y * normal.sin()
     }
 
-    /// What is missing from the flank of `tooth` of `gear` where involutes would touch at the roll length `s`, along the normal and to the first order: what
-    /// modifications remove, less what deviates towards the mate, in the section that is turned by `turn`.
+    /// Material missing from the flank of `tooth` of `gear` where involutes would touch at the roll length `s`, along the normal and to the first order:
+    /// modifications, less deviations towards the mate, in the section that is turned by `turn`.
     pub fn missing(&self, gear: &SpurGear, tooth: usize, s: f64, turn: f64) -> f64 {
         gear.removed(s) - self.at(tooth, s) - self.runout(gear, tooth, s, turn)
     }
@@ -329,7 +329,7 @@ impl FlankGrowth {
     }
 }
 
-/// What the teeth of both gears of a pair deviate by: what one pair differs by from others made to the same drawings.
+/// Deviations of the teeth of both gears of a pair: its difference from others made to the same drawings.
 ///
 /// Contact is solved for a model of the drawn pair and these ([`crate::contact::PairModel::deviating`]).
 #[derive(Debug, Clone, PartialEq)]
@@ -346,7 +346,7 @@ impl PairDeviations {
         nearest: 0.0,
     };
 
-    /// What `teeth` that fit `gears` do to their flanks.
+    /// Effect of `teeth` that fit `gears` on their flanks.
     pub(super) fn of(gears: [&SpurGear; 2], teeth: [&ToothDeviations; 2]) -> Self {
         let gears = Member::BOTH
             .map(Member::index)
@@ -379,12 +379,12 @@ impl PairDeviations {
         }
     }
 
-    /// What the gear `member` deviates by.
+    /// Deviations of the gear `member`.
     pub fn of_gear(&self, member: Member) -> &GearDeviations {
         &self.gears[member.index()]
     }
 
-    /// Whether nothing deviates: the contact on blanks that are alike all around repeats with every mesh period.
+    /// True if nothing deviates: the contact on rotationally symmetric blanks repeats with every mesh period.
     pub fn are_none(&self) -> bool {
         self.gears.iter().all(GearDeviations::is_none)
     }

@@ -1,7 +1,6 @@
-//! What the last printed digits of a drawing leave open.
+//! Uncertainty of a drawing by its last printed digits.
 //!
-//! Gear programs print profile shifts to four decimals and center distances to three decimals of a millimeter; what a distance without backlash lacks by
-//! that is no jam.
+//! Gear programs print profile shifts to four decimals and center distances to three decimals of a millimeter; a negative backlash within that is not a jam.
 
 use super::GearPair;
 
@@ -28,8 +27,8 @@ pub fn last_unit(value: f64) -> f64 {
     10_f64.powi(exponent.min(0))
 }
 
-/// Whether `one` and `other` are one value, printed with more digits and with fewer. A value of few digits is taken for exact, unless the other one is
-/// as good as equal.
+/// True if `one` and `other` are one value, printed with more digits and with fewer. A value of few digits is taken for exact, unless the other one is as good
+/// as equal.
 pub fn differ_in_digits_only(one: f64, other: f64) -> bool {
     const FEW_DIGITS: f64 = 1e-3;
     const AS_GOOD_AS_EQUAL: f64 = 1e-5;

@@ -18,16 +18,16 @@ pub struct Rack {
     pub dedendum: f64,
     /// The radius ρ of the rack's tip rounding.
     pub tip_radius: f64,
-    /// What makes it the profile of a hob before grinding, where it is one.
+    /// Protuberance, if it is the profile of a hob before grinding.
     pub protuberance: Option<Protuberance>,
 }
 
 /// How a hob that cuts before grinding differs from the rack of the ground flanks. Lengths are in meters.
 ///
-/// Its flank stands back by the stock q that is left to be ground, and is parallel to that of the rack. From the height h above its tip line down a straight
-/// flank leads to the tip rounding and touches it; the rounding touches a parallel to the hob's own flank that stands out from it by the protuberance p_r.
-/// So the rounding cuts by s_pr = p_r − q deeper than the ground flank (ISO 6336-3 has the same p_r, q and s_pr), and the angle of the protuberance's
-/// flank follows from p_r and h.
+/// Its flank stands back by the stock q for grinding, and is parallel to that of the rack. From the height h above its tip line down a straight flank leads to
+/// the tip rounding and touches it; the rounding touches a parallel to the hob's own flank that stands out from it by the protuberance p_r. The rounding
+/// therefore cuts by s_pr = p_r − q deeper than the ground flank (ISO 6336-3 has the same p_r, q and s_pr), and the angle of the protuberance's flank follows
+/// from p_r and h.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Protuberance {
     /// p_r: how far the rounding stands out from the hob's flank, normal to it.
@@ -101,10 +101,10 @@ impl Rack {
 /// The fillet of tooth 0 on its loaded side: the envelope of the rack's tip rounding as the rack rolls on the
 /// reference circle.
 ///
-/// The parameter γ is the angle of the contact normal to the reference circle's tangent: it runs from α, where the
-/// fillet meets the involute at the form radius, to π/2, where it meets the root circle. Where the rack undercuts the
-/// flank it begins at a larger γ, at which it cuts the involute. A protuberance makes it begin at a smaller one; where the straight flank of the
-/// protuberance cuts the involute already, what that leaves comes first, at values of γ below those of the rounding.
+/// The parameter γ is the angle of the contact normal to the reference circle's tangent: it runs from α, where the fillet meets the involute at the form
+/// radius, to π/2, where it meets the root circle. Where the rack undercuts the flank it begins at a larger γ, at which it cuts the involute. A protuberance
+/// makes it begin at a smaller one; where the straight flank of the protuberance cuts the involute already, its part comes first, at values of γ below those of
+/// the rounding.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Trochoid {
     reference_radius: f64,
@@ -119,7 +119,7 @@ pub struct Trochoid {
     flank_angle: f64,
     /// Where it begins.
     start: f64,
-    /// What the straight flank of a protuberance leaves above the rounding's part.
+    /// Part of the straight flank of a protuberance above that of the rounding.
     ramp: Option<Ramp>,
 }
 
@@ -188,8 +188,7 @@ impl Trochoid {
     }
 
     /// The fillet of a hob whose protuberance begins at the height `height` and has the angle `normal_angle` in the normal section, where its straight flank
-    /// cuts `flank`; otherwise that of its rounding alone, as it begins outside of `flank`. What the straight flank leaves counts by its length over
-    /// `module`.
+    /// cuts `flank`; otherwise that of its rounding alone, as it begins outside of `flank`. The part of the straight flank counts by its length over `module`.
     fn protruding(
         self,
         flank: &Involute,
@@ -246,8 +245,8 @@ impl Trochoid {
 
     /// The same fillet where it undercuts `flank`: it begins where it cuts the involute.
     ///
-    /// The rack's straight flank goes past the base circle, and what it sweeps there folds back on the involute. The fillet goes down from the end of that
-    /// fold, outside of the involute, through it and on through the base circle. At γ = `inside` it is inside of the involute.
+    /// The rack's straight flank goes past the base circle, and its envelope there folds back on the involute. The fillet goes down from the end of that fold,
+    /// outside of the involute, through it and on through the base circle. At γ = `inside` it is inside of the involute.
     fn cutting(self, flank: &Involute, inside: f64) -> Self {
         let outside = |gamma: f64| is_outside(self.point(gamma), flank);
         Self {
@@ -304,7 +303,7 @@ impl Trochoid {
     }
 }
 
-/// Whether `point` lies on `flank`, which ends on its base circle, or outside of its tooth.
+/// True if `point` lies on `flank`, which ends on its base circle, or outside of its tooth.
 fn is_outside(point: Vector, flank: &Involute) -> bool {
     point.y.atan2(point.x) >= flank.half_angle(point.norm())
 }

@@ -1,4 +1,4 @@
-//! A gear with an extent along its axis: a transverse section that turns along it, and what stands where under the teeth.
+//! A gear with an extent along its axis: a transverse section that turns along it, and the layers under the teeth.
 //!
 //! Everything stands in the frame of its gear: z = 0 is the middle of its face, the x axis the centerline of tooth 0 there, the
 //! loaded flank lies on the side of positive y. The section at z is that at 0, turned counter-clockwise by τ z.
@@ -166,22 +166,22 @@ pub enum SolidGearError {
 }
 
 impl SolidGear {
-    /// Checks a drawing: `normal` is what it says in the normal section, as ISO 21771 has it: the rack with its module, its
-    /// pressure angle and its round tips, the profile shift in normal modules.
+    /// Checks a drawing: `normal` is its normal section, as ISO 21771 has it: the rack with its module, its pressure angle and its round tips, the profile
+    /// shift in normal modules.
     ///
     /// `web_offset` is where the middle of the web stands from that of the face; without a `hub` the blank is as wide as the face
     /// inside the web. With straight teeth the section is the gear of [`SpurGear::new`], to the last digit.
     ///
     /// # Errors
     ///
-    /// [`SolidGearError`] says which part cannot be made and what would do.
+    /// [`SolidGearError`] with the part that cannot be made and the value that would do.
     pub fn new(
         normal: GearData,
         helix: Helix,
         web_offset: f64,
         hub: Option<Hub>,
     ) -> Result<Self, SolidGearError> {
-        // Written so that what is not a number is refused as well.
+        // This form refuses values that are not numbers as well.
         if !(helix.angle >= 0.0 && helix.angle <= LARGEST_HELIX_ANGLE) {
             return Err(SolidGearError::HelixAngle {
                 angle: helix.angle,
@@ -269,7 +269,7 @@ impl SolidGear {
         }
     }
 
-    /// The same gear seen from its other side, holes left where they are: what stood at z stands at −z.
+    /// The same gear seen from its other side, holes left where they are: parts at z are then at −z.
     pub(super) fn turned_over(&self) -> Self {
         let hub = self.hub.map(|hub| Hub {
             offset: 0.0 - hub.offset,
@@ -305,7 +305,7 @@ impl SolidGear {
         [-half, half]
     }
 
-    /// What is below the root circle, from outside to the bore or the radius of the shaft, in parts of unlike width.
+    /// Parts below the root circle, from outside to the bore or the radius of the shaft, by their widths.
     pub fn layers(&self) -> Vec<Layer> {
         let blank = &self.section.data().blank;
         let (bore, root) = (blank.bore_radius, self.section.root_radius());
@@ -348,7 +348,7 @@ impl SolidGear {
         layers
     }
 
-    /// What is inside the radius of the shaft of a gear that is of one piece with it: as wide as its hub, or as the face.
+    /// The part inside the radius of the shaft of a gear that is of one piece with it: as wide as its hub, or as the face.
     pub fn shaft(&self) -> Option<Layer> {
         let blank = &self.section.data().blank;
         blank.shaft().map(|_| Layer {

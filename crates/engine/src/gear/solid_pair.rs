@@ -10,7 +10,7 @@ use super::{GearPair, GearPairError, Member, PairDeviations, SolidGear};
 /// The least part of the narrower face on which two gears touch.
 const LEAST_OVERLAP: f64 = 0.1;
 
-/// So many teeth of either gear at least are out of mesh: no tooth carries at both ends of its face, in two pairs.
+/// Least number of teeth of either gear that are out of mesh: no tooth carries at both ends of its face, in two pairs.
 const LEAST_OUT_OF_MESH: f64 = 2.0;
 
 /// How the axes of two gears, and their faces, stand from where they should. Lengths are in meters.
@@ -332,8 +332,8 @@ impl SolidPair {
         (s - self.section.pitch_roll_length()) / self.section.base_pitch()
     }
 
-    /// How far the loaded flanks of `teeth` are apart at `z` beyond what their sections say, along the base tangent: by their leads and by
-    /// how the axes stand. `deviations` are those of the teeth.
+    /// Gap of the loaded flanks of `teeth` at `z` beyond that of their sections, along the base tangent: by their leads and by the axes. `deviations` are those
+    /// of the teeth.
     pub fn lead_gap(&self, deviations: &PairDeviations, teeth: [usize; 2], z: f64) -> f64 {
         let removed = self.removed_by_leads(deviations, teeth, z);
         self.askew(z) + removed[0] + removed[1]
@@ -351,7 +351,7 @@ impl SolidPair {
         (in_plane * alpha.sin() + out_of_plane * alpha.cos()) * along
     }
 
-    /// What the leads of both gears, and those of `teeth` with these `deviations`, remove at `z` along the base tangent.
+    /// Removal by the leads of both gears, and by those of `teeth` with these `deviations`, at `z` along the base tangent.
     pub(crate) fn removed_by_leads(
         &self,
         deviations: &PairDeviations,
@@ -518,7 +518,7 @@ mod tests {
             leads: [leads.clone(), leads],
             ..plain
         };
-        // On the other flanks what opens across the plane of the axes closes.
+        // On the other flanks openings across the plane of the axes close.
         let of_other = SolidPair {
             alignment: Alignment {
                 out_of_plane: -alignment.out_of_plane,
@@ -531,7 +531,7 @@ mod tests {
             let gap = |pair: &SolidPair, z| pair.lead_gap(&PairDeviations::NONE, [0, 0], z);
             assert!((gap(&turned, -z) - gap(&of_other, z)).abs() < 1e-18);
         }
-        // Twice turned it is what it was, but for how its leads are said.
+        // Turned twice it is the same, but for the form of its leads.
         let back = turned.turned_over();
         assert_eq!((back.gears, back.common), (with.gears.clone(), with.common));
         let even = pair(0.2, 20e-3, Alignment::default()).expect("meshes");

@@ -14,7 +14,7 @@ use super::involute::involute_function;
 use super::solid::transverse_angle;
 use crate::root_finding::bisect;
 
-/// What a drawing says of the thickness of its teeth. Lengths are in meters.
+/// Thickness of the teeth as a drawing gives it. Lengths are in meters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Thickness {
     /// The deviation A_st of the transverse arc on the reference circle; negative is thinner.
@@ -37,7 +37,7 @@ pub enum Thickness {
     },
 }
 
-/// What a thickness is measured on: teeth as the rack cuts them, in the normal section.
+/// Teeth on which a thickness is measured: as the rack cuts them, in the normal section.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeasuredTeeth {
     /// The number of teeth z.
@@ -113,7 +113,7 @@ impl MeasuredTeeth {
 }
 
 impl Thickness {
-    /// What this is as a deviation of the transverse arc on the reference circle of `teeth`, in meters; `None` where balls would stand in the base circle.
+    /// The thickness as a deviation of the transverse arc on the reference circle of `teeth`, in meters; `None` where balls would stand in the base circle.
     pub fn deviation(self, teeth: &MeasuredTeeth) -> Option<f64> {
         let half_angle = match self {
             Self::Transverse(deviation) => return Some(deviation),
@@ -154,7 +154,7 @@ impl Thickness {
         })
     }
 
-    /// The roll length, in meters, at which the gauge touches the flanks of `teeth`; `None` of what is not measured, and of balls in the base circle.
+    /// The roll length, in meters, at which the gauge touches the flanks of `teeth`; `None` without a measurement, and for balls in the base circle.
     pub fn touch(self, teeth: &MeasuredTeeth) -> Option<f64> {
         match self {
             Self::Transverse(_) | Self::Normal(_) => None,

@@ -65,7 +65,7 @@ impl BlankGrid {
         counterpart[bore_left as usize] = bore_right;
         counterpart[arc_left as usize] = arc_right;
 
-        // Own nodes are numbered sector by sector; what lies on the left side is the next sector's right one.
+        // Own nodes are numbered sector by sector; the left side is the next sector's right one.
         let (own, count) = (self.own_nodes() as u32, self.sector_count);
         let mut numbers = Vec::with_capacity(counterpart.len());
         let mut next = 0;

@@ -13,7 +13,7 @@ pub(super) type Edge = Vec<u32>;
 pub(super) struct GridBuilder {
     nodes: Vec<Vector>,
     elements: Vec<Element>,
-    /// The thickness of what is filled next, as a part of the body's.
+    /// The thickness of the next blocks, as a part of the body's.
     pub(super) thickness: f64,
 }
 

@@ -5,8 +5,8 @@
 
 use super::GridLevel;
 
-// Sizes, chosen for what the levels promise ([`GridLevel`]); none of them moves the sharpest corner of the tests' patterns by a tenth
-// of a degree when halved or doubled.
+// Sizes, chosen for the accuracy of the levels ([`GridLevel`]); none of them moves the sharpest corner of the tests' patterns by a tenth of a degree when
+// halved or doubled.
 
 /// The depth of the first layer under the interface circle, in element lengths along it: the highest orders fall within it.
 pub(super) const FIRST_LAYER: f64 = 0.5;
@@ -14,7 +14,7 @@ pub(super) const FIRST_LAYER: f64 = 0.5;
 pub(super) const GROWTH: f64 = 0.35;
 /// The largest size along the radius, as a part of the radius: a plain ring has its closed form to 2e-9 with it.
 pub(super) const LARGEST: f64 = 0.12;
-/// The least number of layers between a hole and what is next to it, at the standard level: enough to bend.
+/// The least number of layers between a hole and the next edge, at the standard level: enough for bending.
 pub(super) const LAYERS: usize = 6;
 /// Lines nearer than this, in the chart, are one: no thickness can be told between them.
 const ON_LINE: f64 = 1e-6;

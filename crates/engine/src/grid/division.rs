@@ -92,7 +92,7 @@ impl Grading {
             x = (0..STEPS).fold(x, |x, _| self.advance(x, step));
             corners.push(x);
         }
-        // What the integration misses is spread over all elements.
+        // The error of the integration is spread over all elements.
         for corner in &mut corners {
             *corner /= x;
         }

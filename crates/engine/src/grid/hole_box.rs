@@ -23,8 +23,8 @@ const NARROW: f64 = 0.7;
 /// How far the box stays off the hole where its surroundings are narrow, in half widths of the hole. Half as much again takes the
 /// sharpest corner to 25.0 degrees, half of it costs a twentieth more elements.
 const CLOSE: f64 = 0.4;
-/// The largest element on the outer side of the box, in those of the interface circle: what an uneven division may lose. Half
-/// of it costs a quarter more elements.
+/// The largest element on the outer side of the box, in those of the interface circle: the allowed loss of an uneven division. Half of it costs a quarter more
+/// elements.
 const LARGEST_ON_ARC: f64 = 1.2;
 /// The gap, in half widths of the hole, at which the nodes of a side stand halfway between opposite the hole's and even. A third
 /// less takes the sharpest corner to 26.4 degrees, more of it changes nothing.
@@ -58,8 +58,7 @@ pub(super) struct HolePlan {
     pub(super) side: Vec<f64>,
     pub(super) outer_spoke: Vec<f64>,
     pub(super) inner_spoke: Vec<f64>,
-    /// What the box leaves: to the line below, to the line above, and to the side of the sector at π/N.
-    /// The first two with the line that they end on.
+    /// Distances beside the box: to the line below, to the line above, and to the side of the sector at π/N. The first two with the line that they end on.
     pub(super) below: Option<(Vec<f64>, f64)>,
     pub(super) above: Option<(Vec<f64>, f64)>,
     pub(super) beside: Option<Vec<f64>>,

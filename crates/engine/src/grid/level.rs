@@ -2,9 +2,8 @@
 
 /// The public grid levels; each step halves every element.
 ///
-/// What coarse and standard promise are differences from fine in the flexible method over the true period, on the paper's
-/// cases and the standard pair; `tests/validation/convergence.rs` holds them. A harmonic below a fifth of the largest one is
-/// meant as a part of that one.
+/// The accuracies of coarse and standard are differences from fine in the flexible method over the true period, on the paper's cases and the standard pair;
+/// `tests/validation/convergence.rs` checks them. A harmonic below a fifth of the largest one is meant as a part of that one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum GridLevel {
     /// Half as fine as standard, for first looks: within 0.2 % of the mean transmission error, 2 % of its peak-to-peak and rms,
@@ -18,7 +17,7 @@ pub enum GridLevel {
 }
 
 impl GridLevel {
-    /// The count at this level of what the standard grid has about `standard` of.
+    /// The count at this level where the standard grid has about `standard`.
     ///
     /// The standard count is made even, so that the levels are 1 : 2 : 4 exactly.
     pub(super) fn count(self, standard: f64) -> usize {

@@ -1,8 +1,8 @@
 //! Finite-element grids of tooth sectors and holed blanks.
 //!
-//! Teeth and equal round holes are divided into 8-node quadrilaterals in structured blocks, any other blank into 6-node
-//! triangles. Read in this order: [`level`] (how fine), [`element`] (the two elements), [`planar`] (what a grid is, and its
-//! quality), [`tooth`] and [`blank`] (the two sectors a gear is assembled from), [`ring_grid`] (by a sector or not), [`whole`] (a blank without symmetry).
+//! Teeth and equal round holes are divided into 8-node quadrilaterals in structured blocks, any other blank into 6-node triangles. Read in this order:
+//! [`level`] (resolution), [`element`] (the two elements), [`planar`] (a grid and its quality), [`tooth`] and [`blank`] (the two sectors a gear is assembled
+//! from), [`ring_grid`] (by a sector or not), [`whole`] (a blank without symmetry).
 
 pub mod blank;
 mod block;

@@ -27,7 +27,7 @@ pub(super) struct Boundary {
     pub(super) outline: Outline,
     /// The size along it at the coarse level; infinite where it asks for none.
     pub(super) size: f64,
-    /// Whether it goes around the material, or bounds an opening within.
+    /// True if it goes around the material; false for an opening within.
     pub(super) around: bool,
     /// Parts of the curve that ask for a smaller size, and which.
     details: Vec<(Side, f64)>,
@@ -86,7 +86,7 @@ impl Boundary {
 pub(super) struct Sizes {
     /// Every boundary of the material.
     pub(super) boundaries: Vec<Boundary>,
-    /// What all sizes are multiplied by.
+    /// Factor of all sizes.
     pub(super) scale: f64,
 }
 
@@ -111,7 +111,7 @@ impl Sizes {
         (self.scale * size.min(OF_LIGAMENT * (nearest + second))).max(LEAST)
     }
 
-    /// Whether `point` stands within the material by `margin`.
+    /// True if `point` stands within the material by `margin`.
     pub(super) fn is_inside(&self, point: Vector, margin: f64) -> bool {
         self.boundaries.iter().all(|boundary| {
             boundary.least_distance(point) >= margin || boundary.clearance(point) >= margin

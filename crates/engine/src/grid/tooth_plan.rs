@@ -8,9 +8,8 @@ use super::root_curve::RootCurve;
 use super::{Grid, GridLevel};
 use crate::gear::{SpurGear, TipEdge, Vector, radial};
 
-// Sizes are chosen for what the levels promise ([`GridLevel`]): none of them moves the sharpest corner by a tenth of a degree when
-// it is a third smaller or half as large again. The shape of the blocks is chosen for that corner, which is 30.8 degrees over all
-// teeth of the tests' sweep.
+// Sizes are chosen for the accuracy of the levels ([`GridLevel`]): none of them moves the sharpest corner by a tenth of a degree when it is a third smaller or
+// half as large again. The shape of the blocks is chosen for that corner, which is 30.8 degrees over all teeth of the tests' sweep.
 
 /// The element size along the loaded flank at its tip corner, in modules, at the standard level: where contact cells of a few
 /// micrometers end.
@@ -41,8 +40,8 @@ const PART_OF_FILLET: f64 = 0.25;
 /// How much faster than linear the division across the tooth goes over from that of the tip to that of the neck: near the tip
 /// sizes along the flank grow as fast. From 0.4 to 0.9 the sharpest corner is the same.
 const BLEND: f64 = 0.6;
-/// How steep the line from the fillet's dividing point to the interface circle stands, in right angles: it halves what the tooth
-/// leaves of the straight angle there. The sharpest corner is the same from 0.46 to 0.83, and 17.4 degrees upright.
+/// Slope of the line from the fillet's dividing point to the interface circle, in right angles: it halves the straight angle beside the tooth there. The
+/// sharpest corner is the same from 0.46 to 0.83, and 17.4 degrees upright.
 const CORE_STEEPNESS: f64 = 0.69;
 /// The part of the interface circle that the core takes at least where the circle is deep. A third less gives the sharpest corner
 /// two degrees, half as much again takes three.
@@ -109,8 +108,8 @@ impl Sizes {
         least: [8, 6, 4, 4],
     };
 
-    /// Sizes of such a section whose fillets tell the stress along them, to 1.5 %. What bends the tooth needs layers across it more than the
-    /// fillet needs small elements.
+    /// Sizes of such a section whose fillets give the stress along them, to 1.5 %. Bending of the tooth needs layers across it more than the fillet needs small
+    /// elements.
     pub(super) const OF_STRESSED_PRISM: Self = Self {
         on_fillet: SIZE_ON_FILLET,
         below_fillet: SIZE_BELOW_FILLET,
@@ -135,7 +134,7 @@ pub struct ToothGrid {
     /// The nodes of the fillet on the loaded side and of the root land after it, corners and midsides, from the form point to
     /// the side at π/Z: a free edge, in tension while the flank is loaded.
     pub fillet_nodes: Vec<u32>,
-    /// Those on the unloaded side: its mirror images, in the same order.
+    /// Nodes on the unloaded side: the mirror images, in the same order.
     pub back_fillet_nodes: Vec<u32>,
     /// The nodes on the interface circle, corners and midsides, from −π/Z to π/Z.
     pub arc_nodes: Vec<u32>,
@@ -532,8 +531,8 @@ fn interface_angles(
     interface_radius: f64,
 ) -> (f64, Vec<f64>) {
     let beta = gear.pitch_angle() / 2.0;
-    // A line from the dividing point that halves what the tooth leaves of the straight angle there would reach the
-    // interface circle at this angle; the bounds leave room for core and rim where the circle is deep.
+    // A line from the dividing point that halves the straight angle beside the tooth would reach the interface circle at this angle; the bounds leave room for
+    // core and rim where the circle is deep.
     let drop = corner.x - interface_radius;
     let steep = (FRAC_PI_2 * CORE_STEEPNESS).tan();
     let aim = (corner.y - drop / steep) / interface_radius;

@@ -40,9 +40,9 @@ pub(super) struct Chain {
     pub(super) nodes: Vec<u32>,
     /// Where each stands on the curve.
     pub(super) lengths: Vec<f64>,
-    /// Whether the last is joined to the first.
+    /// True if the last is joined to the first.
     pub(super) closed: bool,
-    /// Whether the curve bounds the material; one within it only divides it.
+    /// True if the curve bounds the material; one within it only divides it.
     pub(super) bounds: bool,
 }
 
@@ -130,7 +130,7 @@ impl TriangleNet {
         let mut keep = used.iter();
         self.points
             .retain(|_| keep.next().is_some_and(|used| *used));
-        // Those on chains come first and keep their numbers.
+        // Nodes on chains come first and keep their numbers.
         for corner in self.triangles.iter_mut().flatten() {
             *corner = numbers[*corner as usize];
         }
@@ -155,7 +155,7 @@ impl TriangleNet {
             }
         }
         let mut seen = vec![false; delaunay.num_all_faces()];
-        // The outermost chain is counter-clockwise: what lies on its left is material.
+        // The outermost chain is counter-clockwise: the material lies on its left.
         let mut next: Vec<_> = self.chains[0]
             .links()
             .filter_map(|(a, b, _)| {

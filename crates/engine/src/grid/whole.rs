@@ -17,11 +17,11 @@ const AROUND_HOLE: f64 = 16.0;
 /// How much smaller triangles are made where some come out distorted, and how often.
 const SMALLER: f64 = 0.75;
 const MOST_TRIES: i32 = 4;
-/// What counts as on the web's edge, in interface radii: more than rounding, less than any element.
+/// Distance that counts as on the web's edge, in interface radii: more than rounding, less than any element.
 const ON_CIRCLE: f64 = 1e-9;
 /// Parts along each side of a triangle that the web's edge crosses, for the share of either thickness.
 const WEB_PARTS: usize = 16;
-/// What is cut off of numbers in interface radii: a thousandth of the rounding in which similar gears differ.
+/// Rounding of numbers in interface radii: a thousandth of the rounding in which similar gears differ.
 const DIGITS: f64 = (1_u64 << 40) as f64;
 
 impl BlankGrid {
@@ -89,7 +89,7 @@ fn check(region: &BlankRegion, interface_radius: f64) -> Result<(), GridError> {
             Ligament::ToRim(_) => &mut above,
             Ligament::ToBore(_) => &mut below,
         };
-        // Not `min`, which would pass over what is not a number.
+        // Not `min`, which would ignore a value that is not a number.
         if left < *least || left.is_nan() {
             *least = left;
         }

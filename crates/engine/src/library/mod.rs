@@ -68,7 +68,7 @@ impl Library {
         }))
     }
 
-    /// How each of its shelves is used, by what stands on it.
+    /// Use of each of its shelves, by name.
     pub fn usage(&self) -> [(&'static str, ShelfUsage); 11] {
         let Shelves {
             teeth,

@@ -1,4 +1,4 @@
-//! A bounded store that forgets what was not used for longest.
+//! A bounded store that evicts the part that was unused for longest.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -35,9 +35,9 @@ struct Entry<S, P> {
 /// How a shelf is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ShelfUsage {
-    /// What its parts take, in bytes.
+    /// Size of its parts in bytes.
     pub bytes: usize,
-    /// What they may take, in bytes.
+    /// Limit of their size in bytes.
     pub capacity: usize,
     /// Parts that it holds.
     pub entries: usize,
@@ -210,7 +210,7 @@ mod tests {
         Shelf::new(capacity, |_, part| *part as usize)
     }
 
-    /// Whether the part of `spec`, `size` bytes large, had to be made.
+    /// True if the part of `spec`, `size` bytes large, had to be made.
     fn made(shelf: &Shelf<u32, u32>, spec: u32, size: u32) -> bool {
         let mut made = false;
         let make = || {
@@ -221,7 +221,7 @@ mod tests {
         made
     }
 
-    /// Whether the part of `spec`, 10 bytes large, had to be made.
+    /// True if the part of `spec`, 10 bytes large, had to be made.
     fn built(shelf: &Shelf<u32, u32>, spec: u32) -> bool {
         made(shelf, spec, 10)
     }
@@ -296,8 +296,7 @@ mod tests {
         assert!(built(&shelf, 1));
     }
 
-    /// What the second gets of two who want the same part: it comes while the first makes it, to `made`, and would itself
-    /// make `own`.
+    /// Result of the second of two requests for the same part: it comes while the first makes it, to `made`, and would itself make `own`.
     fn second_of_two(
         shelf: &Shelf<u32, u32>,
         made: Result<u32, ()>,

@@ -16,7 +16,7 @@ use crate::gear::{Material, PlaneState};
 /// One of two bodies in contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct ContactBody {
-    /// What it is made of.
+    /// Its material.
     pub(super) material: Material,
     /// The radius of curvature of its convex flank, in m: for an involute, the roll length.
     pub(super) curvature_radius: f64,

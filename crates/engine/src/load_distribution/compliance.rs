@@ -12,13 +12,13 @@ use super::weber_banaschek::ToothCompliance;
 use super::{BodyFormula, FormulaError, Formulas, ToothFormula};
 use crate::gear::{GearPair, Member, PairDeviations};
 
-/// What rounding may take off the path of contact, in base pitches: at a contact ratio of one no position stays empty.
+/// Loss of the path of contact by rounding, in base pitches: at a contact ratio of one no position stays empty.
 const ROUNDING: f64 = 1e-9;
 /// The least radius of curvature at a contact over the length of the line of action. On the base circle there is none, and
 /// Hertz's pressure has no limit.
 const LEAST_CURVATURE: f64 = 1e-6;
 
-/// The formulas of a pair, what they need of its gears made once.
+/// The formulas of a pair, with the data of its gears made once.
 pub struct PairFormulas<'a> {
     pair: &'a GearPair,
     deviations: PairDeviations,
@@ -34,7 +34,7 @@ enum Law {
     Whole(f64),
 }
 
-/// What the formulas need of one gear.
+/// Data of one gear for the formulas.
 struct GearParts {
     profile: ToothProfile,
     ring: Ring,

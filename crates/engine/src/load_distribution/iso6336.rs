@@ -9,13 +9,11 @@
 //! - C_B = (1 + 0.5 (1.2 − h_fP/m)) (1 − 0.02 (20° − α)) for other racks; the mean of the two where the gears' racks differ;
 //! - E/E_steel for other materials, with E = 2 E_1 E_2/(E_1 + E_2) and E_steel = 206 GPa.
 //!
-//! Here c' = c'_th C_B E/E_steel, per unit of the common face width and along the line of action: what the theory gives, as
-//! with the other formulas. It is the stiffness of a pair where it is stiffest, and stands for every position, so that the
-//! mean over the path of contact lies above theirs by some 5 to 35 %.
+//! Here c' = c'_th C_B E/E_steel, per unit of the common face width and along the line of action: the theoretical value, as with the other formulas. It is the
+//! stiffness of a pair where it is stiffest, and stands for every position, so that the mean over the path of contact lies above theirs by some 5 to 35 %.
 //!
-//! The standard goes on to C_M = 0.8, what measured stiffnesses reach of the theory, to C_R for webbed blanks (1 for the
-//! discs here), and below a line load of 100 N/mm to a stiffness that falls with its fourth root. These corrections are
-//! empirical, and left out: the stiffness is the same at every load.
+//! The standard goes on to C_M = 0.8, the ratio of measured stiffnesses to the theory, to C_R for webbed blanks (1 for the discs here), and below a line load
+//! of 100 N/mm to a stiffness that falls with its fourth root. These corrections are empirical, and left out: the stiffness is the same at every load.
 //!
 //! The fit holds for x_1 ≥ x_2 and −0.5 ≤ x_1 + x_2 ≤ 2. Outside, and at lower line loads, [`out_of_range`] says so and the
 //! value is given all the same.
@@ -46,7 +44,7 @@ pub(super) fn single_stiffness(pair: &GearPair) -> f64 {
     c_th * f64::midpoint(c_b1, c_b2) * 2.0 / (1.0 / e_1 + 1.0 / e_2) / STEEL_MODULUS
 }
 
-/// What of `pair` under its least output torque lies outside the range of the standard.
+/// Values of `pair` under its least output torque outside the range of the standard.
 pub(super) fn out_of_range(pair: &GearPair, least_torque: f64) -> Vec<FormulaRange> {
     let [x_1, x_2] = pinion_and_wheel(pair).map(|gear| gear.data().profile_shift);
     let line_load = least_torque / pair.driven().reference_radius() / pair.common_face_width();
@@ -96,7 +94,7 @@ mod tests {
     use crate::gear::spur::tests::paper_gear;
     use crate::gear::{GearData, SpurGear};
 
-    /// C_M: what measured single stiffnesses reach of c'_th; the published examples have it.
+    /// C_M: ratio of measured single stiffnesses to c'_th; the published examples have it.
     const MEASURED_SHARE: f64 = 0.8;
 
     /// A value in N/m² against a print in N/(mm µm), to half a unit of its last digit.

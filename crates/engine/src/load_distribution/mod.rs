@@ -4,7 +4,7 @@
 //! A loaded pair of teeth gives way in three places, and for each there is a closed form. Forces act along the line
 //! of action, so compliances (m/N) add up in series over the two gears:
 //!
-//! | what gives way | formula | file |
+//! | part | formula | file |
 //! | --- | --- | --- |
 //! | the tooth, a cantilever of varying section | Weber and Banaschek's integral over the true profile | `weber_banaschek` |
 //! | the body under the tooth, as a ring on a rigid bore | Sainsot, Velex and Duverger | `sainsot` |
@@ -19,11 +19,10 @@
 //! Where the face widths differ, each tooth and body yields by its own width, and the flanks touch on the common one; ISO's
 //! stiffness is that of the common width.
 //!
-//! It stands on the drawings of the gears and on Hertz alone; `analysis::load_distribution` makes curves of it.
+//! The formulas use the drawings of the gears and Hertz alone; `analysis::load_distribution` makes curves of them.
 //!
-//! What this route cannot see: holes (a body is a ring or a half plane), and the body that neighboring pairs share -
-//! each pair carries a body of its own, so that the deflection of one tooth does not tilt the next. ISO's single
-//! stiffness knows neither position nor bore nor load.
+//! Limits of this method: holes (a body is a ring or a half plane), and the body that neighboring pairs share - each pair has a body of its own, so that the
+//! deflection of one tooth does not tilt the next. ISO's single stiffness depends neither on position nor on bore nor on load.
 
 mod approach;
 mod compliance;
@@ -90,12 +89,12 @@ pub enum FormulaError {
         formula: Formula,
         /// The gear whose part it is; `None` for the pair.
         member: Option<Member>,
-        /// What it gives, in m/N: not positive, or no number.
+        /// Compliance in m/N: not positive, or not a number.
         compliance: f64,
     },
 }
 
-/// What of `pair`, the least of whose output torques is `least_torque`, lies outside the ranges of `formulas`.
+/// Values of `pair`, the least of whose output torques is `least_torque`, outside the ranges of `formulas`.
 pub fn out_of_range(pair: &GearPair, formulas: Formulas, least_torque: f64) -> Vec<FormulaRange> {
     match (formulas.tooth, formulas.body) {
         (ToothFormula::Iso6336, _) => iso6336::out_of_range(pair, least_torque),

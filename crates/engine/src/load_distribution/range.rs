@@ -1,4 +1,4 @@
-//! The ranges for which formulas were published, and what lies outside them.
+//! The ranges for which formulas were published, and values outside them.
 
 use crate::gear::Member;
 
@@ -56,7 +56,7 @@ impl FormulaQuantity {
 /// A number outside the range for which a formula was published. The formula's value is used all the same.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FormulaRange {
-    /// What is outside.
+    /// Quantity outside.
     pub quantity: FormulaQuantity,
     /// The gear that it is of; `None` for the pair.
     pub member: Option<Member>,

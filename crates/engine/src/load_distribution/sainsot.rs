@@ -105,8 +105,8 @@ impl Ring {
             * (l * u_s.powi(2) + m * u_s + p * (1.0 + q * alpha_m.tan().powi(2)))
     }
 
-    /// What of this body, which is that of `member`, lies outside the range of the fit: h and θ_f, or, where these lie
-    /// within it, the functions that the fit does not follow there.
+    /// Values of this body, which is that of `member`, outside the range of the fit: h and θ_f, or, where these lie within it, the functions that the fit does
+    /// not follow there.
     pub(super) fn out_of_range(&self, member: Member) -> Vec<FormulaRange> {
         let outside =
             |quantity, value, range| FormulaRange::outside(quantity, Some(member), value, range);

@@ -16,7 +16,7 @@ pub struct LinePair {
     pub(super) gap: f64,
     /// The flanks at their contact.
     pub(super) contact: LineContact,
-    /// Whether h stands beside C; ISO's stiffness contains it.
+    /// True if h stands beside C; ISO's stiffness contains it.
     pub(super) with_approach: bool,
 }
 
@@ -74,7 +74,7 @@ impl LinePair {
     }
 }
 
-/// What the pairs at one position do under a load.
+/// State of the pairs at one position under a load.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shared {
     /// δ in m.

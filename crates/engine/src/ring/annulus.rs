@@ -46,7 +46,7 @@ impl Annulus {
             .map(|j| radius * stiffness[(round, j)])
             .collect();
         if imposed == Imposed::Tangential {
-            // The circle moves radially until it finds no force there: what it does for a unit moment is taken off.
+            // The circle moves radially until its force there is zero: its motion for a unit moment is subtracted.
             let radial: Vec<usize> = (0..moments.len()).filter(|i| i % 2 == 0).collect();
             let factor = Cholesky::new(Mat::from_fn(radial.len(), radial.len(), |i, j| {
                 stiffness[(radial[i], radial[j])]

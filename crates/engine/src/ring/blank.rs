@@ -243,7 +243,7 @@ impl BlankSubstructure {
     }
 }
 
-/// What the interface circle does inside a blank: a row for each functional asked of sector 0.
+/// Motion inside a blank by the interface circle: a row for each functional of sector 0.
 #[derive(Debug, Clone)]
 pub struct BlankRecovery {
     /// The harmonics of the interface circle.

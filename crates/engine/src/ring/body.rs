@@ -188,7 +188,7 @@ impl Coupling {
 
 /// Adds F_iᵀ C F_j on `orders`, whose stiffness C⁻¹ is factorized in `ring`, to the `blocks` of every row.
 ///
-/// F_i = G_i W, and with L⁻¹ G of both teeth what is inside is one plain product.
+/// F_i = G_i W, and with L⁻¹ G of both teeth the inside is one plain product.
 fn add_answers(
     blocks: &mut [Mat<f64>],
     row_length: usize,

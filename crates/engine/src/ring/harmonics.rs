@@ -38,7 +38,7 @@ impl Harmonics {
         (unknown + 2) / 4
     }
 
-    /// Whether an unknown is an a_n with n > 0, whose b_n stands two places later.
+    /// True if an unknown is an a_n with n > 0, whose b_n stands two places later.
     pub fn is_cosine(&self, unknown: usize) -> bool {
         unknown >= 2 && unknown % 4 >= 2
     }

@@ -1,8 +1,8 @@
 //! A blank on the edge of its bore, which its shaft or nothing holds: the disc inside the shaft's radius, on the harmonics of its edge.
 //!
-//! The disc is solid to the axis. A force and a torque that act on its edge are held by what the shaft takes over its section: a force by one that is even
-//! over it, a torque by a tangential force f = T r/(b J) that rises with the radius, as torsion leaves it. Both do work on the mean displacement of the
-//! section and on its mean rotation, ∫ r u_t dA/∫ r² dA; these are held at zero. Order by order that is a closed form in plane stress.
+//! The disc is solid to the axis. A force and a torque on its edge are balanced over the section of the shaft: a force by an even one, a torque by a tangential
+//! force f = T r/(b J) that rises with the radius, as torsion leaves it. Both do work on the mean displacement of the section and on its mean rotation, ∫ r u_t
+//! dA/∫ r² dA; these are held at zero. Order by order that is a closed form in plane stress.
 
 use faer::{Mat, c64};
 
@@ -243,7 +243,7 @@ impl ShaftSection {
         }
     }
 
-    /// Adds what the disc holds its edge with to the `stiffness` on `harmonics` of that edge.
+    /// Adds the stiffness of the disc at its edge to the `stiffness` on `harmonics` of that edge.
     pub(super) fn add_to(&self, stiffness: &mut Mat<f64>, harmonics: &Harmonics) {
         for n in 0..=harmonics.largest {
             let [[rr, rt], [_, tt]] = self.stiffness(n);

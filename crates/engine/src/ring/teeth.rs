@@ -11,8 +11,8 @@ use crate::fem::FemError;
 use crate::fem::dense::Cholesky;
 use crate::run::Run;
 
-/// How far apart, in teeth, two teeth of one section may be loaded together: several times what the heaviest load makes of the transverse
-/// contact ratio of any gear that can be drawn.
+/// Largest distance, in teeth, of two teeth of one section that may be loaded together: several times the transverse contact ratio under the heaviest load of
+/// any gear that can be drawn.
 pub const FARTHEST_COUPLED: usize = 16;
 
 /// The ring of all teeth of a gear, condensed to the harmonics of the interface circle.
@@ -281,7 +281,7 @@ mod tests {
     use super::*;
     use crate::ring::cyclic::tests::{arc, assembled, sector};
 
-    /// A tooth of which only what makes the ring is filled in: a sector, and two loading modes on all its unknowns.
+    /// A tooth with only the data of the ring: a sector, and two loading modes on all its unknowns.
     fn tooth(count: usize, side_nodes: usize) -> ToothSubstructure {
         let sector = sector(count, side_nodes);
         let n = sector.stiffness.nrows();

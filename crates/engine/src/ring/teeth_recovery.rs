@@ -1,4 +1,4 @@
-//! What loads on the flanks and the motion of the interface circle do inside the teeth.
+//! Response inside the teeth to loads on the flanks and to the motion of the interface circle.
 
 use faer::{Mat, c64};
 
@@ -8,7 +8,7 @@ use super::tooth::{ToothRows, ToothSubstructure};
 use crate::fem::FemError;
 use crate::run::Run;
 
-/// Functionals of one tooth, such as the stresses along its fillet, by what acts on the ring of teeth.
+/// Functionals of one tooth, such as the stresses along its fillet, by loads on the ring of teeth.
 ///
 /// The functionals of tooth i are R_p p_i + Σ_j R_{j−i} m_j + R_q q_i: p_i the forces on its own flank, m_j = Vᵀ p_j the modal
 /// loads of tooth j ([`super::tooth::modal_loads`]), which reach it through the sides of the sectors between, and q_i the

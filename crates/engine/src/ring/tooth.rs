@@ -193,7 +193,7 @@ impl ToothSubstructure {
     }
 }
 
-/// Vᵀ p: what the forces `flank_forces` on the flank's unknowns are on the loading `modes`.
+/// Vᵀ p: the forces `flank_forces` on the flank's unknowns in terms of the loading `modes`.
 pub fn modal_loads(modes: &Mat<f64>, flank_forces: &[f64]) -> Vec<f64> {
     let shapes = modes.col_iter();
     shapes

@@ -8,7 +8,7 @@ use crate::root_finding::crossing;
 /// Places besides kinks between which minima of the gap are searched on flanks that are not convex.
 const PLACES: u32 = 64;
 
-/// What coordinates may be rounded by, in meters.
+/// Rounding of coordinates, in meters.
 pub(crate) const ROUNDING: f64 = 1e-12;
 
 /// Flanks meet only where a force along their common normal has at least this arm about both axes, over the base radii.
@@ -17,10 +17,10 @@ pub(crate) const ROUNDING: f64 = 1e-12;
 /// half of the arm. It has less only where both flanks are roundings and turn away from the line of action: they pass each other there and do not drive.
 const LEAST_ARM: f64 = 0.5;
 
-/// Turns to the flanks that touch; each squares what is left.
+/// Turns to the touching flanks; each squares the remainder.
 pub(crate) const MOST_TURNS: u32 = 4;
 
-/// What ends the part of a flank from which the other flank is seen.
+/// End of the part of a flank from which the other flank is seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RangeEnd {
     /// Its own fillet begins.
@@ -33,14 +33,14 @@ pub enum RangeEnd {
     MateTip,
 }
 
-/// A stretch of flank, by arc length from the base circle, and what ends it on either side.
+/// A stretch of flank, by arc length from the base circle, and its ends on either side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlankRange {
     /// Where it begins, nearer to the root.
     pub from: f64,
     /// Where it ends, nearer to the tip.
     pub to: f64,
-    /// What is there.
+    /// Kinds of the ends.
     pub ends: [RangeEnd; 2],
 }
 
@@ -75,9 +75,9 @@ pub struct Facing {
     pub minima: Vec<GapMinimum>,
     /// Rising places within the range at which either flank has a kink.
     pub kinks: Vec<f64>,
-    /// Those of them at which a flank ends in the corner of its undercut.
+    /// Places at which a flank ends in the corner of its undercut.
     pub corners: Vec<f64>,
-    /// Whether the nominal contact lies past the seat's tip, off the path of contact, and it is not the corner of an undercut flank that touches.
+    /// True if the nominal contact lies past the seat's tip, off the path of contact, and the corner of an undercut flank is not the one that touches.
     pub off_path: bool,
 }
 
@@ -88,7 +88,7 @@ pub(crate) struct View<'a> {
     pub(crate) seat: Member,
 }
 
-/// A point of the seat's flank and what it sees.
+/// A point of the seat's flank and its gap.
 pub(crate) struct FacingPoint {
     pub(crate) roll_length: f64,
     pub(crate) place: FlankPlace,
@@ -135,7 +135,7 @@ impl Facing {
         self.minima[0].touch
     }
 
-    /// Whether it is the tip corner of the other gear that touches first.
+    /// True if the tip corner of the other gear touches first.
     pub(crate) fn is_at_mate_tip(&self) -> bool {
         let arc = self.minima[0].arc;
         let FlankRange { from, to, ends } = self.range;
@@ -219,7 +219,7 @@ impl<'a> View<'a> {
         self.placement.gears()
     }
 
-    /// What belongs to the seat and to the other gear, as driving and driven.
+    /// Values of the seat and of the other gear, as driving and driven.
     pub(crate) fn on_both<T: Copy>(&self, seat: T, other: T) -> [T; 2] {
         match self.seat {
             Member::Driving => [seat, other],
@@ -412,8 +412,8 @@ impl<'a> View<'a> {
 
     /// Where the gap has minima.
     ///
-    /// It is a parabola about the nominal contact plus reliefs that grow towards either tip: convex, and least where its slope
-    /// changes sign, or at an end. Modifications of other kinds may give it several minima; between kinks each is found in the same way.
+    /// The gap is a parabola about the nominal contact plus reliefs that grow towards either tip: convex, and least where its slope changes sign, or at an end.
+    /// Modifications of other kinds may give it several minima; between kinks each is found in the same way.
     fn least_places(&self, range: &FlankRange, kinks: &[f64]) -> Vec<f64> {
         let FlankRange { from, to, .. } = *range;
         if self.gears().driving().is_convex() && self.gears().driven().is_convex() {
@@ -426,7 +426,7 @@ impl<'a> View<'a> {
         let beside = 1e-9 * (to - from);
         places.dedup_by(|a, b| (*a - *b).abs() < 4.0 * beside);
         let mut found = Vec::new();
-        // Whether the gap falls just before the place.
+        // True if the gap falls just before the place.
         let mut falling = true;
         for pair in places.windows(2) {
             let (low, high) = (pair[0] + beside, pair[1] - beside);
@@ -664,7 +664,7 @@ pub(crate) mod tests {
                     let arms = arms_at(arc);
                     assert!(arms.iter().all(|arm| *arm > 0.499), "{phase} {k}: {arms:?}");
                 }
-                // What one involute faces is not cut, and no flank touches beside what is left.
+                // The part that one involute faces is not cut, and no flank touches beside the rest.
                 let tips = [(seat, range.to), (seat.other(), range.from)];
                 let first = view.facing(phase).expect("they face each other").minima[0];
                 for (member, arc) in tips {
@@ -725,8 +725,8 @@ pub(crate) mod tests {
         let s = plain.roll_length_of(0.5);
         let radius = relieved.driving().flank().radius(s);
         let depth = relieved.driving().removed(s);
-        // A slope σ beside a parabola of radius ρ lowers its minimum by σ² ρ/2. A flank that is turned back touches earlier on itself, by what is
-        // missing, so that the relief is read as much farther down.
+        // A slope σ beside a parabola of radius ρ lowers its minimum by σ² ρ/2. A flank that is turned back touches earlier on itself, by the missing amount,
+        // so that the relief is read as much farther down.
         let slope = 5e-6 / 1.75e-3 * plain.driving().base_radius() / radius;
         let by_roll_length = 5e-6 / 1.75e-3 * s / radius;
         let rho = s * (plain.line_of_action() - s) / plain.line_of_action();

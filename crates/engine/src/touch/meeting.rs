@@ -12,7 +12,7 @@ use crate::wide::{Loops, Numbers, wide};
 /// The square of an angle below which a few terms give its sine and cosine to the last bit.
 const SMALL_TURN: f64 = 1e-4;
 
-/// What contact needs of a point at which two flanks face each other, or of several.
+/// Contact data of a point, or of several, at which two flanks face each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Meeting<T = f64> {
     /// The gap along the common normal, positive when open.

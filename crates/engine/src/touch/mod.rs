@@ -1,8 +1,8 @@
 //! Where flanks stand, and how two of them meet.
 //!
-//! - [`placement`]: both gears turned to a mesh position, and what one flank sees of the other.
-//! - [`facing`]: where two flanks that face each other are nearest, and at which lag they touch.
-//! - `meeting`: how they push where they meet.
+//! - [`placement`]: both gears turned to a mesh position, and the gap of one flank to the other.
+//! - [`facing`]: places where two flanks that face each other are nearest, and the lag at which they touch.
+//! - `meeting`: forces where they meet.
 
 pub mod facing;
 pub(crate) mod meeting;

@@ -1,4 +1,4 @@
-//! Both gears turned to a mesh position, and what one flank sees of the other.
+//! Both gears turned to a mesh position, and the gap of one flank to the other.
 //!
 //! Flanks are taken as they are: modifications and the deviation of a tooth turn each point of its flank about the gear's axis, by
 //! e/r_b at the radius at which it stands, and incline its normal by e'.
@@ -24,7 +24,7 @@ pub struct Placement<'a> {
     angles: [f64; 2],
     /// How much the normal of either flank counts ([`weights`]).
     pub(crate) weights: [f64; 2],
-    /// What deviates, and the teeth that are in mesh; nothing of a pair as drawn.
+    /// Deviations, and the teeth that are in mesh; `None` for a pair as drawn.
     deviating: Option<(&'a PairDeviations, [usize; 2])>,
 }
 
@@ -35,7 +35,7 @@ pub struct Section {
     pub pair: i64,
     /// Mesh periods since it passed the pitch point in this section.
     pub phase: f64,
-    /// What is removed from each flank alike at every roll length, along the base tangent.
+    /// Material removed from each flank, the same at every roll length, along the base tangent.
     pub removed: [f64; 2],
     /// The angle by which each gear is turned here from the middle of its face.
     pub twists: [f64; 2],
@@ -65,7 +65,7 @@ pub(crate) struct FlankPlace {
     pub(crate) radial: Vector,
 }
 
-/// What a point sees of a flank: how far the flank is to be turned to pass through it.
+/// Position of a point against a flank: the turn of the flank that would pass through it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sight {
     /// The roll length of the flank at the radius of the point: the length of the tangent from the point to the base circle.
@@ -76,7 +76,7 @@ pub(crate) struct Sight {
     pub(crate) normal: Vector,
     /// The radial direction of the tangent point on the base circle.
     pub(crate) radial: Vector,
-    /// The slope of what is missing from the involute there.
+    /// The slope of the missing material there.
     slope: f64,
 }
 
@@ -213,7 +213,7 @@ impl<'a> Placement<'a> {
         self.pair
     }
 
-    /// What is missing from the involute of `member` at the roll length `s`, and its slope.
+    /// Material missing from the involute of `member` at the roll length `s`, and its slope.
     fn missing(&self, member: Member, s: f64) -> (f64, f64) {
         let gear = self.pair.gear(member);
         let (depth, slope) = (gear.removed(s), gear.removed_slope(s));
@@ -250,7 +250,7 @@ impl<'a> Placement<'a> {
         }
     }
 
-    /// What `point` sees of the flank of `member`; `None` from inside its base circle.
+    /// Position of `point` against the flank of `member`; `None` from inside its base circle.
     pub(crate) fn sight(&self, member: Member, point: Vector) -> Option<Sight> {
         let d = point - self.centers[member.index()];
         let flank = self.pair.gear(member).flank();

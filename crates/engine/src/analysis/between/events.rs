@@ -8,11 +8,11 @@ const TOGETHER: f64 = 1e-3;
 /// The part of the way between two positions over which an event is looked for from one of them alone.
 const FARTHEST: f64 = 0.6;
 
-/// What the samples on both sides of an event say of its place.
+/// Evidence of an event's place from the samples on both sides.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
     pub(super) at: f64,
-    /// Whether it was followed to there; else it may be anywhere between its neighbors.
+    /// True if it was followed to there; otherwise it may be anywhere between its neighbors.
     pub(super) is_known: bool,
 }
 
@@ -61,8 +61,8 @@ pub(super) fn events(samples: &[Sample], at: usize) -> Vec<Place> {
 
 /// Where pair `n`, which carries at only one of the samples `at` and `at + 1`, takes up or leaves the load.
 ///
-/// Its share falls to zero there from one side, and what parts its flanks from the other. Either is followed along its last two samples; the
-/// nearer they are, the more it counts. `None` if neither comes to zero between the samples.
+/// Its share falls to zero there from one side, and the clearance of its flanks from the other. Either is extrapolated from its last two samples; the nearer
+/// they are, the more it counts. `None` if neither becomes zero between the samples.
 fn event(samples: &[Sample], at: usize, n: i64) -> Option<f64> {
     let carries_after = samples[at + 1].carries(n);
     let (from, to) = (samples[at].position, samples[at + 1].position);
@@ -99,7 +99,7 @@ fn event(samples: &[Sample], at: usize, n: i64) -> Option<f64> {
     }
 }
 
-/// What is known of the clearance of pair `n` at the samples `at` and `at + 1`.
+/// The clearance of pair `n` at the samples `at` and `at + 1`.
 fn clearance_of(samples: &[Sample], at: usize, n: i64) -> Option<f64> {
     let of = |sample: &Sample| sample.pair(n)?.clearance;
     of(&samples[at]).or_else(|| of(&samples[at + 1]))

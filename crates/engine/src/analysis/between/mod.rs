@@ -1,4 +1,4 @@
-//! A curve between its positions: where it has kinks, what its extremes are, and what it comes to over its span.
+//! A curve between its positions: kinks, extremes, and statistics over its span.
 //!
 //! δ and k are known at equal steps. Between them a pair takes up or leaves the load, contact reaches the start of a relief or a tip edge, and
 //! the extremes of a curve often stand there. So the curve is divided where the loaded pairs change ([`events`]), a polynomial stands between
@@ -19,7 +19,7 @@ pub(super) use peaks::{MOST_FOR_PEAKS, PeakSearch, Watched};
 pub(super) use refinement::{Refinement, most_further};
 pub(super) use sections::Sections;
 
-/// What is known of a curve at one mesh position.
+/// A curve at one mesh position.
 #[derive(Debug, Clone)]
 pub(super) struct Sample {
     pub(super) position: f64,
@@ -43,7 +43,7 @@ pub(super) struct PairState {
 }
 
 impl Sample {
-    /// Those at `places` of a curve, with the `contacts`, δ and k there.
+    /// Samples at `places` of a curve, with the `contacts`, δ and k there.
     pub(super) fn of(
         places: &[Place],
         contacts: &[MeshContact],
@@ -85,7 +85,7 @@ impl Sample {
         self.pairs.iter().find(|state| state.pair == n)
     }
 
-    /// Whether pair `n` carries load.
+    /// True if pair `n` carries load.
     fn carries(&self, n: i64) -> bool {
         self.pair(n).is_some_and(|state| state.share > 0.0)
     }
@@ -100,7 +100,7 @@ pub(super) struct Span {
     periods: u32,
     /// Positions in a mesh period.
     per_period: u32,
-    /// Whether the curve repeats after it.
+    /// True if the curve is periodic in it.
     closes: bool,
 }
 

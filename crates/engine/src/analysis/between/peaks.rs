@@ -1,7 +1,7 @@
 //! Further positions, where pressures and stresses may be larger than at those that are known.
 //!
-//! Pressure rises steeply as a kink passes the middle of a contact, and stresses where a tooth takes up the load: between two positions there may be more than
-//! at either. Beside a position at which a value is larger than at its neighbors, lines through the positions on both sides bound what stands between.
+//! Pressure rises steeply as a kink passes the middle of a contact, and stresses where a tooth takes up the load: the largest value may lie between two
+//! positions. Beside a position at which a value is larger than at its neighbors, lines through the positions on both sides bound the values between.
 
 use super::Span;
 use crate::analysis::Case;
@@ -27,7 +27,7 @@ pub(in crate::analysis) struct PeakSearch {
     first: f64,
     length: f64,
     step: f64,
-    /// Whether the values repeat after it.
+    /// True if the values are periodic in it.
     closes: bool,
 }
 
@@ -52,11 +52,11 @@ impl PeakSearch {
         }
     }
 
-    /// Adds to `known` what `solve` finds at further positions, until the extremes are known or there were enough. It answers how many there were.
+    /// Adds further positions of `solve` to `known`, until the extremes are known or the limit is reached. Returns their number.
     ///
     /// # Errors
     ///
-    /// Those of `solve`.
+    /// Errors of `solve`.
     pub(in crate::analysis) fn extend<E>(
         &self,
         mut known: Vec<Watched>,

@@ -4,21 +4,21 @@ use super::sections::{Extremes, Section, Sections, tolerance};
 use super::{Sample, Span};
 use crate::analysis::Case;
 
-/// Away from the extremes δ may be off by so many tolerances: what is left of that in mean, rms and harmonics is far less.
+/// Factor of the tolerance of δ away from the extremes: its effect on mean, rms and harmonics is far smaller.
 const ELSEWHERE: f64 = 5.0;
 
 /// A further position stands no nearer to another one than this part of their step.
 const NEAREST: f64 = 1.0 / 32.0;
 
-/// Further positions of different mesh periods whose fractions differ by no more than this part of a step share a fraction: what a pair has in
-/// common there is found once.
+/// Further positions of different mesh periods whose fractions differ by no more than this part of a step share a fraction: the common part of a pair there is
+/// computed once.
 const SHARED: f64 = 1.0 / 8.0;
 
 /// An extreme at an event is believed once a position stands within this part of a step of it: from farther away both sides of an event may
 /// well agree about a wrong place. Until then it counts as one if it comes to an extreme but for this part of the peak-to-peak.
 const BELIEVED: (f64, f64) = (1.0 / 16.0, 0.02);
 
-/// The parts of what is left that may be asked for at once, round by round: later rounds know better.
+/// Shares of the remaining positions that each round may use: later rounds have more evidence.
 const ROUNDS: [f64; 5] = [0.4, 0.4, 0.5, 0.7, 1.0];
 
 /// Further positions that any curve may have, and how many it may have for each of its own.
@@ -60,12 +60,12 @@ impl Refinement {
         }
     }
 
-    /// The sections of the curve through `samples`, and through what `solve` finds further at the mesh positions that it is given. They lie in the
-    /// first of the mesh periods after which contact repeats, and it answers for all.
+    /// The sections of the curve through `samples`, and through the further positions that `solve` computes. These lie in the first of the mesh periods after
+    /// which contact repeats, and count for all.
     ///
     /// # Errors
     ///
-    /// Those of `solve`.
+    /// Errors of `solve`.
     pub(in crate::analysis) fn sections<E>(
         &self,
         mut samples: Vec<Sample>,
@@ -234,7 +234,7 @@ fn candidates_for_stiffness(sections: &Sections) -> Vec<Candidate> {
 }
 
 impl Sections {
-    /// Whether `place` is an event at an end of section `i` of which no position is near.
+    /// True if `place` is an event at an end of section `i` without a position near it.
     fn is_doubted(&self, i: usize, place: f64) -> bool {
         let width = |section: &Section| section.to - section.from;
         let section = &self.sections[i];
@@ -254,7 +254,7 @@ impl Section {
         f64::midpoint(self.from, self.to)
     }
 
-    /// Where to look in it for what stands at `place`: there, or in the middle where a position is known there.
+    /// Position at which to evaluate it for `place`: there, or in the middle where a position is known there.
     fn look(&self, place: f64) -> f64 {
         let is_known =
             (place == self.from && !self.events[0]) || (place == self.to && !self.events[1]);
@@ -448,7 +448,7 @@ mod tests {
         let samples: Vec<Sample> = (0..=10).map(sample).collect();
         let sections = Sections::new(span(1, 1, false), &samples);
         let [delta, _] = sections.statistics();
-        // What is left after a step of the secant, of 0.03.
+        // Remainder after a step of the secant, of 0.03.
         assert!((delta.largest_at - event).abs() < 1e-3, "{delta:?}");
         assert!((delta.largest / curve(event) - 1.0).abs() < 1e-3);
     }

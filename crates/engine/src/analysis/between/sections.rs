@@ -1,4 +1,4 @@
-//! A curve in sections, each a polynomial between neighboring positions or events, and what it comes to.
+//! A curve in sections, each a polynomial between neighboring positions or events, and its statistics.
 
 use std::ops::Range;
 
@@ -59,7 +59,7 @@ pub(in crate::analysis) struct Sections {
 pub(super) struct Section {
     pub(super) from: f64,
     pub(super) to: f64,
-    /// Whether a pair takes up or leaves the load at either end.
+    /// True for each end at which a pair takes up or leaves the load.
     pub(super) events: [bool; 2],
     pub(super) delta: Cubic,
     pub(super) stiffness: Cubic,
@@ -85,7 +85,7 @@ fn wider(first: Extremes, second: Extremes) -> Extremes {
 /// An event, with δ there as either side of it has it.
 struct Event {
     at: f64,
-    /// Whether its place is known without δ.
+    /// True if its place is known without δ.
     is_known: bool,
     /// The sample before it.
     after: usize,
@@ -95,7 +95,7 @@ struct Event {
 }
 
 impl Sections {
-    /// Those of the curve through `samples` over `span`, rising by position.
+    /// Sections of the curve through `samples` over `span`, rising by position.
     pub(in crate::analysis) fn new(span: Span, samples: &[Sample]) -> Self {
         let samples = overlapping(span, samples);
         let events = with_values(&samples, CLOSE * span.step());
@@ -126,7 +126,7 @@ impl Sections {
         self.mean_driving_load
     }
 
-    /// Those of the curve of `case` through `samples`.
+    /// Sections of the curve of `case` through `samples`.
     pub(in crate::analysis) fn of(case: &Case, samples: &[Sample]) -> Self {
         Self::new(Span::of(case), samples)
     }
@@ -231,7 +231,7 @@ impl Sections {
         traced
     }
 
-    /// By how much what is known of δ may be off because it is known at some positions only.
+    /// Error of δ from its sampling at some positions only.
     pub(in crate::analysis) fn error(&self) -> SamplingError {
         let known = self.extremes(|section| section.delta);
         // Of all sections that may hold an extreme the one that leaves it open most.
@@ -325,8 +325,7 @@ fn with_values(samples: &[Sample], close: f64) -> Vec<Event> {
 }
 
 impl Event {
-    /// Puts it where both sides of it meet, if that is near, and says what δ is there; `beside` are the samples next to it,
-    /// which are close within `close`.
+    /// Moves it to the intersection of both sides, if that is near, and returns δ there; `beside` are the samples next to it, which are close within `close`.
     fn settle(
         &mut self,
         beside: [(f64, f64); 2],
@@ -379,7 +378,7 @@ impl Side {
         const RELIABILITIES: [f64; 3] = [0.03, 0.3, 1.0];
         let mut nodes: Vec<(f64, f64)> = Vec::with_capacity(RELIABILITIES.len());
         for sample in samples {
-            // Those that stand close together would say more of their rounding than of the curve.
+            // The difference of nodes that stand close together is mostly rounding.
             let apart = match (nodes.first(), nodes.last()) {
                 (Some(first), Some(last)) => {
                     (sample.position - last.0).abs() >= 0.5 * (first.0 - place).abs()

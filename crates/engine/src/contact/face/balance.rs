@@ -63,7 +63,7 @@ struct Point {
 
 /// The forces on the slices, and the gaps that are left.
 pub(super) struct Balance {
-    /// What each slice carries.
+    /// Load of each slice.
     pub(super) carried: Vec<Carried>,
     /// The forces in their middles that stand for all of that, N, and how they rise with the load.
     pub(super) forces: Vec<f64>,
@@ -75,7 +75,7 @@ pub(super) struct Balance {
     pub(super) transmission_error: f64,
     pub(super) stiffness: f64,
     pub(super) iterations: u32,
-    /// Whether springs carry more than they were made for.
+    /// True if springs carry more than the load of their table.
     pub(super) is_strained: bool,
     /// By how much the linear yield opens their middles.
     opened: Vec<f64>,
@@ -117,7 +117,7 @@ struct Tangent {
 struct Problem<'a> {
     slices: &'a [Slice],
     lower: Mat<f64>,
-    /// What springs yield more ([`SOFTER`]).
+    /// Further compliance of springs ([`SOFTER`]).
     softer: f64,
     load: f64,
 }
@@ -342,7 +342,7 @@ impl Problem<'_> {
             .map(|(place, opened)| state.delta * place.weights[1] - place.gap - opened)
     }
 
-    /// y − Lᵀ N, and what the load is more than that of `points`.
+    /// y − Lᵀ N, and the excess of the load over that of `points`.
     fn rest(&self, state: &State, points: &[Point]) -> (Vec<f64>, f64) {
         let forces = in_middles(points, self.slices.len(), |point| point.force);
         let held = self.lower.transpose() * column(&forces);
@@ -452,7 +452,7 @@ impl Problem<'_> {
             }
         }
         let opened = product(h.as_ref(), &forces);
-        // Where a slice carries, forces and what they open are to be the same.
+        // Where a slice carries, forces and their openings are to be the same.
         for (i, slice) in self.slices.iter().enumerate() {
             if carried[i].force > 0.0 {
                 let spread = slice.middle.spring.spread(self.softer) * forces[i];
@@ -488,7 +488,7 @@ impl Problem<'_> {
 }
 
 impl Point {
-    /// What is given in the middles of the slices, interpolated to this point.
+    /// Values in the middles of the slices, interpolated to this point.
     fn at(&self, middles: &[f64]) -> f64 {
         (1.0 - self.share) * middles[self.slice] + self.share * middles[self.beside]
     }
@@ -512,7 +512,7 @@ impl Balance {
         self.transmission_error * within.place.weights[1] - within.place.gap - opened
     }
 
-    /// How what each slice carries changes where gaps open so far, in the middle of each and at both of its ends, under the same load.
+    /// Change of each slice's load where gaps open by these amounts, in the middle of each and at both of its ends, under the same load.
     pub(super) fn change(&self, opened: &[[f64; 3]]) -> Vec<f64> {
         let size = opened.len();
         let gap = |point: &Point| {
@@ -618,7 +618,7 @@ impl Balance {
     fn gap_before(&self, slices: &[Slice], i: usize) -> f64 {
         let of_line = |(_, slice): &(usize, &Slice)| slice.pair == slices[i].pair;
         let line = || slices.iter().enumerate().filter(of_line);
-        // What is smooth between them is between what it is at both; the half space is taken there.
+        // Smooth parts between them are interpolated; the half space is taken there.
         let smooth = |at: usize| {
             let others = line().filter(|(k, _)| *k != at);
             let moved = others.map(|(k, other)| self.forces[k] * half_space(other, slices[at].z));

@@ -86,7 +86,7 @@ fn add_half_space(slices: &[Slice], h: &mut Mat<f64>) {
     }
 }
 
-/// Adds what both flanks yield at their ends.
+/// Adds the further compliance of both flanks at their ends.
 fn add_ends(model: &FaceModel, slices: &[Slice], h: &mut Mat<f64>) {
     for member in Member::BOTH {
         let yields = &model.yields[member.index()];
@@ -97,7 +97,7 @@ fn add_ends(model: &FaceModel, slices: &[Slice], h: &mut Mat<f64>) {
         for (column, one) in slices.iter().enumerate() {
             let after = slices.iter().enumerate().skip(column);
             for (row, other) in after.take_while(|(_, slice)| slice.pair == one.pair) {
-                // What each of them does to the other is the same but for the point in a slice at which it is taken.
+                // Their actions on each other differ only in the point of a slice at which each is taken.
                 let (one_at, other_at) = (place(one), place(other));
                 let both = yields.at_ends(other_at, one_at, one.along)
                     + yields.at_ends(one_at, other_at, other.along);

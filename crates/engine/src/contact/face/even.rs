@@ -26,7 +26,7 @@ const LEAST_GAIN: f64 = 1e-3;
 /// The lead that evens the load.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EvenLead {
-    /// Taken off the driving leads besides what is: linear in z, this much at the end at +z, in meters.
+    /// Further removal from the driving leads: linear in z, this much at the end at +z, in meters.
     pub slope: f64,
     /// The same at both ends, a parabola.
     pub crowning: f64,
@@ -101,7 +101,7 @@ impl FaceModel {
             return Ok(None);
         };
         let before = first.heaviest();
-        // What closes the flanks is what a lead has to be compared with.
+        // A lead has to be compared with the closing of the flanks.
         let touch = positions
             .first()
             .and_then(|eta| self.flanks.least_touch(*eta));
@@ -233,7 +233,7 @@ impl Stand {
         let forces: Vec<f64> = forces.collect();
         Some(Strips {
             loads: spread(&forces),
-            // Those that touch go on touching, and carry the load.
+            // The touching slices go on touching, and carry the load.
             changes: [0, 1].map(|k| spread(&balance.change(&self.openings[k]))),
             delta: balance.transmission_error,
         })

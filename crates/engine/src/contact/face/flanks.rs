@@ -29,7 +29,7 @@ pub struct FaceFlanks {
 const MOST_BYTES: usize = 64 * size_of::<[f64; 2]>();
 
 impl FaceFlanks {
-    /// Those of `pair`, its face cut into so many `slices`.
+    /// Flanks of `pair`, its face cut into `slices` slices.
     pub fn new(pair: SolidPair, slices: usize) -> Self {
         Self {
             deviations: pair.section().deviations(),

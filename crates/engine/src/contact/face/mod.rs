@@ -93,7 +93,7 @@ pub struct SliceLoad {
     pub roll_lengths: [f64; 2],
     /// The largest pressure in Pa; `None` at a sharp tip edge, where it has no limit.
     pub pressure: Option<f64>,
-    /// Whether a sharp tip edge carries.
+    /// True if a sharp tip edge carries.
     pub at_sharp_edge: bool,
     /// Half the width of the contact along the profile, in meters.
     pub half_width: f64,
@@ -147,7 +147,7 @@ impl FaceContact {
         moment / force
     }
 
-    /// What presses the flanks of `member` of `pair`, line by line: the tooth, and the forces on it.
+    /// Loads on the flanks of `member` of `pair`, line by line: the tooth, and the forces on it.
     pub fn pressing<'a>(
         &'a self,
         pair: &'a SolidPair,
@@ -333,7 +333,7 @@ impl FaceModel {
         sums
     }
 
-    /// The contact of the mesh by what is `balanced`.
+    /// The summary of the `balanced` contact.
     fn summary(&self, balanced: &Balanced<'_>, load: f64) -> FaceContact {
         let Balanced {
             sliced,

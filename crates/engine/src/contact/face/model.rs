@@ -12,9 +12,8 @@ use crate::gear::{Member, SolidPair};
 
 /// How the flanks of one gear give way, smoothly, to forces normal to them.
 ///
-/// z runs from the middle of the gear's own face. The displacement of tooth i at (s, z) into the tooth, under the force N on tooth j at (s', z'), is
-/// basis(s, z)ᵀ smooth_ij basis(s', z') N, and of one tooth besides what a half space yields, which is left to the contact, and what a
-/// flank yields at its ends.
+/// z runs from the middle of the gear's own face. The displacement of tooth i at (s, z) into the tooth, under the force N on tooth j at (s', z'), is basis(s,
+/// z)ᵀ smooth_ij basis(s', z') N, and of one tooth also that of a half space, which the contact adds, and the further compliance at its ends.
 pub trait FlankYield: Send + Sync {
     /// The number of functions over a flank.
     fn basis_len(&self) -> usize;
@@ -28,12 +27,12 @@ pub trait FlankYield: Send + Sync {
     /// The number of teeth after which all that they yield repeats.
     fn repeats_after(&self) -> usize;
 
-    /// What a point of a tooth, a roll length and a height, is moved by a unit force on the same tooth beside that of the smooth compliance and of a
-    /// half space, if it is spread over a piece of a contact line of the length `along` about another such point.
+    /// Displacement of a point of a tooth, a roll length and a height, by a unit force on the same tooth beside the smooth compliance and a half space, if it
+    /// is spread over a piece of a contact line of the length `along` about another such point.
     fn at_ends(&self, point: (f64, f64), loaded: (f64, f64), along: f64) -> f64;
 }
 
-/// What matrices of smooth yields may take, in bytes: two hundred and fifty of three teeth.
+/// Limit of matrices of smooth compliance in bytes: two hundred and fifty of three teeth.
 const MOST_BYTES: usize = 36 << 20;
 
 /// A profile that turns by less at a place has no kink there.
@@ -102,7 +101,7 @@ impl Kink {
     }
 }
 
-/// So many teeth of a gear in the order of their pairs, from `first` on.
+/// A number of teeth of a gear in the order of their pairs, from `first` on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct Teeth {
     gear: usize,

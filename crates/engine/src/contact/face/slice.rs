@@ -22,7 +22,7 @@ pub(super) struct Slice {
     /// Its length along the axis, and along the contact line.
     pub(super) length: f64,
     pub(super) along: f64,
-    /// What is in its middle, and where it begins and ends along the axis.
+    /// Values in its middle, and its ends along the axis.
     pub(super) middle: Place,
     pub(super) ends: [Place; 2],
     /// Σ 2(1 − ν²)/(πE).
@@ -129,7 +129,7 @@ impl Stretches {
         })
     }
 
-    /// Whether one of the loaded `slices` of these lies at the end of its line, where the `whole` line goes on.
+    /// True if one of the loaded `slices` of these lies at the end of its line, where the `whole` line goes on.
     pub(super) fn end_under_load(
         &self,
         slices: &[Slice],
@@ -159,7 +159,7 @@ fn length(lines: &[ContactLine]) -> f64 {
     lengths.sum()
 }
 
-/// What all slices of one position have in common.
+/// Common data of all slices of one position.
 pub(super) struct Slicer<'a> {
     model: &'a FaceModel,
     eta: f64,
@@ -244,7 +244,7 @@ impl<'a> Slicer<'a> {
         self.model.flanks.section(self.eta, pair, z)
     }
 
-    /// `place`, at `z`, with what the axes open it.
+    /// `place`, at `z`, with the opening by the axes.
     fn standing(&self, mut place: Place, z: f64) -> Place {
         place.gap += place.weights[1] * self.model.pair().askew(z);
         place
@@ -307,7 +307,7 @@ impl<'a> Slicer<'a> {
         })
     }
 
-    /// Whether a contact under `density` may reach an end of the flanks or a kink, or is not that of two parabolas.
+    /// True if a contact under `density` may reach an end of the flanks or a kink, or is not that of two parabolas.
     fn is_crowded(&self, facing: &Facing, density: f64, radius: f64) -> bool {
         const BESIDE: f64 = 1.1;
         const COMMON_TANGENT: f64 = 0.02;

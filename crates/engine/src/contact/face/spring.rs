@@ -1,8 +1,7 @@
 //! The spring of a slice: how far the flanks close up near a short piece of a contact line.
 //!
-//! A line load q, spread over the contact's width, presses the middle of a slice of the length h by K q asinh(h/(2 ρ)), K = Σ 2(1 − ν²)/(πE) of both
-//! bodies: the half space under that slice alone. ρ is the width of a contact of no shape, (a/2) e^(−1/2) of Hertz's; for any other contact
-//! it is what the plane's cells say.
+//! A line load q, spread over the contact's width, presses the middle of a slice of the length h by K q asinh(h/(2 ρ)), K = Σ 2(1 − ν²)/(πE) of both bodies:
+//! the half space under that slice alone. ρ is the width of a contact of no shape, (a/2) e^(−1/2) of Hertz's; for any other contact the plane's cells give it.
 
 use std::f64::consts::LN_2;
 use std::sync::{Mutex, OnceLock, PoisonError};
@@ -73,13 +72,13 @@ struct Cells {
     widths: [OnceLock<[f64; 2]>; SOLVED],
 }
 
-/// What a load does to a slice.
+/// Response of a slice to a load.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Pressed {
     pub(super) pressure: Option<f64>,
     /// The largest at least half the width of the contact away from kinks; 0 where there is none, and at a sharp tip edge.
     pub(super) smooth: f64,
-    /// Whether it reaches a sharp tip edge, where pressure has no limit.
+    /// True if it reaches a sharp tip edge, where pressure has no limit.
     pub(super) at_sharp_edge: bool,
     pub(super) half_width: f64,
     pub(super) tip_corner: Option<Member>,
@@ -157,17 +156,17 @@ impl Spring {
         }
     }
 
-    /// How far a force spread over the slice closes it up besides what [`Spring::load`] says, and so much `more` in K q, in m/N.
+    /// Closing of the slice by a force spread over it beside [`Spring::load`], and `more` in K q, in m/N.
     pub(super) fn spread(&self, more: f64) -> f64 {
         self.line.factor * (self.spread + more) / self.line.along
     }
 
-    /// Whether it is evaluated under the load `q` a length, and does not go on straight.
+    /// True if its table covers the load `q` a length; beyond, it is extrapolated.
     pub(super) fn knows(&self, q: f64) -> bool {
         q <= self.most
     }
 
-    /// Whether it is that of two cylinders.
+    /// True if it is that of two cylinders.
     pub(super) fn is_hertz(&self) -> bool {
         matches!(self.contact, Contact::Hertz { .. })
     }
@@ -175,7 +174,7 @@ impl Spring {
     /// The load a length under which it closes up by `depth`, and how fast that grows with it.
     pub(super) fn load(&self, depth: f64) -> [f64; 2] {
         const STEPS: u32 = 30;
-        // Newton's steps square what is left.
+        // Newton's steps square the remainder.
         const SHORT: f64 = 1e-7;
         const USUAL_PART: f64 = 2.0;
         let sought = depth.ln() - self.ln_factor;
@@ -239,7 +238,7 @@ impl Spring {
         }
     }
 
-    /// What the load `q` a length does beside closing it.
+    /// Response to the load `q` a length beside the closing.
     pub(super) fn pressed(&self, q: f64) -> Pressed {
         match &self.contact {
             Contact::Hertz { .. } => {
@@ -424,8 +423,8 @@ mod tests {
                 assert!(load > 0.0 && growth > 0.0);
                 if let Some(last) = last {
                     assert!(load > last[0]);
-                    // One that is shorter than its contact is wide is no line, and beyond what springs are made for they go on straight.
-                    // Where a cell just touches the slope steps a little.
+                    // A slice shorter than its contact is wide is no line, and beyond their table springs are extrapolated linearly. Where a cell just touches
+                    // the slope steps a little.
                     let stiffens = growth > last[1] * (1.0 - 2e-2);
                     assert!(stiffens || number == 3, "{i}: {last:?} {load} {growth}");
                 }

@@ -146,7 +146,7 @@ impl Side {
         self.bulge.signum() * Vector::new(-arm.y, arm.x)
     }
 
-    /// Whether a point of its circle stands on it.
+    /// True if a point of its circle stands on it.
     fn spans(&self, point: Vector) -> bool {
         // On the side of the chord on which the arc lies.
         cross(self.to - self.from, point - self.from) * self.bulge <= 0.0
@@ -206,7 +206,7 @@ impl Side {
         vec![foot - half * along, foot + half * along]
     }
 
-    /// Whether a point of its whole line or circle belongs to it, to within `slack`.
+    /// True if a point of its whole line or circle belongs to it, to within `slack`.
     fn has(&self, point: Vector, slack: f64) -> bool {
         (self.nearest_to(point) - point).norm() <= slack
     }
@@ -272,7 +272,7 @@ impl Side {
         [least, largest]
     }
 
-    /// What it adds to the moments of a region on its left.
+    /// Its contribution to the moments of a region on its left.
     pub fn moments(&self) -> Moments {
         if self.bulge == 0.0 {
             return Moments::under_line(self.from, self.to);
@@ -324,7 +324,7 @@ impl Side {
     }
 }
 
-/// What prevents a curve from bounding an opening. Sides and corners are numbered by their places in the list; corner i is where side i begins.
+/// Faults of a curve that is to bound an opening. Sides and corners are numbered by their places in the list; corner i is where side i begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ContourFault {
     /// A side ends where it begins.
@@ -375,8 +375,8 @@ impl Contour {
         Self(self.0.iter().rev().map(side).collect())
     }
 
-    /// Whether the sides of both are the same to within `slack`, whichever side is the first. The middle of an arc may be off by twice as much as its ends: it moves
-    /// with both of them and with the point that says it.
+    /// True if the sides of both are the same to within `slack`, whichever side is the first. The middle of an arc may be off by twice as much as its ends: it
+    /// moves with both of them and with the point that defines it.
     pub(super) fn is_like(&self, other: &Self, slack: f64) -> bool {
         let near = |a: &Side, b: &Side| {
             (a.from - b.from).norm() <= slack
@@ -474,7 +474,7 @@ impl Contour {
             .fold(f64::INFINITY, |least, (distance, _)| least.min(distance))
     }
 
-    /// Whether `point` lies in the opening.
+    /// True if `point` lies in the opening.
     pub(super) fn contains(&self, point: Vector) -> bool {
         winding(&self.0, point) != 0
     }
@@ -554,7 +554,7 @@ impl Contour {
         least
     }
 
-    /// Whether no way along the curve from the point `at` of side `i` has a part along `way`.
+    /// True if no way along the curve from the point `at` of side `i` has a part along `way`.
     fn leads_away(&self, i: usize, at: Vector, way: Vector) -> bool {
         const SQUARE: f64 = 1e-6;
         let (count, side) = (self.0.len(), &self.0[i]);
@@ -572,7 +572,7 @@ impl Contour {
     }
 }
 
-/// The material between the openings inside of two closed curves of `one` and `other`, negative where they overlap: then what one reaches into the other.
+/// The material between the openings inside of two closed curves of `one` and `other`, negative where they overlap.
 pub(super) fn between(one: &[Side], other: &[Side]) -> f64 {
     let around =
         |sides: &[Side]| -> Vec<(Vector, f64)> { sides.iter().map(Side::circle_around).collect() };
@@ -604,7 +604,7 @@ pub(super) fn between(one: &[Side], other: &[Side]) -> f64 {
     if meet || depth > 0.0 { -depth } else { least }
 }
 
-/// Refuses what is no simple closed curve, counter-clockwise, that leaves the axis outside.
+/// Refuses curves that are not simple, closed and counter-clockwise, or that contain the axis.
 pub(super) fn check(sides: &[Side]) -> Result<(), ContourFault> {
     let count = sides.len();
     let size = sides

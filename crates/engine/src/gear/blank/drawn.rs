@@ -1,4 +1,4 @@
-//! What closed curves of a drawing bound: openings, and circles about the axis.
+//! Regions bounded by closed curves of a drawing: openings, and circles about the axis.
 
 use std::f64::consts::TAU;
 
@@ -10,7 +10,7 @@ use crate::gear::Vector;
 /// The same for a circle about the axis, which a drawing may tell to six digits.
 const DRAWN: f64 = 1e-6;
 
-/// What a closed curve bounds, with the material on its left.
+/// A region bounded by a closed curve, with the material on its left.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Drawn {
     /// An opening.
@@ -19,7 +19,7 @@ pub enum Drawn {
     Circle {
         /// Its radius.
         radius: f64,
-        /// Whether the material is inside of it: a bore has it outside.
+        /// True if the material is inside of it: a bore has it outside.
         is_inside: bool,
     },
 }
@@ -59,7 +59,7 @@ impl Contour {
         })
     }
 
-    /// What `sides` bound, which run with the material on their left: clockwise around an opening.
+    /// The region bounded by `sides`, which run with the material on their left: clockwise around an opening.
     ///
     /// # Errors
     ///

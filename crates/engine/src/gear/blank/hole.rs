@@ -58,7 +58,7 @@ impl Hole {
         }
     }
 
-    /// The contour, if that is what the hole is drawn by.
+    /// The contour, if that defines the hole.
     pub fn contour(&self) -> Option<&Contour> {
         match &self.shape {
             HoleShape::Contour(contour) => Some(contour),

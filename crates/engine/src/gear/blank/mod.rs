@@ -1,7 +1,8 @@
 //! The blank under the teeth: a bore on a rigid hub ring, holes, and a web.
 //!
-//! Read in this order: [`hole`] (one opening, round or a slot, and what is left between two), [`contour`] (any other opening), `drawn` (what closed curves of a drawing bound), [`spokes`] (openings between spokes), [`region`] (bore, holes and web
-//! together), [`moments`] (what they take away), [`symmetry`] (how often a blank repeats around).
+//! Read in this order: [`hole`] (one opening, round or a slot, and the ligament between two), [`contour`] (any other opening), `drawn` (regions bounded by
+//! closed curves of a drawing), [`spokes`] (openings between spokes), [`region`] (bore, holes and web together), [`moments`] (their integrals), [`symmetry`]
+//! (repetition of a blank around).
 
 use std::f64::consts::PI;
 

@@ -16,7 +16,7 @@ pub struct Moments {
 }
 
 impl Default for Moments {
-    /// Those of nothing.
+    /// The moments of an empty region.
     fn default() -> Self {
         Self {
             area: 0.0,
@@ -27,7 +27,7 @@ impl Default for Moments {
 }
 
 impl Moments {
-    /// What the arc about `center` from the angle `from` to `to` adds to the moments of a region that lies on the left of it.
+    /// Contribution of the arc about `center` from the angle `from` to `to` to the moments of a region that lies on the left of it.
     ///
     /// Green's theorem: the area is ½ ∮ x dy − y dx, the first moment ½ ∮ (x² dy, −y² dx), and the polar moment
     /// ¼ ∮ (x² + y²) (x dy − y dx).
@@ -58,7 +58,7 @@ impl Moments {
         }
     }
 
-    /// What the line from `a` to `b` adds, likewise.
+    /// Contribution of the line from `a` to `b`, likewise.
     pub fn under_line(a: Vector, b: Vector) -> Self {
         let swept = a.x * b.y - b.x * a.y;
         let squares = |p: f64, q: f64| (p * p + p * q + q * q) / 3.0;
@@ -72,7 +72,7 @@ impl Moments {
         }
     }
 
-    /// Those of the disc of `radius` about the origin.
+    /// Moments of the disc of `radius` about the origin.
     pub fn of_disc(radius: f64) -> Self {
         Self {
             area: std::f64::consts::PI * radius.powi(2),

@@ -16,22 +16,21 @@ pub struct Web {
     pub thickness: f64,
 }
 
-/// What is inside of the circle on which a blank ends.
+/// The inside of the circle on which a blank ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Core {
     /// A bore, on which the hub is rigid.
     #[default]
     Bore,
-    /// A shaft in one piece with the blank: it is solid to the axis, and what holds the gear is even over the section of the shaft, or a torque that rises with
-    /// the radius.
+    /// A shaft in one piece with the blank: it is solid to the axis, and the reaction is even over the section of the shaft, or a torque that rises with the
+    /// radius.
     Shaft {
         /// The ends of the face through which the torque enters, half of it each where it is both. A plane knows both only.
         torque_at: FaceEnds,
     },
 }
 
-/// What carries the teeth: the bore or the shaft, the holes, and a web, if there is one. Elsewhere the blank
-/// is as thick as the face is wide.
+/// The blank: the bore or the shaft, the holes, and a web, if there is one. Elsewhere the blank is as thick as the face is wide.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BlankRegion {
     /// The radius of the bore, or of the shaft, in meters.
@@ -83,7 +82,7 @@ impl BlankRegion {
         }
     }
 
-    /// The radius of what is not there about the axis: 0 of a shaft.
+    /// The radius of the empty region about the axis: 0 of a shaft.
     pub fn open_radius(&self) -> f64 {
         match self.core {
             Core::Bore => self.bore_radius,
@@ -151,7 +150,7 @@ impl BlankRegion {
         alone.chain(between)
     }
 
-    /// The thinnest place around the holes inside the circle of `rim_radius`, and what is left there; `None` without holes.
+    /// The thinnest ligament of the holes inside the circle of `rim_radius`, and its width; `None` without holes.
     pub fn least_ligament(&self, rim_radius: f64) -> Option<(Ligament, f64)> {
         self.ligaments(rim_radius)
             .reduce(|least, next| if next.1 < least.1 { next } else { least })
@@ -175,8 +174,8 @@ impl BlankRegion {
         self.holes.iter().map(|hole| hole.moments().area).sum()
     }
 
-    /// What bore, holes and web take away from a body as thick as `face_width`: volume in m³, first moment in m⁴, polar
-    /// moment in m⁵. Times the density it is what they take from mass, imbalance and inertia.
+    /// Material removed by bore, holes and web from a body as thick as `face_width`: volume in m³, first moment in m⁴, polar moment in m⁵. Times the density
+    /// they are its parts of mass, imbalance and inertia.
     ///
     /// In closed form, also where a hole crosses the edge of the web. A web thicker than the face adds, which is negative here.
     pub fn taken_away(&self, face_width: f64) -> Moments {
@@ -187,7 +186,7 @@ impl BlankRegion {
             web.inner_radius.max(self.bore_radius),
             web.outer_radius.max(self.bore_radius),
         );
-        // What is not there cannot be thinned.
+        // An empty region cannot be thinned.
         let within = |radius: f64| {
             let holes: Moments = self
                 .holes

@@ -23,7 +23,7 @@ pub struct Spokes {
     pub phase: f64,
 }
 
-/// What prevents spokes. Lengths are in meters.
+/// Faults of spokes. Lengths are in meters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SpokesFault {
     /// There are fewer than two.

@@ -6,15 +6,15 @@ use super::hole::{Hole, HoleShape, wrapped};
 use super::{BlankRegion, HolePattern};
 use crate::gear::gcd;
 
-/// What holes may differ by and still count as equal: as a part of the radius of their circle for lengths, in radians for angles.
+/// Differences of holes that still count as equal: as a part of the radius of their circle for lengths, in radians for angles.
 const ALIKE: f64 = 1e-12;
-/// What holes of a drawing may differ by and still be meant as equal, likewise: its coordinates have six or more digits.
+/// Differences of holes of a drawing that are still meant as equal, likewise: its coordinates have six or more digits.
 const DRAWN: f64 = 1e-6;
 /// The same in units of the last decimal of its coordinates, each of which is rounded by up to half a unit: a corner is off by 0.7 units, and so is the middle of its
 /// opening, by which it is compared with another.
 const UNITS: f64 = 3.0;
 
-/// What holes may differ by and still count as equal.
+/// Differences of holes that still count as equal.
 #[derive(Debug, Clone, Copy)]
 struct Slack {
     /// As a part of the radius of their circle, and in radians.
@@ -159,7 +159,7 @@ impl BlankRegion {
     }
 }
 
-/// Whether two holes are equal but for their angle; a slot of no angle is a round hole.
+/// True if two holes are equal but for their angle; a slot of no angle is a round hole.
 fn alike(one: &Hole, other: &Hole, slack: Slack) -> bool {
     let slack = slack.at(one);
     let near = |a: f64, b: f64| (a - b).abs() <= slack * one.circle_radius;

@@ -1,4 +1,4 @@
-//! Whether a gear can be made: what is refused of its drawing, and what would do.
+//! Checks of a gear's drawing: refusals, and values that would do.
 
 use super::SpurGear;
 use crate::gear::blank::Ligament;
@@ -275,7 +275,7 @@ impl SpurGear {
         }
     }
 
-    /// Whether `deviations` are those of so many teeth.
+    /// Checks that `deviations` have this number of teeth.
     pub(in crate::gear) fn fits(&self, deviations: &ToothDeviations) -> Result<(), GearError> {
         let needed = self.data.tooth_count as usize;
         for (list, values) in [

@@ -88,8 +88,7 @@ impl SpurGear {
         [from + half, to - half]
     }
 
-    /// What the ends of the flank are turned back by, the broken edge at its tip and the undercut at its root, and the slope of that by the roll
-    /// length `s`.
+    /// Turn of the ends of the flank, by the broken edge at its tip and the undercut at its root, and its slope by the roll length `s`.
     fn ends_depth_and_slope(&self, s: f64) -> (f64, f64) {
         if self.is_undercut && s < self.form_roll_length {
             return self.undercut_depth_and_slope(s);
@@ -163,7 +162,7 @@ impl SpurGear {
         chamfered.then(|| self.tip_form_roll_length())
     }
 
-    /// Whether the flank, down to its fillet, is an involute whose modifications only ever bend it away from its mate.
+    /// True if the flank, down to its fillet, is an involute whose modifications only ever bend it away from its mate.
     pub fn is_convex(&self) -> bool {
         !self.is_undercut && self.modifications.iter().all(Modification::is_convex)
     }

@@ -1,4 +1,4 @@
-//! What a hob with a protuberance leaves, against its own sweep.
+//! The profile cut by a hob with a protuberance, against the envelope of the hob.
 
 use std::f64::consts::PI;
 
@@ -7,7 +7,7 @@ use super::tests::paper_gear;
 use crate::gear::{GearData, GearError, Helix, Protuberance, Rack, SolidGear, Vector};
 use crate::root_finding::bisect;
 
-/// The profile of a hob in its normal section, built from what the standards say of it: no envelope is known here.
+/// The profile of a hob in its normal section, built from the definitions of the standards, without an envelope.
 struct Hob {
     rack: Rack,
     /// The center of the tip rounding: beside the middle of the tooth, and below the reference line.

@@ -1,4 +1,4 @@
-//! A whole spur gear: what its drawing says, checked once (`checks`), and the true shape of its flanks (`flanks`).
+//! A whole spur gear: drawing data, checked once (`checks`), and the true shape of its flanks (`flanks`).
 
 mod checks;
 mod flanks;
@@ -30,7 +30,7 @@ pub struct SpurGear {
     form_roll_length: f64,
     /// The roll length at which the rack's straight flank ends, negative where it goes past the base circle.
     end_of_rack: f64,
-    /// Whether the rack, or its protuberance, undercuts the flank, so that the fillet begins at a corner.
+    /// True if the rack, or its protuberance, undercuts the flank, so that the fillet begins at a corner.
     is_undercut: bool,
     broken_edge: Option<BrokenEdge>,
     modifications: Vec<Modification>,
@@ -44,7 +44,7 @@ impl SpurGear {
     ///
     /// # Errors
     ///
-    /// [`GearError`] says which part cannot be made and what would do.
+    /// [`GearError`] with the part that cannot be made and the value that would do.
     pub fn new(data: GearData) -> Result<Self, GearError> {
         let normal_rack = data.rack;
         Self::cut_by(normal_rack, data)
@@ -108,7 +108,7 @@ impl SpurGear {
         &self.data
     }
 
-    /// The same teeth on a blank without bore and holes: what is left to say where the blank does not matter.
+    /// The same teeth on a blank without bore and holes, for questions that do not concern the blank.
     pub fn without_blank(&self) -> Self {
         self.on_blank(BlankRegion::solid(0.0))
     }
@@ -248,12 +248,12 @@ impl SpurGear {
         &self.data.blank.holes
     }
 
-    /// Whether it has holes.
+    /// True if it has holes.
     pub fn has_holes(&self) -> bool {
         !self.holes().is_empty()
     }
 
-    /// The holes as one pattern of equal round ones, if that is what they are.
+    /// The holes as one pattern of equal round ones, if they are such.
     pub fn hole_pattern(&self) -> Option<HolePattern> {
         self.data.blank.pattern()
     }
@@ -278,7 +278,7 @@ impl SpurGear {
         self.fillet
     }
 
-    /// Whether the rack, or its protuberance, undercuts the flank: it ends in a corner, at which the fillet cuts the involute.
+    /// True if the rack, or its protuberance, undercuts the flank: it ends in a corner, at which the fillet cuts the involute.
     pub fn is_undercut(&self) -> bool {
         self.is_undercut
     }

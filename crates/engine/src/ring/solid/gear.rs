@@ -1,4 +1,4 @@
-//! A whole gear with an extent along its axis: Z teeth on what carries them.
+//! A whole gear with an extent along its axis: Z teeth on their support.
 
 use std::ops::AddAssign as _;
 
@@ -13,7 +13,7 @@ use crate::fem::FemError;
 use crate::fem::dense::Cholesky;
 use crate::run::Run;
 
-/// What the loads on the flank of tooth 0 do to the flanks of all, and to the interface circle, class by class.
+/// Response of the flanks of all teeth, and of the interface circle, to loads on the flank of tooth 0, class by class.
 #[derive(Debug)]
 pub struct ClassAnswers {
     /// The class k of each.
@@ -56,7 +56,7 @@ pub fn answers(
     })
 }
 
-/// What `of` makes of each class 0 … Z/2 of a ring of teeth on `below`, and of unit forces on the flank of tooth 0.
+/// Result of `of` for each class 0 … Z/2 of a ring of teeth on `below`, with unit forces on the flank of tooth 0.
 fn each_class<T: Send>(
     tooth: &SolidTooth,
     below: &[Mat<c64>],
@@ -75,7 +75,7 @@ fn each_class<T: Send>(
         .collect()
 }
 
-/// One class of a ring of teeth on what carries them.
+/// One class of a ring of teeth on their support.
 struct ClassOfRing {
     class: usize,
     /// The orders of the class on the interface circle.
@@ -137,7 +137,7 @@ pub struct ClassMotion {
     pub orders: Vec<i64>,
     /// The unknowns of the class under forces on the flank of tooth 0, a column for each.
     pub by_flank: Mat<c64>,
-    /// Those of the orders that were wanted.
+    /// Values of the wanted orders.
     pub wanted: Vec<i64>,
     /// The unknowns under forces on these, order by order.
     pub by_circle: Mat<c64>,
@@ -217,8 +217,7 @@ pub fn forced(
     })
 }
 
-/// How the interfaces of the teeth at each of `distances` counter-clockwise of tooth 0 move, of what each class does: its number, its orders
-/// and its unknowns.
+/// Motion of the interfaces of the teeth at each of `distances` counter-clockwise of tooth 0, from that of each class: its number, its orders and its unknowns.
 pub fn interfaces<'a>(
     sector: &SolidSector,
     classes: impl Iterator<Item = (usize, &'a [i64], &'a Mat<c64>)>,

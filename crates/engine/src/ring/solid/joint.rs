@@ -57,8 +57,8 @@ pub fn carried(
     Ok(inverse)
 }
 
-/// How the circle on the functions `lower`, which `stiffness` carries, moves under one on the functions `upper` that moves by `moved`: what
-/// [`carried`] condenses.
+/// Motion of the circle on the functions `lower`, which `stiffness` carries, under one on the functions `upper` that moves by `moved`: the inverse of the
+/// condensation in [`carried`].
 ///
 /// # Errors
 ///
@@ -79,7 +79,7 @@ pub fn below(
     Ok(yields * force)
 }
 
-/// Whether the lower part is no wider than the upper one.
+/// True if the lower part is no wider than the upper one.
 fn is_narrower(lower: &AxialBasis, upper: &AxialBasis) -> bool {
     let width = |basis: &AxialBasis| basis.heights()[1] - basis.heights()[0];
     width(lower) <= width(upper)

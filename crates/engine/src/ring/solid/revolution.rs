@@ -33,7 +33,7 @@ const LEAST_TO_AXIS: f64 = 6.0;
 /// A layer: a ring whose section in the plane of the axis is a rectangle.
 #[derive(Debug, Clone)]
 pub struct Revolution<'a> {
-    /// What it is made of.
+    /// Its material.
     pub material: &'a Material,
     /// τ: the turn of its frame per length, in radians a meter.
     pub twist: f64,
@@ -90,8 +90,7 @@ impl Revolution<'_> {
         COMPONENTS * self.axial.len()
     }
 
-    /// The stiffness of `order` on the outer circle, with `below` under the inner one: what carries it there, or nothing where it
-    /// is held.
+    /// The stiffness of `order` on the outer circle, with `below` under the inner one: the stiffness that carries it there, or `None` where it is held.
     ///
     /// # Errors
     ///
@@ -165,7 +164,7 @@ impl Revolution<'_> {
         let mut elements = Vec::new();
         for ends in division.windows(2) {
             let mut k = self.element(order, [ends[0], ends[1]], &matrices);
-            // What is held does not move.
+            // Held unknowns do not move.
             let held = if carried.is_some() { 0 } else { size };
             if let Some(below) = &carried {
                 add_block(&mut k, 0, below);
@@ -239,7 +238,7 @@ impl Revolution<'_> {
         };
         let largest = depth / least;
         let size = |r: f64| {
-            // About the axis nothing fades but what comes from outside.
+            // About the axis only fields from outside decay.
             let from_inner = match inner {
                 0.0 => f64::INFINITY,
                 _ => fading(inner) + GROWTH * (r - inner),
@@ -255,7 +254,7 @@ impl Revolution<'_> {
             let step = radius(i + 1) - radius(i);
             counts.push(counts[i] + step / size(f64::midpoint(radius(i), radius(i + 1))));
         }
-        // What is a whole number but for roundings is that number, so that similar layers have as many.
+        // A value that is a whole number within rounding is that number, so that similar layers have as many.
         let count = (counts[STEPS] - 1e-9).ceil().max(least) as usize;
         let mut radii: Vec<f64> = (0..=count)
             .map(|k| {
@@ -349,7 +348,7 @@ impl Revolution<'_> {
     }
 }
 
-/// What is left of `k` on its last `kept` unknowns when the others are free.
+/// Schur complement of `k` on its last `kept` unknowns, the others free.
 pub(crate) fn last_of(k: &Mat<c64>, kept: usize) -> Result<Mat<c64>, FemError> {
     let free = k.nrows() - kept;
     let factor = Cholesky::new(k.submatrix(0, 0, free, free).to_owned()).ok_or(

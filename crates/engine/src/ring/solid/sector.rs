@@ -20,7 +20,7 @@ pub struct SolidSector {
     pub arcs: Vec<Arc>,
 }
 
-/// What stands for the displacement of an arc: blocks of unknowns.
+/// Displacement of an arc: blocks of unknowns.
 #[derive(Debug, Clone)]
 pub enum Arc {
     /// The nodes at these angles.
@@ -89,8 +89,8 @@ impl SolidSector {
         c64::new(cos, sin)
     }
 
-    /// By what a class adds to the sector `ahead` places counter-clockwise of `count`, if it stands for the opposite one too, its conjugate:
-    /// the real part is to be taken.
+    /// Weight of a class in the sector `ahead` places counter-clockwise of `count`, if it stands for the opposite one too, its conjugate: the real part is to
+    /// be taken.
     pub fn part(class: usize, ahead: usize, count: usize) -> c64 {
         // The class may be its own opposite.
         let share = match (2 * class).is_multiple_of(count) {
@@ -171,7 +171,7 @@ impl SolidSector {
         off
     }
 
-    /// Adds what is `of` a class, and as its conjugate of the opposite one, to `sums`, one for each sector.
+    /// Adds the part `of` a class, and as its conjugate of the opposite one, to `sums`, one for each sector.
     pub fn add_to_each(&self, class: usize, of: &Mat<c64>, sums: &mut [Vec<f64>]) {
         for (number, sum) in sums.iter_mut().enumerate() {
             let turn = Self::part(class, number, self.count);

@@ -1,4 +1,4 @@
-//! A shaft of one piece with its gear: solid to the axis, and held by what acts on its section at both ends.
+//! A shaft of one piece with its gear: solid to the axis, and held by forces on its section at both ends.
 //!
 //! Held at zero are the mean displacement of the section at each end, ∫ u dA, and its tilt, ∫ r u_z dA about each axis in it; and of the mean
 //! rotation, ∫ r u_t dA/∫ r² dA, that of the ends through which the torque enters, in the mean over these. Forces that do work on such means
@@ -16,7 +16,7 @@ use crate::quadrature::gauss_legendre;
 /// The part of a body of one piece with its shaft that is inside the radius of the shaft.
 #[derive(Debug, Clone)]
 pub struct SolidShaft<'a> {
-    /// It as a layer whose inner radius is 0.
+    /// The shaft as a layer whose inner radius is 0.
     pub body: Revolution<'a>,
     /// The ends of it through which the torque enters, half of it each where it is both.
     pub torque_at: FaceEnds,
@@ -24,11 +24,11 @@ pub struct SolidShaft<'a> {
 
 /// A mean over the section at one end or at both, which is held.
 struct Held {
-    /// What it takes of each component.
+    /// Weight of each component.
     components: [c64; 3],
     /// The power of the radius by which it weighs them.
     power: i32,
-    /// What it takes of each function along the axis.
+    /// Weight of each function along the axis.
     along: Vec<f64>,
 }
 
@@ -42,7 +42,7 @@ impl SolidShaft<'_> {
         let size = self.body.size();
         let matrices = self.body.axial.matrices();
         let held = self.held(order);
-        // The circle so far, and the forces of what is held.
+        // The circle so far, and the forces of the held means.
         let kept = size + held.len();
         let mut carried: Option<Mat<c64>> = None;
         for ends in self.body.elements(order).windows(2) {
@@ -74,7 +74,7 @@ impl SolidShaft<'_> {
         if held.is_empty() {
             return Ok(stiffness);
         }
-        // What is held yields to its own forces, and they are such that it stands still.
+        // The held means move under their own forces, which are such that the means stay zero.
         let yields = -whole
             .submatrix(size, size, held.len(), held.len())
             .to_owned();
@@ -87,7 +87,7 @@ impl SolidShaft<'_> {
         Ok(stiffness + half.adjoint() * &half)
     }
 
-    /// What is held of `order`.
+    /// Held means of `order`.
     fn held(&self, order: i64) -> Vec<Held> {
         let [none, one, i] = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(re, im)| c64::new(re, im));
         let [minus, plus] = self.body.axial.heights().map(|z| self.body.axial.values(z));
@@ -124,7 +124,7 @@ impl SolidShaft<'_> {
         }
     }
 
-    /// `k` of the innermost element, on what its circles can do where the first is the axis: points of it move as one.
+    /// `k` of the innermost element, on the possible motions of its circles where the first is the axis: points of it move as one.
     fn around_axis(&self, order: i64, k: &Mat<c64>) -> Mat<c64> {
         let (size, functions) = (self.body.size(), self.body.axial.len());
         let [one, i] = [(1.0, 0.0), (0.0, 1.0)].map(|(re, im)| c64::new(re, im));
@@ -149,7 +149,7 @@ impl SolidShaft<'_> {
 }
 
 impl Held {
-    /// What it takes of the unknowns of an element, whose circles are its ends and its middle.
+    /// Weights of the unknowns of an element, whose circles are its ends and its middle.
     fn of_element(&self, [from, to]: [f64; 2]) -> Vec<c64> {
         let (middle, half) = (f64::midpoint(from, to), (to - from) / 2.0);
         let mut shares = [0.0; 3];

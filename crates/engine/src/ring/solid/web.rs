@@ -25,7 +25,7 @@ pub struct HoledRing<'a> {
     rows: Mat<f64>,
     /// The largest order that is asked for.
     largest: usize,
-    /// What carries the inner circle, one of each order 0 …; without it that circle is held.
+    /// Stiffness under the inner circle, one of each order 0 …; without it that circle is held.
     hub: Option<&'a [Mat<c64>]>,
 }
 
@@ -62,7 +62,7 @@ impl<'a> HoledRing<'a> {
     /// The ring of sectors `grid`; `prism` is its section with the functions across it, and the displacements of the nodes `recovered` can be asked for. It is asked
     /// for the orders up to `largest`.
     ///
-    /// `hub` is what carries the inner circle, one of each of these orders; without it that circle is held.
+    /// `hub` is the stiffness under the inner circle, one of each of these orders; without it that circle is held.
     ///
     /// # Errors
     ///
@@ -210,8 +210,7 @@ impl<'a> HoledRing<'a> {
         })
     }
 
-    /// What `of` makes of each class that has orders: its number, these orders, and the stiffness of the ring on its
-    /// unknowns, the outer circle last.
+    /// Result of `of` for each class that has orders: its number, these orders, and the stiffness of the ring on its unknowns, the outer circle last.
     fn each_class<T: Send>(
         &self,
         run: &Run,
@@ -321,7 +320,7 @@ mod tests {
         let whole = grid.unrolled();
         let axial = AxialBasis::new(&[-2e-3, 3e-3], 3);
         let size = 3 * axial.len();
-        // What carries the orders couples even motions and odd ones.
+        // The stiffness under the orders couples even motions and odd ones.
         let hub: Vec<Mat<c64>> = (0..=largest)
             .map(|order| {
                 let off = |i: usize, j: usize| c64::new(0.01 * (i + j + order) as f64, 0.0);
