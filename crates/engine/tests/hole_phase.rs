@@ -185,11 +185,12 @@ fn the_best_turn_is_that_of_a_sweep_of_36_turns_by_full_solutions() {
         } else {
             (other_way, 1.0)
         };
-        let of_one = size(moving);
+        // Of the gear whose holes make more.
+        let of_one = size(moving).max(size(still));
         // Both are opposite where the turn is best.
         let angle = |[x, y]: [f64; 2]| f64::atan2(y, x);
         let best = (sign * (angle(still) + TAU / 2.0 - angle(moving)) / TAU).rem_euclid(1.0);
-        let least = (size(still) - of_one).abs();
+        let least = (size(still) - size(moving)).abs();
         let apart = sweep
             .iter()
             .zip(&phase.over_turn)
