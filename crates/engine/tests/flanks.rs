@@ -341,6 +341,7 @@ fn eccentric_gears_with_pitch_errors_touch_where_their_points_do() {
                 amount: 80e-6,
                 direction: 1.0 + g as f64,
             }),
+            ..ToothDeviations::default()
         };
     });
     let model = model(&pair);

@@ -1,9 +1,9 @@
 //! The natural modes of both gears of a case, and where the mesh meets them.
 
 use super::case::Case;
-use super::running::RotationSpeed;
 use super::error::AnalysisError;
 use super::estimate::Estimate;
+use super::running::RotationSpeed;
 use crate::gear::{Helix, Member, SolidGear, SolidGearError};
 use crate::run::Run;
 use crate::vibration::campbell::Crossing;

@@ -2,9 +2,10 @@
 
 use meshwright_engine::analysis::blank_modes::{ModesRequest, blank_modes_estimate};
 use meshwright_engine::analysis::forces::{ForcesRequest, MORE_POSITIONS};
-use meshwright_engine::analysis::{Case, Faces, Method, Warning, windows_at_largest_steps};
-use meshwright_engine::analysis::{Estimate, estimate};
-use meshwright_engine::analysis::{FaceHoles, Model, SectionHoles};
+use meshwright_engine::analysis::{
+    Case, Estimate, FaceHoles, Faces, Method, Model, RotationSpeed, SectionHoles, Warning,
+    estimate, windows_at_largest_steps,
+};
 use meshwright_engine::assembly::FaceResolution;
 use meshwright_engine::gear::GearPair;
 
