@@ -3,10 +3,10 @@
 mod cases;
 
 use cases::{case, drawn, gear, model_by, pair, relieved};
-use meshwright_engine::analysis::spectrum::harmonics;
 use meshwright_engine::analysis::{
     Case, Curve, Method, Statistics, analyze, windows_at_largest_steps,
 };
+use meshwright_engine::fourier::harmonics;
 use meshwright_engine::gear::{
     Eccentricity, GearPair, Member, Normals, SpurGear, Tolerances, ToothDeviations,
 };

@@ -4,7 +4,7 @@
 //!
 //! In reading order:
 //! - the database: its `address`, statements for either kind (`statement`) and the differences (`dialect`), opening (`open`, `lock`), writing (`write`), and
-//! its errors ([`StoreError`]);
+//!   its errors ([`StoreError`]);
 //! - the states (`state`), a [`Job`], a [`StudyRecord`], and their rows (`rows`);
 //! - the transitions of a job: `submit`, `claim` in its turn (`shares`), `attempt`, and other ends (`end`); those of a study (`studies`);
 //! - reading: lists, documents, tables; reports of other processes (`news`);

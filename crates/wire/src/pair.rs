@@ -194,7 +194,7 @@ impl PairDocument {
             let detail = format!("In lengths of the warm gears: {}", error.detail);
             Some(FieldError::new("/running", error.code, detail))
         };
-        errors.report(pair.map_err(|error| refused(error)))
+        errors.report(pair.map_err(refused))
     }
 
     /// Both gears, if they can be made and could mesh; faults are reported to `errors`.

@@ -1,7 +1,7 @@
 //! Where a flank is no half space: it ends at the tip of its tooth and at both ends of its face.
 //!
-//! A tooth is a wedge at its tip, which is more compliant than a half space there: in the plane by the logarithm of the distance from the corner, (C − c) ln (x
-//! + y), with Michell's compliance C of the wedge and c of the half plane ([`super::corner`] has the derivation). An image load at the same distance beyond the
+//! A tooth is a wedge at its tip, which is more compliant than a half space there: in the plane by the logarithm of the distance from the corner, (C − c) ln (x +
+//! y), with Michell's compliance C of the wedge and c of the half plane ([`super::corner`] has the derivation). An image load at the same distance beyond the
 //! tip, (C − c)/c as large, gives that logarithm for a long line, and for a short one its form in space.
 //!
 //! A face that is narrow against its teeth is a plate, which yields by the logarithm of plane stress as far as it is high, where a half space

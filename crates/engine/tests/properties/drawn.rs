@@ -214,12 +214,11 @@ fn deviations(draw: &mut Draw, tooth_count: u32, module: f64) -> ToothDeviations
     ToothDeviations {
         cumulative_pitch,
         profile_slope,
-        lead_slope: Vec::new(),
-        other_cumulative_pitch: Vec::new(),
         eccentricity: draw.chance(0.3).then(|| Eccentricity {
             amount: draw.over_decades(0.5e-3, 10e-3) * module,
             direction: draw.between(-PI, PI),
         }),
+        ..ToothDeviations::default()
     }
 }
 
