@@ -144,7 +144,7 @@ fn a_submission_with_other_fields_or_words_has_another_version() {
         (DOCUMENT_VERSION, sha256_hex(told.join("\n")).as_str()),
         (
             4,
-            "fcd8d9feca432c05658fc3014ad69e7be9ec83c0912805b801fe865892474e49"
+            "70c3fe72e1489443a91c88bd900b4424fe70bbb397c882ee5a99b94f836c532c"
         ),
         "{told:#?}"
     );
