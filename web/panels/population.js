@@ -33,7 +33,10 @@ const POSITIONS = 10;
 /** The same over a window, from which the orders of the mesh are estimated. */
 const POSITIONS_OF_WINDOW = 20;
 
-/** The mesh periods of a window of members whose true period is too long: that long, the tooth-to-tooth error settles within some percent. */
+/**
+ * The mesh periods of a window of members whose true period is too long: the tooth-to-tooth error settles within some
+ * percent over as many.
+ */
 const WINDOW = 32;
 
 /** Of how many torques, as parts of that of the design, a member has curves where it has room for them. */
@@ -194,7 +197,8 @@ export function population(place, design, form, limits, onOpen) {
   }
 
   /**
-   * The window of members whose true period is too long, until somebody types another one; otherwise none. Tells whether it is another one now.
+   * The window of members whose true period is too long, until somebody types another one; otherwise none. True if it
+   * is another one now.
    *
    * @param {boolean} isLong
    */
@@ -347,7 +351,8 @@ export function population(place, design, form, limits, onOpen) {
   }
 
   /**
-   * Says how many members have no results, and why most of these; of the others, what runs over a part of the true period.
+   * Says how many members have no results, and why most of these; of the others, how many run over a part of the true
+   * period.
    *
    * @param {PopulationResults} results
    */

@@ -486,15 +486,7 @@ export class RunUp {
         ? `the natural frequency is ${frequencies[0]} Hz`
         : `the natural frequencies are ${frequencies.join(", ")} Hz`;
     const caption = `Resonances: ${natural}, of ${number(this.#dynamics.equivalent_mass_kg, 3)} kg on the line of action`;
-    const names = [
-      "Speed rpm",
-      "Order",
-      "What it is",
-      "Excited by",
-      "Frequency Hz",
-      "Amplitude µm",
-      unseen("Actions"),
-    ];
+    const names = ["Speed rpm", "Order", "What it is", "Excited by", "Frequency Hz", "Amplitude µm", unseen("Actions")];
     const none = h("tr", {}, h("td", { colSpan: 7 }, "None at these speeds."));
     const found = table(names, rows.length ? rows : [none], caption);
     // A better number than that of the caption stands beside it.

@@ -49,7 +49,7 @@ fn profiles(gear: &GearData, count: usize, of: impl Fn(usize, f64) -> f64) -> To
 
 #[test]
 fn waves_around_all_flanks_are_a_ghost_order_of_their_amplitude() {
-    const AMPLITUDE: f64 = 1e-6;
+    const AMPLITUDE: f64 = 0.2e-6;
     // On an involute of the radius r_b the roll length s is touched s/r_b later, of a driven gear earlier. Rigid flanks that
     // follow A sin(n φ) over the angle φ at which they touch make δ = A sin(n φ), however many pairs touch.
     for (member, waves) in [(Member::Driven, 43_u32), (Member::Driving, 37)] {
@@ -67,8 +67,9 @@ fn waves_around_all_flanks_are_a_ghost_order_of_their_amplitude() {
             AMPLITUDE * (f64::from(waves) * angle).sin()
         });
         data.deviations.profiles = Some(traces);
-        // Flanks that are inclined touch beside the line of action, and a tip corner that a wave leaves behind stays in touch beyond its end.
-        for (method, allowed) in [(Method::Flexible, 0.03), (Method::LoadDistribution, 0.01)] {
+        // The statement is of the first order: inclined flanks touch beside the line of action, and a tip corner that a wave leaves behind stays in touch
+        // beyond its end. At 1 um other lines have 3 % of the amplitude.
+        for (method, allowed) in [(Method::Flexible, 0.01), (Method::LoadDistribution, 0.01)] {
             let mut case = case(meshing(gears.clone()), &[0.0]);
             case.model = model_by(method, &case.model);
             let found = curve(&case);

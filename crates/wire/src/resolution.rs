@@ -89,7 +89,7 @@ document! {
         /// has, and no two overlap. Lists have one window behind the other, statistics are those of all. The orders of the mesh are estimated: what single
         /// teeth make of them in the windows is replaced by what they make over the true period. Other orders are not told.
         pub(super) window_starts: Option<Vec<u32>> = absent(
-            list("Windows", number("", "1", 0.0, 10_000_000.0), MOST_WINDOWS)
+            list("Windows", number("Window start", "1", 0.0, 10_000_000.0), MOST_WINDOWS)
                 .not_empty(Code::WrongLength, "give the mesh period in which a window begins")
                 .unique("repeats a window"),
             "one span, from the start of the true period",

@@ -5,7 +5,7 @@
 //! - `under_load` (what all methods do alike, torque by torque), `found` (what each finds at some positions), `setup` and `pair_contacts` (what methods by
 //!   finite elements work with);
 //! - `flexible`, `decomposition`, `projected`, `three_dimensional` and `load_distribution` (the methods), `first_order` (what holes change, in the plane and
-//!   along faces) and `checks` (where that is compared with exact solutions), [`hole_phase`] (how the holes of both gears stand best), `light` (torque 0, alike for
+//!   along faces) and `checks` (where that is compared with exact solutions), [`hole_phase`] and `hole_turns` (best turn of the holes of both gears), `light` (torque 0, alike for
 //!   all), [`running`] and `spun_pair` (pairs that turn, are warm, and are pressed onto shafts);
 //! - [`stress`] (at roots and holes; along faces `face_stress`), [`fields`] (everywhere; along faces [`face_fields`]), [`contact_pattern`] (over the flanks);
 //! - `between` (a curve between its positions), `curve_parts` and [`curve`] with its `statistics`, [`largest_where`] (where its largest values stand), [`pressures`] (what they come to),
@@ -34,6 +34,7 @@ mod flexible;
 pub mod forces;
 mod found;
 pub mod hole_phase;
+mod hole_turns;
 pub mod largest_where;
 mod light;
 mod load_distribution;

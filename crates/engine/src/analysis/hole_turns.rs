@@ -1,0 +1,263 @@
+//! Computation of the best turn of the driving gear's holes.
+//!
+//! Where both blanks repeat at one order, N_1/z_1 = N_2/z_2, they excite one line of the spectrum together, and a turn of the driving blank under its teeth
+//! moves one of its two parts. Both parts are first-order terms ([`super::first_order`]), so that no turn has to be solved:
+//!
+//! ```text
+//! δ(η, x) = δ_0(f) + T_1(f, N_1 x/2π + n ν) + T_2(η),   ν = N_1/z_1 = p/q,   η = n + f
+//! ```
+//!
+//! T_1(f, u) is what the driving holes add at the fraction f of the mesh period where a hole has moved on by u hole pitches under the tooth. Its q teeth are q
+//! places of u, and a blank turned by a part of their distance gives as many between them. One full solution at the best turn confirms it.
+
+use std::f64::consts::TAU;
+
+use super::AnalysisError;
+use super::case::Case;
+use super::curve::Curve;
+use super::hole_phase::{AtTurn, HolePhase, PhasePlan};
+use super::projected::{round_average, yielded};
+use super::setup::Setup;
+use crate::assembly::Blanks;
+use crate::contact::positions::{contacts, contacts_keeping};
+use crate::contact::{ContactCells, ContactSolution, PairLoads};
+use crate::fourier::harmonics;
+use crate::gear::Member;
+
+/// Harmonics of the hole order, at most, that are followed between these places.
+const HARMONICS: usize = 24;
+
+/// Turns over a hole pitch at which amplitude and peak-to-peak are given, and among which the best is looked for.
+const TURNS: u32 = 36;
+
+/// Steps of the golden section after which the turn is known to 1e-8 of a hole pitch.
+const STEPS: u32 = 36;
+
+impl PhasePlan {
+    /// The best turn of the pair of `setup`, whose `curves` are known.
+    pub(super) fn solve(
+        &self,
+        setup: Setup<'_>,
+        curves: &[Curve],
+    ) -> Result<Option<HolePhase>, AnalysisError> {
+        let case = setup.case;
+        let Some(amplitude_now) = self.amplitude_of(curves, case.span()) else {
+            return Ok(None);
+        };
+        let hole_pitch = TAU / f64::from(case.pair.driving().hole_repeats());
+        let terms = Terms::of(self, setup)?;
+        let best = terms.best();
+        let mirrored = Case {
+            pair: case.pair.mirror_image_of_gears(),
+            ..case.clone()
+        };
+        let other = Terms::of(
+            self,
+            Setup {
+                case: &mirrored,
+                ..setup
+            },
+        )?
+        .best();
+        let over_turn = (0..=TURNS).map(|i| {
+            let place = f64::from(i) / f64::from(TURNS);
+            let curve = terms.curve(place);
+            let [low, high] = [f64::min, f64::max].map(|pick| curve.iter().copied().reduce(pick));
+            AtTurn {
+                turn: place * hole_pitch,
+                amplitude: terms.amplitude(place),
+                peak_to_peak: high.unwrap_or(0.0) - low.unwrap_or(0.0),
+            }
+        });
+        Ok(Some(HolePhase {
+            output_torque: self.output_torque,
+            order: case.pair.driven().hole_repeats(),
+            turn_of_driving: best * hole_pitch,
+            amplitude: self.confirmed(&terms, best, setup)?,
+            amplitude_now,
+            // The mirror shows a turn the other way round.
+            other_flanks_turn: (1.0 - other).fract() * hole_pitch,
+            over_turn: over_turn.collect(),
+        }))
+    }
+
+    /// The amplitude at the order of the holes of the curve under its torque, of `curves` over `span` mesh periods.
+    fn amplitude_of(&self, curves: &[Curve], span: u32) -> Option<f64> {
+        let mut curves = curves.iter();
+        let curve = curves.find(|curve| curve.output_torque == self.output_torque)?;
+        let [p, q] = self.ratio;
+        let lines = &curve.spectrum.as_ref()?.transmission_error;
+        lines.get((p * span / q) as usize - 1).copied()
+    }
+
+    /// The amplitude with the driving blank turned by `place` hole pitches, by a full solution: what it adds to the first order has no kinks of the mesh, and
+    /// few positions tell it.
+    fn confirmed(&self, terms: &Terms, place: f64, setup: Setup<'_>) -> Result<f64, AnalysisError> {
+        let case = turned(setup.case, place);
+        let (model, _) = Setup {
+            case: &case,
+            ..setup
+        }
+        .model(Blanks::Flexible)?;
+        let [first_order, full] = self.per_period;
+        let positions: Vec<f64> = (0..self.ratio[1] * full)
+            .map(|i| f64::from(i) / f64::from(full))
+            .collect();
+        let load = case.pair.load(self.output_torque);
+        let exact = contacts(model.as_drawn(), load, &positions, setup.run)?;
+        let curve = terms.curve(place);
+        let known = curve.iter().step_by((first_order / full) as usize);
+        let beyond: Vec<f64> = exact
+            .iter()
+            .zip(known)
+            .map(|(exact, known)| exact.transmission_error - known)
+            .collect();
+        let [a, b] = [&curve, &beyond].map(|values| line(values, self.ratio[0]));
+        Ok((a[0] + b[0]).hypot(a[1] + b[1]))
+    }
+}
+
+/// `case` with its driving blank turned by `place` hole pitches.
+fn turned(case: &Case, place: f64) -> Case {
+    let hole_pitch = TAU / f64::from(case.pair.driving().hole_repeats());
+    Case {
+        pair: case.pair.with_driving_blank_turned(place * hole_pitch),
+        ..case.clone()
+    }
+}
+
+/// The transmission error of a pair at first order, whatever the turn of its driving blank.
+struct Terms {
+    ratio: [u32; 2],
+    /// With the driven blank as it stands, and the mean of what the driving one adds: period after period.
+    still: Vec<f64>,
+    /// Harmonics of T_1 over a hole pitch at each fraction of the mesh period: amplitudes and phases.
+    driving: Vec<Vec<(f64, f64)>>,
+}
+
+impl Terms {
+    /// Those of the pair of `setup` under the torque of `plan`.
+    fn of(plan: &PhasePlan, setup: Setup<'_>) -> Result<Self, AnalysisError> {
+        let Setup { case, run, .. } = setup;
+        let ([p, q], turns) = (plan.ratio, plan.turns());
+        let (whole, _) = setup.model(Blanks::Flexible)?;
+        let round = round_average(&whole, &Member::BOTH);
+        let per_period = plan.per_period[0];
+        let fractions: Vec<f64> = (0..per_period)
+            .map(|i| f64::from(i) / f64::from(per_period))
+            .collect();
+        let keep = |cells: &ContactCells<'_>, solution: &ContactSolution| {
+            cells.loads(&[&solution.forces, &solution.load_derivative])
+        };
+        let load = case.pair.load(plan.output_torque);
+        let solved = contacts_keeping(round.as_drawn(), load, &fractions, run, keep)?;
+        let places = (q * turns) as usize;
+        // T_1 at u = j/(q turns) hole pitches: the tooth n stands n ν on from tooth 0, a turned blank by less than 1/q.
+        let mut driving = vec![vec![0.0; places]; solved.len()];
+        for turn in 0..turns {
+            let of_turn;
+            let model = if turn == 0 {
+                &whole
+            } else {
+                let case = turned(case, f64::from(turn) / places as f64);
+                of_turn = Setup {
+                    case: &case,
+                    ..setup
+                }
+                .model(Blanks::Flexible)?
+                .0;
+                &of_turn
+            };
+            for ((_, loads), values) in solved.iter().zip(&mut driving) {
+                let alike = yielded(&round, &[Member::Driving], loads, 0)[0];
+                for n in 0..q {
+                    let place = turn + turns * (n * p % q);
+                    let own = yielded(model, &[Member::Driving], loads, i64::from(n))[0];
+                    values[place as usize] = own - alike;
+                }
+            }
+        }
+        let driven = |loads: &[PairLoads], n: u32| {
+            let of = |model, n| yielded(model, &[Member::Driven], loads, n)[0];
+            of(&whole, i64::from(n)) - of(&round, 0)
+        };
+        let means: Vec<f64> = driving
+            .iter()
+            .map(|values| values.iter().sum::<f64>() / places as f64)
+            .collect();
+        let still = (0..q).flat_map(|n| {
+            solved
+                .iter()
+                .zip(&means)
+                .map(move |((contact, loads), mean)| {
+                    contact.transmission_error + mean + driven(loads, n)
+                })
+        });
+        Ok(Self {
+            ratio: plan.ratio,
+            still: still.collect(),
+            driving: driving
+                .iter()
+                .map(|values| {
+                    let mut lines = harmonics(values);
+                    lines.truncate(HARMONICS);
+                    lines
+                })
+                .collect(),
+        })
+    }
+
+    /// δ over q mesh periods with the driving blank turned by `place` hole pitches.
+    fn curve(&self, place: f64) -> Vec<f64> {
+        let [p, q] = self.ratio.map(f64::from);
+        let per_period = self.driving.len();
+        let at = |(i, still): (usize, &f64)| {
+            let n = (i / per_period) as f64;
+            let u = place + n * p / q;
+            let lines = self.driving[i % per_period].iter().zip(1_u32..);
+            let moved = lines
+                .map(|((amplitude, phase), k)| amplitude * (TAU * f64::from(k) * u + phase).cos());
+            still + moved.sum::<f64>()
+        };
+        self.still.iter().enumerate().map(at).collect()
+    }
+
+    /// The amplitude of this curve at the order of the holes.
+    fn amplitude(&self, place: f64) -> f64 {
+        let [cosine, sine] = line(&self.curve(place), self.ratio[0]);
+        cosine.hypot(sine)
+    }
+
+    /// The place of a hole pitch, from 0 to 1, at which the amplitude is least.
+    fn best(&self) -> f64 {
+        let step = 1.0 / f64::from(TURNS);
+        let places = (0..TURNS).map(|i| f64::from(i) * step);
+        let known = places.map(|place| (place, self.amplitude(place)));
+        let (middle, _) = known
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .unwrap_or((0.0, 0.0));
+        let golden = (5_f64.sqrt() - 1.0) / 2.0;
+        let [mut low, mut high] = [middle - step, middle + step];
+        for _ in 0..STEPS {
+            let part = golden * (high - low);
+            if self.amplitude(high - part) < self.amplitude(low + part) {
+                high = low + part;
+            } else {
+                low = high - part;
+            }
+        }
+        ((low + high) / 2.0).rem_euclid(1.0)
+    }
+}
+
+/// Cosine and sine of `values`, at equal steps over a period, that repeat `times` in it.
+fn line(values: &[f64], times: u32) -> [f64; 2] {
+    let turn = TAU * f64::from(times) / values.len() as f64;
+    let share = 2.0 / values.len() as f64;
+    let part = |of: fn(f64) -> f64| -> f64 {
+        let each = values.iter().enumerate();
+        each.map(|(i, value)| share * value * of(turn * i as f64))
+            .sum()
+    };
+    [part(f64::cos), part(f64::sin)]
+}
