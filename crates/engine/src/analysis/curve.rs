@@ -1,5 +1,6 @@
 //! Results: curves over mesh position.
 
+pub use super::load_share::LoadShare;
 use super::mesh_wave::MeshWave;
 use super::pressures::CurvePressures;
 use super::running::CurveRunning;
@@ -9,15 +10,6 @@ use super::statistics::{SamplingError, Statistics};
 use super::stress::GearStresses;
 use crate::contact::face::even::EvenLead;
 use crate::gear::{Member, SpurGear};
-
-/// The share of the load that the tooth pairs at one offset carry, position by position.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LoadShare {
-    /// n − floor(η) of the pair that passes the pitch point at mesh position n.
-    pub pair_offset: i32,
-    /// w·p/F of that pair.
-    pub share: Vec<f64>,
-}
 
 /// One sample of a holed blank in the decomposition.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::between::Sections;
 use super::case::Case;
-use super::curve::LoadShare;
+use super::load_share::LoadShare;
 use super::pair_springs::PairSprings;
 use crate::fourier::harmonics;
 

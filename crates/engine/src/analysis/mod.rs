@@ -8,7 +8,7 @@
 //!   along faces) and `checks` (where that is compared with exact solutions), [`hole_phase`] and `hole_turns` (best turn of the holes of both gears), `light` (torque 0, alike for
 //!   all), [`running`] and `spun_pair` (pairs that turn, are warm, and are pressed onto shafts);
 //! - [`stress`] (at roots and holes; along faces `face_stress`), [`fields`] (everywhere; along faces [`face_fields`]), [`contact_pattern`] (over the flanks);
-//! - `between` (a curve between its positions), `curve_parts` and [`curve`] with its `statistics`, [`largest_where`] (where its largest values stand), [`pressures`] (what they come to),
+//! - `between` (a curve between its positions), `curve_parts` and [`curve`] with [`load_share`] and its `statistics`, [`largest_where`] (where its largest values stand), [`pressures`] (what they come to),
 //!   [`spectrum`] and [`single_flank`] with the `long_wave`; `windows` (stretches of a true period that is too long), [`mesh_wave`] and `pair_springs` (what they tell of the mesh orders);
 //! - [`evidence`], [`warning`], [`error`] and `answer` (all that comes out); [`forces`] (tables of force), [`at_speed`] (motion), [`rotors`] (gear bodies in torsion), [`blank_modes`] (natural modes of both gears).
 
@@ -38,6 +38,7 @@ mod hole_turns;
 pub mod largest_where;
 mod light;
 mod load_distribution;
+pub mod load_share;
 mod long_wave;
 pub mod mesh_wave;
 mod orders;

@@ -1,7 +1,7 @@
 //! Tooth pairs as springs that fit what was found in a window: a curve of all pairs of a long true period in closed form.
 
 use super::case::Case;
-use super::curve::LoadShare;
+use super::load_share::LoadShare;
 use crate::gear::{Member, PairDeviations, gcd};
 
 /// The most mesh periods of a true period at which springs are asked: of longer ones every so many.
