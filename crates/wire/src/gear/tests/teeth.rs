@@ -339,17 +339,30 @@ fn lead_traces_have_a_row_for_each_tooth_and_rise() {
         let removed: Value = (0..count).map(|_| json!([0.0, 1.0])).collect();
         json!({ "tooth_deviations": { "leads": { "z_mm": z, "removed_um": removed } } })
     };
-    let data = data_of(&leads(json!([-10, 10]), 50));
+    let along_faces = |leads: &Value| {
+        let mut document = with(leads);
+        document["method"] = json!("three_dimensional");
+        parse(&document)
+    };
+    let submission = along_faces(&leads(json!([-10, 10]), 50)).expect("valid");
+    let data = submission.case().pair.driving().data().clone();
     let traces = data.deviations.leads.expect("traces");
     near(traces.heights[1], 10e-3);
     near(traces.removed[49][1], 1e-6);
-    let at = "tooth_deviations/leads";
-    let short = leads(json!([-10, 10]), 51);
-    fault(&short, &format!("{at}/removed_um"), Code::WrongLength);
-    let falls = leads(json!([10, -10]), 50);
-    fault(&falls, &format!("{at}/z_mm/1"), Code::TableDoesNotRise);
-    let few = leads(json!([10]), 50);
-    fault(&few, &format!("{at}/z_mm"), Code::WrongLength);
+    for (wrong, place, code) in [
+        (leads(json!([-10, 10]), 51), "removed_um", Code::WrongLength),
+        (
+            leads(json!([10, -10]), 50),
+            "z_mm/1",
+            Code::TableDoesNotRise,
+        ),
+        (leads(json!([10]), 50), "z_mm", Code::WrongLength),
+    ] {
+        let problem = along_faces(&wrong).expect_err(place);
+        let error = &problem.errors[0];
+        let pointer = format!("/pair/driving/tooth_deviations/leads/{place}");
+        assert_eq!((&error.pointer, error.code), (&pointer, code));
+    }
 }
 
 #[test]

@@ -233,7 +233,8 @@ fn a_run_up_brings_the_usual_table_and_both_count() {
     assert_eq!(
         echo["dynamics"],
         json!({ "driving_speed_rpm": { "from": 0.0, "to": 20_000.0, "count": 400 }, "damping_ratio": 0.05,
-                "driving_inertia_kg_m2": null, "driven_inertia_kg_m2": null, "sweep": "both" })
+                "driving_inertia_kg_m2": null, "driven_inertia_kg_m2": null,
+                "blank_modes": null, "blank_damping_ratio": 0.02, "sweep": "both" })
     );
     assert_eq!(
         parse(&echo).expect("valid").canonical_json(),
