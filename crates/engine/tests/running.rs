@@ -58,8 +58,8 @@ fn hole_order(case: &Case, library: &Library) -> f64 {
 
 #[test]
 fn rotation_alone_moves_the_order_of_the_holes_as_independent_elements_do() {
-    // At 20,000 rpm with the bore held independent elements move a point low on the flank by 0.16, 0.30 and 0.76 µm at the order of the holes. A flank moves
-    // by more towards its tip, and the contact takes the mean of two pairs: a tenth more at most.
+    // At 20,000 rpm with the bore held independent elements have 0.16, 0.30 and 0.76 µm at the order of the holes, for a displacement of the flank whose place
+    // is not recorded. Along a flank ours runs from 0.149 to 0.240, 0.289 to 0.432 and 0.715 to 0.961 µm; through the contact it is 4 to 10 % above them.
     let library = Library::default();
     for (holes, expected) in [
         ((10, 7.5e-3), 0.16e-6),
