@@ -1890,6 +1890,7 @@ export async function benchSteps(service) {
     await page.locator("#answer-p-p .name").click();
     assert.match(await page.locator("#about-p-p").innerText(), /1 µm/);
     assert.ok(await page.locator("#about-h-n").isHidden());
+    await tab(page, "contact");
     await page.locator("#chart-pressure").scrollIntoViewIfNeeded();
     assert.match(await page.locator("#chart-pressure .note").innerText(), /tip corner/);
     await page.locator("nav a", { hasText: "Guides" }).click();

@@ -190,7 +190,7 @@ export async function end() {
 }
 
 /** An answer of the headline, as a number. */
-export const answer = async (page, id) => Number(await page.locator(`#answer-${id} .value`).innerText());
+export const answer = async (page, id) => Number(await page.locator(`#answer-${id} .value`).textContent());
 
 /** Waits until an answer is another one than before, and no draft; gives it. */
 export async function changed(page, id, before) {
@@ -200,7 +200,7 @@ export async function changed(page, id, before) {
       return (
         !value.classList.contains("draft") &&
         !document.body.classList.contains("busy") &&
-        Number(value.innerText) !== old
+        Number(value.textContent) !== old
       );
     },
     [id, before],

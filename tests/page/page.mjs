@@ -184,10 +184,11 @@ await daily.opened("curves and gears stand at the same position, whichever is mo
 await opened("stresses are shown where they are asked for", async (page) => {
   assert.ok(await page.locator("#chart-stress").isHidden());
   await (await field(page, "/stress")).check();
+  await tab(page, "strength");
   await page.locator("#chart-stress").waitFor();
   // The roots of both gears, and the holes of the driven one.
   assert.equal(await page.locator("#chart-stress .entry").count(), 3);
-  await page.locator("#chart-ste .u-over").hover({ position: { x: 120, y: 60 } });
+  await page.locator("#chart-stress .u-over").hover({ position: { x: 120, y: 60 } });
   assert.match(await page.locator("#readout").innerText(), /Stress in MPa: \d+\.\d at a root of the driving gear/);
   assert.ok((await answer(page, "stress")) > 0);
   await axe(page);

@@ -315,6 +315,7 @@ export async function shownSteps(service) {
 
     await openDesign(page, service, { ...HELICAL, method: "three_dimensional_projected" });
     await settled(page);
+    await tab(page, "contact");
     await page.locator("#chart-pattern button").click();
     await page.locator("#chart-pattern svg").nth(1).waitFor();
     const curves = {
@@ -949,7 +950,7 @@ export async function shownSteps(service) {
       assert.equal(await answer(page, "p-p"), Number(statistics.transmission_error_um.peak_to_peak.toFixed(3)));
       assert.equal(await answer(page, "face"), Number(face.face_load_factor.toFixed(3)));
       // All 83 periods are seen, in envelopes; the mesh order beside that of the holes by its level.
-      assert.match(await page.locator("#chart-share .legend").innerText(), /most load/);
+      assert.match(await page.locator("#chart-share .legend").textContent(), /most load/);
       await page.locator("#spectrum-scale").selectOption("db");
       await axe(page);
       await page.reload();
@@ -970,6 +971,7 @@ export async function shownSteps(service) {
         });
         await answered(page);
         await settled(page);
+        await tab(page, "contact");
         const button = page.locator("#chart-pattern button");
         const clock = page.locator("#chart-pattern [role=status]", { hasText: /at every position, about \d+ s more/ });
         await button.click();

@@ -140,6 +140,7 @@ export async function solidSteps(service) {
     await openDesign(page, service, HELICAL);
     await answered(page);
     await settled(page);
+    await tab(page, "contact");
     const map = page.locator("#chart-face");
     await map.scrollIntoViewIfNeeded();
     const words = await page.locator("#words-face").textContent();
@@ -164,7 +165,7 @@ export async function solidSteps(service) {
     await map.locator(".u-over").hover({ position: { x: 100, y: 60 } });
     await page.waitForFunction((old) => document.querySelector("#position").value !== old, before);
     const marks = await page
-      .locator("#chart-ste .now, #chart-face .now")
+      .locator("#chart-share .now, #chart-face .now")
       .evaluateAll((all) =>
         all.map((each) => new DOMMatrix(getComputedStyle(each).transform).e / each.parentElement.clientWidth),
       );
@@ -197,7 +198,7 @@ export async function solidSteps(service) {
       return figure({ title: "", x: "", y: "", cells }).frame.x[1];
     });
     assert.equal(Math.round(right), 500);
-    await tab(page, "noise");
+    await tab(page, "contact");
     // The flanks, as the service tells them of a job of this design.
     await page.locator("#chart-pattern button").click();
     await page.locator("#chart-pattern svg").nth(1).waitFor();
