@@ -110,7 +110,7 @@ export const inCurve = ({ name }, curve) => curve.quantities?.[name];
  * @type {(quantity: Quantity, row: TableRow, curve: RowCurve, studied: GearName) => number | null | undefined}
  */
 export function inRow({ name, of, gear }, row, curve, studied) {
-  if (of === "pair") return gear && gear !== studied ? undefined : at(row, name.split(".")[0]);
+  if (of === "pair") return gear && gear !== studied ? undefined : at(row, gear ? name.split(".")[0] : name);
   const own = at(curve, name);
   return own === undefined ? at(curve.statistics, name) : own;
 }

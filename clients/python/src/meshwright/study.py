@@ -113,12 +113,12 @@ def _spread(quantity: dict[str, Any]) -> dict[str, Any]:
 def _lines(row: dict[str, Any], quantities: Sequence[dict[str, Any]]) -> Iterator[dict[str, Any]]:
     own = {name: row.get(name) for name in ("label", "status", "pareto")}
     own["problem"] = row["problem"]["detail"] if row.get("problem") else None
-    of_pair = [each["name"].split(".")[0] for each in quantities if each["of"] == "pair"]
+    of_pair = [each["name"].removesuffix(f".{each['gear']}") for each in quantities if each["of"] == "pair"]
     of_curve = [each["name"] for each in quantities if each["of"] == "curve"]
     for curve in row["curves"] or [{}]:
         told = {name: _at(curve, name) for name in of_curve}
         short = {name: told.get(long) for name, long in _SHORT.items()}
-        yield own | {name: row.get(name) for name in of_pair} | {"output_torque_n_m": curve.get("output_torque_n_m")} | short | told
+        yield own | {name: _at(row, name) for name in of_pair} | {"output_torque_n_m": curve.get("output_torque_n_m")} | short | told
 
 
 def _at(curve: dict[str, Any], name: str) -> float | None:
