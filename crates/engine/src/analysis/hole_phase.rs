@@ -1,4 +1,4 @@
-//! The best turn of the holes of the driving gear against those of the driven one, and the plan of its computation ([`super::hole_turns`]).
+//! The best turn of the holes of the driving gear against those of the driven one, and the plan of its computation (`hole_turns`).
 
 use super::case::Case;
 use crate::gear::{GearPair, Member};
