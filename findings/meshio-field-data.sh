@@ -1,10 +1,20 @@
-"""meshio 5.3.5 reads the field data of a VTU file, and writes a VTU file without them.
-
-Expected: a file that was read and written says the same. Field data hold what is of the whole grid, such as the torque or the time of a result
-(VTK file formats: `FieldData` before the pieces). They are read into `field_data`, and writing drops them without a warning.
-Do instead: keep such numbers beside the file, or as point data.
-"""
-
+#!/usr/bin/env bash
+# meshio 5.3.5 reads the field data of a VTU file, and writes a VTU file without them.
+#
+# Expected: a file that was read and written says the same. Field data hold what is of the whole grid, such as the torque or the time of a result
+# (VTK file formats: `FieldData` before the pieces). They are read into `field_data`, and writing drops them without a warning.
+# Do instead: keep such numbers beside the file, or as point data.
+#
+# Seen:
+# read:    {'torque_n_m': [115.0]}
+# written: {} and said: nothing
+set -euo pipefail
+folder=$(mktemp --directory)
+trap 'rm -rf "$folder"' EXIT
+python3 -m venv "$folder/venv"
+"$folder/venv/bin/pip" install --quiet meshio==5.3.5 numpy==2.4.6
+cd "$folder"
+"$folder/venv/bin/python" - <<'PYTHON'
 import contextlib
 import io
 import tempfile
@@ -38,7 +48,4 @@ with tempfile.TemporaryDirectory() as folder:
     assert again.field_data == {}, "field data are written now: the finding has ended"
     assert "FieldData" not in second.read_text(errors="replace")
     assert said.getvalue().strip() == ""
-
-# Seen:
-# read:    {'torque_n_m': [115.0]}
-# written: {} and said: nothing
+PYTHON

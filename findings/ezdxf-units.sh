@@ -1,11 +1,20 @@
-"""ezdxf 1.4.2 declares a new drawing to be in meters, whatever its coordinates are meant in, and drops the unit of a drawing of R12.
-
-Expected: a drawing without a unit ($INSUNITS 0) until somebody sets one, or millimeters, as its own header variable $MEASUREMENT 1 (metric) suggests.
-A gear that is drawn in millimeters, tip circle 52, is a gear of 52 meters to a program that follows $INSUNITS. In R12 the variable does not
-exist: `doc.units = 4` (mm) is taken, told by the log alone, and not written.
-Do instead: set `doc.units` before saving, and write R2000 or later.
-"""
-
+#!/usr/bin/env bash
+# ezdxf 1.4.2 declares a new drawing to be in meters, whatever its coordinates are meant in, and drops the unit of a drawing of R12.
+#
+# Expected: a drawing without a unit ($INSUNITS 0) until somebody sets one, or millimeters, as its own header variable $MEASUREMENT 1 (metric) suggests.
+# A gear that is drawn in millimeters, tip circle 52, is a gear of 52 meters to a program that follows $INSUNITS. In R12 the variable does not
+# exist: `doc.units = 4` (mm) is taken, told by the log alone, and not written.
+# Do instead: set `doc.units` before saving, and write R2000 or later.
+#
+# Seen:
+# R2010 as made: 6; R2010 in mm: 4; R12 in mm: None
+set -euo pipefail
+folder=$(mktemp --directory)
+trap 'rm -rf "$folder"' EXIT
+python3 -m venv "$folder/venv"
+"$folder/venv/bin/pip" install --quiet ezdxf==1.4.2
+cd "$folder"
+"$folder/venv/bin/python" - <<'PYTHON'
 import io
 import logging
 
@@ -41,6 +50,4 @@ print(f"R2010 as made: {as_made}; R2010 in mm: {in_mm}; R12 in mm: {old}")
 assert as_made == METERS, "a new drawing is not in meters any more: the finding has ended"
 assert in_mm == MILLIMETERS
 assert old is None, "R12 has the unit now: the finding has ended"
-
-# Seen:
-# R2010 as made: 6; R2010 in mm: 4; R12 in mm: None
+PYTHON

@@ -1,11 +1,20 @@
-"""VTK 9.5.2 measures and integrates a quadratic cell in straight pieces.
-
-Expected: the area of the curved cell, because VTK_QUADRATIC_QUAD has the shape functions that its eight points say (VTK file formats, non-linear
-cells). vtkCellSizeFilter and vtkIntegrateAttributes, behind "Cell Size" and "Integrate Variables" of ParaView, divide it by its points into
-triangles, whose sides are chords. A quarter of a ring between the radii 1 and 2 as one cell loses 9 % of its area, and every integral over it.
-Do instead: integrate by the shape functions, or divide the cells before (vtkTessellatorFilter with its error metrics).
-"""
-
+#!/usr/bin/env bash
+# VTK 9.5.2 measures and integrates a quadratic cell in straight pieces.
+#
+# Expected: the area of the curved cell, because VTK_QUADRATIC_QUAD has the shape functions that its eight points say (VTK file formats, non-linear
+# cells). vtkCellSizeFilter and vtkIntegrateAttributes, behind "Cell Size" and "Integrate Variables" of ParaView, divide it by its points into
+# triangles, whose sides are chords. A quarter of a ring between the radii 1 and 2 as one cell loses 9 % of its area, and every integral over it.
+# Do instead: integrate by the shape functions, or divide the cells before (vtkTessellatorFilter with its error metrics).
+#
+# Seen:
+# vtkCellSizeFilter 2.1213, vtkIntegrateAttributes 2.1213, shape functions 2.3284, ring 2.3562
+set -euo pipefail
+folder=$(mktemp --directory)
+trap 'rm -rf "$folder"' EXIT
+python3 -m venv "$folder/venv"
+"$folder/venv/bin/pip" install --quiet vtk==9.5.2 numpy==2.4.6
+cd "$folder"
+"$folder/venv/bin/python" - <<'PYTHON'
 import math
 
 import numpy as np
@@ -55,6 +64,4 @@ assert abs(curved / ring - 1) < 0.015, "the parabola through three points of the
 # Chords: half of the sines of 45 degrees, twice, times 2^2 - 1^2.
 assert abs(size - 3 * math.sin(QUARTER / 2)) < 1e-9, "the cell is measured otherwise now: the finding has ended"
 assert abs(integral - size) < 1e-9
-
-# Seen:
-# vtkCellSizeFilter 2.1213, vtkIntegrateAttributes 2.1213, shape functions 2.3284, ring 2.3562
+PYTHON
