@@ -22,7 +22,7 @@ use crate::run::Run;
 /// doubled.
 const FIRST_COUPLED: usize = 4;
 
-/// Computes `case` of what `parts` provides, each of its windows by itself.
+/// Computes `case` from the parts of `parts`, each of its windows by itself.
 ///
 /// # Errors
 ///
@@ -35,7 +35,7 @@ pub fn analyze(case: &Case, parts: &dyn Parts, run: &Run) -> Result<Analysis, An
     Ok(windows::joined(answers))
 }
 
-/// The answer to the case of `plan`, what the holes alone make where teeth deviate, and how those of both gears stand best.
+/// The answer to the case of `plan`, with the part of the holes alone where teeth deviate, and with the best turn of the holes of both gears.
 pub(super) fn answered(
     plan: &Plan,
     parts: &dyn Parts,

@@ -63,7 +63,7 @@ pub struct NamedResonance {
     pub label: String,
     /// The order per revolution of the driven gear.
     pub order: f64,
-    /// Where it stands, how large it is, and what excites it.
+    /// Place, amplitude and cause.
     pub resonance: Resonance,
 }
 

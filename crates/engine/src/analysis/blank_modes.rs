@@ -108,7 +108,7 @@ fn met(mode: Mode, case: &Case, member: Member, request: &ModesRequest) -> MetMo
     }
 }
 
-/// What [`blank_modes`] of `case` adds to what the case costs.
+/// Cost of [`blank_modes`] of `case` beside that of the case.
 pub fn blank_modes_estimate(case: &Case) -> Estimate {
     let of = |member| {
         let gear = case.solid_gear(member);

@@ -46,7 +46,7 @@ impl Method {
         matches!(self, Self::Flexible | Self::ThreeDimensional)
     }
 
-    /// Whether it says how the holes of both gears stand best.
+    /// True if it computes the best turn of the holes of both gears.
     pub fn finds_hole_phase(self) -> bool {
         matches!(
             self,
@@ -235,7 +235,7 @@ impl Case {
     }
 
     /// The same for the pair as drawn, for the part of the holes alone in their order of the spectrum; `None` where no teeth deviate, or there is no spectrum.
-    /// It uses the same method, and takes at most as long again. Along faces, where a contact takes longest, it uses the first-order method.
+    /// The method is the same, and takes at most as long again. Along faces, where a contact takes longest, it is the first-order method.
     pub(super) fn holes_alone(&self) -> Option<Self> {
         let is_told = self.covers_whole_periods() && self.method().sees_holes();
         if !is_told || self.pair.is_as_drawn() || self.holed().is_empty() {
@@ -306,7 +306,7 @@ impl Case {
             .collect()
     }
 
-    /// Whether all flanks stand as drawn, so that contact on blanks that are alike all around repeats with every mesh period.
+    /// True if all flanks stand as drawn, so that contact on rotationally symmetric blanks repeats with every mesh period.
     fn flanks_are_alike(&self) -> bool {
         self.pair.is_as_drawn() && self.runs().is_none()
     }

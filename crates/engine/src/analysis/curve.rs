@@ -145,7 +145,7 @@ pub struct Curve {
     pub sampling_error: SamplingError,
     /// The order spectrum, where the span is whole periods: of the curve between its positions too.
     pub spectrum: Option<Spectrum>,
-    /// What repeats with every mesh period, estimated from the windows of a case that has some.
+    /// The part that repeats with every mesh period, estimated from the windows of a case that has some.
     pub mesh_wave: Option<MeshWave>,
     /// The parts of the decomposition, for that method.
     pub decomposition: Option<DecompositionParts>,
@@ -153,6 +153,6 @@ pub struct Curve {
     pub face: Option<FaceLoad>,
     /// The largest stresses in the driving and in the driven gear, where they were asked for, by a whole contact at each position, under load.
     pub stresses: Option<[GearStresses; 2]>,
-    /// What running does to it, of a pair that runs.
+    /// Effect of running, of a pair that runs.
     pub running: Option<CurveRunning>,
 }

@@ -127,7 +127,7 @@ struct Terms<'a> {
 }
 
 impl<'a> Terms<'a> {
-    /// By how much δ is off at the samples of the holed blanks: what the fits leave of them.
+    /// Error of δ at the samples of the holed blanks: the remainder of the fits.
     fn remainder(&self) -> f64 {
         let pair = &self.rigid.setup.case.pair;
         let each = self.fits.iter();

@@ -127,7 +127,7 @@ fn add_gears(estimate: &mut Estimate, plan: &Plan) {
                 estimate.degrees_of_freedom += gear.degrees_of_freedom;
             }
             if number == 0 && plan.case.runs().is_some() {
-                // It is made once more, with what its rotation does inside.
+                // It is made once more, with the rows of its rotation.
                 estimate.seconds += gear.seconds;
                 estimate.memory += gear.memory / 4;
             }
@@ -295,7 +295,7 @@ fn systems(case: &Case) -> f64 {
     5.0 + updates.min(2000.0)
 }
 
-/// What making one gear costs, in all models that `pass` needs of it, and joining it with its blank `again` so many times.
+/// Cost of making one gear, in all models that `pass` needs of it, and of joining it with its blank `again` times.
 fn of_gear(case: &Case, member: Member, pass: &Pass, again: u32) -> Estimate {
     let mut estimate = Estimate::default();
     let level = pass.level;

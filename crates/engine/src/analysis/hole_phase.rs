@@ -7,10 +7,10 @@ use crate::gear::{GearPair, Member};
 const LEAST_PLACES: u32 = 12;
 
 /// Positions in a mesh period at which the first order is known, and the best turn is solved in full: at most, and at least where they divide those of the
-/// curve. What holes do changes slowly over a mesh period.
+/// curve. The effect of holes changes slowly over a mesh period.
 const POSITIONS: [[u32; 2]; 2] = [[20, 10], [10, 5]];
 
-/// A turn of the driving blank, and what it comes to at first order.
+/// A turn of the driving blank, and its amplitudes at first order.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AtTurn {
     /// The turn in radians, counter-clockwise.
@@ -40,7 +40,7 @@ pub struct HolePhase {
     pub over_turn: Vec<AtTurn>,
 }
 
-/// What is computed for the best turn.
+/// Plan of the computation of the best turn.
 pub(super) struct PhasePlan {
     pub(super) output_torque: f64,
     /// ν = p/q in lowest terms.
@@ -78,7 +78,7 @@ impl PhasePlan {
         2 * first_order + u64::from(self.ratio[1]) * full
     }
 
-    /// Those of them that are the first at their fraction of the mesh period.
+    /// Number of them that are the first at their fraction of the mesh period.
     pub(super) fn first_solutions(&self) -> u64 {
         let [first_order, full] = self.per_period.map(u64::from);
         2 * first_order + full

@@ -7,8 +7,8 @@
 //! δ(η, x) = δ_0(f) + T_1(f, N_1 x/2π + n ν) + T_2(η),   ν = N_1/z_1 = p/q,   η = n + f
 //! ```
 //!
-//! T_1(f, u) is what the driving holes add at the fraction f of the mesh period where a hole has moved on by u hole pitches under the tooth. Its q teeth are q
-//! places of u, and a blank turned by a part of their distance gives as many between them. One full solution at the best turn confirms it.
+//! T_1(f, u) is the addition of the driving holes at the fraction f of the mesh period where a hole has moved on by u hole pitches under the tooth. Its q teeth
+//! are q places of u, and a blank turned by a part of their distance gives as many between them. One full solution at the best turn confirms it.
 
 use std::f64::consts::TAU;
 
@@ -90,8 +90,8 @@ impl PhasePlan {
         lines.get((p * span / q) as usize - 1).copied()
     }
 
-    /// The amplitude with the driving blank turned by `place` hole pitches, by a full solution: what it adds to the first order has no kinks of the mesh, and
-    /// few positions tell it.
+    /// The amplitude with the driving blank turned by `place` hole pitches, by a full solution: its addition to the first order has no kinks of the mesh, so
+    /// that few positions are enough.
     fn confirmed(&self, terms: &Terms, place: f64, setup: Setup<'_>) -> Result<f64, AnalysisError> {
         let case = turned(setup.case, place);
         let (model, _) = Setup {
@@ -129,14 +129,14 @@ fn turned(case: &Case, place: f64) -> Case {
 /// The transmission error of a pair at first order, whatever the turn of its driving blank.
 struct Terms {
     ratio: [u32; 2],
-    /// With the driven blank as it stands, and the mean of what the driving one adds: period after period.
+    /// Values with the driven blank as it stands, and the mean addition of the driving one: period after period.
     still: Vec<f64>,
     /// Harmonics of T_1 over a hole pitch at each fraction of the mesh period: amplitudes and phases.
     driving: Vec<Vec<(f64, f64)>>,
 }
 
 impl Terms {
-    /// Those of the pair of `setup` under the torque of `plan`.
+    /// Terms of the pair of `setup` under the torque of `plan`.
     fn of(plan: &PhasePlan, setup: Setup<'_>) -> Result<Self, AnalysisError> {
         let Setup { case, run, .. } = setup;
         let ([p, q], turns) = (plan.ratio, plan.turns());

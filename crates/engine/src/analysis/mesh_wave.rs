@@ -13,9 +13,9 @@ const PLACES: usize = 400;
 
 /// The mean of δ over all mesh periods of the true period at each fraction of one, estimated from a window.
 ///
-/// Pitch deviations, runout and slopes of single teeth leak from a window into the orders of the mesh. `PairSprings` that fit what was found in the window
-/// tell in closed form what they make of δ in the window, and over the true period. The wave is the mean over the window of what δ has beside, and the mean
-/// over the true period of theirs. The former is taken with the weights 1 − cos, which hide what is no multiple of the mesh order.
+/// Pitch deviations, runout and slopes of single teeth leak from a window into the orders of the mesh. `PairSprings` fitted to the window give their part of δ
+/// in closed form, in the window and over the true period. The wave is the mean over the window of the rest of δ, and the mean over the true period of their
+/// part. The former is taken with the weights 1 − cos, which hide all but the multiples of the mesh order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeshWave {
     /// In meters, at equal steps of the fraction of the mesh period.

@@ -1,16 +1,18 @@
 //! From a pair to its curves: the methods, their results and spectra.
 //!
 //! Read in this order:
-//! - [`case`] (what is asked), `plan` (what is computed of it), `analyze` (who carries out the plan), `estimate` (what it costs);
-//! - `under_load` (what all methods do alike, torque by torque), `found` (what each finds at some positions), `setup` and `pair_contacts` (what methods by
-//!   finite elements work with);
-//! - `flexible`, `decomposition`, `projected`, `three_dimensional` and `load_distribution` (the methods), `first_order` (what holes change, in the plane and
-//!   along faces) and `checks` (where that is compared with exact solutions), [`hole_phase`] and `hole_turns` (best turn of the holes of both gears), `light` (torque 0, alike for
-//!   all), [`running`] and `spun_pair` (pairs that turn, are warm, and are pressed onto shafts);
+//! - [`case`] (request), `plan` (what is to be computed), `analyze` (execution of the plan), `estimate` (its cost);
+//! - `under_load` (the common part of all methods, torque by torque), `found` (their results at some positions), `setup` and `pair_contacts` (the basis of
+//!   methods by finite elements);
+//! - `flexible`, `decomposition`, `projected`, `three_dimensional` and `load_distribution` (the methods), `first_order` (effect of holes, in the plane and
+//!   along faces) and `checks` (comparison of it with exact solutions), [`hole_phase`] and `hole_turns` (best turn of the holes of both gears), `light` (torque
+//!   0, the same for all), [`running`] and `spun_pair` (pairs that turn, are warm, and are pressed onto shafts);
 //! - [`stress`] (at roots and holes; along faces `face_stress`), [`fields`] (everywhere; along faces [`face_fields`]), [`contact_pattern`] (over the flanks);
-//! - `between` (a curve between its positions), `curve_parts` and [`curve`] with [`load_share`] and its `statistics`, [`largest_where`] (where its largest values stand), [`pressures`] (what they come to),
-//!   [`spectrum`] and [`single_flank`] with the `long_wave`; `windows` (stretches of a true period that is too long), [`mesh_wave`] and `pair_springs` (what they tell of the mesh orders);
-//! - [`evidence`], [`warning`], [`error`] and `answer` (all that comes out); [`forces`] (tables of force), [`at_speed`] (motion), [`rotors`] (gear bodies in torsion), [`blank_modes`] (natural modes of both gears).
+//! - `between` (a curve between its positions), `curve_parts` and [`curve`] with [`load_share`] and its `statistics`, [`largest_where`] (places of its largest
+//!   values), [`pressures`] (their summary), [`spectrum`] and [`single_flank`] with the `long_wave`; `windows` (stretches of a true period that is too long),
+//!   [`mesh_wave`] and `pair_springs` (their estimate of the mesh orders);
+//! - [`evidence`], [`warning`], [`error`] and `answer` (results); [`forces`] (tables of force), [`at_speed`] (motion), [`rotors`] (gear bodies in torsion),
+//!   [`blank_modes`] (natural modes of both gears).
 
 mod analyze;
 mod answer;

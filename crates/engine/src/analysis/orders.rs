@@ -150,7 +150,7 @@ impl Orders {
             .or_else(|| of(&self.revolutions))
     }
 
-    /// The name of any order. One that is a broken multiple of what turns in the pair is called by what it is a part of: half of the mesh order H_Z2/2.
+    /// The name of any order. A broken multiple of a cause in the pair has the name of its whole: half of the mesh order is H_Z2/2.
     pub(super) fn name(&self, order: f64, parts: u32) -> String {
         let whole = order * f64::from(parts);
         let mut known = self.known().into_iter();

@@ -1,4 +1,4 @@
-//! Tooth pairs as springs that fit what was found in a window: a curve of all pairs of a long true period in closed form.
+//! Tooth pairs as springs fitted to a window: a curve of all pairs of a long true period in closed form.
 
 use super::case::Case;
 use super::load_share::LoadShare;
@@ -25,7 +25,7 @@ struct Spring {
     stiffness: f64,
 }
 
-/// Springs for the tooth pairs at each phase of their way through the mesh, with what every tooth deviates by.
+/// Springs for the tooth pairs at each phase of their way through the mesh, with the deviations of every tooth.
 ///
 /// A pair that carries the force f at the phase x has δ = g(x) − e + c(x) f, where its flanks stand e towards each other beyond their drawings. As e differs from
 /// pair to pair, g and c at each phase follow by least squares from the pairs that passed it.
@@ -37,12 +37,12 @@ pub(super) struct PairSprings<'a> {
     last_offset: i64,
     /// At the phases η − n, rising by steps of the positions; `None` where no pair of the window carried.
     springs: Vec<Option<Spring>>,
-    /// What each tooth of either gear stands towards its mate by at each phase: tooth by tooth.
+    /// Distance by which each tooth of either gear stands towards its mate at each phase: tooth by tooth.
     towards: [Vec<f64>; 2],
 }
 
 impl<'a> PairSprings<'a> {
-    /// Those that fit δ and the `load_shares` at the positions of `case` under `load`, whose teeth have these `deviations`.
+    /// Springs fitted to δ and the `load_shares` at the positions of `case` under `load`, whose teeth have these `deviations`.
     pub(super) fn of(
         (case, load): (&'a Case, f64),
         deviations: &PairDeviations,
@@ -65,7 +65,7 @@ impl<'a> PairSprings<'a> {
         springs
     }
 
-    /// What each tooth of `member` stands towards its mate by at each phase.
+    /// Distance by which each tooth of `member` stands towards its mate at each phase.
     fn towards_of(&self, member: Member, deviations: &PairDeviations) -> Vec<f64> {
         let pair = &self.case.pair;
         let (gear, own) = (pair.gear(member), deviations.of_gear(member));

@@ -1,4 +1,4 @@
-//! Gear bodies in torsion, of what their drawings and their elements say.
+//! Gear bodies in torsion, from their drawings and their elements.
 
 use std::f64::consts::PI;
 
@@ -18,7 +18,7 @@ use crate::run::Run;
 /// Rings into which the band of a hole is divided.
 const BANDS: u32 = 8;
 
-/// By how many times at most holes make their rings softer than what they leave of them.
+/// Largest factor by which holes soften their rings beyond the share of material that they leave.
 const SOFTEST: f64 = 1e3;
 
 /// The twist of a blank with holes, of its elements.
@@ -107,8 +107,8 @@ pub(super) fn own_inertia(case: &Case, member: Member) -> f64 {
     }
 }
 
-/// The rings of a blank between bore and root circle, with what of a ring its holes leave, and the teeth on the last of them, of a gear whose polar inertia
-/// is its `own`.
+/// Rings of a blank between bore and root circle, with the share of a ring that its holes leave, and the teeth on the last of them, of a gear with the polar
+/// inertia `own`.
 ///
 /// Where holes are, shear goes around them: the rings there are so much softer that the whole twists by `twist`.
 fn rotor(case: &Case, member: Member, own: f64, twist: Option<Twist>) -> Rotor {
@@ -171,8 +171,8 @@ fn rotor(case: &Case, member: Member, own: f64, twist: Option<Twist>) -> Rotor {
     }
 }
 
-/// Makes the rings where the holes of `blank` are so soft that `rings` up to `radius` twist by `twist` times the shear modulus, in 1/m³. Rings are no stiffer than
-/// by what holes leave of them.
+/// Softens the rings where `blank` has holes so that `rings` up to `radius` twist by `twist` times the shear modulus, in 1/m³. Rings are no stiffer than by the
+/// share that holes leave of them.
 fn soften(rings: &mut [Ring], blank: &BlankRegion, twist: f64, radius: f64) {
     let is_holed = |ring: &Ring| {
         let middle = f64::midpoint(ring.radii[0], ring.radii[1]);

@@ -8,7 +8,7 @@ use crate::gear::{FlankGrowth, GearPair, Member};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RotationSpeed(pub f64);
 
-/// What holds the bore of a gear while it rotates.
+/// Support of a gear's bore while it rotates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Bore {
     /// A rigid hub.
@@ -27,14 +27,14 @@ pub enum Bore {
 pub struct RunningGear {
     /// The strain by which it has grown with its temperature.
     pub thermal_strain: f64,
-    /// What holds its bore; a gear in one piece with its shaft is held by that.
+    /// Support of its bore; a gear in one piece with its shaft is held by that.
     pub bore: Bore,
     /// The tensile strength of its material in pascals, where it is known.
     pub tensile_strength: Option<f64>,
 }
 
-/// How a pair runs. Its center distance is that of the warm housing over 1 plus [`Running::shared_strain`]: the figure of a pair that has grown evenly, tips
-/// and all, is similar to the drawn one, and only what its parts have grown unlike is in its flanks.
+/// Running state of a pair. Its center distance is that of the warm housing over 1 plus [`Running::shared_strain`]: a pair that has grown evenly, tips and all,
+/// is similar to the drawn one, and only the unequal growth of its parts is in its flanks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Running {
     /// The speed of the driving gear.
@@ -43,7 +43,7 @@ pub struct Running {
     pub gears: [RunningGear; 2],
 }
 
-/// What running does to a curve.
+/// Effect of running on a curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurveRunning {
     /// How far the tips of the driving and of the driven gear have moved outward in the mean, in meters.
@@ -59,7 +59,7 @@ impl Running {
         f64::midpoint(self.gears[0].thermal_strain, self.gears[1].thermal_strain)
     }
 
-    /// The thermal growth of the flanks of both gears of `pair` beyond what they share.
+    /// The thermal growth of the flanks of both gears of `pair` beyond their common part.
     pub fn thermal_growth(&self, pair: &GearPair) -> [FlankGrowth; 2] {
         Member::BOTH.map(|member| {
             let strain = self.gears[member.index()].thermal_strain;

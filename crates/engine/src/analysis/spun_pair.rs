@@ -22,13 +22,13 @@ const COUPLED: usize = 4;
 /// A pair that runs, before it is loaded.
 #[derive(Debug, Clone)]
 pub(super) struct PairState {
-    /// What its teeth deviate by, that of running included.
+    /// Deviations of its teeth, including those by running.
     pub(super) deviations: PairDeviations,
-    /// What stresses its gears.
+    /// Stresses of its gears without load.
     pub(super) stresses: [RestingStresses; 2],
     /// How far its tips have moved outward in the mean.
     pub(super) radial_growth: [f64; 2],
-    /// What a reader should know of it.
+    /// Warnings about it.
     pub(super) warnings: Vec<Warning>,
 }
 
@@ -132,7 +132,7 @@ impl GearState {
         Ok(state)
     }
 
-    /// Takes what `spun` does at the angular `speed` and with the `interference` of its shaft.
+    /// Adds the effect of `spun` at the angular `speed` and with the `interference` of its shaft.
     fn bear(&mut self, gear: &SpurGear, spun: &Spun, (speed, interference): (f64, f64)) {
         let loads = [
             (Some(&spun.spin), speed * speed),
@@ -176,7 +176,7 @@ struct Weakest {
     bearable: Option<f64>,
 }
 
-/// What stretches the free edges and the bore of `spun` most.
+/// The largest stress at the free edges and the bore of `spun`.
 fn weakest(
     spun: &Spun,
     (speed, interference): (f64, f64),

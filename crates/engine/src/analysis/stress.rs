@@ -78,7 +78,7 @@ struct StressedGear {
     fillets: Vec<[f64; 2]>,
     /// How many of them are beside the loaded flank.
     beside_loaded: usize,
-    /// What stresses the gear without load.
+    /// Stresses of the gear without load.
     resting: RestingStresses,
     /// The same of the nodes along the edges of holes, in the frame of sector 0.
     edges: Vec<[f64; 2]>,

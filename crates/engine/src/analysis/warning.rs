@@ -25,7 +25,7 @@ const LIKE_WIDTHS: f64 = 1.5;
 /// the fluctuation; at single positions it is off by 4 % of that on case 1 of the paper, in its statistics by 0.1 %.
 const DOUBTFUL_PROJECTION: [f64; 2] = [0.01, 0.05];
 
-/// Beyond this part of the peak-to-peak there is a warning of what the fits of the decomposition leave of the turn of holed blanks.
+/// Part of the peak-to-peak above which the remainder of the decomposition's fits to the turn of holed blanks gives a warning.
 const DOUBTFUL_DECOMPOSITION: f64 = 0.05;
 
 /// Below so many positions a mesh period there is a warning of orders: each position gives half a mesh harmonic, and the upper ones badly.
@@ -92,7 +92,7 @@ pub enum Warning {
     MotionAtEndOfSpeeds {
         /// The speed of the driving gear, in revolutions per second.
         speed: f64,
-        /// Whether it is the lowest one.
+        /// True if it is the lowest one.
         is_lowest: bool,
         /// The largest less the smallest transmission error there, in m.
         peak_to_peak: f64,
@@ -191,11 +191,11 @@ pub enum Warning {
         /// Its part of the peak-to-peak of the curve.
         part_of_peak_to_peak: f64,
     },
-    /// What one harmonic for each holed blank leaves out shows in the curve of the decomposition.
+    /// The remainder of one harmonic for each holed blank shows in the curve of the decomposition.
     DecompositionDoubtful {
         /// The largest difference to the exact δ that was found, in meters.
         error: f64,
-        /// What part of the peak-to-peak of its curve that is.
+        /// Its part of the peak-to-peak of the curve.
         part_of_peak_to_peak: f64,
     },
 }

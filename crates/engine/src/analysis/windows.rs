@@ -31,8 +31,9 @@ impl Case {
 
 /// Where windows of so many `mesh_periods` begin in the true period of `pair`, rising: at most `count` of them, none of which overlaps another.
 ///
-/// The first has the largest step from one tooth pair to the next in its middle, at which tooth-to-tooth errors are largest: the change of what both flanks stand
-/// towards each other by at the pitch point, runout included. Each further one has the largest step that is left. Where teeth do not deviate they are spread evenly.
+/// The first has the largest step from one tooth pair to the next in its middle, at which tooth-to-tooth errors are largest: the change of the distance of both
+/// flanks from each other at the pitch point, runout included. Each further one has the largest remaining step. Where teeth do not deviate they are spread
+/// evenly.
 pub fn windows_at_largest_steps(pair: &GearPair, mesh_periods: u32, count: usize) -> Vec<u32> {
     let (period, deviations) = (pair.period(), pair.deviations());
     let s = pair.pitch_roll_length();

@@ -1,10 +1,10 @@
-//! What is asked of the inside of a gear.
+//! Functionals of the inside of a gear.
 
 use crate::fem::recovery::{Functional, edge_stresses};
 use crate::gear::Material;
 use crate::grid::{BlankGrid, ToothGrid};
 
-/// What is asked of the inside of a gear.
+/// Functionals of the inside of a gear.
 #[derive(Debug, Clone, Default)]
 pub struct Probes {
     /// Functionals of the displacements of one tooth.

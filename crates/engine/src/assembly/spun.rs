@@ -19,7 +19,7 @@ use crate::ring::teeth_recovery::TeethRecovery;
 use crate::ring::tooth::ToothSubstructure;
 use crate::run::Run;
 
-/// A gear on its own blank, and what holds its bore while it rotates.
+/// A gear on its own blank, and the support of its bore while it rotates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpunSpec {
     teeth: TeethSpec,
@@ -38,7 +38,7 @@ pub struct InnerLoad {
     pub in_teeth: Vec<Vec<f64>>,
     /// The stresses around the holes of each sector of the blank, in that order.
     pub in_blank: Vec<Vec<f64>>,
-    /// The stresses along the bore of each sector, less what a pressure on it adds; empty of a bore that a rigid hub holds.
+    /// The stresses along the bore of each sector, less those of a pressure on it; empty for a bore that a rigid hub holds.
     pub along_bore: Vec<Vec<f64>>,
     /// The mean pressure of the shaft on the bore, in Pa.
     pub pressure: f64,

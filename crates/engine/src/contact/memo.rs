@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Parts by their specs, shared between threads; the oldest leave for new ones where their sizes together pass a bound.
 ///
-/// It changes no digit: a part depends on nothing but its spec. Two threads that want one at the same moment both make it, and get the same bits.
+/// A stored part changes no digit: it depends on nothing but its spec. Two threads that want one at the same moment both make it, and get the same bits.
 pub(super) struct Memo<S, P> {
     kept: Mutex<Kept<S, P>>,
     capacity: usize,

@@ -75,7 +75,7 @@ pub struct Coupled {
 }
 
 impl Coupled {
-    /// The driving and the driven body on teeth of this `stiffness` in N/m, without what the modes of the bodies yield.
+    /// The driving and the driven body on teeth of this `stiffness` in N/m, without the compliance of the bodies' modes.
     ///
     /// Nothing where a body has less inertia than its modes move.
     pub fn new(bodies: &[Body; 2], stiffness: f64, damping: Damping) -> Option<Self> {
@@ -152,7 +152,7 @@ impl Coupled {
         displacements.chain(velocities).collect()
     }
 
-    /// Whether the teeth move in mode `j`, so that the mesh excites it.
+    /// True if the teeth move in mode `j`, so that the mesh excites it.
     pub(super) fn is_excited(&self, j: usize) -> bool {
         let most = self.teeth.iter().fold(0.0_f64, |most, z| most.max(z.abs()));
         self.teeth[j].abs() > FAINT * most

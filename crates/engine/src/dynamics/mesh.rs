@@ -55,7 +55,7 @@ pub struct RunUpData {
     pub orders: Vec<f64>,
     /// The number of orders in the results, at most: of more, those that carry least of the motion are left out.
     pub most_orders: usize,
-    /// Whether to run up, and whether to run down.
+    /// Directions: run-up, and run-down.
     pub sweeps: [bool; 2],
 }
 
@@ -100,7 +100,7 @@ impl RunUpData {
         }
     }
 
-    /// Looks in each of `per_period` steps of a mesh period at `speed`, of what moves at the circular frequency `natural`.
+    /// Steps of a mesh period at `speed`, at least `per_period`, for motions of the circular frequency `natural`.
     pub(super) fn looks(&self, speed: f64, per_period: f64, natural: f64) -> f64 {
         let step = 1.0 / (speed * f64::from(self.tooth_count) * per_period);
         (LOOKS * step * natural / (2.0 * PI))
@@ -234,7 +234,7 @@ impl<'a> Mesh<'a> {
         }
     }
 
-    /// Those that the mesh excites.
+    /// Frequencies that the mesh excites.
     pub(super) fn excited_frequencies(&self) -> Vec<f64> {
         let all = self.natural_frequencies().into_iter().enumerate();
         let is_excited = |j: usize| {
@@ -276,7 +276,7 @@ impl<'a> Mesh<'a> {
             .collect()
     }
 
-    /// What moves at `speed`.
+    /// The oscillator at `speed`.
     fn moving(&self, speed: f64) -> Box<dyn Repeating + '_> {
         match &self.coupled {
             Some(coupled) => Box::new(self.coupled_motion(coupled, speed)),
@@ -398,7 +398,7 @@ pub(super) struct Motion {
     pub(super) load_factor: f64,
     /// The largest force on either flank in N.
     pub(super) largest_force: f64,
-    /// Whether the loaded flanks part.
+    /// True where the loaded flanks separate.
     pub(super) contact_lost: bool,
     /// The amplitudes of x in m.
     pub(super) lines: Lines,

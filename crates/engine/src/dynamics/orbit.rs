@@ -115,7 +115,7 @@ pub trait Repeating {
     /// The period in s, and the looks in it.
     fn period(&self) -> (f64, f64);
 
-    /// Carries `state` over a period, and each column of `derivative` as a small difference of it; `see` is called with what is seen on the way.
+    /// Carries `state` over a period, and each column of `derivative` as a small difference of it; `see` gets the states on the way.
     fn over_period(
         &self,
         state: &mut Vec<f64>,

@@ -35,7 +35,7 @@ impl Order {
         Self::new(self.times, 2 * self.periods)
     }
 
-    /// Whether it comes a whole number of times in every true period, as whatever the static curve is made of.
+    /// True if it comes a whole number of times in every true period, as all orders of the static curve do.
     pub fn is_whole(self) -> bool {
         self.periods == 1
     }
@@ -51,12 +51,12 @@ impl Order {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Lines {
     periods: u32,
-    /// Those of what comes once, twice, … in them. Seven digits are more than anybody reads, and speeds are many.
+    /// Amplitudes of waves with one, two, … cycles in them. Seven digits are more than anybody reads, and speeds are many.
     amplitudes: Vec<f32>,
 }
 
 impl Lines {
-    /// Those of `samples` at equal steps of so many true `periods`.
+    /// Orders of `samples` at equal steps of `periods` true periods.
     pub(super) fn of(samples: &[f64], periods: u32) -> Self {
         let lines = crate::fourier::harmonics(samples).into_iter();
         Self {
@@ -87,7 +87,7 @@ mod tests {
 
     #[test]
     fn an_order_is_found_in_a_motion_that_repeats_after_its_periods_only() {
-        // Half a time and once in a true period: what comes twice in four of them comes once in two.
+        // Half a cycle and one cycle in a true period: a wave with two cycles in four of them has one in two.
         let samples: Vec<f64> = (0..64)
             .map(|i| {
                 let turn = 2.0 * PI * f64::from(i) / 64.0;

@@ -1,4 +1,4 @@
-//! Resonances: where an order of the motion meets a natural frequency, how large it is there, and what excites it.
+//! Resonances: the meeting of an order of the motion with a natural frequency, its amplitude there, and its cause.
 
 use std::collections::HashMap;
 use std::f64::consts::SQRT_2;
@@ -52,7 +52,7 @@ pub struct Resonance {
     pub frequency: f64,
     /// The amplitude of x at this order in m, on the branch where it is larger.
     pub amplitude: f64,
-    /// What makes it.
+    /// Cause.
     pub excited: Excitation,
 }
 
@@ -252,9 +252,9 @@ fn resonance(
 struct Look {
     speed: f64,
     amplitude: f64,
-    /// Whether it carries a part of the motion.
+    /// True if it carries a part of the motion.
     carries: bool,
-    /// Whether the flanks part.
+    /// True if the flanks separate.
     parts: bool,
     orbit: Orbit,
 }

@@ -107,7 +107,7 @@ impl RunUpData {
         size_of::<f32>() as u64 * sweeps * self.speeds.len() as u64 * lines
     }
 
-    /// Whether `speed` is among those asked for or between two of them.
+    /// True if `speed` is among those asked for or between two of them.
     pub(super) fn reaches(&self, speed: f64) -> bool {
         let ends = self.speeds.first().zip(self.speeds.last());
         ends.is_some_and(|(first, last)| (*first..=*last).contains(&speed))

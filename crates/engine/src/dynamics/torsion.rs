@@ -4,7 +4,7 @@
 //!
 //! dθ/dr = M/(2π G t r³), dM/dr = −ω² 2π ρ t r³ θ,
 //!
-//! with M what acts from outside.
+//! with M the torque from outside.
 
 use std::f64::consts::PI;
 
@@ -35,7 +35,7 @@ impl Ring {
         self.softer * (inner.powi(-2) - outer.powi(-2)) / (4.0 * PI * self.thickness)
     }
 
-    /// What of it is within `radius`.
+    /// Its part within `radius`.
     pub fn within(&self, radius: f64) -> Option<Self> {
         let [inner, outer] = self.radii;
         (inner < radius).then(|| Self {
@@ -194,7 +194,7 @@ mod tests {
 
     #[test]
     fn all_modes_yield_what_the_body_yields_to_a_torque_and_turn_with_its_inertia() {
-        // Twist of a ring: (1/r_i² − 1/r_o²)/(4π G t). What the first 12 modes leave falls with the cube of their number.
+        // Twist of a ring: (1/r_i² − 1/r_o²)/(4π G t). The remainder of the first 12 modes falls with the cube of their number.
         let rings = [(22e-3, 43e-3, 2e-3), (43e-3, 47e-3, 20e-3)];
         let twist: f64 = rings
             .iter()

@@ -33,9 +33,9 @@ pub struct Entry {
     pub column: u32,
     /// The row, not above the diagonal.
     pub row: u32,
-    /// What it adds to K.
+    /// Its entry in K.
     pub stiffness: c64,
-    /// What it adds to M.
+    /// Its entry in M.
     pub mass: c64,
 }
 
@@ -121,7 +121,7 @@ impl Pencil {
         self.count
     }
 
-    /// Whether it has no unknowns.
+    /// True if it has no unknowns.
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }
@@ -273,7 +273,7 @@ impl Lanczos {
         &self.found
     }
 
-    /// Whether there are no more than those found.
+    /// True if there are no more than those found.
     pub fn is_exhausted(&self) -> bool {
         self.is_exhausted
     }
@@ -300,7 +300,7 @@ impl Lanczos {
         for c in 0..BLOCK {
             let mut vector = self.next.subcols(c, 1).to_owned();
             let before = self.norm(&vector);
-            // Once leaves what rounding brings back.
+            // A second pass removes the parts that rounding brings back.
             for _ in 0..2 {
                 for (q, m_q) in self.basis.iter().zip(&self.weighted) {
                     let share = -inner(m_q, &vector);

@@ -1,8 +1,9 @@
 //! The kernel of finite elements: from the elements of a grid to its stiffness on some of its unknowns.
 //!
-//! Read in this order: [`law`] (what strains stress), [`element`] (one element), `sparse` (the matrix of a grid) and `factor`,
-//! [`condensation`] (a grid's stiffness on the unknowns that are kept), [`recovery`] (displacements and stresses of the others), and
-//! [`prescribed`] (at every node), [`centrifugal`] (what rotation pulls at them); of bodies with an extent along an axis [`axial`], [`prism`], [`surface`] and [`volume`]. Beside them: [`dense`]. It knows grids and materials, and nothing of gears.
+//! Read in this order: [`law`] (stress from strain), [`element`] (one element), `sparse` (the matrix of a grid) and `factor`, [`condensation`] (a grid's
+//! stiffness on the kept unknowns), [`recovery`] (displacements and stresses of the others), [`prescribed`] (at every node) and [`centrifugal`] (forces of
+//! rotation); of bodies with an extent along an axis [`axial`], [`prism`], [`surface`] and [`volume`]. Beside them: [`dense`]. It knows grids and materials,
+//! and nothing of gears.
 
 pub mod axial;
 pub mod centrifugal;

@@ -27,7 +27,7 @@ pub(super) struct BlockMatrix {
     rows: Vec<u32>,
     /// The unknowns' own columns one after the other; without the entries above the diagonal.
     values: Vec<f64>,
-    /// The blocks between nodes of which both follow other unknowns, by row and column: what becomes of them is a product of whole matrices.
+    /// The blocks between nodes of which both follow other unknowns, by row and column: their condensed form is a product of whole matrices.
     followed: BTreeMap<(u32, u32), Vec<f64>>,
 }
 
@@ -130,7 +130,7 @@ impl BlockMatrix {
         }
     }
 
-    /// Adds what the nodes that follow others are to each other, to those: Wᵀ K W for each two unknowns of a node.
+    /// Adds the blocks between nodes that follow others, on those: Wᵀ K W for each two unknowns of a node.
     fn add_followed(&mut self, numbering: &Numbering) {
         let followed = std::mem::take(&mut self.followed);
         let Some(first) = followed

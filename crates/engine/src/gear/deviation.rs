@@ -15,21 +15,21 @@ pub struct Eccentricity {
     pub direction: f64,
 }
 
-/// A trace of each loaded flank along its profile. What is removed adds to the modifications of the gear.
+/// A trace of each loaded flank along its profile. It adds to the modifications of the gear.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ToothProfiles {
     /// Where the entries of all traces stand; linear between them, ends held.
     pub places: TablePlaces,
-    /// What is removed at each, tooth 0 first.
+    /// Removed at each, tooth 0 first.
     pub removed: Vec<Vec<f64>>,
 }
 
-/// A trace of each loaded flank along its lead, alike at every roll length. What is removed adds to the lead modifications of the gear.
+/// A trace of each loaded flank along its lead, the same at every roll length. It adds to the lead modifications of the gear.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ToothLeads {
     /// The heights from the middle of the face at which the entries of all traces stand, rising; linear between them, ends held.
     pub heights: Vec<f64>,
-    /// What is removed at each, tooth 0 first.
+    /// Removed at each, tooth 0 first.
     pub removed: Vec<Vec<f64>>,
 }
 
@@ -47,9 +47,9 @@ pub struct ToothDeviations {
     /// The lead slope of each loaded flank, as [`super::LeadModification::Slope`]: nothing removed at the end at −z of the face, this at that at +z.
     /// The plane does not know it.
     pub lead_slope: Vec<f64>,
-    /// What the profile of each loaded flank has beside the modifications.
+    /// Profile trace of each loaded flank beside the modifications.
     pub profiles: Option<ToothProfiles>,
-    /// What the lead of each loaded flank has beside the modifications. The plane does not know it.
+    /// Lead trace of each loaded flank beside the modifications. The plane does not support it.
     pub leads: Option<ToothLeads>,
     /// The eccentricity of the teeth.
     pub eccentricity: Option<Eccentricity>,
@@ -111,8 +111,8 @@ impl ToothDeviations {
         if are_none { Vec::new() } else { shifted }
     }
 
-    /// Those of the mirror image of the gear, whose loaded flanks are the other flanks of this one: teeth are counted the other way round, from the
-    /// tooth `first` of this gear on, which has so many `teeth`. Slopes and traces are those of the loaded flanks and are left behind.
+    /// Deviations of the mirror image of the gear, whose loaded flanks are the other flanks of this one: teeth are counted the other way round, from the tooth
+    /// `first` of this gear on, which has `teeth` teeth. Slopes and traces are those of the loaded flanks and are left out.
     pub(super) fn mirrored(&self, teeth: usize, first: usize) -> Self {
         let turned = |arcs: &[f64]| -> Vec<f64> {
             let from = |tooth: usize| (first + teeth - tooth) % teeth;

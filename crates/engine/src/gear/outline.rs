@@ -10,9 +10,9 @@ const MOST_CHORDS: u32 = 1024;
 impl SpurGear {
     /// The outline of tooth 0 with half a space on either side, counter-clockwise, in the frame of the gear.
     ///
-    /// It begins on the root circle in the middle of the space before the tooth and ends in the middle of the one behind it, so that Z of them, each turned by
-    /// the pitch angle, close. Every point lies on the true profile: root circle, fillet, flank with its modifications, tip edge and tip circle. No point of
-    /// the profile is farther than `tolerance` from the chords.
+    /// The outline begins on the root circle in the middle of the space before the tooth and ends in the middle of the one behind it, so that Z of them, each
+    /// turned by the pitch angle, close. Every point lies on the true profile: root circle, fillet, flank with its modifications, tip edge and tip circle. No
+    /// point of the profile is farther than `tolerance` from the chords.
     pub fn tooth_outline(&self, tolerance: f64) -> Vec<Vector> {
         let unloaded = self.half_outline(false, tolerance);
         let loaded = self.half_outline(true, tolerance);

@@ -19,7 +19,7 @@ pub struct GearDeviations {
     lead_slopes: Vec<f64>,
     /// The traces of the profiles.
     profiles: Option<Profiles>,
-    /// What the trace of each lead removes. Empty where there are none.
+    /// Removal by the trace of each lead. Empty where there are none.
     leads: Vec<LeadModification>,
     /// The roll lengths between which a profile slope deviation grows from nothing to all of it.
     ends: [f64; 2],
@@ -109,7 +109,7 @@ impl GearDeviations {
         Some(Trace { profiles, removed })
     }
 
-    /// What the lead of `tooth` removes at the height `z` from the middle of its face of this `width`, beside the modifications.
+    /// Removal by the lead of `tooth` at the height `z` from the middle of its face of this `width`, beside the modifications.
     pub fn removed_by_lead(&self, tooth: usize, z: f64, width: f64) -> f64 {
         let slope = LeadModification::Slope {
             amount: self.lead_slopes.get(tooth).copied().unwrap_or(0.0),
@@ -236,7 +236,7 @@ struct Profiles {
     flank: Involute,
     /// A kink of a trace is rounded over this length to either side.
     rounded: f64,
-    /// What each removes, tooth 0 first.
+    /// Removal of each, tooth 0 first.
     removed: Vec<Modification>,
 }
 
@@ -248,7 +248,7 @@ pub(crate) struct Trace<'a> {
 }
 
 impl Trace<'_> {
-    /// What it removes at the roll length `s`.
+    /// Removal at the roll length `s`.
     pub(crate) fn depth(&self, s: f64) -> f64 {
         self.removed.depth(&self.profiles.flank, s)
     }
@@ -275,7 +275,7 @@ pub struct FlankGrowth {
 }
 
 impl FlankGrowth {
-    /// Adds what all lengths of `gear` do that grow by the `strain`: at the roll length s a flank then stands out by so much of s.
+    /// Adds the growth of all lengths of `gear` by the `strain`: at the roll length s a flank then stands out by that part of s.
     pub fn add_strain(&mut self, gear: &SpurGear, strain: f64) {
         if strain == 0.0 {
             return;
@@ -285,7 +285,7 @@ impl FlankGrowth {
         self.add(vec![[strain * from, strain * (to - from)]; teeth]);
     }
 
-    /// Adds `amount` times what the flanks of each tooth of `gear` stand out by at the rising `roll_lengths`: the line that is nearest to it, by least
+    /// Adds `amount` times the displacement of the flanks of each tooth of `gear` at the rising `roll_lengths`: the line that is nearest to it, by least
     /// squares over the flank.
     pub fn add_flanks(
         &mut self,

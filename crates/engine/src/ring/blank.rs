@@ -28,7 +28,7 @@ pub struct BlankSubstructure {
     pub grid_nodes: usize,
 }
 
-/// What holds the bore of a blank.
+/// Support of a blank's bore.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Hold {
     /// A rigid hub.
@@ -57,12 +57,12 @@ pub struct BlankLoad {
     pub swelling: f64,
 }
 
-/// What loads do to a blank whose interface circle is held, with hole 0 at the angle 0.
+/// Response of a blank whose interface circle is held to loads, with hole 0 at the angle 0.
 #[derive(Debug, Clone)]
 pub struct BlankLoads {
     /// The forces that they exert on the harmonics of that circle, a load a column.
     pub forces: Mat<f64>,
-    /// What was asked of sector 0: one functional a row, one load a column.
+    /// Functionals of sector 0: one functional a row, one load a column.
     pub values: Mat<f64>,
     /// How far the bore moves outward in the mean, under each load.
     pub bore: Vec<f64>,

@@ -221,8 +221,8 @@ impl Sector {
         on_harmonics
     }
 
-    /// What `rows` on the unknowns of sector 0 are under `forces` on the same unknowns, a row each, that act on every sector alike: the sides follow, and
-    /// all behind them is held. One row a functional, one column a load.
+    /// Values of `rows` on the unknowns of sector 0 under `forces` on the same unknowns, a row each, that act on every sector alike: the sides follow, and all
+    /// behind them is held. One row a functional, one column a load.
     ///
     /// # Errors
     ///

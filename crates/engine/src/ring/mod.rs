@@ -1,9 +1,9 @@
 //! Gears on the harmonics of a circle: N equal sectors joined into a ring, and rings into a whole gear.
 //!
-//! Read in this order: [`harmonics`] (the unknowns of an interface circle), [`cyclic`] (N equal sectors joined into a ring on them),
-//! [`tooth`], [`teeth`] (the ring of them), [`blank`] and `shaft` (what it stands on, where it is one piece with that), and [`body`], which joins them into the compliance of a whole gear. What happens
-//! inside: [`motion`] (of the interface circle under loads), [`teeth_recovery`] and [`blank::BlankRecovery`]; under loads inside [`teeth_loads`] and [`blank::BlankLoads`]. A blank by itself:
-//! [`annulus`]. The same with an extent along the axis: [`solid`]. Beside them: [`axes`] and `modes`.
+//! Read in this order: [`harmonics`] (the unknowns of an interface circle), [`cyclic`] (N equal sectors joined into a ring on them), [`tooth`], [`teeth`] (the
+//! ring of them), [`blank`] and `shaft` (their support), and [`body`], which joins them into the compliance of a whole gear. The inside: [`motion`] (of the
+//! interface circle under loads), [`teeth_recovery`] and [`blank::BlankRecovery`]; under loads inside [`teeth_loads`] and [`blank::BlankLoads`]. A blank by
+//! itself: [`annulus`]. The same with an extent along the axis: [`solid`]. Beside them: [`axes`] and `modes`.
 
 pub mod annulus;
 pub mod axes;

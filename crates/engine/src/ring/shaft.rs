@@ -47,7 +47,7 @@ pub(super) struct OnShaft {
     pub(super) forces: Mat<f64>,
     /// How the loads move the edge while the outer circle is held, a load a column.
     pub(super) edge_under_loads: Mat<f64>,
-    /// What the rows become then: one row a functional, one column a load.
+    /// Values of the rows then: one row a functional, one column a load.
     pub(super) under_loads: Mat<f64>,
 }
 
@@ -165,20 +165,20 @@ fn below(one: &Mat<f64>, other: &Mat<f64>) -> Mat<f64> {
     })
 }
 
-/// What holds the edge of a bore.
+/// Support of the edge of a bore.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum EdgeCore {
     /// The shaft that fills it.
     Shaft(ShaftSection),
     /// Nothing but the means of its motion as a whole, which springs of this stiffness in N/m hold.
     Free {
-        /// The stiffness: far above that of any gear in its plane, and far below what costs digits.
+        /// The stiffness: far above that of any gear in its plane, and small enough to cost no digits.
         stiffness: f64,
     },
 }
 
 impl EdgeCore {
-    /// What holds the edge of a bore in a plate, if only its mean rotation and displacement are held.
+    /// Support of the edge of a bore in a plate, if only its mean rotation and displacement are held.
     pub(super) fn free(material: &Material, thickness: f64) -> Self {
         const FIRM: f64 = 1e4;
         Self::Free {
@@ -186,7 +186,7 @@ impl EdgeCore {
         }
     }
 
-    /// Adds what holds the edge to the `stiffness` on `harmonics` of it.
+    /// Adds the support of the edge to the `stiffness` on `harmonics` of it.
     fn add_to(&self, stiffness: &mut Mat<f64>, harmonics: &Harmonics) {
         let firm = match self {
             Self::Shaft(shaft) => return shaft.add_to(stiffness, harmonics),

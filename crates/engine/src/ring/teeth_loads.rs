@@ -20,7 +20,7 @@ pub struct TeethLoads {
 }
 
 impl TeethLoads {
-    /// Brings the `loads` of `tooth`, and what the `rows` asked of it become under them, to the ring of such teeth on the harmonics of `ring`.
+    /// Transfers the `loads` of `tooth`, and the values of its `rows` under them, to the ring of such teeth on the harmonics of `ring`.
     ///
     /// # Errors
     ///

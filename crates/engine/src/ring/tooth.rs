@@ -48,7 +48,7 @@ pub struct ToothRows {
 pub struct ToothLoads {
     /// How they move the unknowns of the flank, a load a column.
     pub(super) flank: Mat<f64>,
-    /// What the functionals asked for become under them: one functional a row, one load a column.
+    /// Values of the functionals under them: one functional a row, one load a column.
     pub(super) values: Mat<f64>,
     /// The forces that they exert on the interface (right side, left side, arc) in polar components, with the flank free: a load a row.
     pub(super) on_interface: Mat<f64>,

@@ -389,7 +389,7 @@ fn removed_and_inclination<T: Numbers>(gear: &SpurGear, s: T) -> (T, T) {
     (removed, inclination)
 }
 
-/// What `trace` removes at each of the roll lengths `s`, and its inclination; nothing without one.
+/// Removal by `trace` at each of the roll lengths `s`, and its inclination; zero without one.
 #[inline(always)]
 fn depth_and_inclination<T: Numbers>(trace: Option<&Trace<'_>>, s: T) -> (T, T) {
     let (mut depth, mut inclination) = (T::splat(0.0), T::splat(0.0));

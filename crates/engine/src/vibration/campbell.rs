@@ -1,8 +1,8 @@
 //! Where modes meet the orders of the mesh as the gear turns, seen from the mesh, which stands still in space.
 //!
-//! A mode of n nodal diameters is two waves, one with the turn and one against it. In the frame of the gear they have the frequency f; in space
-//! f ± (n − c) Ω, Ω the turns a second, where the part c of a nodal diameter is what Coriolis forces take back. Mesh order k excites k z Ω, so that it is
-//! met at Ω = f/(k z ∓ (n − c)). A translation of the rim (n = 1, c = 1) is met at f/(k z): it knows nothing of the turn.
+//! A mode of n nodal diameters is two waves, one with the turn and one against it. In the frame of the gear they have the frequency f; in space f ± (n − c) Ω,
+//! Ω the turns a second, where Coriolis forces reduce the nodal diameters by c. Mesh order k excites k z Ω, so that it is met at Ω = f/(k z ∓ (n − c)). A
+//! translation of the rim (n = 1, c = 1) is met at f/(k z): it does not depend on the turn.
 
 use super::{Direction, Mode};
 

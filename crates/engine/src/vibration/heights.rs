@@ -92,7 +92,7 @@ impl Heights {
         }
     }
 
-    /// Those of a part between two faces.
+    /// Heights of a part between two faces.
     pub fn part(&self, [low, high]: [f64; 2]) -> PartHeights {
         let low = low.max(self.nodes[0]);
         let nearest = |z: f64| {
@@ -127,7 +127,7 @@ impl Heights {
         part
     }
 
-    /// Whether `component` (radial, tangential, axial) has opposite signs on both halves by `parity`.
+    /// True if `component` (radial, tangential, axial) has opposite signs on both halves by `parity`.
     pub fn is_odd(&self, parity: Parity, component: usize) -> bool {
         let is_axial = component == 2;
         match parity {
@@ -137,7 +137,7 @@ impl Heights {
         }
     }
 
-    /// Whether `component` of the function `index` is zero by `parity`: on the middle plane.
+    /// True if `component` of the function `index` is zero by `parity`: on the middle plane.
     pub fn is_zero(&self, parity: Parity, component: usize, index: usize) -> bool {
         index == 0 && self.is_odd(parity, component)
     }

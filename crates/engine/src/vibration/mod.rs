@@ -102,7 +102,7 @@ const BYTES: [f64; 2] = [150e6, 900e6];
 /// How much longer a gear takes that is not its own image in the middle of its face.
 const WHOLE_WIDTH: f64 = 6.0;
 
-/// About what [`modes`] of `gear` take: seconds of one core, and bytes.
+/// Rough cost of [`modes`] of `gear`: seconds of one core, and bytes.
 pub fn estimate(gear: &SolidGear) -> [f64; 2] {
     let section = gear.section();
     let faces: Vec<[f64; 2]> = gear.layers().iter().map(|part| part.heights).collect();
@@ -147,7 +147,7 @@ impl Class<'_> {
         values.filter(|(_, value)| *value > self.rigid_below)
     }
 
-    /// Whether a mode below `limit` may be missing.
+    /// True if a mode below `limit` may be missing.
     fn may_miss(&self, limit: f64) -> bool {
         let last = self.lanczos.found().last();
         !self.lanczos.is_exhausted() && last.is_none_or(|pair| pair.value < limit)

@@ -16,7 +16,7 @@ const SMALL: f64 = 0.02;
 /// The largest order that nodal diameters are counted to.
 const MOST_DIAMETERS: i64 = 60;
 
-/// Along what a mode moves for the most part.
+/// Main direction of a mode's motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
     /// Around the axis, alike on all of a circle.
@@ -45,9 +45,9 @@ pub struct OrderShape {
 pub struct Mode {
     /// In hertz, of the gear at rest.
     pub frequency: f64,
-    /// Whether it is two modes of one frequency.
+    /// True if it is two modes of one frequency.
     pub is_double: bool,
-    /// Along what it moves.
+    /// Main direction of its motion.
     pub direction: Direction,
     /// Lines across the gear that stand still.
     pub nodal_diameters: u32,

@@ -18,13 +18,13 @@ use crate::gear::Material;
 /// How the bore carries the gear.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum BoreSupport {
-    /// It does not move.
+    /// The bore does not move.
     Held,
-    /// It turns about its axis as a rigid ring, and is held otherwise.
+    /// The bore turns about its axis as a rigid ring, and is held otherwise.
     FreeToTurn,
 }
 
-/// A section with what it is made of.
+/// A section with its material.
 #[derive(Debug)]
 pub(super) struct System<'a> {
     pub(super) section: &'a Section,
@@ -47,7 +47,7 @@ struct ElementMatrices {
     mass: SectionMatrix,
 }
 
-/// What a displacement of an element follows.
+/// Unknowns that a displacement of an element follows.
 #[derive(Debug, Clone, Copy)]
 enum Unknowns {
     /// An unknown, with its share.
@@ -59,7 +59,7 @@ enum Unknowns {
 /// Stiffness and mass between two displacements: column, row, values.
 type Between = (u32, u32, [c64; 2]);
 
-/// What the nodes of the outer circle add, before they follow its orders.
+/// Entries of the nodes of the outer circle, before they follow its orders.
 struct ArcEntries {
     /// The place of each node of the section on the circle.
     places: Vec<Option<u32>>,
@@ -91,7 +91,7 @@ impl ArcEntries {
         Some(((place * COMPONENTS + component) * count + index - first) as u32)
     }
 
-    /// Hands what the orders of `numbering` have of it to `entries`.
+    /// Calls `entries` with its entries on the orders of `numbering`.
     fn on_orders(self, system: &System<'_>, numbering: &Numbering, entries: &mut Vec<Entry>) {
         let [first, count] = self.span;
         let of_arc = &numbering.blocks[numbering.blocks.len() - numbering.orders.len()..];
@@ -506,7 +506,7 @@ impl Numbering {
         (end - self.first_amplitude) / self.orders.len().max(1)
     }
 
-    /// The unknowns turned by a right angle in the plane: (u_r, u_t) becomes (−u_t, u_r), and what is axial goes.
+    /// The unknowns turned by a right angle in the plane: (u_r, u_t) becomes (−u_t, u_r), and the axial ones become zero.
     pub(super) fn turned(&self, x: &Mat<c64>) -> [Mat<c64>; 2] {
         let mut turned = Mat::<c64>::zeros(self.count, 1);
         let mut planar = turned.clone();

@@ -1,7 +1,7 @@
 //! The teeth as their ring moves on one order of the circle on which they are joined to the blank.
 //!
-//! A tooth follows its circle without inertia of its own motion relative to it: the lowest frequency of a tooth on a circle that is held is far
-//! above those of blanks. Its mass follows from that motion, Xᴴ M X. An order is taken by itself: what teeth couple it to, n ± z, has short waves.
+//! A tooth follows its circle without inertia of its own motion relative to it: the lowest frequency of a tooth on a circle that is held is far above those of
+//! blanks. Its mass follows from that motion, Xᴴ M X. An order is taken by itself: the orders n ± z that teeth couple it to have short waves.
 
 use faer::{Mat, c64};
 
@@ -90,7 +90,7 @@ impl TeethOrder {
         let is_inner = |entry: &&Entry| (entry.row as usize) < inner;
         let within: Vec<Entry> = entries.iter().filter(is_inner).copied().collect();
         let factor = Pencil::new(inner, &within).factor("the teeth", 0.0)?;
-        // What an amplitude exerts on the inner unknowns while they are held: entries of its rows are the conjugate.
+        // Forces of an amplitude on the inner unknowns while they are held: entries of its rows are the conjugate.
         let mut forces = Mat::<c64>::zeros(inner, all - inner);
         for entry in &entries {
             let (row, column) = (entry.row as usize, entry.column as usize);

@@ -7,7 +7,7 @@ use super::slice::Slice;
 use crate::contact::coupled::{Touching, add_coupled, mirror};
 use crate::gear::Member;
 
-/// What H between slices has in all mesh periods, and what its smooth part is made of.
+/// The part of H between slices that all mesh periods have in common, and the data of its smooth part.
 pub(super) struct SliceCompliance {
     /// The half space and the ends of the flanks, in m/N; the lower triangle.
     held: Mat<f64>,
@@ -31,7 +31,7 @@ impl SliceCompliance {
         }
     }
 
-    /// H without the springs of the slices in m/N, so many mesh `period`s on: Φ R Φᵀ of both gears beside what is known.
+    /// H without the springs of the slices in m/N, `period` mesh periods on: Φ R Φᵀ of both gears beside the common part.
     pub(super) fn of_teeth(&self, model: &FaceModel, period: i64) -> Mat<f64> {
         let mut h = self.held.clone();
         let (Some((first, _)), Some((last, _))) = (self.lines.first(), self.lines.last()) else {

@@ -702,7 +702,7 @@ mod tests {
             let later = at(&round, 3.0);
             let delta = |of: &FaceContact| of.mesh.transmission_error;
             assert!((delta(&found) / delta(&later) - 1.0).abs() < 1e-9);
-            // Positions whole mesh periods apart are solved one after the other on the same slices, and are what each of them is alone.
+            // Positions whole mesh periods apart, solved one after the other on the same slices, are the same as each of them alone.
             let positions = [0.0, 3.0, 7.0].map(|period| eta + period);
             let contacts = |positions: &[f64]| {
                 let contacts = whole.contacts(load, positions, &run);

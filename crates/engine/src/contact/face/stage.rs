@@ -1,7 +1,7 @@
 //! The mesh at one fraction of its period along faces: all that positions whole mesh periods apart have in common.
 //!
-//! As in the plane ([`crate::contact::Stage`]) the same flanks face each other in every mesh period. Slices, their springs, the half space along their
-//! lines and what flanks yield at their ends are found once, and each period adds what its teeth yield together. Where teeth deviate, every position is
+//! As in the plane ([`crate::contact::Stage`]) the same flanks face each other in every mesh period. Slices, their springs, the half space along their lines
+//! and the compliance at the ends of flanks are computed once, and each period adds the common compliance of its teeth. Where teeth deviate, every position is
 //! a stage by itself.
 
 use std::sync::Arc;
@@ -22,7 +22,7 @@ const HEAVIEST: f64 = 200.0;
 /// How many times the loaded parts of lines are cut finer, at most.
 const FINEST: usize = 4;
 
-/// Slices, and what of their compliance does not depend on the mesh period.
+/// Slices, and the part of their compliance that does not depend on the mesh period.
 pub(super) struct Sliced<'a> {
     pub(super) slicer: Slicer<'a>,
     /// Of pairs counted from the mesh period.
@@ -54,7 +54,7 @@ pub(super) struct Stage<'a> {
     model: &'a FaceModel,
     eta: f64,
     load: f64,
-    /// Those of sections that may touch.
+    /// Phases of sections that may touch.
     phases: [f64; 2],
     made: Vec<Made<'a>>,
 }

@@ -320,7 +320,7 @@ impl SpurGear {
     }
 }
 
-/// Whether traces with entries at the rising `places` are those of so many teeth.
+/// Checks that traces with entries at the rising `places` have this number of teeth.
 fn traces_fit(
     list: DeviationList,
     places: &[f64],
