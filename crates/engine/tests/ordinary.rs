@@ -235,7 +235,7 @@ fn along_its_faces(seed: u64) -> Option<Case> {
     Some(case)
 }
 
-/// Computes `count` cases drawn by `of`; panics with the seeds of those that fail.
+/// Computes `count` random cases, each made by `of` from a seed; panics with the seeds that fail.
 fn all_are_computed(of: fn(u64) -> Option<Case>, count: usize) {
     let drawn = (0..).filter_map(|seed| Some((seed, of(seed)?)));
     let failed: Vec<String> = drawn

@@ -65,7 +65,7 @@ fn curve(case: &Case, library: &Library) -> Curve {
 }
 
 /// f_i′, the mesh harmonics 1 to 3 and the rms of all: of the spectrum, or as they are estimated.
-fn told(curve: &Curve) -> [f64; 5] {
+fn figures(curve: &Curve) -> [f64; 5] {
     let (mesh, rms) = match (&curve.spectrum, &curve.mesh_wave) {
         (Some(spectrum), _) => {
             let line = |label: &str| {
@@ -157,7 +157,7 @@ fn runout_does_not_leak_into_the_mesh_orders_of_a_window() {
         ..ToothDeviations::default()
     });
     let whole = by(Method::LoadDistribution, eccentric);
-    let expected = told(&curve(&whole, &library))[1];
+    let expected = figures(&curve(&whole, &library))[1];
     let mut apart = [0.0_f64; 2];
     for start in [0, 37, 170, 333] {
         let part = curve(&over(&whole, 32, vec![start]), &library);
@@ -167,7 +167,7 @@ fn runout_does_not_leak_into_the_mesh_orders_of_a_window() {
             fraction.sum::<f64>() / 32.0
         });
         let plain = harmonics(&means.collect::<Vec<_>>())[0].0;
-        for (apart, found) in apart.iter_mut().zip([told(&part)[1], plain]) {
+        for (apart, found) in apart.iter_mut().zip([figures(&part)[1], plain]) {
             *apart = apart.max((found - expected).abs());
         }
     }
@@ -195,8 +195,8 @@ fn windows_stand_at_the_largest_steps_and_apart() {
     assert_eq!(windows_at_largest_steps(&drawn_pair(20, 21), 1, 1), [0]);
     let library = Library::default();
     let whole = by(Method::LoadDistribution, pair.clone());
-    let expected = told(&curve(&whole, &library));
-    let found = told(&curve(
+    let expected = figures(&curve(&whole, &library));
+    let found = figures(&curve(
         &over(&whole, 32, windows_at_largest_steps(&pair, 32, 1)),
         &library,
     ));
@@ -216,35 +216,35 @@ fn percentiles(mut values: Vec<f64>) -> [f64; 2] {
     })
 }
 
-/// Members of `pair` by `method` over one window of 32 mesh periods, and over the whole true period: what is told of each.
+/// Members of `pair` by `method` over one window of 32 mesh periods, and over the whole true period: the [`figures`] of each.
 fn members(method: Method, pair: &GearPair, seeds: std::ops::Range<u64>) -> [Vec<[f64; 5]>; 2] {
     let library = Library::default();
     let (mut found, mut expected) = (Vec::new(), Vec::new());
     for seed in seeds {
         let whole = by(method, made(pair, seed));
         let windows = windows_at_largest_steps(&whole.pair, 32, 1);
-        found.push(told(&curve(&over(&whole, 32, windows), &library)));
-        expected.push(told(&curve(&whole, &library)));
-        let shown = |list: &[[f64; 5]]| list.last().map(|told| told.map(|value| 1e6 * value));
+        found.push(figures(&curve(&over(&whole, 32, windows), &library)));
+        expected.push(figures(&curve(&whole, &library)));
+        let shown = |list: &[[f64; 5]]| list.last().map(|figures| figures.map(|value| 1e6 * value));
         println!("{seed}: {:.3?} {:.3?}", shown(&found), shown(&expected));
     }
     [found, expected]
 }
 
-/// What is `told`: within 5 % of the percentiles of the whole true period.
-fn check_percentiles([found, expected]: [Vec<[f64; 5]>; 2], told: &[usize]) {
-    for &told in told {
-        let of = |list: &[[f64; 5]]| percentiles(list.iter().map(|each| each[told]).collect());
+/// The figures of these indices: within 5 % of the percentiles of the whole true period.
+fn check_percentiles([found, expected]: [Vec<[f64; 5]>; 2], indices: &[usize]) {
+    for &index in indices {
+        let of = |list: &[[f64; 5]]| percentiles(list.iter().map(|each| each[index]).collect());
         let (found, expected) = (of(&found), of(&expected));
         println!(
-            "{told}: {:.3?} {:.3?}",
+            "{index}: {:.3?} {:.3?}",
             found.map(|v| 1e6 * v),
             expected.map(|v| 1e6 * v)
         );
         for (found, expected) in found.iter().zip(expected) {
             assert!(
                 (found / expected - 1.0).abs() < 0.05,
-                "{told}: {found} {expected}"
+                "{index}: {found} {expected}"
             );
         }
     }
@@ -288,10 +288,10 @@ fn windows_of_any_hunting_pair_tell_its_tooth_to_tooth_error_and_mesh_orders() {
         println!("{z_1}/{z_2}");
         let seed = ratios.len() as u64;
         let [found, expected] = members(Method::Flexible, &drawn_pair(z_1, z_2), seed..seed + 1);
-        ratios.push([0, 1].map(|told| found[0][told] / expected[0][told]));
+        ratios.push([0, 1].map(|index| found[0][index] / expected[0][index]));
     }
-    for told in [0, 1] {
-        let [half, _] = percentiles(ratios.iter().map(|ratio| ratio[told]).collect());
-        assert!((half - 1.0).abs() < 0.05, "{told}: {half}");
+    for index in [0, 1] {
+        let [half, _] = percentiles(ratios.iter().map(|ratio| ratio[index]).collect());
+        assert!((half - 1.0).abs() < 0.05, "{index}: {half}");
     }
 }

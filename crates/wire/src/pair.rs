@@ -66,6 +66,22 @@ impl PairDocument {
         (1.0 - sin * sin).sqrt()
     }
 
+    /// The gear `member`.
+    pub fn gear(&self, member: Member) -> &GearDocument {
+        match member {
+            Member::Driving => &self.driving,
+            Member::Driven => &self.driven,
+        }
+    }
+
+    /// The gear `member`, to be changed.
+    pub fn gear_mut(&mut self, member: Member) -> &mut GearDocument {
+        match member {
+            Member::Driving => &mut self.driving,
+            Member::Driven => &mut self.driven,
+        }
+    }
+
     /// The helix of the gear `member`.
     pub fn helix(&self, member: Member) -> Helix {
         let beta = self.helix_angle_deg.to_radians();

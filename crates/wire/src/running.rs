@@ -5,7 +5,6 @@ use meshwright_engine::analysis::{Method, RotationSpeed};
 use meshwright_engine::gear::{GearPair, Member, PairDeviations};
 
 use super::declare::{Choice as _, Errors, absent, document, nested, number, word, words};
-use super::gear::GearDocument;
 use super::pair::PairDocument;
 use super::problem::{Code, FieldError};
 use super::units::{from_mpa, from_um, plain, significant, to_mm};
@@ -84,7 +83,7 @@ impl RunningDocument {
         ];
         let fits = self.press_fits();
         let gear = |member: Member| {
-            let gear = of(pair, member);
+            let gear = pair.gear(member);
             let risen = temperatures[member.index()].map_or(0.0, |own| own - self.reference_c);
             let bore = match (fits[member.index()], self.bore) {
                 (Some(fit), _) => Bore::PressFit {
@@ -167,11 +166,4 @@ pub(super) fn jammed(pointer: &str, backlash: f64) -> FieldError {
         plain(significant(to_mm(backlash), 3))
     );
     FieldError::new(pointer, Code::NegativeBacklash, detail)
-}
-
-fn of(pair: &PairDocument, member: Member) -> &GearDocument {
-    match member {
-        Member::Driving => &pair.driving,
-        Member::Driven => &pair.driven,
-    }
 }

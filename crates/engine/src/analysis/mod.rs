@@ -69,7 +69,7 @@ pub use curve::{Curve, FaceLoad};
 pub use error::AnalysisError;
 pub use estimate::{Estimate, estimate};
 pub use evidence::{ErrorEstimate, Evidence};
-pub use orders::{OrderCause, OrderKind};
+pub use orders::{OrderCause, OrderKind, mesh_label};
 pub use running::RotationSpeed;
 pub use statistics::{SamplingError, Statistics};
 pub use warning::{FEW_POSITIONS, PLANE_RIM, PLANE_WEB, Warning, warnings};

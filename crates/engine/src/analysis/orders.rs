@@ -180,7 +180,7 @@ impl Orders {
     fn mesh(&self, harmonic: u32) -> KnownOrder {
         KnownOrder {
             order: f64::from(harmonic) * self.mesh,
-            label: format!("H_{}", mesh_name(harmonic)),
+            label: mesh_label(harmonic),
             kind: OrderKind::Mesh { harmonic },
         }
     }
@@ -209,6 +209,11 @@ fn multiple_of(family: &Family, multiple: u32) -> KnownOrder {
             multiple,
         },
     }
+}
+
+/// The label of this mesh harmonic in a spectrum.
+pub fn mesh_label(harmonic: u32) -> String {
+    format!("H_{}", mesh_name(harmonic))
 }
 
 fn mesh_name(harmonic: u32) -> String {

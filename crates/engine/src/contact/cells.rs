@@ -417,7 +417,7 @@ impl<'a> ContactCells<'a> {
             .collect()
     }
 
-    /// The `forces` on all cells as loads on the flanks of `member`, tooth by tooth of those that carry any.
+    /// The `forces` on all cells as loads on the flanks of `member`, for each loaded tooth.
     pub fn flank_loads(&self, member: Member, forces: &[f64]) -> Vec<FlankLoad> {
         let (gear, pair) = (member.index(), &self.deviating.model.pair);
         let flank = &self.deviating.model.gears[gear].flank;

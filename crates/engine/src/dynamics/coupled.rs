@@ -205,11 +205,10 @@ mod tests {
     use super::super::bodies::{Body, BodyMode, Damping};
     use super::*;
 
-    #[test]
-    fn without_damping_a_cycle_leaves_the_energy_as_it_was() {
-        // Rims on webs with a constant stiffness between them: ½ p'² + ½ Ω² p² in every mode, whatever the steps.
+    /// Two equal gears, each with one mode of this frequency, and a mesh of this stiffness.
+    fn rims_on_webs(frequency: f64, stiffness: f64, damping: Damping) -> Coupled {
         let mode = BodyMode {
-            frequency: 3.0,
+            frequency,
             at_mesh: 1.2,
             turn: 0.7,
         };
@@ -218,11 +217,17 @@ mod tests {
             base_radius: 1.0,
             modes: vec![mode],
         };
+        Coupled::new(&[body.clone(), body], stiffness, damping).expect("bodies")
+    }
+
+    #[test]
+    fn without_damping_a_cycle_leaves_the_energy_as_it_was() {
+        // Rims on webs with a constant stiffness between them: ½ p'² + ½ Ω² p² in every mode, whatever the steps.
         let damping = Damping {
             mesh: 0.0,
             bodies: 0.0,
         };
-        let bodies = Coupled::new(&[body.clone(), body], 1.5, damping).expect("bodies");
+        let bodies = rims_on_webs(3.0, 1.5, damping);
         let laws = Laws::new(vec![-3.0, 3.0], vec![-4.0 / 1.5, 2.0 / 1.5], 0);
         let drift = Drift {
             law: 0,
@@ -243,21 +248,11 @@ mod tests {
 
     #[test]
     fn the_derivative_is_that_of_the_motion_through_contact_backlash_and_the_other_flank() {
-        let mode = BodyMode {
-            frequency: 2.0,
-            at_mesh: 1.2,
-            turn: 0.7,
-        };
-        let body = Body {
-            inertia: 2.0,
-            base_radius: 1.0,
-            modes: vec![mode],
-        };
         let damping = Damping {
             mesh: 0.1,
             bodies: 0.02,
         };
-        let bodies = Coupled::new(&[body.clone(), body], 1.0, damping).expect("bodies");
+        let bodies = rims_on_webs(2.0, 1.0, damping);
         let laws = Laws::new(vec![-1.0, 0.0, 0.0, 1.0], vec![-2.3, -1.3, -0.3, 0.7], 2);
         let wave = |i: usize| 2.0 * (i as f64 * 0.157).cos();
         let steps = (0..40).map(|i| Drift {

@@ -29,7 +29,7 @@ const NEAR: f64 = 0.1;
 /// Farther from where the last one stood a search for it has gone astray, as Newton's method may step over a motion by a few times its distance.
 const ASTRAY: f64 = 3.0 * NEAR;
 
-/// A motion that is so many times the scale has run away: the mesh pumps it more than damping takes from it.
+/// A motion that is so many times the scale has run away: the mesh gives it more energy than damping takes.
 const RUN_AWAY: f64 = 1e3;
 
 /// Steps of the search for the multipliers of a system of several masses.
@@ -112,8 +112,14 @@ pub trait Repeating {
     /// The time in s in which free motion falls by a factor e.
     fn decay(&self) -> f64;
 
+    /// The number of steps in a period, the duration of each in s, and the looks in each.
+    fn steps(&self) -> (usize, f64, u32);
+
     /// The period in s, and the looks in it.
-    fn period(&self) -> (f64, f64);
+    fn period(&self) -> (f64, f64) {
+        let (count, duration, looks) = self.steps();
+        (duration * count as f64, f64::from(looks) * count as f64)
+    }
 
     /// Carries `state` over a period, and each column of `derivative` as a small difference of it; `see` gets the states on the way.
     fn over_period(
@@ -274,9 +280,8 @@ impl Repeating for Oscillator<'_> {
         2.0 * self.mass / self.damping
     }
 
-    fn period(&self) -> (f64, f64) {
-        let steps = self.steps.len() as f64;
-        (self.duration * steps, f64::from(self.looks) * steps)
+    fn steps(&self) -> (usize, f64, u32) {
+        (self.steps.len(), self.duration, self.looks)
     }
 
     fn over_period(
@@ -311,9 +316,8 @@ impl Repeating for CoupledMotion<'_> {
         self.bodies().decay()
     }
 
-    fn period(&self) -> (f64, f64) {
-        let steps = self.steps.len() as f64;
-        (self.duration * steps, f64::from(self.looks) * steps)
+    fn steps(&self) -> (usize, f64, u32) {
+        (self.steps.len(), self.duration, self.looks)
     }
 
     fn over_period(

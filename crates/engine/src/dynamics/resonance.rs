@@ -119,8 +119,9 @@ pub(super) fn search(
     Ok(apart)
 }
 
-/// The meetings at which an order may carry a part of the motion: of orders that are known, of half of those at which the stiffness varies enough to pump,
-/// of lines of the static curve that a linear mesh would amplify so far, and of those that carried it at a speed beside the meeting.
+/// The meetings at which an order may be a part of the motion. Four kinds of orders are looked at: those that are known; half of those at which the
+/// stiffness varies enough for parametric resonance; lines of the static curve that a linear mesh would amplify so far; and those found at a speed beside
+/// the meeting.
 fn meetings(mesh: &Mesh<'_>, passes: &[Option<Pass>; 2]) -> Vec<Meeting> {
     let data = mesh.data;
     let speeds = &data.speeds;
@@ -141,7 +142,7 @@ fn meetings(mesh: &Mesh<'_>, passes: &[Option<Pass>; 2]) -> Vec<Meeting> {
     let mut lines: Vec<(Order, f64)> = statics.all().collect();
     lines.sort_by(|a, b| b.1.total_cmp(&a.1));
     lines.truncate(MOST_LINES);
-    let pumps = mesh.stiffness_lines();
+    let parametric = mesh.stiffness_lines();
     for natural in mesh.excited_frequencies().into_iter().enumerate() {
         let frequency = natural.1;
         let resonant = mesh.gain(frequency);
@@ -149,10 +150,10 @@ fn meetings(mesh: &Mesh<'_>, passes: &[Option<Pass>; 2]) -> Vec<Meeting> {
             add(natural, order, resonant * statics.at(order));
         }
         // Mathieu's equation is unstable at twice the natural frequency from 4 ζ on.
-        let pumps = pumps
+        let parametric = parametric
             .all()
             .filter(|(_, part)| *part > 2.0 * data.damping_ratio);
-        for (order, _) in pumps {
+        for (order, _) in parametric {
             add(natural, order.half(), f64::INFINITY);
         }
         for &(order, amplitude) in &lines {

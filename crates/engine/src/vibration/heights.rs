@@ -32,8 +32,8 @@ pub enum Parity {
 pub struct Heights {
     /// Ends and middles of the pieces, rising, in meters.
     pub nodes: Vec<f64>,
-    /// How many of a gear's halves these are: 2, or 1 where the nodes are those of the whole.
-    pub copies: f64,
+    /// True if the nodes are those of the upper half of a gear that is its own image.
+    pub is_half: bool,
 }
 
 /// The functions of one part: those from `first` on, and the integrals of their products over its width.
@@ -78,17 +78,20 @@ impl Heights {
             let step = (piece[1] - piece[0]) / (2 * parts) as f64;
             nodes.extend((1..=2 * parts).map(|i| piece[0] + step * i as f64));
         }
-        Self {
-            nodes,
-            copies: if is_half { 2.0 } else { 1.0 },
-        }
+        Self { nodes, is_half }
+    }
+
+    /// How many times the nodes make up the gear: 2 for a half, 1 for the whole.
+    pub fn copies(&self) -> f64 {
+        if self.is_half { 2.0 } else { 1.0 }
     }
 
     /// The classes of motions that have to be asked for.
     pub fn parities(&self) -> &'static [Parity] {
-        match self.copies {
-            2.0 => &[Parity::Even, Parity::Odd],
-            _ => &[Parity::Whole],
+        if self.is_half {
+            &[Parity::Even, Parity::Odd]
+        } else {
+            &[Parity::Whole]
         }
     }
 

@@ -106,7 +106,7 @@ const WHOLE_WIDTH: f64 = 6.0;
 pub fn estimate(gear: &SolidGear) -> [f64; 2] {
     let section = gear.section();
     let faces: Vec<[f64; 2]> = gear.layers().iter().map(|part| part.heights).collect();
-    let is_half = Heights::new(&faces, f64::INFINITY).copies > 1.0;
+    let is_half = Heights::new(&faces, f64::INFINITY).is_half;
     let times = if is_half { 2.0 } else { WHOLE_WIDTH };
     let orders = most_modes(section.tooth_count()) as f64 / 2.0;
     let teeth = SECONDS[0] * orders * times;
@@ -248,7 +248,7 @@ impl Body<'_> {
         let coupled = |(one, other): (usize, usize)| {
             let class = &classes[lowest[one].1];
             let [turned, _] = class.numbering.turned(&made[other].1);
-            inner(&made[one].1, &class.lanczos.pencil().mass_times(&turned)).re * heights.copies
+            inner(&made[one].1, &class.lanczos.pencil().mass_times(&turned)).re * heights.copies()
         };
         let same_class = |one: usize, other: usize| lowest[one].1 == lowest[other].1;
         let mut modes: Vec<Mode> = made.iter().map(|(mode, _)| mode.clone()).collect();

@@ -9,7 +9,7 @@ use crate::fem::eigen::{EigenPair, Lanczos, inner};
 use crate::fem::prism::COMPONENTS;
 use crate::gear::SolidGear;
 
-/// Rings of equal depth over which shapes are told apart.
+/// Rings of equal depth; means over them distinguish the shapes.
 const RINGS: usize = 24;
 /// The amplitude on a ring, as a part of the largest, below which its sign says nothing.
 const SMALL: f64 = 0.02;
@@ -184,7 +184,7 @@ impl Found<'_> {
     /// The vector with a modal mass of 1 kg in the whole gear, real where the mode is single.
     fn normalized(&self, x: &Mat<c64>, is_double: bool) -> Mat<c64> {
         let sectors = self.system.section.sectors as f64;
-        let copies = sectors * self.system.heights.copies;
+        let copies = sectors * self.system.heights.copies();
         // The real part of a wave has half of its mass.
         let scale = if is_double {
             (2.0 / copies).sqrt()

@@ -144,7 +144,7 @@ impl Section {
         let mut circle = rings.first_circle(innermost);
         let (bore, mut sides) = (circle.clone(), vec![[circle[0], circle[steps]]]);
         for (index, part) in parts.iter().enumerate().rev() {
-            circle = rings.grow(&circle, part, (index, parts), &mut sides);
+            circle = rings.grow(&circle, &radii(part, (index, parts)), index, &mut sides);
         }
         Self {
             grid: rings.grid,
@@ -190,7 +190,7 @@ impl Section {
                 ..parts[index]
             };
             if part.outer_radius > part.inner_radius {
-                circle = rings.grow(&circle, &part, (index, parts), &mut sides);
+                circle = rings.grow(&circle, &radii(&part, (index, parts)), index, &mut sides);
             }
         }
         let arc = circle;
@@ -198,7 +198,9 @@ impl Section {
         rings.angles = grid.bore_nodes.iter().map(angle).collect();
         let mut circle = grid.bore_nodes.clone();
         for (index, part) in parts.iter().enumerate().skip(holed + 1) {
-            circle = rings.grow_inward(&circle, part, (index, parts), &mut sides);
+            let mut radii = radii(part, (index, parts));
+            radii.reverse();
+            circle = rings.grow(&circle, &radii, index, &mut sides);
         }
         let around = (arc.len() / 2) * grid.sector_count as usize;
         Self {
@@ -252,33 +254,8 @@ impl Rings {
         self.grid.nodes.len() as u32 - 1
     }
 
-    /// The ring of `part`, the one of index `of.0` among `of.1`, around `circle`; its outer circle.
+    /// The rings of the part of this index from `circle`, which is that of the first of `radii`, to the last of them; the last circle.
     fn grow(
-        &mut self,
-        circle: &[u32],
-        part: &Layer,
-        of: (usize, &[Layer]),
-        sides: &mut Vec<[u32; 2]>,
-    ) -> Vec<u32> {
-        let radii = radii(part, of);
-        self.rings(circle, &radii, of.0, sides)
-    }
-
-    /// The ring of `part` within `circle`; its inner circle.
-    fn grow_inward(
-        &mut self,
-        circle: &[u32],
-        part: &Layer,
-        of: (usize, &[Layer]),
-        sides: &mut Vec<[u32; 2]>,
-    ) -> Vec<u32> {
-        let mut radii = radii(part, of);
-        radii.reverse();
-        self.rings(circle, &radii, of.0, sides)
-    }
-
-    /// Rings from `circle`, which is that of the first of `radii`, to the last of them.
-    fn rings(
         &mut self,
         circle: &[u32],
         radii: &[f64],

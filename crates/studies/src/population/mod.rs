@@ -138,11 +138,8 @@ impl Population {
                 continue;
             };
             let x_e = drawn.tool_shift(pair.helix(gear));
-            let own = match gear {
-                Member::Driving => &mut pair.driving,
-                Member::Driven => &mut pair.driven,
-            };
-            own.keep_generating_profile_shift(significant(x_e, 12));
+            pair.gear_mut(gear)
+                .keep_generating_profile_shift(significant(x_e, 12));
         }
     }
 
@@ -160,10 +157,7 @@ impl Population {
                 continue;
             };
             let helix = pair.helix(gear);
-            let document = match gear {
-                Member::Driving => &mut pair.driving,
-                Member::Driven => &mut pair.driven,
-            };
+            let document = pair.gear_mut(gear);
             let made = document.clone().without_deviations();
             let made = errors.report(made.to_gear(&format!("/pair/{gear}"), helix))?;
             let accuracy = accuracy.of(&made);

@@ -746,7 +746,7 @@ fn members_are_computed_over_windows_of_their_own() {
     assert_eq!(orders.len(), 4);
     let statistics = &curve.statistics.transmission_error_um;
     assert_eq!(statistics.long_wave, None);
-    // The rms of harmonics is that of all of them, of which four are told.
+    // The rms of harmonics is that of all of them, of which four are reported.
     let four = orders
         .iter()
         .map(|each| each * each / 2.0)

@@ -1,6 +1,7 @@
 //! The natural modes of both gears.
 
 use meshwright_engine::analysis::blank_modes::{Met, MetMode};
+use meshwright_engine::analysis::mesh_label;
 use meshwright_engine::vibration::Direction;
 use meshwright_engine::vibration::campbell::Wave;
 use serde::{Deserialize, Serialize};
@@ -49,10 +50,7 @@ document! {
     pub struct CrossingDocument as Crossing, "Crossing" answer of (met: &Met) {
         /// The name of the order of the mesh, as in the spectrum.
         #[schema(example = "H_Z2")]
-        label: String = match met.crossing.multiple {
-            1 => "H_Z2".to_owned(),
-            multiple => format!("H_{multiple}Z2"),
-        },
+        label: String = mesh_label(met.crossing.multiple),
         /// The speed of the driving gear, in 1/min.
         driving_speed_rpm: f64 = 60.0 * met.driving_speed.0,
         /// The wave that is met.

@@ -108,11 +108,11 @@ impl SubmissionDocument {
             let Some(near) = NearHoles::of(faces.pair.gear(member), resolution) else {
                 continue;
             };
-            let gear = match member {
-                Member::Driving => &self.pair.driving,
-                Member::Driven => &self.pair.driven,
-            };
-            for error in gear.near_holes(&format!("/pair/{member}"), &near) {
+            for error in self
+                .pair
+                .gear(member)
+                .near_holes(&format!("/pair/{member}"), &near)
+            {
                 errors.push(error);
             }
         }
