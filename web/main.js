@@ -11,7 +11,7 @@ import { fileOf, pictureOf } from "./draw/figure.js";
 import { jobs } from "./panels/jobs.js";
 import { population } from "./panels/population.js";
 import { study } from "./panels/study.js";
-import { isSweep, sweep } from "./panels/sweep.js";
+import { sweep } from "./panels/sweep.js";
 import { json, patiently, ProblemError } from "./state/api.js";
 import { Design, fromFragment, nameOf, same, toFragment } from "./state/design.js";
 import { isSolid, needsSolid } from "./state/dimensions.js";
@@ -23,6 +23,7 @@ import { fetchQuantities } from "./state/quantities.js";
 import { bare, openapi, usualAt } from "./state/schema.js";
 import { wordsAt } from "./state/series.js";
 import { fileOfDesign } from "./state/tables.js";
+import { kindOf } from "./state/work.js";
 import { Compare } from "./views/compare.js";
 import { exporting } from "./views/export.js";
 import { Form } from "./views/form.js";
@@ -38,6 +39,7 @@ import { setUpKey, setUpLayout, setUpTheme } from "./views/settings.js";
 import { sheetOf } from "./views/sheet.js";
 import { FIRST_EXAMPLE, setUpFiles, setUpStart } from "./views/start.js";
 import { Tabs } from "./views/tabs.js";
+import { Tray } from "./views/tray.js";
 import { Warnings } from "./views/warnings.js";
 
 /** @import { Space } from "./draw/space.js" */
@@ -45,6 +47,7 @@ import { Warnings } from "./views/warnings.js";
 /** @import { AskedStudy, Curve, Limits, Method, NamedDesign, Open, Pair, PairOutline } from "./state/documents.js" */
 /** @import { Problem, Results, Submission } from "./state/documents.js" */
 /** @import { How } from "./state/preview.js" */
+/** @import { Submitted } from "./state/work.js" */
 /** @import { TabPanel } from "./views/tabs.js" */
 
 const METHODS = /** @type {Method[]} */ (["flexible", "decomposition", "projected_decomposition", "load_distribution"]);
@@ -160,11 +163,18 @@ class Page {
   });
   #project = new Project(this.#design, {
     onChange: () => this.#keepState(),
+    onWork: () => this.#tray?.renew(),
     compute: async ({ name, submission, asked, hidden }) => {
       const results = await resultsOf(asked);
       this.#keep({ name, results, submission, asked, teeth: submission.pair.driven.tooth_count, hidden });
     },
   });
+  /**
+   * There is none before the page has begun.
+   *
+   * @type {Tray | null}
+   */
+  #tray = null;
   #follower = new Follower({
     onResults: (results, submission, how) => this.#onResults(results, submission, how),
     onOutline: (outline, submission) => this.#onOutline(outline, submission),
@@ -278,10 +288,16 @@ class Page {
     const open = (submission, results) => this.#openFilled(submission, results);
     // A study that was asked for before is shown in the panel that asks for such.
     const resume = (/** @type {string} */ id, /** @type {AskedStudy} */ study) => {
-      const name = study.population ? "population" : isSweep(study) ? "sweep" : "study";
+      const kind = kindOf(study);
+      const name = kind === "search" ? "study" : kind;
       tabs.show(name);
       this.#panels[name].resume?.(id, study);
     };
+    this.#tray = new Tray({
+      kept: () => this.#project.work,
+      onShow: (work) => this.#showWork(work, open, resume),
+      onForget: (id) => this.#project.forget(id),
+    });
     const designs = () => (this.#live ? this.#besideKept(this.#live) : []);
     const runUp = new RunUp(byId("run-up"), {
       designs,
@@ -310,6 +326,19 @@ class Page {
         sheet: (live) => this.#sheet(live, form),
       }),
     };
+  }
+
+  /**
+   * Shows a job or a study of the project: its design with its results, or its answer in the panel that asks for such.
+   *
+   * @param {Submitted} work
+   * @param {Open} open
+   * @param {(id: string, study: AskedStudy) => void} resume
+   */
+  async #showWork({ id, kind }, open, resume) {
+    if (kind !== "job") return resume(id, await json(`v1/studies/${id}/document`));
+    const { submission, status } = await json(`v1/jobs/${id}`);
+    return open(submission, status === "successful" ? await json(`v1/jobs/${id}/results`) : null);
   }
 
   /** @param {Cause} by */

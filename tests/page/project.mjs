@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { tmpdir } from "node:os";
-import { axe, computed, designOf, downloaded, field, named, open, service, stepsOn } from "./harness.mjs";
+import { axe, computed, designOf, downloaded, ends, field, named, open, service, stepsOn, tab } from "./harness.mjs";
 
 const COUNT = "/pair/driven/blank/holes/count";
 const NAME = 'E-axle <b id="injected">stage 2</b>';
@@ -111,6 +111,52 @@ export async function projectSteps() {
       await press(other, "save");
       await says(other, "Somebody else deleted this project.");
       assert.equal(await holesOf(other), 5);
+    },
+  );
+
+  await dailyEngine.opened(
+    "what runs stands in the list of work, is stopped there, and belongs to the project wherever that is opened",
+    async (page, context) => {
+      const tray = page.locator("#tray");
+      await tab(page, "robustness");
+      await page.locator("#population-size").fill("3000");
+      await page.locator("#population-run").click();
+      await page.waitForFunction(() => document.querySelector("#work-button").textContent === "Work: 1");
+      await page.locator("#work-button").click();
+      const row = tray.locator("#tray-running li");
+      await row.getByText(/\d+ of 3000 members/).waitFor();
+      assert.match(await row.innerText(), /as made[\s\S]*of a core in all/);
+      await axe(page);
+      if (process.argv.includes("--screenshots")) await page.screenshot({ path: `${import.meta.dirname}/tray.png` });
+      // A reload leaves it running; it stands there all the same, and is stopped.
+      await page.waitForTimeout(600);
+      await page.reload();
+      await page.waitForFunction(() => document.querySelector("#work-button").textContent === "Work: 1");
+      await page.locator("#work-button").click();
+      await row.getByText(/\d+ of 3000/).waitFor();
+      await tray.getByRole("button", { name: /^Stop/ }).click();
+      const kept = tray.locator("table tbody tr");
+      await kept.getByText("dismissed").waitFor();
+      assert.equal(await row.count(), 0);
+      await tray.getByRole("button", { name: "Close" }).click();
+
+      await show(page);
+      await page.locator("#project-name").fill("With work");
+      await press(page, "save");
+      await says(page, /^Saved in the service/);
+      // Another tab remembers nothing of this one, as another machine does.
+      const other = await context.newPage();
+      await open(other, service);
+      await show(other);
+      await openListed(other, "With work");
+      await close(other);
+      await other.locator("#work-button").click();
+      const there = other.locator("#tray table tbody tr");
+      await there.getByText("dismissed").waitFor();
+      await there.getByRole("button", { name: /^Show/ }).click();
+      await ends(other, "#population-state", /of 3000 members, dismissed/);
+      await there.getByRole("button", { name: /^Forget/ }).click();
+      await there.waitFor({ state: "detached" });
     },
   );
 

@@ -55,13 +55,13 @@ export const filesOf = (submission) =>
 
 /**
  * Saves the file `name` of the job `id`, with `prefix` before its name, which ends with a hyphen, as it is asked for by
- * `query`.
+ * `query`; `signal` gives it up.
  *
- * @type {(id: string, name: string, prefix: string, query?: string) => Promise<void>}
+ * @type {(id: string, name: string, prefix: string, query?: string, signal?: AbortSignal) => Promise<void>}
  */
-export async function saveFile(id, name, prefix, query = "") {
+export async function saveFile(id, name, prefix, query = "", signal = undefined) {
   const place = name === "submission.rexs" ? name : `results${name === "results.json" ? "" : `/${name}`}`;
-  const file = await request(`v1/jobs/${id}/${place}${query}`);
+  const file = await request(`v1/jobs/${id}/${place}${query}`, { signal });
   if (name.endsWith(".csv")) saveTable(`${prefix}${name}`, await file.text());
   else save(`${prefix}${name}`, "", await file.blob());
 }

@@ -4,8 +4,10 @@
 import { button, h } from "./dom.js";
 import { hasEnded, isAborted, post, ProblemError, request, solved } from "../state/api.js";
 import { timeOf } from "../state/numbers.js";
+import { begin, tellsOf } from "../state/work.js";
 
 /** @import { Job, NamedDesign } from "../state/documents.js" */
+/** @import { Handle } from "../state/work.js" */
 
 /** The job of a view, told in `place`. */
 export class ViewJob {
@@ -31,9 +33,11 @@ export class ViewJob {
    * @param {(job: Job, signal: AbortSignal) => Promise<T>} fetched
    * @returns {Promise<T | null>}
    */
-  async of({ asked }, what, fetched) {
+  async of({ asked, name }, what, fetched) {
     this.end();
     const asking = (this.#asking = new AbortController());
+    const work = begin(`${name}, ${what}`, () => asking.abort());
+    const hear = tellsOf(work);
     const { signal } = asking;
     const mine = () => this.#asking === asking;
     /** @type {{ id: string, status: string } | undefined} */
@@ -41,6 +45,7 @@ export class ViewJob {
     /** @type {(event: string, data: any) => void} */
     const told = (event, data) => {
       if (event === "status") job = data;
+      hear(event, data);
     };
     const cancel = () => {
       if (job && !hasEnded(job.status))
@@ -48,7 +53,7 @@ export class ViewJob {
     };
     // A page that goes away takes along what it has asked for.
     addEventListener("pagehide", cancel);
-    const tick = this.#tell(asked, what, asking);
+    const tick = this.#tell(asked, what, asking, work);
     try {
       const found = await fetched(await solved(asked, { told, signal }), signal);
       if (!mine()) return null;
@@ -61,6 +66,7 @@ export class ViewJob {
       return null;
     } finally {
       removeEventListener("pagehide", cancel);
+      work.end();
       clearInterval(tick);
       if (mine()) this.#asking = null;
     }
@@ -80,8 +86,9 @@ export class ViewJob {
    * @param {NamedDesign["asked"]} asked
    * @param {string} what
    * @param {AbortController} asking
+   * @param {Handle} work
    */
-  #tell(asked, what, asking) {
+  #tell(asked, what, asking, work) {
     const begun = performance.now();
     const words = h("span", {}, `Computing ${what}`);
     this.place.replaceChildren(
@@ -93,7 +100,9 @@ export class ViewJob {
     // What is wrong with the design, the job tells.
     post("v1/validate", asked, { signal: asking.signal }).then(
       ({ estimate }) => {
-        if (estimate && "seconds" in estimate) expected = 1000 * estimate.seconds;
+        if (!estimate || !("seconds" in estimate)) return;
+        expected = 1000 * estimate.seconds;
+        work.tell({ seconds: estimate.seconds });
       },
       () => {},
     );

@@ -8,6 +8,7 @@ import { checked, follow, hasEnded, isAborted, json, post, ProblemError, request
 import { differences, nameOf, told } from "../state/design.js";
 import { number } from "../state/numbers.js";
 import { fileOfDesign } from "../state/tables.js";
+import { submitted } from "../state/work.js";
 
 /** @import { Design } from "../state/design.js" */
 /** @import { AskedStudy, Job, Open, StudyState, Submission } from "../state/documents.js" */
@@ -51,7 +52,7 @@ export function jobs(place, design, form, onOpen, onStudy) {
     spellcheck: false,
     on: { change: ({ target }) => design.set("/tags", read(target, { kind: "texts" }), "mend") },
   });
-  const submit = button("Submit this design as a job", () => act(() => post("v1/jobs", design.submission)), {
+  const submit = button("Submit this design as a job", () => act(() => send(design.submission)), {
     className: "primary",
   });
   const ofStudies = h("input", { type: "checkbox", id: "jobs-of-studies", on: { change: () => refresh() } });
@@ -196,6 +197,16 @@ export function jobs(place, design, form, onOpen, onStudy) {
     await Promise.all([more(), moreStudies()]);
   }
 
+  /**
+   * Submits a job that the project keeps.
+   *
+   * @param {Submission} submission
+   */
+  async function send(submission) {
+    const { id, submitted_at: at } = await post("v1/jobs", submission);
+    submitted({ id, kind: "job", name: nameOf(submission), at });
+  }
+
   /** The next page of the list of studies, each with the way back to it. */
   async function moreStudies() {
     await attempt(async () => {
@@ -324,7 +335,7 @@ export function jobs(place, design, form, onOpen, onStudy) {
     );
     const buttons = [doing("Open", open)];
     if (!hasEnded(job.status)) buttons.push(doing("Cancel", () => request(`${address}/cancel`, { method: "POST" })));
-    else buttons.push(doing("Run again", async () => post("v1/jobs", (await json(address)).submission)));
+    else buttons.push(doing("Run again", async () => send((await json(address)).submission)));
     if (job.status === "successful") buttons.push(...IN_ROW.map(([words, name]) => file(words, name)), more);
     const took = job.links.same_as
       ? h("small", {}, " as computed before")

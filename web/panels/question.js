@@ -6,9 +6,11 @@ import { button, h } from "../draw/dom.js";
 import { outdated } from "./outdated.js";
 import { follow, hasEnded, json, post, ProblemError, request } from "../state/api.js";
 import { remaining } from "../state/numbers.js";
+import { begin, kindOf, submitted } from "../state/work.js";
 
 /** @import { Design } from "../state/design.js" */
 /** @import { StudyState, Submission } from "../state/documents.js" */
+/** @import { Asked } from "../state/work.js" */
 
 /**
  * How a study is followed: `show` is given what `part` of it tells, once in `pause` milliseconds at most, and its
@@ -85,11 +87,16 @@ export class Question {
    * and `ended` how it ended.
    *
    * @template F
-   * @param {() => object} asked
+   * @param {() => Asked} asked
    * @param {Watching<F>} how
    */
   study(asked, how) {
-    return this.ask(async (cancelling) => this.#watch(await post("v1/studies", asked()), how, cancelling));
+    return this.ask(async (cancelling) => {
+      const study = asked();
+      const made = await post("v1/studies", study);
+      submitted({ id: made.id, kind: kindOf(study), name: study.name ?? "", at: made.submitted_at });
+      await this.#watch(made, how, cancelling);
+    });
   }
 
   /**
@@ -112,13 +119,20 @@ export class Question {
    */
   async #watch(made, { part = "", pause, progress, show, ended }, cancelling) {
     const address = `v1/studies/${made.id}`;
-    if (!hasEnded(made.status)) cancelling(() => request(`${address}/cancel`, { method: "POST" }).catch(() => {}));
+    const goesOn = !hasEnded(made.status);
+    const cancel = () => request(`${address}/cancel`, { method: "POST" }).catch(() => {});
+    if (goesOn) cancelling(cancel);
+    const work = begin(made.name ?? "", cancel, { id: made.id, seconds: made.estimate?.seconds ?? null });
     const left = remaining();
     let [shown, whole] = [performance.now(), false];
     /** @type {(event: string, data: { done?: number, total?: number }) => void} */
     const told = (event, { done = 0, total }) => {
       if (event === "away") this.say("The service does not answer; it is asked again until it does.");
-      if (total) this.say(progress(done, total, left));
+      if (total) {
+        const said = progress(done, total, left);
+        this.say(said);
+        work.tell({ share: done / total, said });
+      }
       if (performance.now() - shown < pause) return;
       shown = performance.now();
       json(address + part).then(
@@ -126,11 +140,16 @@ export class Question {
         () => {},
       );
     };
-    if (!hasEnded(made.status)) await follow(address, told);
-    const found = await json(address + part);
-    whole = true;
-    show(found, address);
-    this.say(ended(found));
+    try {
+      const { status } = goesOn ? await follow(address, told) : made;
+      const found = await json(address + part);
+      whole = true;
+      work.end(status);
+      show(found, address);
+      this.say(ended(found));
+    } finally {
+      work.end();
+    }
   }
 }
 

@@ -13,22 +13,12 @@ import { fixed, number } from "../state/numbers.js";
 /** @import { Dot, Figure } from "../draw/figure.js" */
 /** @import { Watching } from "./question.js" */
 /** @import { Design } from "../state/design.js" */
-/** @import { AskedStudy, Study, StudyResults } from "../state/documents.js" */
+/** @import { AskedStudy, StudyResults } from "../state/documents.js" */
 
 const MOST_TORQUES = 24;
 /** Points are fetched so often at most while a sweep runs, in milliseconds. */
 const PAUSE = 400;
 const TORQUE = "/output_torques_n_m";
-
-/**
- * Whether a study is a sweep: torques alone differ, one at a time.
- *
- * @type {(study: Study) => boolean}
- */
-export const isSweep = ({ axes }) =>
-  axes?.length === 1 &&
-  axes[0].path === TORQUE &&
-  axes[0].values.every((each) => Array.isArray(each) && each.length === 1);
 
 /**
  * The sweep of `design` in `place`.

@@ -2,10 +2,13 @@
 // Results while the design changes: one request at a time, always the newest design next.
 
 import { checked, hasEnded, isAborted, isPassing, json, post, ProblemError, request, solved } from "./api.js";
+import { nameOf } from "./design.js";
 import { isSolid } from "./dimensions.js";
+import { begin, methodOf, tellsOf } from "./work.js";
 
 /** @import { Cause } from "./design.js" */
 /** @import { Job, PairOutline, Problem, Results, Submission } from "./documents.js" */
+/** @import { Handle } from "./work.js" */
 
 /** In a mesh period, where a design does not say it. */
 export const USUAL_POSITIONS = 40;
@@ -60,20 +63,62 @@ export async function preview(submission, signal) {
   return post("v1/preview", asked, { signal });
 }
 
+/** The problem that stands in place of results where somebody has stopped their computation. */
+const CANCELLED = {
+  code: "cancelled",
+  title: "The job was cancelled",
+  detail: "Nothing was computed for this design.",
+  errors: [],
+};
+
 /**
- * The results of `submission`: at once, or of a job where a preview has too many positions.
+ * The name of a computation in the list of work.
  *
- * @type {(submission: Submission, options?: { told?: (event: string, data: any) => void, signal?: AbortSignal }) =>
- *   Promise<Results>}
+ * @type {(submission: Submission) => string}
  */
-export async function resultsOf(submission, options = {}) {
+const calledIn = (submission) => `${nameOf(submission)}, ${methodOf(submission)}`;
+
+/**
+ * The results of `submission`: at once, or of a job where a preview has too many positions. The list of work has it
+ * meanwhile.
+ *
+ * @type {(submission: Submission) => Promise<Results>}
+ */
+export async function resultsOf(submission) {
+  const asking = new AbortController();
+  const { signal } = asking;
+  const work = begin(calledIn(submission), () => asking.abort());
+  /** @type {Job | null} */
+  let job = null;
+  const hear = tellsOf(work);
+  /** @type {(event: string, data: any) => void} */
+  const told = (event, data) => {
+    if (event === "status") job = data;
+    hear(event, data);
+  };
   try {
-    return await preview(submission, options.signal);
+    return await preview(submission, signal).catch(async (error) => {
+      if (!isTooLarge(error)) throw error;
+      const { id } = await solved(submission, { told, signal });
+      return json(`v1/jobs/${id}/results`, { signal });
+    });
   } catch (error) {
-    if (!isTooLarge(error)) throw error;
-    const job = await solved(submission, options);
-    return json(`v1/jobs/${job.id}/results`, { signal: options.signal });
+    if (!isAborted(error)) throw error;
+    cancel(job);
+    throw new ProblemError(CANCELLED);
+  } finally {
+    work.end();
   }
+}
+
+/**
+ * Cancels a job that goes on.
+ *
+ * @param {Job | null} job
+ */
+function cancel(job) {
+  if (job && !hasEnded(job.status))
+    request(`v1/jobs/${job.id}/cancel`, { method: "POST", keepalive: true }).catch(() => {});
 }
 
 /**
@@ -271,7 +316,10 @@ export class Follower {
    */
   async #compute(now) {
     const { submission, since } = now;
-    const { signal } = this.#interrupt;
+    const interrupt = this.#interrupt;
+    const { signal } = interrupt;
+    /** @type {Handle | null} */
+    let work = null;
     const known = this.#known.get(untagged(submission));
     if (known) return this.#show(known, submission, { took: null, since, draft: false });
     try {
@@ -288,14 +336,18 @@ export class Follower {
         if (signal.aborted) return;
         this.onExpect({ seconds: expected, since: performance.now(), rests: false, method });
       }
+      work = begin(calledIn(asked), () => interrupt.abort(), { seconds: expected });
       const begun = performance.now();
       const told = seconds > LONG ? "too large" : await this.#ask(now, asked);
-      if (told === "too large") await this.#long(now, plan);
+      if (told === "too large") await this.#long(now, plan, work);
       else if (told === "shown") this.#learn(performance.now() - begun, seconds);
+      // Stopped in the list of work: no newer design has come.
+      else if (signal.aborted && !this.#next) this.onProblem(CANCELLED, submission);
     } catch (error) {
       if (error instanceof ProblemError) this.#refused(error, submission);
       else if (!isAborted(error)) throw error;
     } finally {
+      work?.end();
       this.onExpect(null);
     }
   }
@@ -337,8 +389,9 @@ export class Follower {
    *
    * @param {Followed} now
    * @param {{ asked: Submission, seconds: number }} plan
+   * @param {Handle} work
    */
-  async #long({ submission, since }, { asked, seconds }) {
+  async #long({ submission, since }, { asked, seconds }, work) {
     const interrupt = this.#interrupt;
     const { signal } = interrupt;
     const begun = performance.now();
@@ -347,9 +400,11 @@ export class Follower {
     // What it has waited for others tells nothing of how long it takes.
     /** @type {number | null} */
     let computed = null;
+    const hear = tellsOf(work);
     /** @type {(event: string, data: any) => void} */
     const told = (event, data) => {
       if (event === "status") job = data;
+      hear(event, data);
       if (job?.status !== "accepted") computed ??= performance.now();
       this.onProgress({
         ...job,
@@ -360,6 +415,9 @@ export class Follower {
         cancel: () => interrupt.abort(),
       });
     };
+    // A page that goes away takes along what it has asked for.
+    const leave = () => cancel(job);
+    addEventListener("pagehide", leave);
     try {
       await this.#rest(LONG_REST - (performance.now() - since));
       if (signal.aborted) return;
@@ -370,19 +428,10 @@ export class Follower {
     } catch (error) {
       if (error instanceof ProblemError) this.#refused(error, submission);
       else if (!isAborted(error)) throw error;
-      const left = /** @type {Job | null} */ (job);
-      if (left && !hasEnded(left.status)) request(`v1/jobs/${left.id}/cancel`, { method: "POST" }).catch(() => {});
-      if (signal.aborted && !this.#next)
-        this.onProblem(
-          {
-            code: "cancelled",
-            title: "The job was cancelled",
-            detail: "Nothing was computed for this design.",
-            errors: [],
-          },
-          submission,
-        );
+      cancel(job);
+      if (signal.aborted && !this.#next) this.onProblem(CANCELLED, submission);
     } finally {
+      removeEventListener("pagehide", leave);
       this.onProgress(null);
     }
   }

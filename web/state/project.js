@@ -1,8 +1,10 @@
 // @ts-check
-// A project as a document: the design that is worked on, the designs kept beside it as submissions, and notes.
+// A project as a document: the design that is worked on, the designs kept beside it as submissions, the work that was
+// submitted for it, and notes.
 
 /** @import { NamedDesign, Submission } from "./documents.js" */
 /** @import { Known } from "./projects.js" */
+/** @import { Submitted } from "./work.js" */
 
 const FORMAT = "meshwright-project";
 /** The version of documents that this page writes. It reads no later one. */
@@ -10,6 +12,8 @@ const VERSION = 1;
 
 /** The number of characters that a name may have. */
 export const LONGEST_NAME = 200;
+/** The number of jobs and studies that a project keeps: the last ones. */
+export const MOST_WORK = 100;
 
 /**
  * A design that was kept: the submission, the one that was computed for it, and its name.
@@ -20,14 +24,16 @@ export const LONGEST_NAME = 200;
 /**
  * The contents of a project.
  *
- * @typedef {{ submission: Submission, typed: Record<string, number>, kept: KeptDesign[], notes: string }} Content
+ * @typedef {{ submission: Submission, typed: Record<string, number>, kept: KeptDesign[], work: Submitted[],
+ *   notes: string }} Content
  */
 
 /**
- * The state of a project over a reload: where it is kept, its notes, the designs that are not computed yet, and the
- * document that was saved.
+ * The state of a project over a reload: where it is kept, its notes and work, the designs that are not computed yet,
+ * and the document that was saved.
  *
- * @typedef {{ known: Known | null, notes: string, waiting: KeptDesign[], saved: object | null }} RememberedProject
+ * @typedef {{ known: Known | null, notes: string, work?: Submitted[], waiting: KeptDesign[], saved: object | null }}
+ *   RememberedProject
  */
 
 /** The reason why a document is not opened as a project. */
@@ -38,7 +44,7 @@ export class NoProject extends Error {}
  *
  * @param {Content} content
  */
-export const documentOf = ({ submission, typed, kept, notes }) => ({
+export const documentOf = ({ submission, typed, kept, work, notes }) => ({
   format: FORMAT,
   version: VERSION,
   submission,
@@ -49,6 +55,7 @@ export const documentOf = ({ submission, typed, kept, notes }) => ({
     asked,
     ...(hidden ? { hidden } : {}),
   })),
+  work: work.slice(-MOST_WORK).map(({ id, kind, name, at }) => ({ id, kind, name, at })),
   notes,
 });
 
@@ -62,6 +69,17 @@ const isSubmission = (value) => isObject(value) && isObject(value.pair);
 const isKept = (kept) =>
   isObject(kept) && typeof kept.name === "string" && isSubmission(kept.submission) && isSubmission(kept.asked);
 
+/** @type {Record<Submitted["kind"], true>} */
+const KINDS = { job: true, sweep: true, sensitivity: true, study: true, search: true, population: true };
+
+/** @type {(work: unknown) => boolean} */
+const isWork = (work) =>
+  isObject(work) &&
+  /^[\w-]+$/.test(work.id) &&
+  Object.hasOwn(KINDS, work.kind) &&
+  typeof work.name === "string" &&
+  !Number.isNaN(Date.parse(work.at));
+
 /**
  * The content of a document.
  *
@@ -71,7 +89,8 @@ const isKept = (kept) =>
  */
 export function contentOf(document) {
   if (!isObject(document) || document.format !== FORMAT) throw new NoProject("This is no project of Meshwright.");
-  const { version, submission, typed, kept, notes } = document;
+  // The first documents had no work.
+  const { version, submission, typed, kept, work = [], notes } = document;
   if (Number.isInteger(version) && version > VERSION)
     throw new NoProject(
       `A later Meshwright wrote this project (version ${version}; this page reads version ${VERSION}).`,
@@ -83,9 +102,11 @@ export function contentOf(document) {
     Object.values(typed).every((angle) => typeof angle === "number") &&
     Array.isArray(kept) &&
     kept.every(isKept) &&
+    Array.isArray(work) &&
+    work.every(isWork) &&
     typeof notes === "string";
   if (!isWhole) throw new NoProject("The project is damaged: parts of it are missing or are not what they should be.");
-  return { submission, typed, kept, notes };
+  return { submission, typed, kept, work, notes };
 }
 
 /**

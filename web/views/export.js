@@ -7,10 +7,11 @@ import { button, h, inLine, labelled, note } from "../draw/dom.js";
 import { chooseCommas, copied, drawingOf, hasCommas, save, saveTable } from "../draw/download.js";
 import { captioned, fileOf, pictureOf, stacked } from "../draw/figure.js";
 import { filesOf, saveFile } from "../draw/files.js";
-import { ProblemError, solved } from "../state/api.js";
+import { isAborted, ProblemError, request, solved } from "../state/api.js";
 import { number } from "../state/numbers.js";
 import { snippets } from "../state/snippets.js";
 import { csv, fileOfDesign, ordersCsv } from "../state/tables.js";
+import { begin, tellsOf } from "../state/work.js";
 import { designsCsv } from "./compare.js";
 import { inLight } from "./sheet.js";
 
@@ -132,14 +133,30 @@ export function exporting(place, { current, designs, drawing, charts, position, 
   /** @type {(live: NamedDesign, file: string) => Promise<void>} */
   async function fileOfJob(live, file) {
     state.textContent = "A job computes it.";
-    const job = await solved(live.asked);
-    await saveFile(
-      job.id,
-      file,
-      called(live, ""),
-      file === "fields.vtu" ? `?mesh_position=${position().toFixed(4)}` : "",
-    );
-    state.textContent = "";
+    const asking = new AbortController();
+    const { signal } = asking;
+    /** @type {string | null} */
+    let job = null;
+    const work = begin(`${live.name}, ${file}`, () => asking.abort());
+    const hear = tellsOf(work);
+    /** @type {(event: string, data: any) => void} */
+    const told = (event, data) => {
+      job = data.id ?? job;
+      hear(event, data);
+    };
+    try {
+      const { id } = await solved(live.asked, { told, signal });
+      const query = file === "fields.vtu" ? `?mesh_position=${position().toFixed(4)}` : "";
+      await saveFile(id, file, called(live, ""), query, signal);
+      state.textContent = "";
+    } catch (error) {
+      if (!isAborted(error)) throw error;
+      // A job that has ended is not cancelled any more.
+      if (job) request(`v1/jobs/${job}/cancel`, { method: "POST" }).catch(() => {});
+      state.textContent = "Stopped.";
+    } finally {
+      work.end();
+    }
   }
 
   async function show() {

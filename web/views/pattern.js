@@ -8,6 +8,7 @@ import { figure } from "../draw/figure.js";
 import { checked, hasEnded, isAborted, json, patiently, ProblemError, request, solved } from "../state/api.js";
 import { same } from "../state/design.js";
 import { fixed, number, timeOf } from "../state/numbers.js";
+import { begin, tellsOf } from "../state/work.js";
 
 /** @import { ContactPattern, GearName, NamedDesign, Submission } from "../state/documents.js" */
 
@@ -72,6 +73,8 @@ export class Pattern {
   async #ask() {
     const asking = (this.#asking = new AbortController());
     const { signal } = asking;
+    const work = begin("Contact pattern", () => asking.abort());
+    const hear = tellsOf(work);
     this.button.textContent = "Stop";
     /** @type {number | undefined} */
     let tick;
@@ -86,6 +89,7 @@ export class Pattern {
       // Every position is solved again, by the whole method.
       const { estimate } = await checked({ ...live.asked, method: "three_dimensional" }, { signal });
       const begun = performance.now();
+      work.tell({ name: `${live.name}, contact pattern`, seconds: estimate.seconds });
       const clock = () => {
         const left = 1000 * estimate.seconds - (performance.now() - begun);
         if (mine())
@@ -96,6 +100,7 @@ export class Pattern {
       /** @type {(event: string, data: any) => void} */
       const told = (event, data) => {
         if (event === "status") job = data;
+        hear(event, data);
       };
       const { id } = await solved(live.asked, { told, signal });
       const [{ output_torque_n_m: torque }] = live.results.curves;
@@ -111,6 +116,7 @@ export class Pattern {
       } else if (!(error instanceof ProblemError)) throw error;
       if (!live || mine()) this.state.textContent = error instanceof ProblemError ? error.reason : "Stopped.";
     } finally {
+      work.end();
       clearInterval(tick);
       if (this.#asking === asking) {
         this.#asking = null;

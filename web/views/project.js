@@ -5,19 +5,31 @@ import { button, byId, h, inLine, labelled, note, table, tableRow } from "../dra
 import { save } from "../draw/download.js";
 import { ProblemError } from "../state/api.js";
 import { same } from "../state/design.js";
-import { contentOf, documentOf, fileOf, isName, LONGEST_NAME, NoProject, projectOf } from "../state/project.js";
+import {
+  contentOf,
+  documentOf,
+  fileOf,
+  isName,
+  LONGEST_NAME,
+  MOST_WORK,
+  NoProject,
+  projectOf,
+} from "../state/project.js";
 import { add, change, ChangedMeanwhile, isShared, list, read, remove } from "../state/projects.js";
 import { fileOfDesign } from "../state/tables.js";
+import { onSubmitted } from "../state/work.js";
 
 /** @import { Design } from "../state/design.js" */
 /** @import { Content, KeptDesign, RememberedProject } from "../state/project.js" */
 /** @import { Known, Listed } from "../state/projects.js" */
+/** @import { Submitted } from "../state/work.js" */
 
 const UNNAMED = "Project";
 
 /**
  * @typedef {object} Around
  * @property {() => void} onChange is called when what is remembered has changed
+ * @property {() => void} onWork is called when the submitted work is another one
  * @property {(kept: KeptDesign) => Promise<unknown>} compute computes a design and keeps it beside the live one
  */
 
@@ -31,6 +43,8 @@ export class Project {
   #saved = null;
   /** @type {KeptDesign[]} */
   #waiting = [];
+  /** @type {Submitted[]} */
+  #work = [];
   #dialog = byId("project-dialog", HTMLDialogElement);
   #opener = byId("project-button");
   #name = h("input", { type: "text", id: "project-name", maxLength: LONGEST_NAME, autocomplete: "off" });
@@ -46,9 +60,11 @@ export class Project {
    * @param {Design} design
    * @param {Around} around
    */
-  constructor(design, { onChange, compute }) {
+  constructor(design, { onChange, onWork, compute }) {
     this.design = design;
     this.onChange = onChange;
+    this.onWork = onWork;
+    onSubmitted((work) => this.#setWork([...this.#work, work].slice(-MOST_WORK)));
     this.compute = compute;
     this.#opener.addEventListener("click", () => void this.#show());
     this.#name.addEventListener("input", () => this.changed());
@@ -79,15 +95,42 @@ export class Project {
 
   /** @returns {RememberedProject} */
   get state() {
-    return { known: this.#known, notes: this.#notes.value, waiting: this.#waiting, saved: this.#saved };
+    return {
+      known: this.#known,
+      notes: this.#notes.value,
+      work: this.#work,
+      waiting: this.#waiting,
+      saved: this.#saved,
+    };
+  }
+
+  /** The jobs and studies that were submitted for the project, the oldest first. */
+  get work() {
+    return this.#work;
+  }
+
+  /** @param {Submitted[]} work */
+  #setWork(work) {
+    this.#work = work;
+    this.changed();
+    this.onWork();
+  }
+
+  /**
+   * The project keeps this job or study no more; the service does.
+   *
+   * @param {string} id
+   */
+  forget(id) {
+    this.#setWork(this.#work.filter((each) => each.id !== id));
   }
 
   /** @param {RememberedProject} remembered */
-  restore({ known, notes, waiting, saved }) {
+  restore({ known, notes, work = [], waiting, saved }) {
     [this.#known, this.#waiting, this.#saved] = [known, waiting, saved];
     this.#notes.value = notes;
     this.#name.value = known?.name ?? "";
-    this.changed();
+    this.#setWork(work);
   }
 
   /** Says whether there is something to be saved. */
@@ -111,7 +154,13 @@ export class Project {
 
   #document() {
     const { submission, typed, kept } = this.design;
-    return documentOf({ submission, typed, kept: [...kept, ...this.#waiting], notes: this.#notes.value });
+    return documentOf({
+      submission,
+      typed,
+      kept: [...kept, ...this.#waiting],
+      work: this.#work,
+      notes: this.#notes.value,
+    });
   }
 
   async #show() {
@@ -235,11 +284,13 @@ export class Project {
    * @param {Content} content
    * @param {string} name
    */
-  #take({ submission, typed, kept, notes }, name) {
+  #take({ submission, typed, kept, work, notes }, name) {
+    this.#work = work;
     this.#waiting = kept;
     this.#notes.value = notes;
     this.#name.value = name;
     this.design.begin({ submission, typed, kept: [] });
+    this.onWork();
   }
 
   #export() {

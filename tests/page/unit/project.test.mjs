@@ -7,7 +7,14 @@ import { example } from "./contract.mjs";
 
 const submission = example("standard-pair");
 const kept = { name: "<b>before</b>", submission, asked: submission, results: { curves: [] }, look: 1, teeth: 50 };
-const content = { submission, typed: { "/pair/center_distance_mm": 0 }, kept: [kept], notes: "quiet\nat 100 N m" };
+const work = [{ id: "0198-a", kind: "population", name: "<i>as made</i>", at: "2026-11-27T10:00:00Z" }];
+const content = {
+  submission,
+  typed: { "/pair/center_distance_mm": 0 },
+  kept: [kept],
+  work,
+  notes: "quiet\nat 100 N m",
+};
 const name = "E-axle & <i>stage</i> 2";
 
 const refused = (work, words) =>
@@ -17,7 +24,7 @@ test("a project comes back from its document and its file as it was, without res
   const document = documentOf(content);
   assert.ok(!JSON.stringify(document).includes("curves"));
   const { kept: read, ...rest } = contentOf(JSON.parse(JSON.stringify(document)));
-  assert.deepEqual(rest, { submission, typed: content.typed, notes: content.notes });
+  assert.deepEqual(rest, { submission, typed: content.typed, work, notes: content.notes });
   assert.deepEqual(read, [{ name: kept.name, submission, asked: submission }]);
   const opened = projectOf(fileOf(name, document));
   assert.equal(opened.name, name);
@@ -36,6 +43,9 @@ test("a foreign, a newer and a damaged file are refused, each with its reason", 
   refused(() => contentOf({ ...document, version: 2 }), /later Meshwright/);
   for (const part of ["submission", "typed", "kept", "notes", "version"])
     refused(() => contentOf({ ...document, [part]: undefined }), /damaged/);
+  for (const wrong of [{ id: "a/../b" }, { kind: "hunt" }, { name: 3 }, { at: "yesterday" }])
+    refused(() => contentOf({ ...document, work: [{ ...work[0], ...wrong }] }), /damaged/);
+  assert.deepEqual(contentOf({ ...document, work: undefined }).work, [], "the first documents had none");
   for (const wrong of [{ kept: [{}] }, { kept: {} }, { typed: { a: "1" } }, { submission: {} }, { version: "1" }])
     refused(() => contentOf({ ...document, ...wrong }), /damaged/);
 });
