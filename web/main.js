@@ -10,6 +10,7 @@ import { Drawing, indexAt } from "./draw/drawing.js";
 import { fileOf, pictureOf } from "./draw/figure.js";
 import { jobs } from "./panels/jobs.js";
 import { population } from "./panels/population.js";
+import { sensitivity } from "./panels/sensitivity.js";
 import { study } from "./panels/study.js";
 import { sweep } from "./panels/sweep.js";
 import { json, patiently, ProblemError } from "./state/api.js";
@@ -315,6 +316,7 @@ class Page {
       "run-up": runUp,
       sweep: sweep(byId("sweep"), design),
       study: study(byId("study"), design, form, open),
+      sensitivity: sensitivity(byId("sensitivity"), design, form, () => this.#current()),
       population: population(byId("population"), design, form, limits, open),
       jobs: jobs(byId("jobs"), design, form, open, resume),
       export: exporting(byId("export"), {

@@ -338,6 +338,23 @@ await opened(
   },
 );
 
+await daily.opened("bars around the present value show what a design is sensitive to", async (page) => {
+  await tab(page, "robustness");
+  assert.equal(await page.locator("#sensitivity-distance").inputValue(), "0.0175", "js7 of ISO 286 at 100.5 mm");
+  assert.ok(await page.locator("#sensitivity-misalignment").isDisabled(), "a plane method sees no misalignment");
+  await page.locator("#sensitivity-run").click();
+  await ends(page, "#sensitivity-state", /5 of 5 designs, successful/);
+  const out = page.locator("#sensitivity-out");
+  assert.match(await out.locator("caption").innerText(), new RegExp(`: ${await answer(page, "p-p")}`));
+  const rows = await out.locator("tbody tr").allInnerTexts();
+  // 20 % of torque moves the tip relief away from its load; a center distance within js7 hardly tells.
+  assert.match(rows[0], /^Torque ± 20 %/);
+  assert.match(rows[1], /^Center distance ± 0.0175 mm/);
+  assert.equal(await out.locator("rect").count(), 4);
+  await axe(page);
+  if (process.argv.includes("--screenshots")) await page.screenshot({ path: `${import.meta.dirname}/sensitivity.png` });
+});
+
 await opened("a population shows how good the pairs will be that are made, and opens one of them", async (page) => {
   await tab(page, "robustness");
   await page.locator("#population-size").fill("24");

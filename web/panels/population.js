@@ -135,6 +135,7 @@ export function population(place, design, form, limits, onOpen) {
   short.hidden = true;
   const out = h("div", { className: "out" });
   place.replaceChildren(
+    h("h3", {}, "As made"),
     note(
       "Every member has teeth of its own, made by the class of ISO 1328-1 in place of those that the design may give, and fields that vary by a law. How many are beyond the total pitch tolerance F_pT of their class, or were rejected by its inspection, stands with what was found. ",
       h("a", { href: "guides/how-good-will-they-be" }, "How good will they be?"),

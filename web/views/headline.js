@@ -166,6 +166,16 @@ export const ANSWERS = [
     about: "The part that repeats with every tooth: its amplitude at the mesh order.",
   },
   {
+    id: "tooth-to-tooth",
+    questions: ["robustness"],
+    name: "Tooth to tooth",
+    unit: "µm",
+    quantity: "transmission_error_um.tooth_to_tooth",
+    print: (value) => fixed(value, 3),
+    about:
+      "The largest change of the transmission error within any one mesh period: what single-flank testing calls f_i′.",
+  },
+  {
     id: "share",
     questions: ["contact"],
     name: "One pair alone",
