@@ -26,6 +26,7 @@ import { wordsAt } from "./state/series.js";
 import { fileOfDesign } from "./state/tables.js";
 import { kindOf } from "./state/work.js";
 import { Compare } from "./views/compare.js";
+import { Dial } from "./views/dial.js";
 import { exporting } from "./views/export.js";
 import { Form } from "./views/form.js";
 import { Geometry } from "./views/geometry.js";
@@ -143,6 +144,7 @@ class Page {
   #problems = new ProblemBox(() => this.#form);
   #warnings = new Warnings(this.#design, () => this.#form);
   #drawing = new Drawing(byId("drawing"), this.#design, { onTurn: (to) => this.#turn(to) });
+  #dial = new Dial(byId("dial"), this.#design);
   #brush = new Brush(byId("brush"), (range) => this.#charts.zoom(range));
   #charts = new Charts(byId("charts"), {
     onPosition: (to) => this.#turn(to),
@@ -575,6 +577,7 @@ class Page {
     this.#pattern.show(shown);
     this.#compare.show(designs);
     this.#geometry.show(shown);
+    this.#dial.show(shown);
     this.#choice.replaceChildren(
       ...kept.map((each, i) => h("option", { value: i, selected: each === against }, nameBeside(curve, each))),
     );

@@ -22,6 +22,7 @@ import {
   linkOf,
   named,
   open,
+  openDesign,
   service,
   stepsOn,
   tab,
@@ -335,6 +336,45 @@ await opened(
       Math.abs(label[0] - (await answer(page, "p-p"))) < 0.002 + 0.01 * label[0],
       `${label} ${await answer(page, "p-p")}`,
     );
+  },
+);
+
+await engine.opened(
+  "holes in both gears are turned by a dial, by hand and by keys, and by a press to their best",
+  async (page) => {
+    const design = await designOf(page);
+    design.pair.driving.blank.holes = { ...design.pair.driven.blank.holes };
+    assert.ok(await page.locator("#dial").isHidden(), "holes in one gear have no phase");
+    await openDesign(page, service, design);
+    const summary = page.locator("#dial > summary");
+    await summary.waitFor();
+    // Own elements with another mesher: 0.418 um in line, none with 27.9 degrees.
+    assert.match(await summary.innerText(), /0\.4\d µm now, 0\.0\d+ µm at best/);
+    await summary.click();
+    const knob = page.locator("#dial-knob");
+    const best = Number(/Turn them by ([\d.]+)°/.exec(await page.locator("#dial-take").innerText())[1]);
+    assert.ok(best > 27.5 && best < 28.6, `${best} degrees`);
+    assert.equal(
+      await page.locator("#dial figure, #dial .scatter").count(),
+      1,
+      "amplitude and peak-to-peak over the turn",
+    );
+    await axe(page);
+    if (process.argv.includes("--screenshots")) await page.screenshot({ path: `${import.meta.dirname}/dial.png` });
+    const phase = async () => (await designOf(page)).pair.driving.blank.holes.phase_deg ?? 0;
+    await knob.focus();
+    for (const key of ["ArrowRight", "ArrowRight", "Shift+ArrowLeft"]) await page.keyboard.press(key);
+    assert.equal(await phase(), 0.9);
+    assert.equal(Number(await knob.getAttribute("aria-valuenow")), 0.9);
+    // A quarter around is a quarter of a hole pitch.
+    const box = await knob.boundingBox();
+    const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+    await drag(page, [x, y - 40], [x + 40, y]);
+    assert.equal(await phase(), 9);
+    await changing(page, () => page.locator("#dial-take").click());
+    assert.ok(Math.abs((await phase()) - best) < 0.1, `${await phase()} degrees`);
+    await page.waitForFunction(() => /0\.0\d+ µm now/.test(document.querySelector("#dial > summary").textContent));
+    assert.ok((await answer(page, "h-n")) < 0.05);
   },
 );
 
