@@ -36,6 +36,7 @@ import { Pattern } from "./views/pattern.js";
 import { ProblemBox } from "./views/problem.js";
 import { Progress } from "./views/progress.js";
 import { Project } from "./views/project.js";
+import { nameFoot, reportOf } from "./views/report.js";
 import { RunUp } from "./views/runup.js";
 import { setUpKey, setUpLayout, setUpTheme } from "./views/settings.js";
 import { sheetOf } from "./views/sheet.js";
@@ -131,6 +132,8 @@ class Page {
    */
   #drawn = null;
   #isSheet = false;
+  /** True while the one page of the design is printed in place of the report of the project. */
+  #printsOnePage = false;
   /** @type {number | undefined} */
   #looking;
   /** @type {number | undefined} */
@@ -154,7 +157,8 @@ class Page {
   #pattern = new Pattern(byId("pattern"), { live: () => this.#current() });
   #headline = new Headline(byId("headline"), (detail) => this.#form?.inWords(detail) ?? detail);
   #geometry = new Geometry(byId("geometry"), {
-    onPrint: () => void this.#print(),
+    onPrint: () => void this.#print(true),
+    onReport: () => void this.#print(false),
     onPicture: (kind) => void this.#picture(kind),
   });
   #compare = new Compare(byId("compare"), {
@@ -698,11 +702,45 @@ class Page {
     return base && this.#form && { name: base.name, page: this.#sheet(base, this.#form) };
   }
 
-  async #print() {
-    const report = await this.#report();
-    if (!report) return;
-    byId("sheet").replaceChildren(report.page);
+  /**
+   * Prints the one page of the design, or the report of the project.
+   *
+   * @param {boolean} isOnePage
+   */
+  async #print(isOnePage) {
+    if (!(await this.#report())) return;
+    this.#printsOnePage = isOnePage;
+    this.#paper();
     window.print();
+  }
+
+  /** Puts onto paper what is printed, of the design that was computed last. */
+  #paper() {
+    const [live, form] = [this.#live, this.#form];
+    if (!live || !form) return;
+    const sheet = byId("sheet");
+    sheet.classList.toggle("one", this.#printsOnePage);
+    const { title } = this.#project;
+    if (this.#printsOnePage) return sheet.replaceChildren(this.#sheet(live, form));
+    nameFoot({ ...title, name: title.name || live.name });
+    /** @type {(title: string, id: string) => import("./views/report.js").Answer} */
+    const answer = (words, id) => {
+      const place = within(byId(id), ".out", HTMLElement);
+      return { title: words, place, isOutdated: !within(byId(id), ".outdated", HTMLElement).hidden };
+    };
+    return sheet.replaceChildren(
+      ...reportOf({
+        title,
+        live,
+        designs: this.#besideKept(live),
+        drawing: this.#drawing.element,
+        charts: this.#charts,
+        form,
+        usual: (submission, pointer) => usualAt(form.api, submission, pointer),
+        contact: byId("pattern"),
+        answers: [answer("Sensitivity", "sensitivity"), answer("As made", "population")],
+      }),
+    );
   }
 
   /** @param {"svg" | "png"} kind */
@@ -791,7 +829,7 @@ class Page {
       const key = event.key.toLowerCase();
       const work =
         key === "p" && this.#live && this.#form
-          ? () => void this.#print()
+          ? () => void this.#print(false)
           : key === "y" || (key === "z" && event.shiftKey)
             ? () => this.#design.redo()
             : key === "z"
@@ -803,8 +841,9 @@ class Page {
     });
     // However somebody prints, a report comes of it: of the design, or where that is not computed yet of the one
     // before, under its name.
-    addEventListener("beforeprint", () => {
-      if (this.#live && this.#form) byId("sheet").replaceChildren(this.#sheet(this.#live, this.#form));
+    addEventListener("beforeprint", () => this.#paper());
+    addEventListener("afterprint", () => {
+      this.#printsOnePage = false;
     });
   }
 

@@ -35,7 +35,7 @@ async function choose(page, text) {
 }
 
 export async function projectSteps() {
-  const { dailyEngine } = stepsOn(service);
+  const { dailyEngine, engine } = stepsOn(service);
 
   await dailyEngine.opened(
     "a project is saved, survives a reload, is opened by another tab, and of two writers neither loses anything",
@@ -157,6 +157,54 @@ export async function projectSteps() {
       await ends(other, "#population-state", /of 3000 members, dismissed/);
       await there.getByRole("button", { name: /^Forget/ }).click();
       await there.waitFor({ state: "detached" });
+    },
+  );
+
+  await engine.opened(
+    "the report of a project has its pages on A4, with the words of its title block",
+    async (page) => {
+      await page.locator("#pin").click();
+      await holes(page, 8);
+      await (await field(page, "/pair/driven/material/name")).selectOption("GG-25");
+      await (await field(page, "/dynamics")).check();
+      await tab(page, "robustness");
+      await page.locator("#sensitivity-run").click();
+      await ends(page, "#sensitivity-state", /5 of 5 designs, successful/);
+      await tab(page, "speed");
+      await page.locator("#run-up .scatter").first().waitFor();
+      await show(page);
+      await page.locator("#project-name").fill(NAME);
+      await page.locator("#project-author").fill('R. "D" \\ Ü');
+      await page.locator("#project-drawing").fill("4711-A");
+      await page.locator("#project-notes").fill("first line\nsecond line");
+      await axe(page);
+      await close(page);
+      const pdf = await page.pdf({ preferCSSPageSize: true });
+      const text = pdf.toString("latin1");
+      const pages = [...text.matchAll(/\/Type\s*\/Page\b/g)].length;
+      assert.ok(pages >= 6 && pages <= 12, `${pages} pages`);
+      // A4 in points.
+      for (const [, width, height] of text.matchAll(/\/MediaBox\s*\[0 0 ([\d.]+) ([\d.]+)\]/g))
+        assert.ok(Math.abs(width - 595.3) < 1 && Math.abs(height - 841.9) < 1, `${width} by ${height}`);
+      if (process.argv.includes("--screenshots")) writeFileSync(`${import.meta.dirname}/report.pdf`, pdf);
+      const said = await page.locator("#sheet").textContent();
+      for (const words of [
+        NAME,
+        'R. "D" \\ Ü',
+        "4711-A",
+        "second line",
+        // GG-25 has the modulus of grey iron.
+        /Young's modulus[^A-Z]*110/,
+        /Number of holes.*10.*8/,
+        "Spectrum",
+        /Resonance.*rpm/,
+        /Sensitivity.*Torque ± 20 %/,
+        "Equilibrium residual",
+      ])
+        assert.ok(words instanceof RegExp ? words.test(said) : said.includes(words), String(words));
+      assert.doesNotMatch(said, /NaN|undefined/);
+      assert.equal(await page.locator("#sheet :is(button, input, select)").count(), 0);
+      assert.equal(await page.locator("#injected").count(), 0, "names are text");
     },
   );
 

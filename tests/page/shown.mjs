@@ -628,7 +628,7 @@ export async function shownSteps(service) {
   });
 
   await opened(
-    "files carry the name of their design, and however somebody prints, a report of one page comes of it",
+    "files carry the name of their design, and however somebody prints, a report comes of it",
     async (page) => {
       await tab(page, "export");
       const { name } = await downloaded(page, () => page.locator("[data-download=csv]").click());
@@ -646,7 +646,7 @@ export async function shownSteps(service) {
       await tab(page, "noise");
       const pages = async () =>
         [...(await page.pdf({ preferCSSPageSize: true })).toString("latin1").matchAll(/\/Type\s*\/Page\b/g)].length;
-      assert.equal(await pages(), 1);
+      assert.ok((await pages()) >= 4);
       assert.match(await page.locator("#sheet > svg").getAttribute("aria-label"), /Report of 50\/50, 10×r7\.5@34/);
       await page.evaluate(() => {
         window.printed = 0;

@@ -316,13 +316,12 @@ export class Charts {
   /**
    * The curves that are shown as drawings with titles, units and legends.
    *
-   * @param {{ width?: number, height?: number, ids?: string[] | null }} [how]
+   * @param {{ width?: number, height?: number }} [size]
+   * @param {(id: string) => boolean} isWanted
    */
-  figures({ width = 760, height = 300, ids = null } = {}) {
+  figures({ width = 760, height = 300 } = {}, isWanted = () => true) {
     const colors = looks();
-    const shown = [...this.#panels.values()].filter(
-      (panel) => !panel.absent && !panel.empty && (!ids || ids.includes(panel.id)),
-    );
+    const shown = [...this.#panels.values()].filter((panel) => !panel.absent && !panel.empty && isWanted(panel.id));
     return shown.map((panel) => {
       const common = { title: panel.title, y: `${panel.title} in ${panel.unit}`, colors, width, height, heading: true };
       if (panel.id === "spectrum") {

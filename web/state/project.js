@@ -25,15 +25,15 @@ export const MOST_WORK = 100;
  * The contents of a project.
  *
  * @typedef {{ submission: Submission, typed: Record<string, number>, kept: KeptDesign[], work: Submitted[],
- *   notes: string }} Content
+ *   notes: string, author: string, drawing: string }} Content
  */
 
 /**
- * The state of a project over a reload: where it is kept, its notes and work, the designs that are not computed yet,
- * and the document that was saved.
+ * The state of a project over a reload: where it is kept, what was typed of it, its work, the designs that are not
+ * computed yet, and the document that was saved.
  *
- * @typedef {{ known: Known | null, notes: string, work?: Submitted[], waiting: KeptDesign[], saved: object | null }}
- *   RememberedProject
+ * @typedef {{ known: Known | null, notes: string, author?: string, drawing?: string, work?: Submitted[],
+ *   waiting: KeptDesign[], saved: object | null }} RememberedProject
  */
 
 /** The reason why a document is not opened as a project. */
@@ -44,7 +44,7 @@ export class NoProject extends Error {}
  *
  * @param {Content} content
  */
-export const documentOf = ({ submission, typed, kept, work, notes }) => ({
+export const documentOf = ({ submission, typed, kept, work, notes, author, drawing }) => ({
   format: FORMAT,
   version: VERSION,
   submission,
@@ -57,6 +57,8 @@ export const documentOf = ({ submission, typed, kept, work, notes }) => ({
   })),
   work: work.slice(-MOST_WORK).map(({ id, kind, name, at }) => ({ id, kind, name, at })),
   notes,
+  author,
+  drawing_number: drawing,
 });
 
 /** @type {(value: unknown) => value is Record<string, any>} */
@@ -89,8 +91,8 @@ const isWork = (work) =>
  */
 export function contentOf(document) {
   if (!isObject(document) || document.format !== FORMAT) throw new NoProject("This is no project of Meshwright.");
-  // The first documents had no work.
-  const { version, submission, typed, kept, work = [], notes } = document;
+  // The first documents had no work, author and number.
+  const { version, submission, typed, kept, work = [], notes, author = "", drawing_number: drawing = "" } = document;
   if (Number.isInteger(version) && version > VERSION)
     throw new NoProject(
       `A later Meshwright wrote this project (version ${version}; this page reads version ${VERSION}).`,
@@ -104,9 +106,9 @@ export function contentOf(document) {
     kept.every(isKept) &&
     Array.isArray(work) &&
     work.every(isWork) &&
-    typeof notes === "string";
+    [notes, author, drawing].every((words) => typeof words === "string");
   if (!isWhole) throw new NoProject("The project is damaged: parts of it are missing or are not what they should be.");
-  return { submission, typed, kept, work, notes };
+  return { submission, typed, kept, work, notes, author, drawing };
 }
 
 /**

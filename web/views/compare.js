@@ -34,7 +34,7 @@ const SAME = 1e-3;
  *
  * @param {Column[]} columns
  */
-function toldBy(columns) {
+export function toldBy(columns) {
   /** @type {(quantity: Quantity) => (number | undefined)[]} */
   const read = (quantity) => columns.map(({ curve }) => inCurve(quantity, curve) ?? undefined);
   return quantities()
@@ -42,8 +42,12 @@ function toldBy(columns) {
     .filter(({ values }) => values.some(Number.isFinite));
 }
 
-/** @type {(designs: NamedDesign[]) => Column[]} */
-const columnsOf = (designs) =>
+/**
+ * A column for each torque of each of the designs, the live one first.
+ *
+ * @type {(designs: NamedDesign[]) => Column[]}
+ */
+export const columnsOf = (designs) =>
   designs.flatMap(({ name, results }, i) => results.curves.map((curve) => ({ name, curve, results, live: i === 0 })));
 
 /**

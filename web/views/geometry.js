@@ -95,13 +95,13 @@ export function rowsOf({ results, submission }) {
   return { gears, both };
 }
 
-/** The report of the live design in `place`; `onPrint` and `onPicture` are what its buttons do. */
+/** The report of the live design in `place`; `onPrint`, `onReport` and `onPicture` are what its buttons do. */
 export class Geometry {
   /**
    * @param {HTMLElement} place
-   * @param {{ onPrint: () => void, onPicture: (kind: "svg" | "png") => void }} hearers
+   * @param {{ onPrint: () => void, onReport: () => void, onPicture: (kind: "svg" | "png") => void }} hearers
    */
-  constructor(place, { onPrint, onPicture }) {
+  constructor(place, { onPrint, onReport, onPicture }) {
     this.out = h("div", { className: "columns" });
     place.append(
       note(
@@ -112,6 +112,7 @@ export class Geometry {
         "div",
         { className: "buttons wrap" },
         button("Print one page, or save it as PDF", onPrint),
+        button("Report of the project, on paper or as PDF", onReport),
         button("Page as SVG", () => onPicture("svg")),
         button("Page as PNG", () => onPicture("png")),
       ),

@@ -49,6 +49,8 @@ export class Project {
   #opener = byId("project-button");
   #name = h("input", { type: "text", id: "project-name", maxLength: LONGEST_NAME, autocomplete: "off" });
   #notes = h("textarea", { id: "project-notes", rows: 3, on: { input: () => this.changed() } });
+  #author = this.#line("author");
+  #drawing = this.#line("drawing");
   #state = h("p", { className: "note", role: "status" });
   #wrong = h("p", { className: "field-error", role: "alert" });
   #conflict = h("div", { className: "conflict", hidden: true });
@@ -72,6 +74,7 @@ export class Project {
     this.#dialog.append(
       h("h2", { id: "project-title" }, "Project"),
       inLine(...labelled("Name", this.#name)),
+      inLine(...labelled("Author", this.#author), ...labelled("Drawing number", this.#drawing)),
       inLine(...labelled("Notes", this.#notes)),
       inLine(
         button("Save", () => this.#act(() => this.#save()), { className: "primary", id: "project-save" }),
@@ -98,10 +101,37 @@ export class Project {
     return {
       known: this.#known,
       notes: this.#notes.value,
+      author: this.#author.value,
+      drawing: this.#drawing.value,
       work: this.#work,
       waiting: this.#waiting,
       saved: this.#saved,
     };
+  }
+
+  /** What the title block of a report says of the project. */
+  get title() {
+    return {
+      name: this.#known?.name ?? this.#name.value,
+      author: this.#author.value,
+      drawing: this.#drawing.value,
+      notes: this.#notes.value,
+    };
+  }
+
+  /**
+   * A line that is typed for the title block.
+   *
+   * @param {string} name
+   */
+  #line(name) {
+    return h("input", {
+      type: "text",
+      id: `project-${name}`,
+      maxLength: LONGEST_NAME,
+      autocomplete: "off",
+      on: { input: () => this.changed() },
+    });
   }
 
   /** The jobs and studies that were submitted for the project, the oldest first. */
@@ -126,11 +156,16 @@ export class Project {
   }
 
   /** @param {RememberedProject} remembered */
-  restore({ known, notes, work = [], waiting, saved }) {
+  restore({ known, notes, author = "", drawing = "", work = [], waiting, saved }) {
     [this.#known, this.#waiting, this.#saved] = [known, waiting, saved];
-    this.#notes.value = notes;
+    this.#type({ notes, author, drawing });
     this.#name.value = known?.name ?? "";
     this.#setWork(work);
+  }
+
+  /** @param {{ notes: string, author: string, drawing: string }} words */
+  #type({ notes, author, drawing }) {
+    [this.#notes.value, this.#author.value, this.#drawing.value] = [notes, author, drawing];
   }
 
   /** Says whether there is something to be saved. */
@@ -160,6 +195,8 @@ export class Project {
       kept: [...kept, ...this.#waiting],
       work: this.#work,
       notes: this.#notes.value,
+      author: this.#author.value,
+      drawing: this.#drawing.value,
     });
   }
 
@@ -284,10 +321,10 @@ export class Project {
    * @param {Content} content
    * @param {string} name
    */
-  #take({ submission, typed, kept, work, notes }, name) {
+  #take({ submission, typed, kept, work, ...words }, name) {
     this.#work = work;
     this.#waiting = kept;
-    this.#notes.value = notes;
+    this.#type(words);
     this.#name.value = name;
     this.design.begin({ submission, typed, kept: [] });
     this.onWork();

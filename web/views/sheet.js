@@ -203,7 +203,9 @@ export function sheetOf({ live, drawing, charts, form }) {
     pressed ? "pressure" : curve.face ? "stiffness" : "share",
     "spectrum",
   ];
-  const figures = inLight(() => charts.figures({ width: 520, height: Math.round((520 * h) / w), ids }));
+  const figures = inLight(() =>
+    charts.figures({ width: 520, height: Math.round((520 * h) / w) }, (id) => ids.includes(id)),
+  );
   figures.forEach((figure, i) => {
     dress(figure, { x: MARGIN + (i % 2) * w, y: top + Math.floor(i / 2) * h, width: w - 8, height: h - 6 });
     page.append(figure);

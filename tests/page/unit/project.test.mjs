@@ -14,6 +14,8 @@ const content = {
   kept: [kept],
   work,
   notes: "quiet\nat 100 N m",
+  author: 'R. "D"',
+  drawing: "4711-A",
 };
 const name = "E-axle & <i>stage</i> 2";
 
@@ -24,7 +26,14 @@ test("a project comes back from its document and its file as it was, without res
   const document = documentOf(content);
   assert.ok(!JSON.stringify(document).includes("curves"));
   const { kept: read, ...rest } = contentOf(JSON.parse(JSON.stringify(document)));
-  assert.deepEqual(rest, { submission, typed: content.typed, work, notes: content.notes });
+  assert.deepEqual(rest, {
+    submission,
+    typed: content.typed,
+    work,
+    notes: content.notes,
+    author: content.author,
+    drawing: content.drawing,
+  });
   assert.deepEqual(read, [{ name: kept.name, submission, asked: submission }]);
   const opened = projectOf(fileOf(name, document));
   assert.equal(opened.name, name);
@@ -45,7 +54,10 @@ test("a foreign, a newer and a damaged file are refused, each with its reason", 
     refused(() => contentOf({ ...document, [part]: undefined }), /damaged/);
   for (const wrong of [{ id: "a/../b" }, { kind: "hunt" }, { name: 3 }, { at: "yesterday" }])
     refused(() => contentOf({ ...document, work: [{ ...work[0], ...wrong }] }), /damaged/);
-  assert.deepEqual(contentOf({ ...document, work: undefined }).work, [], "the first documents had none");
+  refused(() => contentOf({ ...document, author: 3 }), /damaged/);
+  const first = { ...document, work: undefined, author: undefined, drawing_number: undefined };
+  const { work: none, author, drawing } = contentOf(first);
+  assert.deepEqual([none, author, drawing], [[], "", ""], "the first documents had none");
   for (const wrong of [{ kept: [{}] }, { kept: {} }, { typed: { a: "1" } }, { submission: {} }, { version: "1" }])
     refused(() => contentOf({ ...document, ...wrong }), /damaged/);
 });
