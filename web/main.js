@@ -32,6 +32,7 @@ import { Form } from "./views/form.js";
 import { Geometry } from "./views/geometry.js";
 import { Headline } from "./views/headline.js";
 import { Notice } from "./views/notice.js";
+import { setUpPaste } from "./views/paste.js";
 import { Pattern } from "./views/pattern.js";
 import { ProblemBox } from "./views/problem.js";
 import { Progress } from "./views/progress.js";
@@ -214,6 +215,7 @@ class Page {
     this.#setUpButtons();
     this.#setUpKeys();
     setUpFiles(this.#design);
+    setUpPaste(this.#design);
     setUpTheme(() => this.#restyle());
     setUpKey(() => this.#design.submission && this.#follower.follow(this.#design.submission, "open"));
     const tabs = new Tabs({

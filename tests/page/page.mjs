@@ -157,6 +157,41 @@ await engine.opened(
   },
 );
 
+await engine.opened("a pasted report fills the form after a look at what is understood of it", async (page) => {
+  await page.locator("#paste-button").click();
+  const dialog = page.locator("#paste-dialog");
+  assert.ok(await page.locator("#paste-fill").isDisabled());
+  // The robot drive, as a report in German prints it.
+  await page
+    .locator("#paste-text")
+    .fill(
+      [
+        "\tRitzel\tRad",
+        "Zähnezahl [z]\t18\t83",
+        "Normalmodul (mm) [mn]\t0,8000",
+        "Eingriffswinkel im Normalschnitt (°) [alfn]\t20,0000",
+        "Achsabstand (mm) [a]\t40,650",
+        "Zahnbreite (mm) [b]\t8,00\t7,50",
+        "Profilverschiebungsfaktor [x]\t0,3000\t0,0163",
+        "Werkstoff\t16MnCr5\tPOM",
+        "Betriebseingriffswinkel (°)\t21,3",
+        "Drehmoment (Nm) [T]\t1,0\t4,611",
+        "Qualität\t6\t8",
+      ].join("\n"),
+    );
+  await dialog.getByText("8 fields are understood, with decimals after a comma; 2 lines are not.").waitFor();
+  assert.match(await dialog.locator("tbody tr", { hasText: "Face width" }).innerText(), /8\s+7\.5/);
+  await axe(page);
+  if (process.argv.includes("--screenshots")) await page.screenshot({ path: `${import.meta.dirname}/paste.png` });
+  await changing(page, () => page.locator("#paste-fill").click());
+  const { pair, output_torques_n_m: torques } = await designOf(page);
+  assert.deepEqual([pair.driving.tooth_count, pair.driven.tooth_count, pair.center_distance_mm], [18, 83, 40.65]);
+  assert.deepEqual([pair.driven.material, pair.driven.face_width_mm, torques], [{ name: "POM" }, 7.5, [4.611]]);
+  assert.ok(await page.locator("#problem").isHidden(), "the pair is computed");
+  await page.locator("#undo").click();
+  await named(page, "10×r7.5@34");
+});
+
 await daily.opened("a link opened again gives the same design", async (page, context) => {
   await (await field(page, `${HOLES}/count`)).fill("8");
   await named(page, "8×");

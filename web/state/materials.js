@@ -25,3 +25,13 @@ export function numberOfMaterial(name, field) {
   const value = material?.[field];
   return typeof value === "number" ? value : undefined;
 }
+
+/** @type {(words: string) => string} */
+const letters = (words) => words.toLowerCase().replace(/[^a-z0-9]/g, "");
+
+/**
+ * The name of the material that words tell; undefined where they tell none.
+ *
+ * @type {(words: string) => string | undefined}
+ */
+export const materialIn = (words) => [...known.keys()].find((name) => letters(words).includes(letters(name)));

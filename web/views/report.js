@@ -47,6 +47,8 @@ const [CURVE, WIDE] = [
   { width: 1060, height: 330 },
 ];
 const IN_A_ROW = ["spectrum", "face"];
+/** The number of resonances in the table: the largest. */
+const RESONANCES = 15;
 
 /** @type {(title: string, ...children: (string | Node | null)[]) => HTMLElement} */
 const section = (title, ...children) => h("section", {}, h("h2", {}, title), ...children);
@@ -121,7 +123,10 @@ function dataOf({ live: { submission }, form, usual }) {
     if (name) names.add(name);
   }
   /** @type {(pointer: string) => string} */
-  const valueOf = (pointer) => told(flat.get(pointer) ?? usual(submission, pointer) ?? undefined);
+  const valueOf = (pointer) => {
+    const value = flat.get(pointer) ?? usual(submission, pointer) ?? null;
+    return value === null ? "–" : told(value);
+  };
   const isOfMaterial = (/** @type {string} */ name) => name.startsWith("material/");
   const all = [...names].filter((name) => !isOfMaterial(name)).concat([...names].filter(isOfMaterial));
   const ofGears = all.map((name) => {
@@ -234,12 +239,16 @@ function runUpOf(designs) {
     ...WIDE,
   });
   picture.classList.add("wide");
-  const rows = resonances.map(
+  const largest = resonances.toSorted((one, other) => other.amplitude_um - one.amplitude_um).slice(0, RESONANCES);
+  const rows = largest.map(
     ({ label, order, excited, driving_speed_rpm: speed, frequency_hz: hertz, amplitude_um: most }) =>
       tableRow(label, number(order), excited, fixed(speed, 0), fixed(hertz, 0), number(most, 3)),
   );
-  const names = ["Resonance", "order", "excited", "rpm", "Hz", "largest STE p-p in µm"];
-  return [section("Run-up", h("div", { className: "figures" }, picture), ...(rows.length ? [table(names, rows)] : []))];
+  const left = resonances.length - rows.length;
+  const rest = left > 0 ? h("p", {}, `${left} smaller ones are in the results.`) : null;
+  const names = ["Resonance", "order", "excited", "rpm", "Hz", "amplitude in µm"];
+  const found = rows.length ? table(names, rows) : null;
+  return [section("Run-up", h("div", { className: "figures" }, picture), found, rest)];
 }
 
 /**

@@ -15,7 +15,7 @@ const NEW_PAIR = "new pair";
  *
  * @returns {Submission}
  */
-function newPair() {
+export function newPair() {
   /** @type {(tooth_count: number, bore_radius_mm: number) => Gear} */
   const gear = (tooth_count, bore_radius_mm) => ({
     tooth_count,
