@@ -26,6 +26,7 @@ import {
   service,
   stepsOn,
   tab,
+  unfold,
   withOwnService,
 } from "./harness.mjs";
 import { hourSteps } from "./hour.mjs";
@@ -190,6 +191,40 @@ await engine.opened("a pasted report fills the form after a look at what is unde
   assert.ok(await page.locator("#problem").isHidden(), "the pair is computed");
   await page.locator("#undo").click();
   await named(page, "10×r7.5@34");
+});
+
+await engine.opened("the load is given by either gear or by power, and the pair put at its limits", async (page) => {
+  const of = async (id) => {
+    const input = page.locator(`#${id}`);
+    await unfold(input);
+    return input;
+  };
+  await (await of("load-torque")).fill("50");
+  assert.deepEqual((await designOf(page)).output_torques_n_m, [50], "50 teeth on both gears");
+  await (await of("load-speed")).fill("3000");
+  // 157.08 W at 3000 rpm are 0.5 N m: the field follows the torque that was given before.
+  assert.equal(await page.locator("#load-power").inputValue(), "15.708");
+  await page.locator("#load-power").fill("31,4159");
+  const { output_torques_n_m: torques, driving_speed_rpm: speed } = await designOf(page);
+  assert.ok(Math.abs(torques[0] - 100) < 1e-3 && speed === 3000, `${torques} N m at ${speed} rpm`);
+  const lower = await of("limits-distance-lower");
+  assert.equal(await lower.inputValue(), "-0.0175", "js7");
+  await page.locator("#limits-driven-lower").fill("-60");
+  await page.locator("#limits-driven-upper").fill("-30");
+  const press = async (name, distance, thickness) => {
+    await page.getByRole("button", { name, exact: true }).click();
+    const { pair } = await designOf(page);
+    assert.deepEqual(
+      [pair.center_distance_mm, pair.driven.tooth_thickness_deviation_normal_um, pair.driving.span_measurement],
+      [distance, thickness, undefined],
+      name,
+    );
+  };
+  await press("Most backlash", 100.5175, -60);
+  await press("Least backlash", 100.4825, -30);
+  await press("Nominal", 100.5, 0);
+  await axe(page);
+  if (process.argv.includes("--screenshots")) await page.screenshot({ path: `${import.meta.dirname}/limits.png` });
 });
 
 await daily.opened("a link opened again gives the same design", async (page, context) => {

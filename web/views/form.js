@@ -20,6 +20,7 @@ import {
 } from "../state/schema.js";
 import { chooseReading, inOtherUnit, parsed, readingsOf, stepped, turned, unreadable } from "../state/typed.js";
 import { deviations } from "./deviations.js";
+import { limitsTool, loadTool } from "./limits.js";
 
 /** @import { Properties } from "../draw/dom.js" */
 /** @import { Cause, Design } from "../state/design.js" */
@@ -92,6 +93,8 @@ export class Form {
     place.addEventListener("submit", (event) => event.preventDefault());
     // Made once: what they say stays while fields are made anew around them.
     this.tools = Object.fromEntries(MEMBERS.map((member) => [member, deviations(member, design)]));
+    this.ofPair = limitsTool(design);
+    this.ofLoad = loadTool(design);
     this.render();
   }
 
@@ -127,6 +130,7 @@ export class Form {
           ...Object.entries(members)
             .filter(([name]) => ![...MEMBERS, "center_distance_mm"].some((other) => other === name))
             .map(([name, schema]) => this.#field(`/pair/${name}`, schema, false)),
+          this.ofPair,
         ],
         true,
       ),
@@ -137,6 +141,7 @@ export class Form {
         "/",
         [
           this.#field("/output_torques_n_m", torques, true),
+          this.ofLoad,
           this.#field("/method", method, true),
           ...Object.entries(rest).map(([name, schema]) => this.#field(`/${name}`, schema, false)),
         ],
