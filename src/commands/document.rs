@@ -7,6 +7,7 @@ use std::path::Path;
 use anyhow::Context;
 
 use meshwright_wire::Problem;
+use meshwright_wire::declare::meant_by;
 
 use crate::mark::without_mark;
 
@@ -46,6 +47,14 @@ fn unmarked(document: Vec<u8>) -> Vec<u8> {
 /// True if a path stands for standard input or output.
 pub(super) fn is_dash(path: &Path) -> bool {
     path.as_os_str() == "-"
+}
+
+/// The number of an option, with a decimal point.
+pub(super) fn number(text: &str) -> Result<f64, String> {
+    text.parse().map_err(|_| {
+        let meant = meant_by(text, "mm").map_or(String::new(), |meant| format!(": {meant}"));
+        format!("a number is expected{meant}")
+    })
 }
 
 /// A problem as a person reads it.

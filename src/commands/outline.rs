@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use meshwright_exchange::dxf::{Choices, TOLERANCE_MM, outline};
 
-use super::document::{EXIT_PROBLEM, read, write};
+use super::document::{EXIT_PROBLEM, number, read, write};
 
 /// Write the outline that a drawing comes to, for `blank.outline` of a submission.
 #[derive(Debug, clap::Args)]
@@ -19,10 +19,10 @@ pub(crate) struct Outline {
     #[arg(long, value_name = "X,Y", value_parser = point, allow_hyphen_values = true)]
     center: Option<[f64; 2]>,
     /// Join ends that are no farther apart, 0 to 0.1 mm.
-    #[arg(long, value_name = "MM", default_value_t = TOLERANCE_MM)]
+    #[arg(long, value_name = "MM", default_value_t = TOLERANCE_MM, value_parser = number)]
     tolerance: f64,
     /// The radius of the bore, where it is not drawn as a circle: it is left out then, with keyways and splines.
-    #[arg(long, value_name = "MM")]
+    #[arg(long, value_name = "MM", value_parser = number)]
     bore_radius: Option<f64>,
     /// Where to write the outline.
     #[arg(long, short, default_value = "-")]

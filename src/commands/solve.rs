@@ -5,6 +5,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use anyhow::Context as _;
 use indicatif::{ProgressBar, ProgressStyle};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
@@ -27,6 +28,9 @@ pub(crate) struct Solve {
     /// Where to write the results document; - writes standard output. Without it, only the table is printed.
     #[arg(long, short)]
     output: Option<PathBuf>,
+    /// Put the points between the positions, those of events and extremes, into the lists of the document.
+    #[arg(long, requires = "output")]
+    between: bool,
     #[command(flatten)]
     model: ModelChoices,
 }
@@ -53,7 +57,12 @@ impl Solve {
         let table = table(&results, started.elapsed());
         match &self.output {
             Some(path) => {
-                let json = results.to_json()?;
+                let json = if self.between {
+                    let with_points = results.with_points();
+                    with_points.context("results without points")?.to_json()?
+                } else {
+                    results.to_json()?
+                };
                 write(path, &json)?;
                 // Standard output may be the document; the table must not end up in it.
                 if is_dash(path) {

@@ -14,8 +14,10 @@ use http_body::Body as _;
 use meshwright_connections::Part;
 use meshwright_engine::run::Run;
 use meshwright_exchange::rexs::{Refused, is_packed, unpacked};
-use meshwright_wire::{Code, Problem};
+use meshwright_wire::declare::escaped;
+use meshwright_wire::{Code, FieldError, Problem};
 use serde::Deserialize;
+use serde_path_to_error::Segment;
 use tokio::time::timeout;
 use utoipa::IntoResponses;
 use utoipa::openapi::{RefOr, Response};
@@ -112,14 +114,27 @@ impl<const MIB: usize> JsonBody<MIB> {
     /// The document as a `T`, of which a problem speaks as `name`.
     pub(super) fn parse<'a, T: Deserialize<'a>>(&'a self, name: &str) -> Result<T, Problem> {
         serde_json::from_slice(&self.0).map_err(|error| {
-            let code = if error.is_data() {
-                Code::WrongType
-            } else {
-                Code::MalformedJson
-            };
-            Problem::new(code, format!("This is no {name}: {error}."))
+            let detail = format!("This is no {name}: {error}.");
+            if !error.is_data() {
+                return Problem::new(Code::MalformedJson, detail);
+            }
+            let mut json = serde_json::Deserializer::from_slice(&self.0);
+            let read = serde_path_to_error::deserialize::<_, T>(&mut json);
+            let pointer = read.err().map(|error| pointer_of(error.path()));
+            let error = FieldError::new(pointer.unwrap_or_default(), Code::WrongType, detail);
+            Problem::of_fields(vec![error])
         })
     }
+}
+
+/// The pointer to the place at which a document could not be read: the object that lacks a field, where one is missing.
+fn pointer_of(path: &serde_path_to_error::Path) -> String {
+    let steps = path.iter().map(|segment| match segment {
+        Segment::Map { key } => format!("/{}", escaped(key)),
+        Segment::Seq { index } => format!("/{index}"),
+        Segment::Enum { .. } | Segment::Unknown => String::new(),
+    });
+    steps.collect()
 }
 
 /// A model of a gearbox may have so many MiB, unpacked.

@@ -32,9 +32,9 @@ fn list_tables(document: &mut Value) {
             listed.insert(path, item);
             continue;
         }
-        for (file, media_type) in tables::files() {
-            let path = path.replace(PLACEHOLDER, file);
-            listed.insert(path, of_table(item.clone(), file, media_type));
+        for file in tables::files() {
+            let path = path.replace(PLACEHOLDER, file.0);
+            listed.insert(path, of_table(item.clone(), file));
         }
     }
     *paths = listed;
@@ -49,8 +49,8 @@ fn take_studies(document: &mut Value) {
     }
 }
 
-/// The item of the table `file`, made of that of all tables.
-fn of_table(mut item: Value, file: &str, media_type: &str) -> Value {
+/// The item of one table, by its name, its media type and whether it takes points between positions, made of that of all tables.
+fn of_table(mut item: Value, (file, media_type, takes_points): (&str, &str, bool)) -> Value {
     let operation = &mut item["get"];
     let word = file.replace(['-', '.'], "_");
     if let Some(id) = operation["operationId"].as_str() {
@@ -63,7 +63,8 @@ fn of_table(mut item: Value, file: &str, media_type: &str) -> Value {
             .into();
     }
     if let Some(parameters) = operation["parameters"].as_array_mut() {
-        parameters.retain(|parameter| parameter["name"] != "table");
+        let is_of_it = |name: &Value| name != "table" && (takes_points || name != "between");
+        parameters.retain(|parameter| is_of_it(&parameter["name"]));
     }
     let content = &mut operation["responses"]["200"]["content"];
     let schema = match media_type {

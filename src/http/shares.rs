@@ -25,7 +25,7 @@ use super::body::JsonBody;
 use super::client::{Client, Pass};
 use super::parameters::{JobId, Parameters, ShareId};
 use super::problem::Refusal;
-use super::results;
+use super::results::{self, ResultsParameters};
 use super::tables::{self, TableParameters};
 use crate::jobs::{Job, LONGEST_LINK_DAYS, LinkError, LinkRecord, LinkSecret, MOST_LINKS};
 
@@ -190,17 +190,25 @@ impl FromRequestParts<App> for Shared {
 /// The answer of `GET /v1/jobs/{id}/results`, for readers with the link. Caches do not keep it.
 #[utoipa::path(
     get, path = "/shared/{secret}/results", tag = "Results", operation_id = "get_shared_results",
-    params(("secret" = String, Path, description = "The last part of the address of the link.")),
+    params(
+        ("secret" = String, Path, description = "The last part of the address of the link."),
+        ResultsParameters,
+    ),
     security(()),
     responses(
         (status = 200, description = "The results.", body = meshwright_wire::Results),
+        (status = 400, description = "A parameter is not understood."),
         (status = 404, description = "The link is not known, or has ended; or the job has not ended."),
         (status = 409, description = "The job failed or was cancelled, and has no results."),
         (status = 410, description = "Only the statistics of the results were kept."),
     ),
 )]
-pub(super) async fn results(shared: Shared, request: HeaderMap) -> Result<Response, Refusal> {
-    let answer = results::answer(&shared.app, &shared.job, &request).await?;
+pub(super) async fn results(
+    shared: Shared,
+    Parameters(parameters): Parameters<ResultsParameters>,
+    request: HeaderMap,
+) -> Result<Response, Refusal> {
+    let answer = results::answer(&shared.app, &shared.job, &parameters, &request).await?;
     Ok(not_kept(answer))
 }
 
@@ -277,6 +285,7 @@ pub(super) async fn page(shared: Shared) -> Response {
         files(
             &mut page,
             &[
+                "curves.csv",
                 "ste.csv",
                 "mesh-stiffness.csv",
                 "spectrum.csv",

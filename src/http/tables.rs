@@ -22,13 +22,11 @@ use super::app::App;
 use super::blocking::{blocking, goes_on};
 use super::campbell;
 use super::client::Client;
-use super::parameters::{IfNoneMatch, JobId, Parameters};
+use super::parameters::{IfNoneMatch, JobId, Parameters, invalid};
 use super::pictures::{self, Picture};
 use super::problem::{Refusal, internal, of_missing_results};
-use crate::jobs::{Document, Job, JobError, Resource as _};
-
-/// Memory of the results' text, its values and the table together, in multiples of the text's size.
-const TIMES_THE_RESULTS: u64 = 4;
+use super::results::{self, TIMES_THE_RESULTS};
+use crate::jobs::{Document, Job, Resource as _};
 
 /// The FMU, whose table is finer, takes so many times their bytes.
 const TIMES_FOR_AN_FMU: u64 = 16;
@@ -230,6 +228,9 @@ pub(super) struct TableParameters {
     /// The output torque of the curve, in N m; without it, all curves.
     #[param(example = 115.0)]
     torque: Option<f64>,
+    /// True puts the points between positions into a table over mesh positions, as into the results.
+    #[param(default = false)]
+    between: Option<bool>,
 }
 
 /// Get one table or picture of the results
@@ -239,7 +240,7 @@ pub(super) struct TableParameters {
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/results/{table}", tag = "Results", operation_id = "get_table",
     params(
-        ("table" = String, Path, example = "ste.csv", description = "`ste`, `mesh-stiffness`, `spectrum`, `run-up` or `face-load`, with `.json`, `.csv` or `.svg`; or `load-share.svg`; or `hole-phase.svg`; or `force-table.csv`, `force-table.txt` (CombiTable2D), `force-table.mo` (a Modelica package), `force-table.fmu` (FMU 2.0, `application/octet-stream`); or `look-up-table.csv`, `look-up-table.txt`, which have one curve over the angle in SI units, datum and signs in their head; or `campbell.csv`, the crossings of the mesh with the natural modes of both gears, or `campbell.svg`, their diagram."),
+        ("table" = String, Path, example = "ste.csv", description = "`curves.csv`, all lists over mesh positions; or `ste`, `mesh-stiffness`, `spectrum`, `run-up` or `face-load`, with `.json`, `.csv` or `.svg`; or `load-share.svg`; or `hole-phase.svg`; or `force-table.csv`, `force-table.txt` (CombiTable2D), `force-table.mo` (a Modelica package), `force-table.fmu` (FMU 2.0, `application/octet-stream`); or `look-up-table.csv`, `look-up-table.txt`, which have one curve over the angle in SI units, datum and signs in their head; or `campbell.csv`, the crossings of the mesh with the natural modes of both gears, or `campbell.svg`, their diagram."),
         TableParameters,
         IfNoneMatch,
     ),
@@ -274,14 +275,23 @@ pub(super) async fn answer(
     app: &App,
     job: &Job,
     file: &str,
-    TableParameters { torque }: TableParameters,
+    TableParameters { torque, between }: TableParameters,
     request: &HeaderMap,
 ) -> Result<Response, Refusal> {
     let wanted = find_file(file)?;
+    let between = between.unwrap_or_default();
+    if between && !wanted.is_over_positions() {
+        let detail =
+            format!("{file} is no table over mesh positions, to which between would add points.");
+        return Err(invalid(detail).into());
+    }
     let Some(hash) = &job.document else {
         return Err(of_missing_results(job.status, job.problem.as_ref()).into());
     };
-    let part = torque.map_or_else(|| format!("/{file}"), |torque| format!("/{file}/{torque}"));
+    let mut part = torque.map_or_else(|| format!("/{file}"), |torque| format!("/{file}/{torque}"));
+    if between {
+        part.push_str("/between");
+    }
     let made = async {
         let stored = app.jobs.stored(job).await?;
         let times = match wanted {
@@ -293,7 +303,7 @@ pub(super) async fn answer(
         let document = app.jobs.document_of(job, &stored).await?;
         let name = format!("{}-{file}", job.id);
         let made = blocking(&job.client, move |run| {
-            make(&document, (wanted, torque), &name, run)
+            make(&document, (wanted, torque, between), &name, run)
         });
         memory.hold_body(made.await??).await
     };
@@ -305,20 +315,20 @@ pub(super) async fn answer(
 /// The table or picture of a results document, unless nobody waits for it any more.
 fn make(
     document: &Document,
-    (wanted, torque): (File, Option<f64>),
+    (wanted, torque, between): (File, Option<f64>, bool),
     name: &str,
     run: &Run,
 ) -> Result<Response, Refusal> {
-    let text = document.text().map_err(JobError::from)?;
-    goes_on(run)?;
-    let results = Results::read(&text).map_err(|error| {
-        tracing::warn!(%error, "results are of a version that tables are not made of");
-        let detail = "These results are of a version of which this one makes no tables; the whole document has them.";
-        Problem::new(Code::NotFound, detail)
-    })?;
+    let results = results::read(document)?;
+    let results = if between {
+        results::with_points(results)?
+    } else {
+        results
+    };
     let curves = curves_of(&results, torque)?;
     goes_on(run)?;
     match wanted {
+        File::Curves => Ok(file("text/csv; charset=utf-8", name, curves_csv(&curves))),
         File::Table(table, form) => {
             let curves = select(table, &curves)?;
             Ok(match form {
@@ -404,6 +414,35 @@ fn forces(results: &Results, form: force_table::Form, name: &str) -> Result<Resp
     Ok(file(media_type, name, forces.write(form)))
 }
 
+/// All lists over mesh positions: one line for each torque and position.
+fn curves_csv(curves: &[&CurveDocument]) -> String {
+    let tables: Vec<_> = curves.iter().map(|curve| curve.columns()).collect();
+    let mut names: Vec<&str> = Vec::new();
+    for (name, _) in tables.iter().flatten() {
+        if !names.contains(&name.as_str()) {
+            names.push(name);
+        }
+    }
+    let mut text = CsvWriter::default();
+    text.text("output_torque_n_m");
+    names.iter().for_each(|name| text.text(name));
+    text.end_line();
+    for (curve, columns) in curves.iter().zip(&tables) {
+        let columns: Vec<_> = names
+            .iter()
+            .map(|name| columns.iter().find(|column| column.0 == *name))
+            .collect();
+        for row in 0..curve.mesh_position.len() {
+            text.number(Some(curve.output_torque_n_m));
+            for column in &columns {
+                text.number(column.and_then(|column| *column.1.get(row)?));
+            }
+            text.end_line();
+        }
+    }
+    text.into_text()
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Form {
     Json,
@@ -413,6 +452,7 @@ enum Form {
 /// Format of a file name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum File {
+    Curves,
     Table(Table, Form),
     Picture(Picture),
     HolePhase,
@@ -424,7 +464,8 @@ enum File {
 }
 
 #[rustfmt::skip]
-const FILES: [(&str, File); 25] = [
+const FILES: [(&str, File); 26] = [
+    ("curves.csv", File::Curves),
     ("ste.json", File::Table(Table::TransmissionError, Form::Json)),
     ("ste.csv", File::Table(Table::TransmissionError, Form::Csv)),
     ("ste.svg", File::Picture(Picture::TransmissionError)),
@@ -453,11 +494,24 @@ const FILES: [(&str, File); 25] = [
 ];
 
 impl File {
+    /// True for tables of which each line is of a mesh position, among which there may be points.
+    fn is_over_positions(self) -> bool {
+        match self {
+            Self::Curves => true,
+            Self::Table(table, _) => matches!(
+                table,
+                Table::TransmissionError | Table::MeshStiffness | Table::FaceLoad
+            ),
+            _ => false,
+        }
+    }
+
     /// Its media type, as the contract has it.
     fn media_type(self) -> &'static str {
         match self {
             Self::Table(_, Form::Json) => "application/json",
-            Self::Table(_, Form::Csv)
+            Self::Curves
+            | Self::Table(_, Form::Csv)
             | Self::LookUp(look_up::Form::Csv)
             | Self::Forces(force_table::Form::Csv)
             | Self::CampbellTable => "text/csv",
@@ -469,9 +523,11 @@ impl File {
     }
 }
 
-/// The names of the tables and pictures, and their media types.
-pub(super) fn files() -> impl Iterator<Item = (&'static str, &'static str)> {
-    FILES.iter().map(|(name, file)| (*name, file.media_type()))
+/// The names of the tables and pictures, their media types, and whether they take points between positions.
+pub(super) fn files() -> impl Iterator<Item = (&'static str, &'static str, bool)> {
+    let of =
+        |(name, file): &(&'static str, File)| (*name, file.media_type(), file.is_over_positions());
+    FILES.iter().map(of)
 }
 
 fn find_file(file: &str) -> Result<File, Problem> {

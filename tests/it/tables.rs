@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use reqwest::StatusCode;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::bench::{Asked, Bench, problem, results, submission};
 use crate::stores;
@@ -46,6 +46,64 @@ async fn curves_and_spectra_come_as_csv_and_json() {
     problem(get("spectrum.csv?torque=20").await, 404, "not_found").await;
     problem(get("ste.xml").await, 404, "not_found").await;
     problem(get("ste.csv?torque=much").await, 400, "invalid_parameter").await;
+}
+
+#[tokio::test]
+async fn points_between_positions_come_where_they_are_kept_and_tables_have_them() {
+    let bench = Bench::quick().await;
+    let path = bench.submit(&submission(115.0)).await;
+    bench.ended(&path).await;
+    let get = async |part: &str| bench.get(&format!("{path}/results{part}")).answer().await;
+    // The stub's results are of an earlier version.
+    problem(get("?between=true").await, 404, "not_found").await;
+    problem(get("/ste.csv?between=true").await, 404, "not_found").await;
+    problem(get("?between=much").await, 400, "invalid_parameter").await;
+    problem(
+        get("/spectrum.csv?between=true").await,
+        400,
+        "invalid_parameter",
+    )
+    .await;
+    let plain = get("?between=false").await.document().await;
+    assert_eq!(
+        plain["curves"][0]["mesh_position"].as_array().map(Vec::len),
+        Some(2)
+    );
+    let csv = get("/curves.csv").await.whole_text().await;
+    let lines: Vec<&str> = csv.lines().collect();
+    assert!(lines[0].starts_with("output_torque_n_m,mesh_position,driving_angle_deg,driven_angle_deg,transmission_error_um,mesh_stiffness_tangent_n_per_m,"));
+    assert!(
+        lines[0].ends_with(",peak_contact_pressure_mpa,load_share.0"),
+        "{}",
+        lines[0]
+    );
+    assert_eq!(lines.len(), 5);
+
+    let bench = Bench::real().await;
+    let mut pair = submission(115.0);
+    pair["method"] = json!("load_distribution");
+    let path = bench.submit(&pair).await;
+    bench.ended(&path).await;
+    let get = async |part: &str| bench.get(&format!("{path}/results{part}")).answer().await;
+    let (plain, merged) = (get("").await, get("?between=true").await);
+    assert_ne!(plain.headers()["etag"], merged.headers()["etag"]);
+    let (plain, merged) = (plain.document().await, merged.document().await);
+    let (plain, curve) = (&plain["curves"][0], &merged["curves"][0]);
+    let count = |list: &Value| list.as_array().expect("a list").len();
+    let points = count(&plain["between"]["mesh_position"]);
+    assert!(points > 0);
+    let all = count(&plain["mesh_position"]) + points;
+    assert_eq!(count(&curve["mesh_position"]), all);
+    assert_eq!(curve["statistics"], plain["statistics"]);
+    for table in ["ste.csv", "mesh-stiffness.csv", "curves.csv"] {
+        let text = get(&format!("/{table}?between=true"))
+            .await
+            .whole_text()
+            .await;
+        assert_eq!(text.lines().count(), 1 + all, "{table}");
+        let text = get(&format!("/{table}")).await.whole_text().await;
+        assert_eq!(text.lines().count(), 1 + all - points, "{table}");
+    }
 }
 
 #[tokio::test]

@@ -10,6 +10,7 @@ import { mostOften, Question } from "./question.js";
 import { json, ProblemError, request } from "../state/api.js";
 import { apart, at, nameOf, withValue } from "../state/design.js";
 import { fixed, number } from "../state/numbers.js";
+import { withPoints } from "../state/points.js";
 import { preview } from "../state/preview.js";
 import { inUnit, inWords, quantityOf } from "../state/quantities.js";
 import { DASHES } from "../state/series.js";
@@ -308,7 +309,7 @@ export function search(place, design, form, onOpen) {
       if (asked !== drawn) return;
       beside.replaceChildren(...pictures);
       const curves = await Promise.all(
-        both.map(async ([name, submission]) => ({ name, curve: (await preview(submission)).curves[0] })),
+        both.map(async ([name, submission]) => ({ name, curve: withPoints((await preview(submission)).curves[0]) })),
       );
       if (asked !== drawn) return;
       const lines = curves.map(({ name, curve }, i) => ({

@@ -2,6 +2,7 @@
 // What the curves of designs are made of: their points, names, units and what a listener should know of them.
 
 import { fixed, number } from "./numbers.js";
+import { apart, withPoints } from "./points.js";
 
 /** @import { Curve, NamedDesign, Spectrum } from "./documents.js" */
 
@@ -174,12 +175,13 @@ function repeated(line, longest, partial) {
  */
 export function linesOf(panel, designs, crowded = false) {
   if (panel.ofLive) {
-    const curve = designs[0].results.curves[0];
-    return (crowded && panel.whole ? panel.whole : panel.ofLive)(curve).map((each, i) => ({
+    const [curve] = designs[0].results.curves;
+    const drawn = withPoints(curve);
+    return (crowded && panel.whole ? panel.whole : panel.ofLive)(drawn).map((each, i) => ({
       ...each,
       part: i,
       dash: DASHES[i % DASHES.length],
-      x: curve.mesh_position,
+      x: apart(drawn.mesh_position),
       span: spanOf(curve),
     }));
   }
@@ -190,8 +192,8 @@ export function linesOf(panel, designs, crowded = false) {
       repeated(
         {
           name: several ? `${name}, ${number(curve.output_torque_n_m)} N m` : name,
-          values: panel.of?.(curve) ?? [],
-          x: curve.mesh_position,
+          values: panel.of?.(withPoints(curve)) ?? [],
+          x: apart(withPoints(curve).mesh_position),
           span: spanOf(curve),
           look: look ?? i,
           dash: DASHES[(several ? j : (look ?? i)) % DASHES.length],

@@ -1,6 +1,8 @@
 // @ts-check
 // Results as tables, and the names of files.
 
+import { withPoints } from "./points.js";
+
 /** @import { Curve, Results } from "./documents.js" */
 
 /**
@@ -28,7 +30,7 @@ export function columnsOf(curves) {
   const own = (curve) =>
     Object.entries(curve).flatMap(([name, list]) => {
       const runs = Array.isArray(list) && list.length === curve.mesh_position.length;
-      return runs && name !== "load_shares" ? [name] : [];
+      return runs && name !== "load_shares" && name !== "mesh_orders_um" ? [name] : [];
     });
   return [...new Set(curves.flatMap(own))];
 }
@@ -75,24 +77,25 @@ export const withCommas = (csv) =>
   });
 
 /**
- * Every curve of the results as one table: a line for each torque and position.
+ * Every curve of the results as one table: a line for each torque and position, and for each point between them.
  *
  * @type {(results: Results) => string}
  */
 export function csv(results) {
+  const curves = results.curves.map(withPoints);
   const offsets = [
-    ...new Set(results.curves.flatMap((curve) => curve.load_shares.map(({ pair_offset: offset }) => offset))),
+    ...new Set(curves.flatMap((curve) => curve.load_shares.map(({ pair_offset: offset }) => offset))),
   ].sort((a, b) => a - b);
   /** @type {(curve: Curve, name: string) => unknown[] | undefined} */
   const within = (curve, name) => name.split(".").reduce((/** @type {any} */ value, part) => value?.[part], curve);
   // Heights are told along faces alone.
-  const stressed = results.curves.some(({ stress }) => stress)
-    ? STRESSES.filter((name) => !name.endsWith("_z_mm") || results.curves.some((curve) => within(curve, name)))
+  const stressed = curves.some(({ stress }) => stress)
+    ? STRESSES.filter((name) => !name.endsWith("_z_mm") || curves.some((curve) => within(curve, name)))
     : [];
-  const columns = columnsOf(results.curves);
+  const columns = columnsOf(curves);
   /** @type {unknown[][]} */
   const lines = [["output_torque_n_m", ...columns, ...stressed, ...offsets.map((offset) => `load_share.${offset}`)]];
-  for (const curve of results.curves) {
+  for (const curve of curves) {
     /** @type {(offset: number) => number[] | undefined} */
     const share = (offset) => curve.load_shares.find((each) => each.pair_offset === offset)?.share;
     curve.mesh_position.forEach((_, i) => {

@@ -85,8 +85,8 @@ export class Client {
     return this.#post(`/v1/jobs/${id}/cancel`);
   }
 
-  results(id: string): Promise<Results> {
-    return this.#call(`/v1/jobs/${id}/results`);
+  results(id: string, between = false): Promise<Results> {
+    return this.#call(`/v1/jobs/${id}/results${between ? "?between=true" : ""}`);
   }
 
   /** Submits a study and gives its table when all designs have ended. */

@@ -140,7 +140,7 @@ pub fn rounded<T: serde::Serialize + DeserializeOwned>(exact: &T) -> serde_json:
     fn round(value: &mut Value) {
         match value {
             Value::Number(number) if number.is_f64() => {
-                let rounded = number.as_f64().map(|exact| significant(exact, DIGITS));
+                let rounded = number.as_f64().map(told);
                 *value = rounded.into();
             }
             Value::Array(items) => items.iter_mut().for_each(round),
@@ -151,6 +151,11 @@ pub fn rounded<T: serde::Serialize + DeserializeOwned>(exact: &T) -> serde_json:
     let mut value = serde_json::to_value(exact)?;
     round(&mut value);
     serde_json::from_value(value)
+}
+
+/// A number as a document tells it.
+pub fn told(exact: f64) -> f64 {
+    significant(exact, DIGITS)
 }
 
 /// Writes numbers of which some are meant to be absent.
@@ -218,7 +223,7 @@ struct RoundingFormatter;
 
 impl Formatter for RoundingFormatter {
     fn write_f64<W: io::Write + ?Sized>(&mut self, writer: &mut W, value: f64) -> io::Result<()> {
-        CompactFormatter.write_f64(writer, significant(value, DIGITS))
+        CompactFormatter.write_f64(writer, told(value))
     }
 
     /// A value that is not finite is written as null, so a null here is an invalid number.

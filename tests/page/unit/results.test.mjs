@@ -5,6 +5,7 @@ import { test } from "node:test";
 import { cellsOf, cured, faceOf, rampAt, wordsOfCure } from "../../../web/draw/face.js";
 import { forceAt } from "../../../web/state/motion.js";
 import { wordsOf } from "../../../web/state/orders.js";
+import { withPoints } from "../../../web/state/points.js";
 import { calledOf, inRow, inUnit, inWords, quantityOf, shown, worstInRow } from "../../../web/state/quantities.js";
 import { linesOf, namesOf, ordersOf, PANELS, partialSpectrum, placedNames, spanOf } from "../../../web/state/series.js";
 import { snippets } from "../../../web/state/snippets.js";
@@ -28,6 +29,27 @@ function curveOver(periods, perPeriod = 40) {
     statistics: { partial: false },
   };
 }
+
+test("charts and tables have the points between positions, an event twice", () => {
+  const curve = {
+    ...curveOver(1, 4),
+    between: {
+      mesh_position: [0.3, 0.3, 0.6],
+      transmission_error_um: [12, 12, 8],
+      load_shares: [0, -1].map((pair_offset) => ({ pair_offset, share: [0.3, 0.3, 0.6] })),
+    },
+  };
+  const merged = withPoints(curve);
+  assert.deepEqual(merged.mesh_position, [0, 0.25, 0.3, 0.3, 0.5, 0.6, 0.75]);
+  assert.deepEqual(merged.load_shares[0].share, [0, 0.25, 0.3, 0.3, 0.5, 0.6, 0.75]);
+  const [line] = linesOf(PANELS[0], [{ name: "a", results: { curves: [curve] } }]);
+  assert.equal(Math.max(...line.values) - Math.min(...line.values), 4);
+  assert.equal(new Set(line.x).size, 7);
+  assert.equal(line.span, 1);
+  assert.equal(csv({ curves: [curve] }).trimEnd().split("\r\n").length, 8);
+  const earlier = curveOver(1);
+  assert.equal(withPoints(earlier), earlier);
+});
 
 test("no text of a table becomes a formula, also behind what cannot be seen", () => {
   const texts = ["=1", "\u00a0=1", "\u3164@x", "\u061c＝1", "\tx", "a=1", "10°-20°"];

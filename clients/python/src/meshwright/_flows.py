@@ -74,8 +74,9 @@ def preview(submission: Submission) -> Flow[Results]:
     return Results((yield from post("/v1/preview", submission)))
 
 
-def results(job_id: str) -> Flow[Results]:
-    return Results((yield from get(f"/v1/jobs/{job_id}/results")))
+def results(job_id: str, between: bool = False) -> Flow[Results]:
+    query = "?between=true" if between else ""
+    return Results((yield from get(f"/v1/jobs/{job_id}/results{query}")))
 
 
 def solve(submission: Submission, report: Report) -> Flow[Results]:

@@ -111,9 +111,9 @@ class Client:
         """Stops a job."""
         return self._run(_flows.post(f"/v1/jobs/{job_id}/cancel"))
 
-    def results(self, job_id: str) -> Results:
-        """The results of a job that has ended."""
-        return self._run(_flows.results(job_id))
+    def results(self, job_id: str, between: bool = False) -> Results:
+        """The results of a job that has ended; with the points between positions in the lists of its curves, if wanted."""
+        return self._run(_flows.results(job_id, between))
 
     def look_up_table(self, job_id: str, torque: float | None = None) -> LookUpTable:
         """One curve over the angle in SI units, for rotor dynamics: the first, or that of a torque."""
@@ -208,8 +208,8 @@ class AsyncClient:
     async def cancel(self, job_id: str) -> Json:
         return await self._run(_flows.post(f"/v1/jobs/{job_id}/cancel"))
 
-    async def results(self, job_id: str) -> Results:
-        return await self._run(_flows.results(job_id))
+    async def results(self, job_id: str, between: bool = False) -> Results:
+        return await self._run(_flows.results(job_id, between))
 
     async def look_up_table(self, job_id: str, torque: float | None = None) -> LookUpTable:
         return await self._run(_flows.look_up_table(job_id, torque))

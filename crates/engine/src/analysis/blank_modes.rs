@@ -66,23 +66,33 @@ pub fn blank_modes(
     request: &ModesRequest,
     run: &Run,
 ) -> Result<[Vec<MetMode>; 2], AnalysisError> {
-    let of = |member: Member| {
-        let failed = |reason: String| AnalysisError::Discretization { member, reason };
-        let gear = case
-            .solid_gear(member)
-            .map_err(|error| failed(error.to_string()))?;
-        match vibration::modes(&gear, request.asked, run) {
-            Ok(modes) => Ok(modes
-                .into_iter()
-                .map(|mode| met(mode, case, member, request))
-                .collect()),
-            Err(ModesError::Fem(crate::fem::FemError::Stopped(stopped))) => {
-                Err(AnalysisError::Stopped(stopped))
-            }
-            Err(error) => Err(failed(error.to_string())),
-        }
+    let failed = |member: Member, reason: String| AnalysisError::Discretization { member, reason };
+    let gear = |member: Member| {
+        let gear = case.solid_gear(member);
+        gear.map_err(|error| failed(member, error.to_string()))
     };
-    Ok([of(Member::Driving)?, of(Member::Driven)?])
+    let gears = [gear(Member::Driving)?, gear(Member::Driven)?];
+    let of = |member: Member| {
+        let modes = vibration::modes(&gears[member.index()], request.asked, run);
+        modes.map_err(|error| match error {
+            ModesError::Fem(crate::fem::FemError::Stopped(stopped)) => {
+                AnalysisError::Stopped(stopped)
+            }
+            error => failed(member, error.to_string()),
+        })
+    };
+    let driving = of(Member::Driving)?;
+    // Equal gears vibrate alike.
+    let driven = if gears[0] == gears[1] {
+        driving.clone()
+    } else {
+        of(Member::Driven)?
+    };
+    let met = |modes: Vec<Mode>, member: Member| {
+        let modes = modes.into_iter();
+        modes.map(|mode| met(mode, case, member, request)).collect()
+    };
+    Ok([met(driving, Member::Driving), met(driven, Member::Driven)])
 }
 
 /// `mode` of a gear of `case` with the speeds of `request` at which the mesh meets it.
@@ -110,11 +120,13 @@ fn met(mode: Mode, case: &Case, member: Member, request: &ModesRequest) -> MetMo
 
 /// Cost of [`blank_modes`] of `case` beside that of the case.
 pub fn blank_modes_estimate(case: &Case) -> Estimate {
-    let of = |member| {
-        let gear = case.solid_gear(member);
-        gear.map_or([0.0; 2], |gear| vibration::estimate(&gear))
-    };
-    let both = Member::BOTH.map(of);
+    let gears = Member::BOTH.map(|member| case.solid_gear(member).ok());
+    let of = |gear: &Option<SolidGear>| gear.as_ref().map_or([0.0; 2], vibration::estimate);
+    let mut both = [of(&gears[0]), of(&gears[1])];
+    if gears[0] == gears[1] {
+        // Equal gears are computed once.
+        both[1] = [0.0; 2];
+    }
     Estimate {
         degrees_of_freedom: 0,
         // One gear after the other.

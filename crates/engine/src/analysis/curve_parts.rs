@@ -8,7 +8,7 @@ use super::mesh_wave::MeshWave;
 use super::pressures::CurvePressures;
 use super::single_flank::SingleFlank;
 use super::spectrum::Spectrum;
-use super::stress::GearStresses;
+use super::stress::{GearStresses, StressedPlace};
 use crate::contact::MeshContact;
 
 /// Results of a method at each position of one torque.
@@ -46,10 +46,13 @@ impl CurveParts {
             transmission_error_statistics,
             mesh_stiffness_tangent_statistics,
         ] = sections.statistics();
+        let mesh_position = case.mesh_positions();
+        let points = sections.points(&mesh_position, &self.places_of_largest(&mesh_position));
         Curve {
             output_torque,
             load,
-            mesh_position: case.mesh_positions(),
+            mesh_position,
+            points,
             mesh_stiffness_secant: self
                 .transmission_error
                 .iter()
@@ -81,6 +84,18 @@ impl CurveParts {
 }
 
 impl CurveParts {
+    /// Where the largest pressure and the largest stresses of a curve over `positions` stand.
+    fn places_of_largest(&self, positions: &[f64]) -> Vec<f64> {
+        let pressure = self.pressures.largest.iter();
+        let pressure = pressure.map(|largest| largest.mesh_position);
+        let gears = self.stresses.iter().flatten();
+        let stresses = gears.flat_map(|gear| {
+            let of = |place| Some(gear.largest(place, positions)?.0);
+            StressedPlace::ALL.into_iter().filter_map(of)
+        });
+        pressure.chain(stresses).collect()
+    }
+
     /// Parts of a curve from the results `found` under `load` at the first positions of `case`, after which it repeats, and `between` them; its curve is that
     /// of `sections`.
     pub(super) fn of<K>(

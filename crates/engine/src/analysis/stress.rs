@@ -4,10 +4,10 @@
 
 use std::f64::consts::TAU;
 
+use super::AnalysisError;
 use super::found::Kept;
 use super::running::RestingStresses;
 use super::setup::Setup;
-use super::{AnalysisError, Case};
 use crate::assembly::face_roots::UNDER_CONTACT;
 use crate::assembly::inside::{Answer, LoadedGear};
 use crate::assembly::{Blanks, Inside, PartError, Probes};
@@ -273,8 +273,16 @@ impl Kept for PositionPeaks {
 }
 
 impl StressedPlace {
+    /// All.
+    pub const ALL: [Self; 4] = [
+        Self::Root,
+        Self::RootTension,
+        Self::RootCompression,
+        Self::Hole,
+    ];
+
     /// The largest of `peaks` there.
-    fn of(self, peaks: &GearPeaks) -> Option<PeakStress> {
+    pub fn of(self, peaks: &GearPeaks) -> Option<PeakStress> {
         match self {
             Self::Root => Some(peaks.root),
             Self::RootTension => Some(peaks.tension),
@@ -285,21 +293,23 @@ impl StressedPlace {
 }
 
 impl GearStresses {
-    /// The largest stress at `place` over a curve of `case`, between its positions too, and the mesh position at which it stands; `None` where there is no
-    /// such place.
-    pub fn largest(&self, place: StressedPlace, case: &Case) -> Option<(f64, PeakStress)> {
-        let at_positions = match place {
+    /// The largest stresses at `place`, position by position.
+    pub fn of(&self, place: StressedPlace) -> &[PeakStress] {
+        match place {
             StressedPlace::Root => &self.root,
             StressedPlace::RootTension => &self.root_tension,
             StressedPlace::RootCompression => &self.root_compression,
             StressedPlace::Hole => &self.holes,
-        };
+        }
+    }
+
+    /// The largest stress at `place` over a curve with these mesh `positions`, between them too, and the mesh position at which it stands; `None` where there is
+    /// no such place.
+    pub fn largest(&self, place: StressedPlace, positions: &[f64]) -> Option<(f64, PeakStress)> {
         let between = self.between.iter();
         let between = between.filter_map(|(eta, peaks)| Some((*eta, place.of(peaks)?)));
-        let at_positions = case
-            .mesh_positions()
-            .into_iter()
-            .zip(at_positions.iter().copied());
+        let at_positions = positions.iter().copied();
+        let at_positions = at_positions.zip(self.of(place).iter().copied());
         at_positions.chain(between).reduce(|one, other| {
             if other.1.stress.abs() > one.1.stress.abs() {
                 other

@@ -140,6 +140,7 @@ fn curve_of(windows: Vec<Curve>) -> Option<Curve> {
         pairs_in_contact: each(&windows, |curve| &curve.pairs_in_contact),
         peak_contact_pressure: each(&windows, |curve| &curve.peak_contact_pressure),
         pressures: pressures(&windows),
+        points: each(&windows, |curve| &curve.points),
         load_shares: load_shares(&windows),
         transmission_error_statistics: statistics(&windows, |curve| {
             &curve.transmission_error_statistics

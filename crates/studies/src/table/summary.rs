@@ -2,9 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use meshwright_engine::analysis::mesh_label;
 use meshwright_wire::geometry::GearGeometry;
 use meshwright_wire::problem::{Code, Problem};
-use meshwright_wire::results::{CurveDocument, ErrorEstimateDocument, Results, StatisticsDocument};
+use meshwright_wire::results::{
+    CurveDocument, ErrorEstimateDocument, MOST_MESH_ORDERS, Results, StatisticsDocument,
+};
 use meshwright_wire::units::{rounded, significant};
 use meshwright_wire::warning::GearName;
 use serde::{Deserialize, Serialize};
@@ -92,10 +95,6 @@ pub(super) type Conditions = (Option<String>, Vec<u64>);
 
 /// The names of orders of holes that a table shows.
 const ORDERS: [&str; 3] = [HOLE_ORDER, DRIVING_HOLE_ORDER, DRIVEN_HOLE_ORDER];
-/// The names of the mesh harmonics 1, 2, ….
-const MESH_ORDERS: [&str; 10] = [
-    "H_Z2", "H_2Z2", "H_3Z2", "H_4Z2", "H_5Z2", "H_6Z2", "H_7Z2", "H_8Z2", "H_9Z2", "H_10Z2",
-];
 /// The holes of the only holed gear, or of both if they make the same order.
 const HOLE_ORDER: &str = "H_N";
 const DRIVING_HOLE_ORDER: &str = "H_N1";
@@ -162,12 +161,12 @@ impl CurveSummary {
             .flatten()
             .flat_map(|branch| &branch.dynamic_transmission_error_um.peak_to_peak);
         let named = curve.spectrum.iter().flat_map(|spectrum| &spectrum.named);
+        let mesh_orders: Vec<String> = (1..=MOST_MESH_ORDERS).map(mesh_label).collect();
         let shown = named.filter(|line| {
-            let mut names = ORDERS.iter().chain(&MESH_ORDERS);
-            names.any(|name| *name == line.label)
+            ORDERS.contains(&line.label.as_str()) || mesh_orders.contains(&line.label)
         });
-        let estimated = MESH_ORDERS
-            .into_iter()
+        let estimated = mesh_orders
+            .iter()
             .zip(curve.mesh_orders_um.iter().flatten());
         Self {
             output_torque_n_m: curve.output_torque_n_m,
@@ -184,7 +183,7 @@ impl CurveSummary {
                 .collect(),
             orders: shown
                 .map(|line| (line.label.clone(), line.transmission_error_um))
-                .chain(estimated.map(|(name, amplitude)| (name.to_owned(), *amplitude)))
+                .chain(estimated.map(|(name, amplitude)| (name.clone(), *amplitude)))
                 .collect(),
         }
     }
@@ -213,8 +212,8 @@ impl CurveSummary {
     }
 
     /// The amplitude at this multiple of the mesh order, from 1 to 10.
-    pub(super) fn mesh_harmonic(&self, harmonic: usize) -> Option<f64> {
-        self.orders.get(MESH_ORDERS[harmonic - 1]).copied()
+    pub(super) fn mesh_harmonic(&self, harmonic: u32) -> Option<f64> {
+        self.orders.get(&mesh_label(harmonic)).copied()
     }
 }
 

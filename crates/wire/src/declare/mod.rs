@@ -23,7 +23,7 @@ pub use nested::{
     utoipa_schema,
 };
 pub use node::{Node, escaped};
-pub use number::{Number, number};
+pub use number::{Number, meant_by, number};
 pub use optional::{Optional, absent, or_else, or_null, unless};
 pub use reader::{Location, ObjectReader};
 pub use words::{Choice, Flag, OneWord, Text, flag, is_short_text, text, word, words};

@@ -157,8 +157,14 @@ impl Number {
 
     fn read(&self, node: &Node, place: &Location<'_>, whole: bool) -> Option<f64> {
         let Node::Number(value) = node else {
-            let detail = format!("{place} is {}; a number is expected.", node.kind());
-            return place.wrong(Code::WrongType, detail, None);
+            let meant = match node {
+                Node::Text(text) => meant_by(text, self.unit),
+                _ => None,
+            };
+            let meant = meant.filter(|value| self.check(*value, "", whole).is_ok());
+            let number = meant.map_or(String::new(), |value| format!(": {value}, without quotes"));
+            let detail = format!("{place} is {}; a number is expected{number}.", node.kind());
+            return place.wrong(Code::WrongType, detail, meant);
         };
         match self.check(*value, &place.to_string(), whole) {
             Ok(value) => Some(value),
@@ -240,6 +246,34 @@ impl Number {
     }
 }
 
+/// The number that a text means, which may have a decimal comma, thousands in groups of three, and the unit behind it. A lone comma or point is decimal.
+pub fn meant_by(text: &str, unit: &str) -> Option<f64> {
+    let text = text.trim();
+    let text = match unit {
+        "" | "1" => text,
+        unit => text.strip_suffix(unit).unwrap_or(text).trim_end(),
+    };
+    let is_sign = |letter: char| letter == ',' || letter == '.';
+    let signs: Vec<&str> = text.matches(is_sign).collect();
+    // The last sign is decimal unless it stands more than once; all others part thousands.
+    let is_decimal = |last: &&&str| signs.iter().filter(|sign| sign == last).count() == 1;
+    let decimal = signs
+        .last()
+        .filter(is_decimal)
+        .and_then(|_| text.rfind(is_sign));
+    let (whole, part) = decimal.map_or((text, ""), |at| (&text[..at], &text[at..]));
+    let groups: Vec<&str> = whole.split(is_sign).collect();
+    let is_whole = |group: &&str| group.len() == 3 && group.parse::<u32>().is_ok();
+    let (first, others) = groups.split_first()?;
+    let is_first = (1..=3).contains(&first.trim_start_matches('-').len());
+    if !others.is_empty() && !(is_first && others.iter().all(is_whole)) {
+        return None;
+    }
+    let text = groups.concat() + &part.replace(',', ".");
+    let number = text.parse().ok();
+    number.filter(|value: &f64| value.is_finite())
+}
+
 /// Whole numbers are read as numbers, within the bounds that their type can hold.
 macro_rules! numbers {
     ($($number:ty, $whole:literal, $write:ident;)*) => {$(
@@ -288,6 +322,7 @@ mod tests {
     use super::*;
     use crate::gear::GearDocument;
     use crate::submission::OUTPUT_TORQUE;
+    use crate::testing::{example, parse, with};
 
     #[test]
     fn a_value_outside_its_bounds_is_answered_with_the_nearer_bound() {
@@ -308,6 +343,62 @@ mod tests {
         assert!(detail.contains("1e308 mm"), "{detail}");
         let (code, _, nearest) = teeth.check(30.4, "/z", true).expect_err("a fraction");
         assert_eq!((code, nearest), (Code::WrongType, Some(30.0)));
+    }
+
+    #[test]
+    fn a_number_as_text_is_refused_with_the_number_that_it_means() {
+        for (text, number) in [
+            ("100,5", Some(100.5)),
+            ("100.5", Some(100.5)),
+            (" 100,5 mm", Some(100.5)),
+            ("1.234,5", Some(1234.5)),
+            ("1,234.5", Some(1234.5)),
+            ("1.234.567", Some(1_234_567.0)),
+            ("1,005e2", Some(100.5)),
+            ("-0,5", Some(-0.5)),
+            ("50", Some(50.0)),
+            ("1.23,5.6", None),
+            ("12345.678,9", None),
+            ("1,2,3", None),
+            ("100,5 in", None),
+            ("nan", None),
+            ("inf", None),
+            ("1e999", None),
+            (",", None),
+            ("", None),
+            ("\u{663}", None),
+        ] {
+            assert_eq!(meant_by(text, "mm"), number, "{text}");
+        }
+        let refused = |changes: &[(&str, Value)]| {
+            let problem = parse(&with(example("test-case-2"), changes)).expect_err("a text");
+            let [error] = problem.errors.try_into().expect("one");
+            (error.pointer, error.detail, error.nearest)
+        };
+        let (pointer, detail, nearest) = refused(&[("/pair/center_distance_mm", json!("100,5"))]);
+        assert_eq!(
+            (&*pointer, nearest),
+            ("/pair/center_distance_mm", Some(100.5))
+        );
+        assert!(
+            detail.ends_with("a number is expected: 100.5, without quotes."),
+            "{detail}"
+        );
+        // Neither what is out of bounds nor a fraction of a tooth is offered.
+        for text in ["-100,5", "hundred"] {
+            assert_eq!(
+                refused(&[("/pair/center_distance_mm", json!(text))]).2,
+                None
+            );
+        }
+        assert_eq!(
+            refused(&[("/pair/driving/tooth_count", json!("50,5"))]).2,
+            None
+        );
+        assert_eq!(
+            refused(&[("/output_torques_n_m", json!(["115,5"]))]).2,
+            Some(115.5)
+        );
     }
 
     #[test]

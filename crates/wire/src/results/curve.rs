@@ -9,6 +9,7 @@ use meshwright_engine::analysis::mesh_wave::MeshWave;
 use meshwright_engine::analysis::running::CurveRunning;
 use meshwright_engine::analysis::{Case, Curve, FaceLoad, Statistics};
 
+use super::between::BetweenDocument;
 use super::decomposition::DecompositionDocument;
 use super::forces::CurveDynamicsDocument;
 use super::largest_where::PressureStatistics;
@@ -16,13 +17,13 @@ use super::spectrum::SpectrumDocument;
 use super::stress::{PeakStressDocument, StressDocument};
 use super::{all, each};
 use crate::declare::document;
-use crate::units::{named_or_null, one_or_null, or_null, significant, to_mm, to_mpa, to_um};
+use crate::units::{named_or_null, one_or_null, or_null, significant, to_mm, to_mpa, to_um, told};
 
-/// The most multiples of the mesh order that are told of windows.
-const MOST_MESH_ORDERS: u32 = 10;
+/// The most multiples of the mesh order that are told by name: of windows and in tables.
+pub const MOST_MESH_ORDERS: u32 = 10;
 
 document! {
-    /// The curves at one output torque. All lists, those of the spectrum and of the dynamics aside, run over the same positions.
+    /// The curves at one output torque. All lists, those of `between`, of the spectrum and of the dynamics aside, run over the same positions.
     pub struct CurveDocument as Curve, "Curve"
     answer of (case: &Case, curve: &Curve, dynamics: Option<&CurveDynamics>) with {
         let turned = |tooth_count: u32| {
@@ -90,6 +91,8 @@ document! {
         /// hole orders of their own, those of the driven gear. Absent in results of versions before 0.6.
         #[serde(serialize_with = "named_or_null")]
         quantities?: BTreeMap<String, Option<f64>> = None,
+        /// The curve at points between its positions. `?between=true` of the results puts them into the lists. Absent in results of versions before 0.6.
+        between?: BetweenDocument = Some(BetweenDocument::of(case, curve)),
         /// The order spectrum; absent for a partial span.
         spectrum?: SpectrumDocument = curve
             .spectrum
@@ -194,7 +197,7 @@ document! {
         stress?: PeakStressDocument = curve
             .stresses
             .as_ref()
-            .map(|stresses| PeakStressDocument::of(case, stresses)),
+            .map(|stresses| PeakStressDocument::of((case, &curve.mesh_position), stresses)),
     }
 }
 
@@ -244,8 +247,8 @@ document! {
         mean: f64 = convert(statistics.mean),
         /// The root mean square of the fluctuation, the mean removed.
         rms: f64 = convert(statistics.rms),
-        /// The largest less the smallest value.
-        peak_to_peak: f64 = convert(statistics.peak_to_peak),
+        /// The largest less the smallest value, as both are told.
+        peak_to_peak: f64 = told(convert(statistics.largest)) - told(convert(statistics.smallest)),
         /// The smallest value; where a pair takes up or leaves the load, of both sides.
         #[serde(default)]
         #[schema(required)]

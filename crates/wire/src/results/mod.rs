@@ -1,5 +1,7 @@
 //! The results document: curves over mesh position, their statistics and spectra, and the evidence for them.
 
+mod between;
+mod columns;
 mod curve;
 mod decomposition;
 mod evidence;
@@ -21,9 +23,11 @@ use meshwright_engine::analysis::Analysis;
 use meshwright_engine::analysis::blank_modes::MetMode;
 use meshwright_engine::analysis::forces::Forces;
 
+pub use between::{BetweenDocument, FaceBetween};
 pub use curve::{
     CurveDocument, CurveRunningDocument, FaceDocument, LeadCureDocument, LoadShareDocument,
-    RadialGrowth, StatisticsDocument, StatisticsValues, TransmissionErrorStatistics,
+    MOST_MESH_ORDERS, RadialGrowth, StatisticsDocument, StatisticsValues,
+    TransmissionErrorStatistics,
 };
 pub use decomposition::{
     BlankFitDocument, BlankHarmonicDocument, BlankSampleDocument, DecompositionDocument,
@@ -97,6 +101,15 @@ impl Results {
     /// A text that is not JSON, or lacks fields that every version had.
     pub fn read(document: &str) -> serde_json::Result<Self> {
         serde_json::from_str(document)
+    }
+
+    /// The same with the points between positions in the lists of its curves, rising; `None` if it has none, as documents of versions before 0.6.
+    pub fn with_points(mut self) -> Option<Self> {
+        let curves = self.curves.into_iter();
+        self.curves = curves
+            .map(CurveDocument::with_points)
+            .collect::<Option<_>>()?;
+        Some(self)
     }
 
     /// The same with the natural modes of both gears, and a warning that names where the mesh meets them within the speeds asked.

@@ -75,20 +75,23 @@ document! {
 document! {
     /// The largest stresses of both gears over the span.
     pub struct PeakStressDocument as PeakStress, "Peak stress"
-    answer of (case: &Case, [driving, driven]: &[GearStresses; 2]) {
+    answer of (of: (&Case, &[f64]), [driving, driven]: &[GearStresses; 2]) with {
+        let (case, positions) = of;
+    } {
         /// Of the driving gear.
-        driving: GearPeakStress = GearPeakStress::of((case, Member::Driving), driving),
+        driving: GearPeakStress =
+            GearPeakStress::of((case, Member::Driving), positions, driving),
         /// Of the driven gear.
-        driven: GearPeakStress = GearPeakStress::of((case, Member::Driven), driven),
+        driven: GearPeakStress = GearPeakStress::of((case, Member::Driven), positions, driven),
     }
 }
 
 document! {
     /// The largest stresses of a gear over the span, between its positions too.
     pub struct GearPeakStress as GearPeakStress, "Peak stress of a gear"
-    answer of (of: (&Case, Member), gear: &GearStresses) with {
+    answer of (of: (&Case, Member), positions: &[f64], gear: &GearStresses) with {
         let extreme = |place: StressedPlace| {
-            gear.largest(place, of.0).map(|(_, peak)| to_mpa(peak.stress))
+            gear.largest(place, positions).map(|(_, peak)| to_mpa(peak.stress))
         };
     } {
         /// The largest von Mises stress along the tensile root fillets, in MPa.
@@ -100,16 +103,16 @@ document! {
         /// The largest von Mises stress along the edges of the holes, in MPa; absent without holes.
         hole_mpa?: f64 = extreme(StressedPlace::Hole),
         /// Where each of them stands; absent in results of versions before 0.5.
-        largest_where?: GearStressWhere = Some(GearStressWhere::of(of, gear)),
+        largest_where?: GearStressWhere = Some(GearStressWhere::of(of, positions, gear)),
     }
 }
 
 document! {
     /// Where the largest stresses of a gear stand.
     pub struct GearStressWhere as GearStressWhere, "Places of the largest stresses of a gear"
-    answer of ((case, member): (&Case, Member), gear: &GearStresses) with {
+    answer of ((case, member): (&Case, Member), positions: &[f64], gear: &GearStresses) with {
         let stands = |place: StressedPlace| {
-            let (eta, peak) = gear.largest(place, case)?;
+            let (eta, peak) = gear.largest(place, positions)?;
             let on_tooth = place != StressedPlace::Hole;
             Some(WhereDocument::of(&peak.stands((case, member), eta, on_tooth)))
         };

@@ -24,6 +24,7 @@ use serde_json::{Value, json};
 
 use super::*;
 use crate::testing::{STUB, and, example, parse, with};
+use crate::units::significant;
 use crate::warning::WarningCode;
 use crate::{examples, solve};
 
@@ -69,6 +70,7 @@ fn analysis(case: &Case) -> Analysis {
             },
             output_torque: torque,
             load,
+            points: Vec::new(),
             mesh_stiffness_secant: delta.iter().map(|delta| load / delta).collect(),
             driving_torque: wave(torque, 0.01 * torque),
             pairs_in_contact: vec![2; positions],
@@ -394,6 +396,107 @@ fn computed_results_read_back_with_all_that_they_may_have() {
     assert!(computed("helical-pair", faces).curves[0].face.is_some());
     let speeds = computed("run-up", json!({ "resolution": few }));
     assert!(speeds.curves[0].dynamics.is_some() && speeds.force_table.is_some());
+}
+
+/// The lists of a curve over positions, those of shares, stresses and faces too.
+fn lists(curve: &Value) -> Vec<&Vec<Value>> {
+    let stresses = ["driving", "driven"].map(|gear| &curve["stress"][gear]);
+    let objects = [curve, &curve["decomposition"]].into_iter().chain(stresses);
+    let objects = objects.chain(curve["load_shares"].as_array().into_iter().flatten());
+    let members = objects.filter_map(Value::as_object).flatten();
+    let members = members.filter(|(name, _)| !["load_shares", "blanks"].contains(&name.as_str()));
+    let own = members.filter_map(|(_, list)| list.as_array());
+    own.chain(curve["face"]["load_centroid_mm"].as_array())
+        .collect()
+}
+
+#[test]
+fn points_between_positions_make_the_lists_reach_the_extremes_of_the_statistics() {
+    let few = json!({ "grid": "coarse", "positions_per_mesh_period": 8 });
+    let document = and(
+        example("test-case-2"),
+        &json!({ "method": "flexible", "stress": true, "resolution": few, "output_torques_n_m": [115, 0] }),
+    );
+    let submission = parse(&document).expect("valid");
+    let results = solve(&submission, &Library::default(), &Run::unattended()).expect("results");
+    let plain: Value = serde_json::from_str(&results.to_json().expect("finite")).expect("JSON");
+    let merged = results.with_points().expect("of this version");
+    let merged: Value = serde_json::from_str(&merged.to_json().expect("finite")).expect("JSON");
+    let numbers = |list: &Value| -> Vec<f64> {
+        let items = list.as_array().expect("a list").iter();
+        items.filter_map(Value::as_f64).collect()
+    };
+    let extremes = |list: &Value| {
+        let [low, high] = [f64::min, f64::max].map(|wider| numbers(list).into_iter().reduce(wider));
+        (low.expect("some"), high.expect("some"))
+    };
+    for (curve, plain) in merged["curves"]
+        .as_array()
+        .expect("curves")
+        .iter()
+        .zip(plain["curves"].as_array().expect("curves"))
+    {
+        let positions = numbers(&curve["mesh_position"]);
+        assert!(positions.len() > numbers(&plain["mesh_position"]).len() && positions.is_sorted());
+        assert!(
+            lists(curve)
+                .iter()
+                .all(|list| list.len() == positions.len())
+        );
+        assert!(curve.get("between").is_none());
+        for name in ["transmission_error_um", "mesh_stiffness_tangent_n_per_m"] {
+            let (low, high) = extremes(&curve[name]);
+            let told = &curve["statistics"][name];
+            assert_eq!(
+                (&json!(low), &json!(high)),
+                (&told["smallest"], &told["largest"]),
+                "{name}"
+            );
+            assert_eq!(
+                json!(significant(high - low, 10)),
+                told["peak_to_peak"],
+                "{name}"
+            );
+        }
+        for i in 0..positions.len() {
+            let shares = curve["load_shares"].as_array().expect("shares").iter();
+            let sum: f64 = shares.map(|share| numbers(&share["share"])[i]).sum();
+            assert!((sum - 1.0).abs() < 1e-8, "{sum}");
+        }
+    }
+    let loaded = &merged["curves"][0];
+    let largest = &loaded["statistics"]["peak_contact_pressure_mpa"]["largest"];
+    assert_eq!(
+        &json!(extremes(&loaded["peak_contact_pressure_mpa"]).1),
+        largest
+    );
+    for gear in ["driving", "driven"] {
+        let largest = &loaded["statistics"]["stress"][gear]["root_mpa"];
+        assert_eq!(
+            &json!(extremes(&loaded["stress"][gear]["root_mpa"]).1),
+            largest
+        );
+    }
+    // Where a pair takes up the load k is told from both sides.
+    let positions = numbers(&loaded["mesh_position"]);
+    let (k, pairs) = (
+        numbers(&loaded["mesh_stiffness_tangent_n_per_m"]),
+        numbers(&loaded["pairs_in_contact"]),
+    );
+    let twice: Vec<usize> = (1..positions.len())
+        .filter(|&i| positions[i] == positions[i - 1])
+        .collect();
+    assert!(
+        twice.len() >= 2 * 5,
+        "two events in each of five mesh periods"
+    );
+    assert!(twice.iter().all(|&i| {
+        (k[i] > 1.02 * k[i - 1] && pairs[i] > pairs[i - 1])
+            || (k[i] < k[i - 1] / 1.02 && pairs[i] < pairs[i - 1])
+    }));
+    // Results of earlier versions kept none.
+    let earlier = Results::read(STUB).expect("a results document");
+    assert!(earlier.with_points().is_none());
 }
 
 #[test]

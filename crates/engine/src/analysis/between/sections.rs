@@ -6,6 +6,7 @@ use super::cubic::Cubic;
 use super::events::events;
 use super::{Sample, Span};
 use crate::analysis::Case;
+use crate::analysis::curve::{CurvePoint, EventSide};
 use crate::analysis::long_wave::LongWave;
 use crate::analysis::statistics::{SamplingError, Statistics};
 use crate::quadrature::gauss_legendre_panels;
@@ -38,6 +39,9 @@ const WAVE: usize = 16;
 
 /// How well δ is to be known between positions: its extremes to this part of its peak-to-peak, and no better than so many meters.
 const TOLERANCE: (f64, f64) = (1e-3, 5e-10);
+
+/// Places nearer to each other than this are one.
+const SAME: f64 = 1e-9;
 
 /// The tolerance for this peak-to-peak.
 pub(super) fn tolerance(peak_to_peak: f64) -> f64 {
@@ -231,6 +235,36 @@ impl Sections {
         traced
     }
 
+    /// Points of the curve between its `positions`: where sections meet, where δ or k is level, and at `further` places, rising. An event stands twice, as
+    /// either side has it, also at a position.
+    pub(in crate::analysis) fn points(
+        &self,
+        positions: &[f64],
+        further: &[f64],
+    ) -> Vec<CurvePoint> {
+        let is_position = |place: f64| {
+            let i = positions.partition_point(|position| *position < place - SAME);
+            positions
+                .get(i)
+                .is_some_and(|position| (position - place).abs() <= SAME)
+        };
+        let each = self.sections.iter();
+        let points = each.flat_map(|section| section.points(further));
+        // The end of a curve that closes is its beginning.
+        let is_over =
+            |point: &CurvePoint| self.span.closes && point.mesh_position >= self.span.end() - SAME;
+        let (mut rising, within): (Vec<_>, Vec<_>) = points.partition(is_over);
+        for point in &mut rising {
+            point.mesh_position = self.span.first;
+        }
+        rising.extend(within);
+        rising.retain(|point| point.event.is_some() || !is_position(point.mesh_position));
+        rising.dedup_by(|next, point| {
+            next.event.is_none() && next.mesh_position - point.mesh_position <= SAME
+        });
+        rising
+    }
+
     /// Error of δ from its sampling at some positions only.
     pub(in crate::analysis) fn error(&self) -> SamplingError {
         let known = self.extremes(|section| section.delta);
@@ -264,6 +298,32 @@ impl Section {
         let places = places.chain(curve.level_within(self.from, self.to));
         let known = places.map(|place| [(curve.at(place), place); 2]);
         known.fold(NONE, wider)
+    }
+
+    /// Its ends, the places at which δ or k is level, and the `further` ones in it, rising.
+    fn points(&self, further: &[f64]) -> Vec<CurvePoint> {
+        let Self { from, to, .. } = *self;
+        if from >= to {
+            return Vec::new();
+        }
+        let further = further.iter().copied();
+        let further = further.filter(|place| from < *place && *place < to);
+        let level = self.delta.level_within(from, to);
+        let level = level.chain(self.stiffness.level_within(from, to));
+        let mut places: Vec<f64> = level.chain(further).collect();
+        places.sort_by(f64::total_cmp);
+        let [begins, ends] = self.events;
+        let begin = (from, begins.then_some(EventSide::Behind));
+        let end = (to, ends.then_some(EventSide::Before));
+        let within = places.into_iter().map(|place| (place, None));
+        let all = std::iter::once(begin).chain(within).chain([end]);
+        all.map(|(place, event)| CurvePoint {
+            mesh_position: place,
+            transmission_error: self.delta.at(place),
+            mesh_stiffness_tangent: self.stiffness.at(place),
+            event,
+        })
+        .collect()
     }
 }
 

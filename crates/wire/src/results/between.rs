@@ -1,0 +1,369 @@
+//! A curve between its positions, and the same in the lists of a curve.
+
+use meshwright_engine::analysis::curve::{CurvePoint, EventSide, LoadShare};
+use meshwright_engine::analysis::stress::{GearStresses, PeakStress, StressedPlace};
+use meshwright_engine::analysis::{Case, Curve};
+
+use super::curve::{CurveDocument, LoadShareDocument};
+use super::stress::{GearStressDocument, StressDocument};
+use super::{all, each};
+use crate::declare::document;
+use crate::units::{or_null, to_mm, to_mpa, to_n_per_mm, to_um};
+
+/// Positions farther apart than this multiple of their step are of different windows.
+const NEXT: f64 = 1.5;
+
+/// Mesh positions nearer to each other than this are one.
+const SAME: f64 = 1e-9;
+
+document! {
+    /// A curve between its positions: at the events, at which a pair takes up or leaves the load, at the extremes of transmission error and stiffness, at those of
+    /// pressure and stresses, and at further positions at which the contact was solved. Its lists have the names of those of the curve. An event stands
+    /// twice, with the stiffness just before and just behind it. Transmission error, both stiffnesses and the largest values are those of the statistics; the
+    /// other lists are on straight lines between the positions.
+    pub struct BetweenDocument as Between, "Curve between its positions"
+    answer of (case: &Case, curve: &Curve) with {
+        let between = Between::of(case, curve);
+        let points = &curve.points;
+        let turned = |tooth_count: u32| {
+            all(points, |point| point.mesh_position * 360.0 / f64::from(tooth_count))
+        };
+    } {
+        /// The mesh position, in mesh periods, rising.
+        mesh_position: Vec<f64> = all(points, |point| point.mesh_position),
+        /// The rigid rotation of the driving gear, in degrees.
+        driving_angle_deg: Vec<f64> = turned(case.pair.driving().tooth_count()),
+        /// The rigid rotation of the driven gear, in degrees.
+        driven_angle_deg: Vec<f64> = turned(case.pair.driven().tooth_count()),
+        /// The static transmission error, in um.
+        transmission_error_um: Vec<f64> = all(points, |point| to_um(point.transmission_error)),
+        /// The tangent stiffness, in N/m.
+        mesh_stiffness_tangent_n_per_m: Vec<f64> =
+            all(points, |point| point.mesh_stiffness_tangent),
+        /// The secant stiffness, in N/m.
+        mesh_stiffness_secant_n_per_m: Vec<f64> = all(points, |point| {
+            if curve.load == 0.0 { 0.0 } else { curve.load / point.transmission_error }
+        }),
+        /// The torque that the driver has to give, in N m.
+        driving_torque_n_m: Vec<f64> = between.lines(&curve.driving_torque),
+        /// The number of tooth pairs that carry load: that of the nearer position on the same side of the event.
+        pairs_in_contact: Vec<u32> = between.nearer(&curve.pairs_in_contact),
+        /// The largest contact pressure, in MPa; null beside a position at which a sharp corner carries.
+        #[serde(serialize_with = "or_null")]
+        peak_contact_pressure_mpa: Vec<Option<f64>> =
+            all(&between.pressures(), |pressure| pressure.map(to_mpa)),
+        /// The share of the load on each pair, by the offsets of the curve.
+        load_shares: Vec<LoadShareDocument> =
+            all(&between.load_shares(), LoadShareDocument::of),
+        /// The largest stresses; absent as those of the curve are.
+        stress?: StressDocument = curve
+            .stresses
+            .as_ref()
+            .map(|stresses| StressDocument::of(&[0, 1].map(|i| between.stresses(&stresses[i])))),
+        /// The load along the common face; absent for plane methods and at the torque 0.
+        face?: FaceBetween = curve.face.as_ref().map(|face| {
+            FaceBetween::of(&between.rows(&face.load), &between.lines(&face.load_centroid))
+        }),
+        /// The transmission error with rigid blanks, in um; absent for other methods than the decomposition.
+        rigid_blank_transmission_error_um?: Vec<f64> = curve.decomposition.as_ref().map(|parts| {
+            each(&between.lines(&parts.rigid_blank_transmission_error), to_um)
+        }),
+    }
+}
+
+document! {
+    /// The load along the common face between the positions of a curve.
+    pub struct FaceBetween as FaceBetween, "Load along the face between positions"
+    answer of (load: &[Vec<f64>], load_centroid: &[f64]) {
+        /// The load on each strip for its width, in N/mm: a row a point; empty where the curve has the mean over the positions alone.
+        load_n_per_mm: Vec<Vec<f64>> = all(load, |row| each(row, to_n_per_mm)),
+        /// Where the load stands in the mean, in mm from the middle of the common face.
+        load_centroid_mm: Vec<f64> = each(load_centroid, to_mm),
+    }
+}
+
+/// The points of a curve among its positions.
+struct Between<'a> {
+    curve: &'a Curve,
+    spots: Vec<Spot>,
+}
+
+/// A point between two positions of a curve.
+struct Spot {
+    /// The positions beside it; the same one behind the last of a curve that does not close.
+    beside: [usize; 2],
+    /// Their mesh positions; behind the end of a curve that closes it goes on.
+    positions: [f64; 2],
+    /// The part of the way from the first to the second.
+    part: f64,
+    /// The nearer of both on the same side of the event.
+    nearer: usize,
+}
+
+impl<'a> Between<'a> {
+    /// That of `curve` of `case`.
+    fn of(case: &Case, curve: &'a Curve) -> Self {
+        let step = 1.0 / f64::from(case.resolution.positions_per_mesh_period);
+        let closing = case.covers_whole_periods().then(|| f64::from(case.span()));
+        let positions = &curve.mesh_position;
+        let spot = |point: &CurvePoint| {
+            let behind = positions.partition_point(|position| *position <= point.mesh_position);
+            let from = behind.saturating_sub(1);
+            let next = positions.get(from + 1).copied();
+            let next = next.filter(|next| next - positions[from] < NEXT * step);
+            let closing = closing.filter(|_| from + 1 == positions.len());
+            let (to, end) = match (next, closing) {
+                (Some(next), _) => (from + 1, next),
+                (None, Some(span)) => (0, positions[0] + span),
+                (None, None) => (from, positions[from] + step),
+            };
+            let part = (point.mesh_position - positions[from]) / (end - positions[from]);
+            Spot {
+                beside: [from, to],
+                positions: [positions[from], end],
+                part,
+                nearer: if part < 0.5 { from } else { to },
+            }
+        };
+        let mut spots: Vec<Spot> = curve.points.iter().map(spot).collect();
+        let mut begin = 0;
+        for beside in spots.chunk_by_mut(|one, other| one.beside == other.beside) {
+            let points = &curve.points[begin..begin + beside.len()];
+            begin += beside.len();
+            let at = |side: EventSide| move |point: &CurvePoint| point.event == Some(side);
+            let first = points.iter().position(at(EventSide::Before));
+            let last = points.iter().rposition(at(EventSide::Behind));
+            for (i, spot) in beside.iter_mut().enumerate() {
+                if first.is_some_and(|first| i <= first) {
+                    spot.nearer = spot.beside[0];
+                } else if last.is_some_and(|last| i >= last) {
+                    spot.nearer = spot.beside[1];
+                }
+            }
+        }
+        Self { curve, spots }
+    }
+
+    /// The `values` of the nearer positions.
+    fn nearer<T: Copy>(&self, values: &[T]) -> Vec<T> {
+        all(&self.spots, |spot| values[spot.nearer])
+    }
+
+    /// `values` on straight lines between the positions.
+    fn lines(&self, values: &[f64]) -> Vec<f64> {
+        all(&self.spots, |spot| {
+            spot.line(spot.beside.map(|i| values[i]))
+        })
+    }
+
+    /// The same of `rows` of a face; empty where there is one row for all positions.
+    fn rows(&self, rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        if rows.len() != self.curve.mesh_position.len() {
+            return Vec::new();
+        }
+        let row = |spot: &Spot| {
+            let [from, to] = spot.beside.map(|i| rows[i].iter());
+            from.zip(to)
+                .map(|(from, to)| spot.line([*from, *to]))
+                .collect()
+        };
+        all(&self.spots, row)
+    }
+
+    /// The largest pressures: `None` beside a position at which it has no limit.
+    fn pressures(&self) -> Vec<Option<f64>> {
+        let values = &self.curve.peak_contact_pressure;
+        let largest = self.curve.pressures.largest;
+        let points = self.curve.points.iter();
+        let pressure = |(point, spot): (&CurvePoint, &Spot)| {
+            let stands = largest
+                .filter(|largest| (largest.mesh_position - point.mesh_position).abs() < SAME);
+            let [from, to] = spot.beside.map(|i| values[i]);
+            stands.map_or_else(
+                || Some(spot.line([from?, to?])),
+                |largest| Some(largest.pressure),
+            )
+        };
+        points.zip(&self.spots).map(pressure).collect()
+    }
+
+    /// The shares of the load, by the offsets of the curve.
+    fn load_shares(&self) -> Vec<LoadShare> {
+        let shares = &self.curve.load_shares;
+        let of_spot = |(point, spot): (&CurvePoint, &Spot)| -> Vec<f64> {
+            // The offset of a pair falls by one with each whole mesh position.
+            let later = spot
+                .positions
+                .map(|position| (point.mesh_position.floor() - position.floor()) as i32);
+            let at = |side: usize, offset: i32| {
+                let mut known = shares.iter();
+                let known = known.find(|share| share.pair_offset == offset + later[side]);
+                known.map_or(0.0, |known| known.share[spot.beside[side]])
+            };
+            let each = shares.iter().map(|share| share.pair_offset);
+            let each: Vec<f64> = each
+                .map(|offset| spot.line([at(0, offset), at(1, offset)]))
+                .collect();
+            let sum: f64 = each.iter().sum();
+            let scale = if sum > 0.0 { sum.recip() } else { 1.0 };
+            each.into_iter().map(|share| share * scale).collect()
+        };
+        let points = self.curve.points.iter().zip(&self.spots);
+        let rows: Vec<Vec<f64>> = points.map(of_spot).collect();
+        let each = shares.iter().enumerate();
+        each.map(|(i, share)| LoadShare {
+            pair_offset: share.pair_offset,
+            share: rows.iter().map(|row| row[i]).collect(),
+        })
+        .collect()
+    }
+
+    /// The largest stresses of a gear: where the contact was solved for them, those; else on lines between the positions, and where the nearer stands.
+    fn stresses(&self, gear: &GearStresses) -> GearStresses {
+        let of = |place: StressedPlace| -> Vec<PeakStress> {
+            let known = gear.of(place);
+            if known.is_empty() {
+                return Vec::new();
+            }
+            let points = self.curve.points.iter().zip(&self.spots);
+            let peak = |(point, spot): (&CurvePoint, &Spot)| {
+                let mut solved = gear.between.iter();
+                let solved = solved.find(|(eta, _)| (eta - point.mesh_position).abs() < SAME);
+                let solved = solved.and_then(|(_, peaks)| place.of(peaks));
+                solved.unwrap_or_else(|| PeakStress {
+                    stress: spot.line(spot.beside.map(|i| known[i].stress)),
+                    ..known[spot.nearer]
+                })
+            };
+            points.map(peak).collect()
+        };
+        GearStresses {
+            root: of(StressedPlace::Root),
+            root_tension: of(StressedPlace::RootTension),
+            root_compression: of(StressedPlace::RootCompression),
+            holes: of(StressedPlace::Hole),
+            between: Vec::new(),
+        }
+    }
+}
+
+impl Spot {
+    /// The value on the straight line between these `ends`.
+    fn line(&self, [from, to]: [f64; 2]) -> f64 {
+        from + self.part * (to - from)
+    }
+}
+
+impl CurveDocument {
+    /// The curve with its points between positions in its lists; `None` if it has none.
+    pub(super) fn with_points(mut self) -> Option<Self> {
+        let BetweenDocument {
+            mesh_position,
+            driving_angle_deg,
+            driven_angle_deg,
+            transmission_error_um,
+            mesh_stiffness_tangent_n_per_m,
+            mesh_stiffness_secant_n_per_m,
+            driving_torque_n_m,
+            pairs_in_contact,
+            peak_contact_pressure_mpa,
+            load_shares,
+            stress,
+            face,
+            rigid_blank_transmission_error_um,
+        } = self.between.take()?;
+        let order = Order::of(&self.mesh_position, &mesh_position);
+        order.join(&mut self.mesh_position, mesh_position);
+        order.join(&mut self.driving_angle_deg, driving_angle_deg);
+        order.join(&mut self.driven_angle_deg, driven_angle_deg);
+        order.join(&mut self.transmission_error_um, transmission_error_um);
+        order.join(
+            &mut self.mesh_stiffness_tangent_n_per_m,
+            mesh_stiffness_tangent_n_per_m,
+        );
+        order.join(
+            &mut self.mesh_stiffness_secant_n_per_m,
+            mesh_stiffness_secant_n_per_m,
+        );
+        order.join(&mut self.driving_torque_n_m, driving_torque_n_m);
+        order.join(&mut self.pairs_in_contact, pairs_in_contact);
+        order.join(
+            &mut self.peak_contact_pressure_mpa,
+            peak_contact_pressure_mpa,
+        );
+        for (own, further) in self.load_shares.iter_mut().zip(load_shares) {
+            order.join(&mut own.share, further.share);
+        }
+        if let (Some(own), Some(further)) = (&mut self.stress, stress) {
+            order.join_stresses(&mut own.driving, further.driving);
+            order.join_stresses(&mut own.driven, further.driven);
+        }
+        if let (Some(own), Some(further)) = (&mut self.face, face) {
+            order.join(&mut own.load_n_per_mm, further.load_n_per_mm);
+            order.join(&mut own.load_centroid_mm, further.load_centroid_mm);
+        }
+        if let (Some(own), Some(further)) =
+            (&mut self.decomposition, rigid_blank_transmission_error_um)
+        {
+            order.join(&mut own.rigid_blank_transmission_error_um, further);
+        }
+        Some(self)
+    }
+}
+
+/// The order of positions and points: true for a point.
+struct Order(Vec<bool>);
+
+impl Order {
+    /// That of rising `positions` and `points`, the points first where both are equal.
+    fn of(positions: &[f64], points: &[f64]) -> Self {
+        let mut order = Vec::with_capacity(positions.len() + points.len());
+        let mut points = points.iter().peekable();
+        for position in positions {
+            while points.next_if(|point| *point <= position).is_some() {
+                order.push(true);
+            }
+            order.push(false);
+        }
+        order.extend(points.map(|_| true));
+        Self(order)
+    }
+
+    /// Puts the values of the points, if it has any, into a list of those of the positions.
+    fn join<T>(&self, own: &mut Vec<T>, points: Vec<T>) {
+        if own.len() + points.len() != self.0.len() {
+            return;
+        }
+        let mut points = points.into_iter();
+        let mut positions = std::mem::take(own).into_iter();
+        let next = |is_point: &bool| {
+            if *is_point {
+                points.next()
+            } else {
+                positions.next()
+            }
+        };
+        own.extend(self.0.iter().filter_map(next));
+    }
+
+    fn join_stresses(&self, own: &mut GearStressDocument, points: GearStressDocument) {
+        self.join(&mut own.root_mpa, points.root_mpa);
+        self.join(&mut own.root_angle_deg, points.root_angle_deg);
+        self.join(&mut own.root_z_mm, points.root_z_mm);
+        self.join(&mut own.root_tension_mpa, points.root_tension_mpa);
+        self.join(
+            &mut own.root_tension_angle_deg,
+            points.root_tension_angle_deg,
+        );
+        self.join(&mut own.root_tension_z_mm, points.root_tension_z_mm);
+        self.join(&mut own.root_compression_mpa, points.root_compression_mpa);
+        self.join(
+            &mut own.root_compression_angle_deg,
+            points.root_compression_angle_deg,
+        );
+        self.join(&mut own.root_compression_z_mm, points.root_compression_z_mm);
+        self.join(&mut own.hole_mpa, points.hole_mpa);
+        self.join(&mut own.hole_angle_deg, points.hole_angle_deg);
+        self.join(&mut own.hole_z_mm, points.hole_z_mm);
+    }
+}
