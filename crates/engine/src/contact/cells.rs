@@ -11,9 +11,7 @@ use super::coupled::{Touching, add_coupled, mirror};
 use super::drawn::DrawnPair;
 use super::facings::Near;
 use super::factor::{add, dot};
-use super::mesh_contact::{
-    FlankLoad, MeshCells, MeshContact, PairContact, PairInfluence, PairLoads, Spot,
-};
+use super::mesh_contact::{FlankLoad, MeshCells, MeshContact, PairContact, PairLoads, Spot};
 use super::model::{
     ContactSolver, DeviatingPair, MeshPosition, PositionError, WarmPair, WarmStart,
 };
@@ -348,58 +346,6 @@ impl<'a> ContactCells<'a> {
             problem,
             solution,
         }
-    }
-
-    /// Derivative of δ to the deviations of the teeth in reach, under the contact of `solution`, pair by pair.
-    ///
-    /// The derivative of δ by a gap is q = dp/dF at its cell ([`ContactSolution::load_derivative`]): gaps that open by dg let the driven gear
-    /// lag by qᵀ dg more, whatever opens them; arms that change by dw add −δ qᵀ dw − pᵀ dw/k. A tooth that is not listed has no influence here.
-    pub fn influences(&self, solution: &ContactSolution) -> Vec<PairInfluence> {
-        /// Far above the rounding of gaps, far below any length over which they curve.
-        const STEP: f64 = 1e-7;
-        let pair = &self.deviating.model.pair;
-        let delta = solution.transmission_error;
-        let of_pair = |placed: &PlacedCells, range: Range<usize>| {
-            let (eta, n) = (self.at.eta(), self.at.period + placed.pair);
-            let patch = &placed.cells().patch;
-            let place = (patch.seat, placed.drawn.phase);
-            let standing = self.deviating.standing(eta, n, placed.lag, place);
-            let (q, p) = (
-                &solution.load_derivative[range.clone()],
-                &solution.forces[range],
-            );
-            let by = |member: Member, turn: f64, slope: f64| -> f64 {
-                let [more, less] = [1.0, -1.0].map(|sign| {
-                    let deviating = standing.deviating(member, sign * turn, sign * slope);
-                    deviating.meetings(&patch.probes)
-                });
-                let each = more.iter().zip(&less).zip(q.iter().zip(p));
-                let touching = each.filter(|(_, (q, _))| **q != 0.0);
-                let each = touching.map(|((more, less), (q, p))| {
-                    let opens = more.gap - less.gap;
-                    let arm = more.arms[1] - less.arms[1];
-                    q * (opens - (delta - placed.lag) * arm) - p * arm / solution.stiffness
-                });
-                each.sum::<f64>() / (2.0 * STEP)
-            };
-            let on_base_circle = pair.driving().data().rack.pressure_angle.cos();
-            PairInfluence {
-                pair: n,
-                teeth: pair.teeth(n),
-                by_pitch: Member::BOTH.map(|member| by(member, STEP * on_base_circle, 0.0)),
-                by_profile_slope: Member::BOTH.map(|member| {
-                    let gear = pair.gear(member);
-                    by(
-                        member,
-                        0.0,
-                        STEP / (gear.tip_roll_length() - gear.form_roll_length()),
-                    )
-                }),
-            }
-        };
-        self.ranges()
-            .map(|(placed, range)| of_pair(placed, range))
-            .collect()
     }
 
     /// Loads of the `forces` on all cells on the interfaces of each pair, one column each.

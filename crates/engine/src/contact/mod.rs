@@ -63,7 +63,7 @@ pub use cells::ContactCells;
 pub use contradiction::Contradiction;
 pub(crate) use coupled::add_yielded;
 pub use light::light_contact;
-pub use mesh_contact::{FlankLoad, MeshCells, MeshContact, PairContact, PairInfluence, PairLoads};
+pub use mesh_contact::{FlankLoad, MeshCells, MeshContact, PairContact, PairLoads};
 pub use model::{ContactSolver, DeviatingPair, GearModel, PairModel, PositionError, WarmStart};
 pub use peak::PeakPlace;
 pub use problem::{ContactError, ContactProblem, ContactQuantity, ContactSolution};

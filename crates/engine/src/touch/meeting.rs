@@ -277,17 +277,6 @@ impl<'a> Standing<'a> {
         }
     }
 
-    /// The same with the tooth of `member` standing out more: turned by the length `arc` on its base circle, and inclined by `slope`.
-    pub(crate) fn deviating(&self, member: Member, arc: f64, slope: f64) -> Self {
-        let mut other = *self;
-        let g = member.index();
-        let so_far = Vector::new(self.turns[g][0], self.turns[g][1]);
-        let turned = turned(turn(arc, self.pair.gear(member).base_radius()), so_far);
-        other.turns[g] = [turned.x, turned.y];
-        other.slopes[g] += slope;
-        other
-    }
-
     /// How each of `probes` meets the other flank.
     pub(crate) fn meetings(&self, probes: &Probes) -> Vec<Meeting> {
         let mut meetings = Vec::with_capacity(probes.fours.len() * WideF64x4::LANES);

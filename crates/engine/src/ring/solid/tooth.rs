@@ -66,7 +66,7 @@ impl SolidTooth {
             kept: &kept,
             ..Default::default()
         };
-        let (condensed, rows) = prism.condense_with("the tooth", &interface, &points, recovered)?;
+        let (condensed, rows) = prism.condense("the tooth", &interface, &points, recovered)?;
         let tooth = Self {
             sector: SolidSector {
                 count: section.tooth_count() as usize,
@@ -106,7 +106,7 @@ pub fn flank_compliance_alone(
         fixed: &grid.arc_nodes,
         ..Default::default()
     };
-    let (condensed, rows) = prism.condense_with("the tooth", &interface, &points, recovered)?;
+    let (condensed, rows) = prism.condense("the tooth", &interface, &points, recovered)?;
     Ok((condensed.held, rows))
 }
 

@@ -100,7 +100,7 @@ impl<'a> HoledRing<'a> {
             followers: &followers,
             fixed: held,
         };
-        let (condensed, rows) = prism.condense_with("the web", &interface, &[], recovered)?;
+        let (condensed, rows) = prism.condense("the web", &interface, &[], recovered)?;
         let angles: Vec<_> = circles.into_iter().map(|(_, angles)| angles).collect();
         let arcs = angles.iter().map(|angles| match is_whole {
             true => Arc::Harmonics(largest),
