@@ -18,6 +18,8 @@ use crate::ring::teeth::FARTHEST_COUPLED;
 use crate::run::Run;
 use crate::touch::placement::{Placement, Section};
 
+pub use crate::fem::volume::{Volume, VolumeElement, von_mises};
+
 /// Fields of one gear, node by node, where it stands at a mesh position: the driving axis is the origin, the driven one lies on the x axis.
 ///
 /// Each tooth and the blank have nodes of their own where they meet.

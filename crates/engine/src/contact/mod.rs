@@ -35,27 +35,27 @@
 
 mod active_set;
 mod augmented_lagrangian;
-pub mod cells;
+pub(crate) mod cells;
 mod checked;
-pub mod compliances;
+pub(crate) mod compliances;
 mod contradiction;
 mod coupled;
-pub mod drawn;
+pub(crate) mod drawn;
 pub mod face;
 mod facings;
 mod factor;
 mod light;
 mod memo;
-pub mod mesh_contact;
-pub mod model;
-pub mod pair_cells;
-pub mod patch;
+pub(crate) mod mesh_contact;
+pub(crate) mod model;
+pub(crate) mod pair_cells;
+pub(crate) mod patch;
 mod peak;
 mod penetration;
 pub mod positions;
 mod pressures;
 mod problem;
-pub mod stage;
+pub(crate) mod stage;
 
 pub use active_set::solve_active_set;
 pub use augmented_lagrangian::{AugmentedLagrangian, default_penalty, solve_augmented_lagrangian};

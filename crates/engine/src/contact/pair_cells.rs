@@ -33,7 +33,7 @@ pub(super) struct CellsSpec {
 
 /// The cells of one pair as drawn, some part of a mesh period after it passed the pitch point.
 #[derive(Debug)]
-pub struct PairCells {
+pub(crate) struct PairCells {
     pub(super) spec: CellsSpec,
     /// Where they lie.
     pub(super) patch: Patch,

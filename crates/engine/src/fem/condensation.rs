@@ -34,7 +34,7 @@ pub struct Condensed {
 
 /// The stiffness of every element of `grid` in turn, of one material; `thickness`, in meters, is that of an element whose own
 /// is 1.
-pub fn element_stiffnesses(
+pub(crate) fn element_stiffnesses(
     grid: &Grid,
     material: &Material,
     thickness: f64,

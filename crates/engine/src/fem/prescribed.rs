@@ -30,7 +30,7 @@ pub struct Load {
 /// # Errors
 ///
 /// [`FemError::NotPositiveDefinite`] if the grid is degenerate, or the prescribed nodes do not hold it.
-pub fn displacements(
+pub(crate) fn displacements(
     part: &'static str,
     grid: &Grid,
     (material, thickness): (&Material, f64),

@@ -28,7 +28,7 @@ use crate::grid::element::MOST_NODES;
 use crate::grid::{Element, Grid};
 
 /// The components of the displacement of a node: radial, tangential, axial.
-pub const COMPONENTS: usize = 3;
+pub(crate) const COMPONENTS: usize = 3;
 
 /// The last of them.
 const AXIAL: usize = 2;

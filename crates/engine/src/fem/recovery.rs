@@ -94,7 +94,7 @@ pub fn edge_stresses(
 }
 
 /// The stresses (σ_xx, σ_yy, τ_xy) in Pa at every node for the displacements `u` of all: the mean over the elements that meet there.
-pub fn stresses(grid: &Grid, material: &Material, u: &[Vector]) -> Vec<[f64; 3]> {
+pub(crate) fn stresses(grid: &Grid, material: &Material, u: &[Vector]) -> Vec<[f64; 3]> {
     let mut sums = vec![([0.0; 3], 0.0); grid.nodes.len()];
     for element in &grid.elements {
         for (local, node) in element.nodes().iter().enumerate() {

@@ -16,7 +16,7 @@ use crate::wide::Numbers;
 ///
 /// The driving center is the origin, the driven one lies on the x axis; the driving gear turns counter-clockwise.
 #[derive(Debug, Clone, Copy)]
-pub struct Placement<'a> {
+pub(crate) struct Placement<'a> {
     pub(crate) pair: &'a GearPair,
     /// Where the gears' own axes stand: beside the axes of rotation where they are eccentric.
     pub(crate) centers: [Vector; 2],
@@ -30,7 +30,7 @@ pub struct Placement<'a> {
 
 /// A transverse section of the teeth of one pair.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Section {
+pub(crate) struct Section {
     /// The pair n.
     pub pair: i64,
     /// Mesh periods since it passed the pitch point in this section.
@@ -43,7 +43,7 @@ pub struct Section {
 
 impl Section {
     /// That of straight teeth as drawn, of `pair` at the mesh position `eta`.
-    pub fn straight(eta: f64, pair: i64) -> Self {
+    pub(crate) fn straight(eta: f64, pair: i64) -> Self {
         Self {
             pair,
             phase: eta - pair as f64,
@@ -170,7 +170,7 @@ pub(crate) fn centers(
 
 impl<'a> Placement<'a> {
     /// The teeth of a pair as drawn, `phase` mesh periods after it passed the pitch point.
-    pub fn drawn(pair: &'a GearPair, phase: f64) -> Self {
+    pub(crate) fn drawn(pair: &'a GearPair, phase: f64) -> Self {
         Self {
             pair,
             centers: axes(pair),
@@ -181,7 +181,7 @@ impl<'a> Placement<'a> {
     }
 
     /// The teeth of `pair` with these `deviations` in a `section`, the driven gear lagging by `lag` on its base circle.
-    pub fn real(
+    pub(crate) fn real(
         pair: &'a GearPair,
         deviations: &'a PairDeviations,
         section: Section,
@@ -204,7 +204,7 @@ impl<'a> Placement<'a> {
     }
 
     /// Where the own axis of `member` stands, and the angle of the centerline of its tooth.
-    pub fn frame(&self, member: Member) -> (Vector, f64) {
+    pub(crate) fn frame(&self, member: Member) -> (Vector, f64) {
         (self.centers[member.index()], self.angles[member.index()])
     }
 

@@ -7,19 +7,16 @@
 use std::f64::consts::{PI, TAU};
 
 use faer::Mat;
-use meshwright_engine::fem::condensation::condense;
-use meshwright_engine::fem::recovery::{Functional, edge_stresses};
 use meshwright_engine::gear::{
     BlankRegion, Contour, Core, Hole, HolePattern, HoleShape, Material, Spokes, SpurGear, Vector,
     Web, radial, tangential,
 };
 use meshwright_engine::grid::{BlankGrid, Grid, GridLevel, ToothGrid};
-use meshwright_engine::ring::blank::BlankSubstructure;
-use meshwright_engine::ring::body::Coupling;
-use meshwright_engine::ring::cyclic::{Component, Harmonics};
-use meshwright_engine::ring::teeth::TeethRing;
-use meshwright_engine::ring::tooth::ToothSubstructure;
 use meshwright_engine::run::Run;
+use meshwright_engine::substructures::{
+    BlankSubstructure, Component, Coupling, Functional, Harmonics, TeethRing, ToothSubstructure,
+    condense, edge_stresses,
+};
 
 use crate::support::{case, gear, pair, solve};
 
