@@ -24,7 +24,7 @@ use super::{
     solve_augmented_lagrangian,
 };
 use crate::gear::{GearPair, Member, teeth_on};
-use crate::touch::meeting::Standing;
+use crate::touch::placement::Pose;
 use crate::wide::{Loops, wide};
 
 /// The least part of its way that a pair yields by itself, and not together with the others.
@@ -74,21 +74,21 @@ pub(super) struct PlacedCells {
 }
 
 impl PlacedCells {
-    /// `cells` on the pair `near` as it is `standing` with a driven gear that lags by `lag`; `None` where there are none.
+    /// `cells` on the pair `near` in this `pose`, with a driven gear that lags by `lag`; `None` where there are none.
     pub(super) fn new(
         near: &Near,
         extent: Extent,
         cells: Arc<Option<PairCells>>,
-        standing: &Standing<'_>,
+        pose: &Pose<'_>,
         lag: f64,
     ) -> Option<Self> {
         let patch = &Option::as_ref(&cells)?.patch;
-        let meetings = standing.meetings(&patch.probes);
-        let each = meetings.iter().zip(&patch.more);
+        let met = pose.gaps_and_arms(&patch.flank_points);
+        let each = met.iter().zip(&patch.more);
         let gaps = each
-            .map(|(meeting, more)| meeting.gap + more + lag * meeting.arms[1])
+            .map(|(met, more)| met.gap + more + lag * met.arms[1])
             .collect();
-        let arms = meetings.iter().map(|meeting| meeting.arms).collect();
+        let arms = met.iter().map(|met| met.arms).collect();
         Some(Self {
             pair: near.pair,
             drawn: near.drawn.clone(),
