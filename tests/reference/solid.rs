@@ -5,18 +5,14 @@ use std::f64::consts::PI;
 use faer::linalg::solvers::Solve as _;
 use faer::{Mat, Side, c64};
 use meshwright_engine::assembly::{FaceResolution, FaceYield};
-use meshwright_engine::fem::axial::AxialBasis;
-use meshwright_engine::fem::prism::Prism;
 use meshwright_engine::gear::{
     BlankRegion, GearData, Helix, HolePattern, Material, Rack, SolidGear, TipEdge, ToolDepth,
     ToothDeviations,
 };
 use meshwright_engine::grid::{BlankGrid, GridLevel};
 use meshwright_engine::quadrature::gauss_legendre;
-use meshwright_engine::ring::solid::joint::trace;
-use meshwright_engine::ring::solid::revolution::Revolution;
-use meshwright_engine::ring::solid::web::HoledRing;
 use meshwright_engine::run::Run;
+use meshwright_engine::substructures::{AxialBasis, HoledRing, Prism, Revolution, trace};
 use serde_json::Value;
 
 use crate::reference;

@@ -8,7 +8,6 @@ use meshwright_engine::analysis::at_speed::{DynamicsRequest, dynamics};
 use meshwright_engine::analysis::forces::{ForceTableRequest, force_table};
 use meshwright_engine::analysis::{Case, FaceHoles, Faces, Method, Model, analyze, pair_model};
 use meshwright_engine::assembly::FaceResolution;
-use meshwright_engine::assembly::interface::default_interface_radius;
 use meshwright_engine::assembly::{Parts, TeethSpec};
 use meshwright_engine::contact::WarmStart;
 use meshwright_engine::contact::face::SLICES;
@@ -18,6 +17,7 @@ use meshwright_engine::gear::{
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
+use meshwright_engine::substructures::default_interface_radius;
 
 #[path = "../tests/cases/mod.rs"]
 mod cases;

@@ -7,23 +7,16 @@ use std::sync::Arc;
 use criterion::{Criterion, criterion_group, criterion_main};
 use meshwright_benches::group;
 use meshwright_engine::analysis::{Case, pair_model};
-use meshwright_engine::assembly::blank::blank_grid;
-use meshwright_engine::assembly::interface::{
-    default_interface_radius, harmonics, orders_of_blank,
-};
 use meshwright_engine::contact::WarmStart;
 use meshwright_engine::contact::{PairModel, Stage, solve_active_set};
-use meshwright_engine::flank::table::FlankTable;
 use meshwright_engine::gear::{BlankRegion, Core, Hole, HoleShape, SpurGear};
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
 use meshwright_engine::library::Library;
-use meshwright_engine::ring::blank::BlankSubstructure;
-use meshwright_engine::ring::body::Coupling;
-use meshwright_engine::ring::harmonics::Harmonics;
-use meshwright_engine::ring::teeth::TeethRing;
-use meshwright_engine::ring::tooth::ToothSubstructure;
 use meshwright_engine::run::Run;
-use meshwright_engine::touch::facing::Facing;
+use meshwright_engine::substructures::{
+    BlankSubstructure, Coupling, Facing, FlankTable, Harmonics, TeethRing, ToothSubstructure,
+    blank_grid, default_interface_radius, harmonics, orders_of_blank,
+};
 
 #[path = "../tests/cases/mod.rs"]
 mod cases;

@@ -7,7 +7,7 @@
 use std::time::Instant;
 
 use meshwright_engine::analysis::pair_model;
-use meshwright_engine::contact::positions::contacts_of_many;
+use meshwright_engine::contact::positions::contacts;
 use meshwright_engine::gear::{Member, Normals, PairDeviations, Tolerances};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
@@ -18,9 +18,6 @@ static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
 #[path = "../tests/cases/mod.rs"]
 mod cases;
-
-/// Pairs that are solved together: enough to share what they have in common, few enough to keep their curves until they are looked at.
-const TOGETHER: u64 = 250;
 
 /// The process capability that the tolerances are worth.
 const CAPABILITY: f64 = 1.33;
@@ -55,20 +52,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let started = Instant::now();
     let (mut peaks, mut iterations) = (Vec::new(), 0);
-    for first in (0..count).step_by(TOGETHER as usize) {
-        let seeds = first..count.min(first + TOGETHER);
-        let members: Vec<PairDeviations> = seeds.map(member).collect::<Result<_, _>>()?;
-        let curves = contacts_of_many(&model, &members, load, &positions, &run, |contact| {
-            (contact.transmission_error, contact.iterations)
-        })?;
-        for curve in curves {
-            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-            for (transmission_error, steps) in curve? {
-                (low, high) = (low.min(transmission_error), high.max(transmission_error));
-                iterations += u64::from(steps);
-            }
-            peaks.push(high - low);
+    for seed in 0..count {
+        let deviations = member(seed)?;
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for contact in contacts(model.deviating(&deviations), load, &positions, &run)? {
+            let delta = contact.transmission_error;
+            (low, high) = (low.min(delta), high.max(delta));
+            iterations += u64::from(contact.iterations);
         }
+        peaks.push(high - low);
     }
     let seconds = started.elapsed().as_secs_f64();
 

@@ -7,7 +7,7 @@ const MOST_HALVINGS: u32 = 200;
 ///
 /// `holds` is taken to hold at `good` and to fail at `bad`; neither is asked. Where it changes several times, one of the
 /// changes is found. `bad` may lie below `good`.
-pub fn bisect(mut good: f64, mut bad: f64, mut holds: impl FnMut(f64) -> bool) -> f64 {
+pub(crate) fn bisect(mut good: f64, mut bad: f64, mut holds: impl FnMut(f64) -> bool) -> f64 {
     for _ in 0..MOST_HALVINGS {
         let middle = f64::midpoint(good, bad);
         if middle == good || middle == bad {

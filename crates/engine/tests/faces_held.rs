@@ -19,8 +19,8 @@ use meshwright_engine::gear::{
 };
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
-use meshwright_engine::ring::teeth::FARTHEST_COUPLED;
 use meshwright_engine::run::Run;
+use meshwright_engine::substructures::FARTHEST_COUPLED;
 
 /// The gear of the references: 40 teeth, normal module 2 mm, 20 mm wide, its rim held at a radius of 28 mm.
 fn reference_gear(beta: f64, change: impl Fn(&mut GearData)) -> SolidGear {

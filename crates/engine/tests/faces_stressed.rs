@@ -11,9 +11,9 @@ use faer::{Mat, Side};
 use meshwright_engine::analysis::stress::GearStresses;
 use meshwright_engine::assembly::{FaceResolution, FaceRoots};
 use meshwright_engine::contact::face::NormalForce;
-use meshwright_engine::fem::surface::SurfaceStress;
 use meshwright_engine::gear::{FaceEnds, SolidGear};
 use meshwright_engine::grid::{GridLevel, ToothGrid};
+use meshwright_engine::substructures::SurfaceStress;
 use nalgebra::{Matrix3, SMatrix, SymmetricEigen, Vector3};
 
 /// Layers of elements across the face of the tooth that is solved whole.

@@ -19,8 +19,8 @@ use meshwright_engine::gear::{
     Alignment, GearData, GearPair, Material, Member, Rack, SolidPair, SpurGear, TipEdge, Web,
 };
 use meshwright_engine::library::Library;
-use meshwright_engine::ring::annulus::Imposed;
 use meshwright_engine::run::{Run, Stopped};
+use meshwright_engine::substructures::Imposed;
 
 fn solve(case: &Case, method: Method) -> Analysis {
     let case = Case {

@@ -232,7 +232,7 @@ mod tests {
     use std::f64::consts::FRAC_PI_2;
 
     use meshwright_engine::analysis::fields::GearField;
-    use meshwright_engine::fem::volume::{Volume, VolumeElement};
+    use meshwright_engine::analysis::fields::{Volume, VolumeElement};
     use meshwright_engine::gear::{Vector, radial};
     use meshwright_engine::grid::Element;
     use nalgebra::{Matrix3, Vector3};

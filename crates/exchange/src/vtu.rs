@@ -6,7 +6,7 @@ use std::iter;
 use base64::engine::general_purpose::STANDARD;
 use base64::write::EncoderWriter;
 use meshwright_engine::analysis::fields::GearField;
-use meshwright_engine::fem::volume::{Volume, von_mises};
+use meshwright_engine::analysis::fields::{Volume, von_mises};
 use meshwright_engine::grid::ElementKind;
 
 use super::divided::{Divided, Values};

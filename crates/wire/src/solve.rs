@@ -2,10 +2,10 @@
 
 use meshwright_engine::analysis::blank_modes::blank_modes;
 use meshwright_engine::analysis::contact_pattern::ContactPattern;
+use meshwright_engine::analysis::fields::Volume;
 use meshwright_engine::analysis::fields::{Fields, fields};
 use meshwright_engine::analysis::{self, AnalysisError, face_fields};
 use meshwright_engine::contact::Contradiction;
-use meshwright_engine::fem::volume::Volume;
 use meshwright_engine::gear::data::LEAST_LIGAMENT;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;

@@ -12,7 +12,7 @@ use crate::contact::face::FaceContact;
 use crate::fem::volume::{Place, Volume, von_mises};
 use crate::gear::{Member, Vector};
 use crate::run::Run;
-use crate::touch::placement::{Placement, Section};
+use crate::touch::placement::{Pose, Section};
 
 /// Both gears of `case` under `output_torque`, positive, at the mesh position `eta`, by the method that sees the whole gears; `None` for a plane
 /// case.
@@ -79,9 +79,14 @@ fn of_gears<T: Send>(
         return Ok(None);
     };
     let deviations = case.pair.deviations();
-    let placement = Placement::real(&case.pair, &deviations, Section::straight(eta, 0), 0.0);
+    let pose = Pose::real(
+        (&case.pair, &deviations),
+        Section::straight(eta, 0),
+        0.0,
+        (Member::Driving, eta),
+    );
     let of = |member: Member| {
-        let (axis, angle) = placement.frame(member);
+        let (axis, angle) = pose.frame(member);
         // The gear's own middle stands beside that of the common face.
         let own = faces.pair.own_height(member, 0.0);
         let place = Place {

@@ -16,7 +16,9 @@ use crate::gear::{Member, SpurGear, Vector, radial, tangential};
 use crate::grid::{BlankGrid, Element, Grid, ToothGrid};
 use crate::ring::teeth::FARTHEST_COUPLED;
 use crate::run::Run;
-use crate::touch::placement::{Placement, Section};
+use crate::touch::placement::{Pose, Section};
+
+pub use crate::fem::volume::{Volume, VolumeElement, von_mises};
 
 /// Fields of one gear, node by node, where it stands at a mesh position: the driving axis is the origin, the driven one lies on the x axis.
 ///
@@ -87,9 +89,14 @@ pub fn fields(
             Member::BOTH.map(|member| cells.flank_loads(member, &solution.forces))
         })
         .map_err(at)?;
-    let placement = Placement::real(&case.pair, deviations, Section::straight(eta, 0), 0.0);
+    let pose = Pose::real(
+        (&case.pair, deviations),
+        Section::straight(eta, 0),
+        0.0,
+        (Member::Driving, eta),
+    );
     let of = |member: Member| {
-        let (origin, angle) = placement.frame(member);
+        let (origin, angle) = pose.frame(member);
         of_gear(
             &setup,
             member,

@@ -12,7 +12,7 @@ use super::{FaceResolution, FaceYield, PartError, PlainFace};
 use crate::contact::face::NormalForce;
 use crate::fem::axial::AxialBasis;
 use crate::fem::dense::entries;
-use crate::fem::prism::{COMPONENTS, Prism};
+use crate::fem::prism::Prism;
 use crate::fem::surface::{Surface, SurfaceStress};
 use crate::flank::polynomials::OTHER_DEGREE;
 use crate::gear::{SolidGear, Vector};
@@ -44,7 +44,6 @@ pub struct FaceRoots {
     others: Vec<Mat<f64>>,
     /// Rows of tooth 0 by forces on the outer circle of a web with holes, a column for each displacement.
     by_web: Option<Mat<f64>>,
-    degrees_of_freedom: u64,
 }
 
 /// How the roots answer to loads.
@@ -119,7 +118,6 @@ impl FaceRoots {
             let transposed = |answers: &Mat<faer::c64>| answers.transpose().to_owned();
             web.answers_to(orders.zip(&circles), &transposed)
         });
-        let nodes = tooth.grid_nodes - sector.side_nodes - 1;
         Ok(Self {
             fillets,
             near: Nearness::new(gear, &stack.face),
@@ -132,7 +130,6 @@ impl FaceRoots {
             own,
             others,
             by_web,
-            degrees_of_freedom: (nodes * tooth.sector.size * z) as u64,
         })
     }
 
@@ -151,7 +148,6 @@ impl FaceRoots {
         let grid = ToothGrid::of_stressed_prism(&section, inner_radius, GridLevel::Standard)?;
         let fillets = fillets(gear, &grid, &axial);
         let (_, rows) = flank_compliance_alone(gear, &grid, &axial, &fillets.nodes())?;
-        let nodes = grid.grid.nodes.len() - grid.arc_nodes.len();
         Ok(Self {
             fillets,
             near: Nearness::new(gear, &axial),
@@ -159,7 +155,6 @@ impl FaceRoots {
             own: rows.by_points,
             others: vec![Mat::zeros(0, 0)],
             by_web: None,
-            degrees_of_freedom: (COMPONENTS * axial.len() * nodes) as u64,
             pressed: PressedFlank {
                 axial,
                 flank: *section.flank(),
@@ -200,11 +195,6 @@ impl FaceRoots {
     /// The number of teeth of the gear.
     pub fn tooth_count(&self) -> usize {
         self.tooth_count
-    }
-
-    /// The unknowns before condensation.
-    pub fn degrees_of_freedom(&self) -> u64 {
-        self.degrees_of_freedom
     }
 
     /// The number of entries, for the books of a cache.

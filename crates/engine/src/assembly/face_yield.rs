@@ -254,22 +254,6 @@ impl FaceYield {
         }
     }
 
-    /// The derivatives of all functions by the roll length.
-    ///
-    /// # Panics
-    ///
-    /// As [`FaceYield::basis`].
-    pub fn basis_slope(&self, roll_length: f64, z: f64, row: &mut [f64]) {
-        assert_eq!(row.len(), self.basis_len());
-        let (_, up) = up_the_flank(self.plain.squares, roll_length, OWN_DEGREE);
-        let across = self.axial.values(z);
-        for (row, up) in row.chunks_exact_mut(across.len()).zip(up) {
-            for (value, across) in row.iter_mut().zip(&across) {
-                *value = up * across;
-            }
-        }
-    }
-
     /// Displacement of a point on the same flank, a roll length and a height, by a unit force, from its ends: beside the smooth compliance and a half space;
     /// the force is spread over a piece of a contact line of the length `along` about another such point.
     pub fn at_ends(&self, point: (f64, f64), loaded: (f64, f64), along: f64) -> f64 {

@@ -8,7 +8,7 @@ use crate::ring::cyclic::Harmonics;
 const MOST_ORDERS_PER_TOOTH: usize = 8;
 
 /// The interface radius R_w of `gear`: the one `asked` for where it has holes, else [`default_interface_radius`].
-pub fn interface_radius(gear: &SpurGear, asked: Option<f64>) -> f64 {
+pub(crate) fn interface_radius(gear: &SpurGear, asked: Option<f64>) -> f64 {
     asked
         .filter(|_| !gear.holes().is_empty())
         .unwrap_or_else(|| default_interface_radius(gear))

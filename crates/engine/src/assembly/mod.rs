@@ -10,27 +10,27 @@
 //! who makes them, and whether anyone keeps them, is asked of [`Parts`].
 
 mod amplitudes;
-pub mod blank;
-pub mod cut;
+pub(crate) mod blank;
+pub(crate) mod cut;
 mod error;
-pub mod face_holes;
-pub mod face_inside;
+pub(crate) mod face_holes;
+pub(crate) mod face_inside;
 mod face_resolution;
-pub mod face_roots;
-pub mod face_yield;
+pub(crate) mod face_roots;
+pub(crate) mod face_yield;
 mod flank_fit;
 mod flank_forces;
-pub mod gear;
+pub(crate) mod gear;
 mod holed;
-pub mod inside;
-pub mod interface;
+pub(crate) mod inside;
+pub(crate) mod interface;
 mod pair;
-pub mod pair_spec;
+pub(crate) mod pair_spec;
 mod parts;
 mod probes;
-pub mod spun;
+pub(crate) mod spun;
 mod stack;
-pub mod teeth;
+pub(crate) mod teeth;
 
 pub use blank::BlankSpec;
 pub use cut::CutGear;

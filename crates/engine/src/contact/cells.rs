@@ -11,9 +11,7 @@ use super::coupled::{Touching, add_coupled, mirror};
 use super::drawn::DrawnPair;
 use super::facings::Near;
 use super::factor::{add, dot};
-use super::mesh_contact::{
-    FlankLoad, MeshCells, MeshContact, PairContact, PairInfluence, PairLoads, Spot,
-};
+use super::mesh_contact::{FlankLoad, MeshCells, MeshContact, PairContact, PairLoads, Spot};
 use super::model::{
     ContactSolver, DeviatingPair, MeshPosition, PositionError, WarmPair, WarmStart,
 };
@@ -26,7 +24,7 @@ use super::{
     solve_augmented_lagrangian,
 };
 use crate::gear::{GearPair, Member, teeth_on};
-use crate::touch::meeting::Standing;
+use crate::touch::placement::Pose;
 use crate::wide::{Loops, wide};
 
 /// The least part of its way that a pair yields by itself, and not together with the others.
@@ -76,21 +74,21 @@ pub(super) struct PlacedCells {
 }
 
 impl PlacedCells {
-    /// `cells` on the pair `near` as it is `standing` with a driven gear that lags by `lag`; `None` where there are none.
+    /// `cells` on the pair `near` in this `pose`, with a driven gear that lags by `lag`; `None` where there are none.
     pub(super) fn new(
         near: &Near,
         extent: Extent,
         cells: Arc<Option<PairCells>>,
-        standing: &Standing<'_>,
+        pose: &Pose<'_>,
         lag: f64,
     ) -> Option<Self> {
         let patch = &Option::as_ref(&cells)?.patch;
-        let meetings = standing.meetings(&patch.probes);
-        let each = meetings.iter().zip(&patch.more);
+        let met = pose.gaps_and_arms(&patch.flank_points);
+        let each = met.iter().zip(&patch.more);
         let gaps = each
-            .map(|(meeting, more)| meeting.gap + more + lag * meeting.arms[1])
+            .map(|(met, more)| met.gap + more + lag * met.arms[1])
             .collect();
-        let arms = meetings.iter().map(|meeting| meeting.arms).collect();
+        let arms = met.iter().map(|met| met.arms).collect();
         Some(Self {
             pair: near.pair,
             drawn: near.drawn.clone(),
@@ -348,58 +346,6 @@ impl<'a> ContactCells<'a> {
             problem,
             solution,
         }
-    }
-
-    /// Derivative of δ to the deviations of the teeth in reach, under the contact of `solution`, pair by pair.
-    ///
-    /// The derivative of δ by a gap is q = dp/dF at its cell ([`ContactSolution::load_derivative`]): gaps that open by dg let the driven gear
-    /// lag by qᵀ dg more, whatever opens them; arms that change by dw add −δ qᵀ dw − pᵀ dw/k. A tooth that is not listed has no influence here.
-    pub fn influences(&self, solution: &ContactSolution) -> Vec<PairInfluence> {
-        /// Far above the rounding of gaps, far below any length over which they curve.
-        const STEP: f64 = 1e-7;
-        let pair = &self.deviating.model.pair;
-        let delta = solution.transmission_error;
-        let of_pair = |placed: &PlacedCells, range: Range<usize>| {
-            let (eta, n) = (self.at.eta(), self.at.period + placed.pair);
-            let patch = &placed.cells().patch;
-            let place = (patch.seat, placed.drawn.phase);
-            let standing = self.deviating.standing(eta, n, placed.lag, place);
-            let (q, p) = (
-                &solution.load_derivative[range.clone()],
-                &solution.forces[range],
-            );
-            let by = |member: Member, turn: f64, slope: f64| -> f64 {
-                let [more, less] = [1.0, -1.0].map(|sign| {
-                    let deviating = standing.deviating(member, sign * turn, sign * slope);
-                    deviating.meetings(&patch.probes)
-                });
-                let each = more.iter().zip(&less).zip(q.iter().zip(p));
-                let touching = each.filter(|(_, (q, _))| **q != 0.0);
-                let each = touching.map(|((more, less), (q, p))| {
-                    let opens = more.gap - less.gap;
-                    let arm = more.arms[1] - less.arms[1];
-                    q * (opens - (delta - placed.lag) * arm) - p * arm / solution.stiffness
-                });
-                each.sum::<f64>() / (2.0 * STEP)
-            };
-            let on_base_circle = pair.driving().data().rack.pressure_angle.cos();
-            PairInfluence {
-                pair: n,
-                teeth: pair.teeth(n),
-                by_pitch: Member::BOTH.map(|member| by(member, STEP * on_base_circle, 0.0)),
-                by_profile_slope: Member::BOTH.map(|member| {
-                    let gear = pair.gear(member);
-                    by(
-                        member,
-                        0.0,
-                        STEP / (gear.tip_roll_length() - gear.form_roll_length()),
-                    )
-                }),
-            }
-        };
-        self.ranges()
-            .map(|(placed, range)| of_pair(placed, range))
-            .collect()
     }
 
     /// Loads of the `forces` on all cells on the interfaces of each pair, one column each.

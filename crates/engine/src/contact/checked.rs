@@ -9,8 +9,9 @@ use super::pair_cells::{PairCells, PairFlanks, compliance};
 use super::patch::{Cell, Patch, Stretch};
 use crate::flank::half_plane::Entries;
 use crate::gear::Member;
-use crate::touch::facing::{Facing, FlankRange, RangeEnd, View};
-use crate::touch::meeting::Probes;
+use crate::touch::facing::{Facing, FlankRange, RangeEnd};
+use crate::touch::meeting::FlankPoints;
+use crate::touch::placement::Pose;
 
 /// Stretches spread over the flanks beside the cells.
 const BESIDE: usize = 48;
@@ -56,7 +57,7 @@ impl Place {
 #[derive(Debug)]
 pub(super) struct CheckedStretch {
     pub(super) place: Place,
-    /// Its mean gap less that at its `place` or its probe.
+    /// Its mean gap less that at its `place` or its flank_point.
     pub(super) more: f64,
 }
 
@@ -64,8 +65,8 @@ pub(super) struct CheckedStretch {
 #[derive(Debug)]
 pub(super) struct CheckedStretches {
     pub(super) stretches: Vec<CheckedStretch>,
-    /// The probes of those that have one, by the flank on which they lie: that of the seat of the pair, and the other one.
-    pub(super) probes: [Probes; 2],
+    /// The flank_points of those that have one, by the flank on which they lie: that of the seat of the pair, and the other one.
+    pub(super) flank_points: [FlankPoints; 2],
     /// Displacements of each by unit forces on the cells of the pair, row by row with the interfaces held, and W V of each gear.
     pub(super) yields: Vec<f64>,
 }
@@ -101,7 +102,7 @@ impl CheckedStretches {
     /// Stretches at the flanks of `facing`, seen by `view`, whose gap as drawn is within `reach`.
     pub(super) fn new(
         flanks: &PairFlanks<'_>,
-        view: &View<'_>,
+        view: &Pose<'_>,
         facing: &Facing,
         (cells, carrying): (&PairCells, Carrying),
         reach: f64,
@@ -143,7 +144,7 @@ impl CheckedStretches {
         let beside = (0..=BESIDE).map(|i| low + (high - low) * i as f64 / BESIDE as f64);
         let near = |arc: &f64| {
             let point = view.point(*arc);
-            point.is_some_and(|point| point.sight.gap <= reach)
+            point.is_some_and(|point| point.gap.gap <= reach)
         };
         let places = kinks.map(|kink| (*kink, Place::Kink)).chain(
             beside
@@ -191,30 +192,33 @@ impl CheckedStretches {
                 row[j] = *entry;
             }
         }
-        let mut probes = [Probes::default(), Probes::default()];
+        let mut flank_points = [FlankPoints::default(), FlankPoints::default()];
         for (stretch, of) in &checked {
             if let Some(from) = of.place.seen_from(cells.patch.seat) {
-                probes[usize::from(from != cells.patch.seat)].push(&stretch.probe);
+                flank_points[usize::from(from != cells.patch.seat)].push(&stretch.flank_point);
             }
         }
         Self {
             yields,
-            probes,
+            flank_points,
             stretches: checked.into_iter().map(|(_, checked)| checked).collect(),
         }
     }
 
     /// About how much memory they take, in bytes.
     pub(super) fn bytes(&self) -> usize {
-        let probes: usize = self.probes.iter().map(Probes::bytes).sum();
-        size_of::<Self>() + size_of_val(&*self.stretches) + probes + size_of_val(&*self.yields)
+        let flank_points: usize = self.flank_points.iter().map(FlankPoints::bytes).sum();
+        size_of::<Self>()
+            + size_of_val(&*self.stretches)
+            + flank_points
+            + size_of_val(&*self.yields)
     }
 }
 
 /// The tip of the seat of `view` where it stands in the fillet of the other gear, and the gap there: it gives way about as the highest
 /// place that faces the flank does.
 fn tip_in_fillet(
-    view: &View<'_>,
+    view: &Pose<'_>,
     range: &FlankRange,
     patch: &Patch,
     half: f64,

@@ -10,8 +10,8 @@ use super::memo::Memo;
 use super::pair_cells::{CellsSpec, PairCells, PairFlanks};
 use super::patch::Extent;
 use crate::gear::Member;
-use crate::touch::facing::{Facing, View, nearer_tip};
-use crate::touch::placement::Placement;
+use crate::touch::facing::{Facing, nearer_tip};
+use crate::touch::placement::Pose;
 
 /// Limit of cells, and of the stretches that are checked beside them, in bytes each: two loads at forty positions a mesh period.
 const MOST_BYTES: usize = 12 << 20;
@@ -131,9 +131,6 @@ impl DrawnFlanks {
     }
 }
 
-fn view<'a>(flanks: &PairFlanks<'a>, phase: f64, facing: &Facing) -> View<'a> {
-    View {
-        placement: Placement::drawn(flanks.pair, phase),
-        seat: facing.seat,
-    }
+fn view<'a>(flanks: &PairFlanks<'a>, phase: f64, facing: &Facing) -> Pose<'a> {
+    Pose::drawn(flanks.pair, phase, facing.seat)
 }

@@ -7,8 +7,7 @@ use crate::gear::Member;
 use crate::touch::facing::{
     Facing, GapMinimum, MOST_TURNS, ROUNDING, RangeEnd, Touching, nearer_tip,
 };
-use crate::touch::meeting::Standing;
-use crate::touch::placement::{self, Section};
+use crate::touch::placement::{self, Pose, Section};
 
 /// Pairs whose teeth deviate are placed as drawn at the nearest of so many phases a mesh period.
 const PHASES: f64 = 64.0;
@@ -126,16 +125,16 @@ impl Near {
         inclined != 0.0 && arc < facing.range.from && facing.range.ends[0] == RangeEnd::MateTip
     }
 
-    /// How it stands at a mesh position of `deviating`, with a driven gear that lags by `lag`.
-    pub(super) fn standing<'a>(
+    /// Its pose at a mesh position of `deviating`, with a driven gear that lags by `lag`.
+    pub(super) fn pose<'a>(
         &self,
         deviating: DeviatingPair<'a>,
         at: MeshPosition,
         lag: f64,
-    ) -> Option<Standing<'a>> {
+    ) -> Option<Pose<'a>> {
         let n = at.period + self.pair;
         let seat = self.drawn.facing()?.seat;
-        Some(deviating.standing(at.eta(), n, lag, (seat, self.drawn.phase)))
+        Some(deviating.pose(at.eta(), n, lag, (seat, self.drawn.phase)))
     }
 }
 
@@ -287,17 +286,17 @@ impl<'a> Facings<'a> {
 
     /// Finds when the minima of `near` touch in mesh period `period`.
     fn find_touches(&self, near: &mut Near, period: i64) -> Option<()> {
-        let at = |lag: f64| near.standing(self.deviating, self.at(period), lag);
+        let at = |lag: f64| near.pose(self.deviating, self.at(period), lag);
         let as_drawn = at(0.0)?;
-        let further = |standing: &Standing<'_>, minimum: &GapMinimum| {
-            let meeting = standing.meeting(&minimum.probe);
-            meeting.gap / meeting.arms[1]
+        let further = |pose: &Pose<'_>, minimum: &GapMinimum| {
+            let met = pose.gap_and_arms_of(&minimum.flank_point);
+            met.gap / met.arms[1]
         };
         let touch = |minimum: &GapMinimum| {
             // A corner pushes in another direction than it moves: the step to its touch is a few percent too long or too short.
             let mut lag = further(&as_drawn, minimum);
             for _ in 0..MOST_TURNS {
-                let step = at(lag).map_or(0.0, |standing| further(&standing, minimum));
+                let step = at(lag).map_or(0.0, |pose| further(&pose, minimum));
                 lag += step;
                 if step.abs() < ROUNDING {
                     break;

@@ -67,19 +67,6 @@ pub struct MeshCells {
     pub solution: ContactSolution,
 }
 
-/// Derivative of δ to the deviations of one pair's teeth, in meters for a meter, while the same cells touch.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PairInfluence {
-    /// The pair n.
-    pub pair: i64,
-    /// Its driving and its driven tooth.
-    pub teeth: [usize; 2],
-    /// By the cumulative pitch deviation of either ([`crate::gear::ToothDeviations`]).
-    pub by_pitch: [f64; 2],
-    /// By the profile slope deviation of either.
-    pub by_profile_slope: [f64; 2],
-}
-
 /// Loads of a contact on the interfaces of one tooth pair.
 #[derive(Debug, Clone)]
 pub struct PairLoads {

@@ -13,7 +13,7 @@ use crate::flank::table::FlankTable;
 use crate::gear::{GearPair, Member, PairDeviations, teeth_on};
 use crate::ring::body::Coupling;
 use crate::run::Run;
-use crate::touch::meeting::Standing;
+use crate::touch::placement::{Pose, Section};
 
 /// The solver of the contact conditions.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -128,15 +128,10 @@ pub struct DeviatingPair<'a> {
 }
 
 impl<'a> DeviatingPair<'a> {
-    /// How its pair `n` stands at the mesh position `eta`, the driven gear lagging by `lag`, from where a pair of a phase was placed on a seat.
-    pub(super) fn standing(
-        self,
-        eta: f64,
-        n: i64,
-        lag: f64,
-        placed: (Member, f64),
-    ) -> Standing<'a> {
-        Standing::new((&self.model.pair, self.deviations), eta, n, lag, placed)
+    /// The pose of its pair `n` at the mesh position `eta`, the driven gear lagging by `lag`, for points that were placed on a seat at a phase.
+    pub(super) fn pose(self, eta: f64, n: i64, lag: f64, placed: (Member, f64)) -> Pose<'a> {
+        let made = (&self.model.pair, self.deviations);
+        Pose::real(made, Section::straight(eta, n), lag, placed)
     }
 }
 

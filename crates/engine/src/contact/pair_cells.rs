@@ -8,7 +8,8 @@ use crate::fem::dense;
 use crate::flank::half_plane::{Entries, near_compliance};
 use crate::flank::table::{FlankPoint, FlankTable};
 use crate::gear::{GearPair, Member};
-use crate::touch::facing::{Facing, View};
+use crate::touch::facing::Facing;
+use crate::touch::placement::Pose;
 
 /// The flanks of a pair as drawn, on which cells are placed.
 #[derive(Clone, Copy)]
@@ -33,7 +34,7 @@ pub(super) struct CellsSpec {
 
 /// The cells of one pair as drawn, some part of a mesh period after it passed the pitch point.
 #[derive(Debug)]
-pub struct PairCells {
+pub(crate) struct PairCells {
     pub(super) spec: CellsSpec,
     /// Where they lie.
     pub(super) patch: Patch,
@@ -47,7 +48,7 @@ impl PairCells {
     /// Places cells on the flanks of `facing`; `None` where there is no room for one.
     pub(super) fn new(
         flanks: &PairFlanks<'_>,
-        view: &View<'_>,
+        view: &Pose<'_>,
         facing: &Facing,
         spec: CellsSpec,
     ) -> Option<Self> {

@@ -9,8 +9,9 @@ use std::ops::Range;
 use crate::flank::half_plane::{NearField, logarithm_factor};
 use crate::gear::{GearPair, Member, Vector};
 use crate::root_finding::crossing;
-use crate::touch::facing::{Facing, GapMinimum, RangeEnd, View};
-use crate::touch::meeting::{Probe, Probes};
+use crate::touch::facing::{Facing, GapMinimum, RangeEnd};
+use crate::touch::meeting::{FlankPoint, FlankPoints};
+use crate::touch::placement::Pose;
 
 /// The cells on either side of a minimum, in half-widths of the contact under the whole load: the contact and a quarter more, so that a contact
 /// that a relief shifts still fits.
@@ -72,7 +73,7 @@ pub struct Patch {
     /// True if the nominal contact lies past the seat's tip, off the path of contact.
     pub off_path: bool,
     /// The middle of each cell, to be followed.
-    pub(super) probes: Probes,
+    pub(super) flank_points: FlankPoints,
     /// Excess of the mean gap of each cell over the gap there.
     pub(super) more: Vec<f64>,
 }
@@ -84,7 +85,7 @@ pub(super) struct Stretch {
     /// Where it begins and ends along the flank as it is.
     pub(super) along: [f64; 2],
     /// Its middle, to be followed.
-    pub(super) probe: Probe,
+    pub(super) flank_point: FlankPoint,
     /// Excess of its mean gap over that at its middle.
     pub(super) more: f64,
 }
@@ -129,13 +130,13 @@ impl Patch {
     /// Cells end where the flanks cease to face each other, so that they move with the contact and close up smoothly towards a corner,
     /// and at kinks. The cells of a patch are among those of the same patch widened: where contact does not reach beyond the core nothing changes.
     pub(super) fn new(
-        view: &View<'_>,
+        view: &Pose<'_>,
         facing: &Facing,
         load: f64,
         count: usize,
         extent: Extent,
     ) -> Self {
-        let gears = view.gears();
+        let gears = view.pair;
         let width = gears.common_face_width();
         let covered = &facing.minima[..extent.minima.min(facing.minima.len())];
         let chains = chains(view, facing, covered, load, count, extent);
@@ -155,7 +156,7 @@ impl Patch {
                 NearField::new(gears.gear(member), s, width)
             }),
             off_path: facing.off_path,
-            probes: Probes::default(),
+            flank_points: FlankPoints::default(),
             more: Vec::new(),
         };
         let (mut last, mut along) = (None::<Vector>, 0.0);
@@ -177,7 +178,7 @@ impl Patch {
     }
 
     /// Places the cell between the last two ends.
-    fn place(&mut self, view: &View<'_>, facing: &Facing) {
+    fn place(&mut self, view: &Pose<'_>, facing: &Facing) {
         let place = self.ends_along.len() - 2;
         let ([from, _], [to, _]) = (self.ends_along[place], self.ends_along[place + 1]);
         if let Some(stretch) = self.stretch_between(view, &facing.kinks, from, to) {
@@ -185,7 +186,7 @@ impl Patch {
                 stretch: place,
                 ..stretch.cell
             });
-            self.probes.push(&stretch.probe);
+            self.flank_points.push(&stretch.flank_point);
             self.more.push(stretch.more);
         }
     }
@@ -193,26 +194,26 @@ impl Patch {
     /// The flank of the seat of `view`, this one's or the other gear, between its arcs `from` and `to`; `None` inside the other base circle.
     pub(super) fn stretch_between(
         &self,
-        view: &View<'_>,
+        view: &Pose<'_>,
         kinks: &[f64],
         from: f64,
         to: f64,
     ) -> Option<Stretch> {
         let middle = view.point(f64::midpoint(from, to))?;
-        let meeting = view.meeting(&middle);
-        let gap = mean_gap(view, kinks, from, to).unwrap_or(meeting.gap);
-        let (place, sight) = (&middle.place, &middle.sight);
-        let normal = view.placement.push(view.seat, place, sight).normal;
+        let met = view.gap_and_arms(&middle);
+        let gap = mean_gap(view, kinks, from, to).unwrap_or(met.gap);
+        let (place, opposite) = (&middle.place, &middle.gap);
+        let normal = view.common_normal(place.normal, opposite.normal);
         let on = |radial: Vector| {
             let across = Vector::new(-radial.y, radial.x);
             [normal.dot(&across), normal.dot(&radial)]
         };
-        let (on_seat, on_mate) = (on(place.radial).map(|each| -each), on(sight.radial));
-        let roll_lengths = view.on_both(middle.roll_length, sight.roll_length);
+        let (on_seat, on_mate) = (on(place.radial).map(|each| -each), on(opposite.radial));
+        let roll_lengths = view.on_both(middle.roll_length, opposite.roll_length);
         let along = if view.seat == self.seat {
             [from, to].map(|arc| self.along(arc))
         } else {
-            let flank = view.gears().gear(self.seat).flank();
+            let flank = view.pair.gear(self.seat).flank();
             let at = self.along(flank.arc_length(roll_lengths[self.seat.index()]));
             [at - 0.5 * (to - from), at + 0.5 * (to - from)]
         };
@@ -223,11 +224,11 @@ impl Patch {
                 roll_lengths,
                 directions: view.on_both(on_seat, on_mate),
                 gap,
-                arms: meeting.arms,
+                arms: met.arms,
             },
             along,
-            probe: view.probe(&middle),
-            more: gap - meeting.gap,
+            flank_point: view.flank_point(&middle),
+            more: gap - met.gap,
         })
     }
 
@@ -271,7 +272,7 @@ impl Patch {
             + size_of_val(self.ends_along.as_slice())
             + size_of_val(self.kinks.as_slice())
             + size_of_val(self.corners.as_slice())
-            + self.probes.bytes()
+            + self.flank_points.bytes()
             + size_of_val(self.more.as_slice())
     }
 
@@ -418,14 +419,14 @@ impl Patch {
 }
 
 /// The mean gap from `from` to `to`, by two Gauss points between each two `kinks`.
-fn mean_gap(view: &View<'_>, kinks: &[f64], from: f64, to: f64) -> Option<f64> {
+fn mean_gap(view: &Pose<'_>, kinks: &[f64], from: f64, to: f64) -> Option<f64> {
     let first = kinks.partition_point(|kink| *kink <= from);
     let inside = kinks[first..].iter().copied().take_while(|kink| *kink < to);
     let (mut sum, mut begin) = (0.0, from);
     for end in inside.chain([to]) {
         let (middle, offset) = (f64::midpoint(begin, end), (end - begin) / 12.0_f64.sqrt());
         for arc in [middle - offset, middle + offset] {
-            sum += 0.5 * (end - begin) * view.meeting(&view.point(arc)?).gap;
+            sum += 0.5 * (end - begin) * view.gap_and_arms(&view.point(arc)?).gap;
         }
         begin = end;
     }
@@ -434,7 +435,7 @@ fn mean_gap(view: &View<'_>, kinks: &[f64], from: f64, to: f64) -> Option<f64> {
 
 /// Rising ends of cells: chains of them, apart from each other.
 fn chains(
-    view: &View<'_>,
+    view: &Pose<'_>,
     facing: &Facing,
     covered: &[GapMinimum],
     load: f64,
@@ -508,18 +509,15 @@ fn covered_by(cores: &[[f64; 2]]) -> f64 {
 }
 
 /// The stretch about `minimum` that the contact may take under the whole load, and a quarter beside it.
-fn core(view: &View<'_>, minimum: &GapMinimum, load: f64, facing: &Facing) -> [f64; 2] {
+fn core(view: &Pose<'_>, minimum: &GapMinimum, load: f64, facing: &Facing) -> [f64; 2] {
     let Facing { range, kinks, .. } = facing;
-    let (indentation, radius) = indentation(view.gears(), minimum, load);
+    let (indentation, radius) = indentation(view.pair, minimum, load);
     let ways = minimum
         .openings
         .map(|angle| CORE * contact_width(indentation, radius, angle));
     let [down, up] = ways;
     let (low, high) = (minimum.arc - down, minimum.arc + up);
-    let gap = |arc: f64| {
-        view.point(arc)
-            .map_or(f64::INFINITY, |point| point.sight.gap)
-    };
+    let gap = |arc: f64| view.point(arc).map_or(f64::INFINITY, |point| point.gap.gap);
     let least = gap(minimum.arc);
     let room = |arc: f64| MOST_RISE * indentation - (gap(arc) - least);
     // Beyond a kink the gap may open faster than the parabola does.
@@ -781,7 +779,6 @@ mod tests {
     use super::*;
     use crate::gear::spur::tests::paper_gear;
     use crate::gear::{ModificationData, ReliefData, ReliefShape, ReliefStart, SpurGear};
-    use crate::touch::placement::Placement;
 
     fn pair() -> GearPair {
         let gear = SpurGear::new(paper_gear(50)).expect("the standard gear");
@@ -790,10 +787,7 @@ mod tests {
 
     fn patch(pair: &GearPair, phase: f64, count: usize) -> Patch {
         let facing = Facing::drawn(pair, phase).expect("flanks that face each other");
-        let view = View {
-            placement: Placement::drawn(pair, phase),
-            seat: facing.seat,
-        };
+        let view = Pose::drawn(pair, phase, facing.seat);
         let extent = Extent {
             minima: 1,
             widened: 0,
@@ -818,10 +812,7 @@ mod tests {
             let Some(facing) = Facing::drawn(&pair, phase) else {
                 continue;
             };
-            let view = View {
-                placement: Placement::drawn(&pair, phase),
-                seat: facing.seat,
-            };
+            let view = Pose::drawn(&pair, phase, facing.seat);
             let extent = Extent {
                 minima: facing.minima.len(),
                 widened: 1,

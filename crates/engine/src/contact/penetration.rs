@@ -10,14 +10,14 @@ use super::cells::{ContactCells, PlacedCells};
 use super::checked::{CheckedStretch, CheckedStretches, Penetration, Place};
 use super::factor::dot;
 use super::model::{DeviatingPair, MeshPosition};
-use crate::touch::meeting::Meeting;
+use crate::touch::meeting::GapAndArms;
 use crate::wide::wide;
 
 /// The checked stretches of one pair as it stands.
 pub(super) struct PlacedStretches {
     checked: Arc<CheckedStretches>,
-    /// How flanks meet at the probes.
-    met: [Vec<Meeting>; 2],
+    /// Gaps and arms at the points.
+    met: [Vec<GapAndArms>; 2],
 }
 
 impl PlacedStretches {
@@ -30,13 +30,13 @@ impl PlacedStretches {
     ) -> Self {
         let seat = placed.cells().patch.seat;
         let met = [seat, seat.other()].map(|from| {
-            let probes = &checked.probes[usize::from(from != seat)];
-            if probes.is_empty() {
+            let flank_points = &checked.flank_points[usize::from(from != seat)];
+            if flank_points.is_empty() {
                 return Vec::new();
             }
             let n = at.period + placed.pair;
-            let standing = deviating.standing(at.eta(), n, placed.lag, (from, placed.drawn.phase));
-            standing.meetings(probes)
+            let pose = deviating.pose(at.eta(), n, placed.lag, (from, placed.drawn.phase));
+            pose.gaps_and_arms(flank_points)
         });
         Self { checked, met }
     }
@@ -66,8 +66,8 @@ impl PlacedStretches {
             }
             place => {
                 let from_mate = place.seen_from(patch.seat) != Some(patch.seat);
-                let meeting = met[usize::from(from_mate)].next()?;
-                Some((meeting.gap + placed.lag * meeting.arms[1], meeting.arms[1]))
+                let at = met[usize::from(from_mate)].next()?;
+                Some((at.gap + placed.lag * at.arms[1], at.arms[1]))
             }
         };
         let mut gap = gap;

@@ -1,19 +1,14 @@
-//! The contact at many mesh positions under one load, of one pair or of many made to one drawing, in parallel.
+//! The contact at many mesh positions under one load, in parallel.
 
 use rayon::prelude::*;
 
 use super::{
-    ContactCells, ContactSolution, DeviatingPair, MeshContact, PairModel, PositionError, Stage,
-    WarmStart,
+    ContactCells, ContactSolution, DeviatingPair, MeshContact, PositionError, Stage, WarmStart,
 };
-use crate::gear::PairDeviations;
 use crate::run::{Run, Stopped};
 
 /// Stages that one thread solves in a row, each starting from the last; fixed, so that results do not depend on threads.
 const CHUNK: usize = 5;
-
-/// Pairs of one drawing that one thread solves in a row.
-const PAIRS: usize = 8;
 
 /// Fractions of the mesh period that differ by less are one: far above their rounding, far below any step.
 const SAME_FRACTION: f64 = 1e-9;
@@ -86,77 +81,6 @@ pub fn contacts_keeping<T: Send>(
     let mut contacts: Vec<_> = solved?.into_iter().flatten().collect();
     contacts.sort_unstable_by_key(|&(place, _)| place);
     Ok(contacts.into_iter().map(|(_, contact)| contact).collect())
-}
-
-/// The values that `keep` takes of the contacts of many pairs at each of `positions` under `load`: pairs made to the drawing of `model` that deviate by
-/// `members`, whose answers stand pair after pair. A pair has the same answer to the bit alone ([`contacts`]) and among any others.
-///
-/// The common data of the pairs are computed once and stored in `model`, fraction of the mesh period by fraction: some hundred pairs at a time, and positions
-/// that repeat a few fractions in every mesh period, cost little more than their contact solves. A pair with an error does not end the work of the others; a
-/// stopped `run` does.
-///
-/// # Errors
-///
-/// [`Stopped`].
-pub fn contacts_of_many<T: Send>(
-    model: &PairModel,
-    members: &[PairDeviations],
-    load: f64,
-    positions: &[f64],
-    run: &Run,
-    keep: impl Fn(&MeshContact) -> T + Sync,
-) -> Result<Vec<Result<Vec<T>, PositionsError>>, Stopped> {
-    let stages = stages(positions);
-    let tasks: Vec<(&[Places], usize)> = stages
-        .chunks(CHUNK)
-        .flat_map(|chunk| {
-            (0..members.len())
-                .step_by(PAIRS)
-                .map(move |first| (chunk, first))
-        })
-        .collect();
-    // A task is a chunk of stages and the first of its pairs.
-    type Kept<T> = Vec<(usize, Result<Vec<(usize, T)>, PositionsError>)>;
-    let solved: Result<Vec<Kept<T>>, Stopped> = tasks
-        .into_par_iter()
-        .map(|(chunk, first)| {
-            let members = members.iter().enumerate().skip(first).take(PAIRS);
-            let solved = members.map(|(number, deviations)| {
-                let mut kept = Vec::new();
-                let deviating = model.deviating(deviations);
-                let solved = chunk_of(
-                    deviating,
-                    load,
-                    positions,
-                    chunk,
-                    run,
-                    |place, contact, _, _| {
-                        kept.push((place, keep(&contact)));
-                    },
-                );
-                match solved {
-                    Err(PositionsError::Stopped(stopped)) => Err(stopped),
-                    solved => Ok((number, solved.map(|()| kept))),
-                }
-            });
-            solved.collect()
-        })
-        .collect();
-    let mut answers: Vec<Result<Vec<(usize, T)>, PositionsError>> =
-        members.iter().map(|_| Ok(Vec::new())).collect();
-    for (number, solved) in solved?.into_iter().flatten() {
-        match (&mut answers[number], solved) {
-            (Ok(known), Ok(more)) => known.extend(more),
-            (answer @ Ok(_), Err(error)) => *answer = Err(error),
-            (Err(_), _) => {}
-        }
-    }
-    let in_order = |mut kept: Vec<(usize, T)>| {
-        kept.sort_unstable_by_key(|(place, _)| *place);
-        kept.into_iter().map(|(_, kept)| kept).collect()
-    };
-    let answers = answers.into_iter();
-    Ok(answers.map(|answer| answer.map(in_order)).collect())
 }
 
 /// The contacts of `deviating` on a chunk of stages. Each is handed to `each`, with the place of its position.

@@ -71,21 +71,6 @@ impl ContactProblem {
         })
     }
 
-    /// The same compliance with other `gaps` and `arms`.
-    ///
-    /// # Errors
-    ///
-    /// As for [`ContactProblem::new`].
-    pub fn with_gaps(&self, gaps: Vec<f64>, arms: Vec<f64>) -> Result<Self, ContactError> {
-        let points = self.point_count();
-        check_points(points, points, &gaps, &arms)?;
-        Ok(Self {
-            gaps,
-            arms,
-            ..self.clone()
-        })
-    }
-
     /// As [`ContactProblem::new`], with an H that is `known`.
     pub(super) fn of_known(
         known: &Known,

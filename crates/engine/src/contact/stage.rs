@@ -15,7 +15,6 @@ use super::model::{DeviatingPair, PositionError, WarmStart};
 use super::patch::Extent;
 use super::penetration::{PlacedStretches, penetration};
 use super::{ContactProblem, ContactSolution};
-use crate::touch::meeting::Standing;
 
 /// Pairs are solved together whose gap is within this multiple of the approach by the load: a little more than touch.
 const REACH: f64 = 1.1;
@@ -216,11 +215,11 @@ impl<'a> Stage<'a> {
     fn place(&mut self, near: &Near, extent: Extent, reach: Reach) -> Option<PlacedCells> {
         let model = self.deviating.model;
         let at = self.facings.at(reach.period);
-        let standing: Standing<'_> = near.standing(self.deviating, at, reach.touch)?;
+        let pose = near.pose(self.deviating, at, reach.touch)?;
         let cells = model
             .drawn
             .cells(&model.flanks(), &near.drawn, self.load, extent);
-        let placed = PlacedCells::new(near, extent, cells, &standing, reach.touch)?;
+        let placed = PlacedCells::new(near, extent, cells, &pose, reach.touch)?;
         if self.facings.are_as_drawn() {
             self.placed.push(placed.clone());
         }

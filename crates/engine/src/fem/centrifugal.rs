@@ -8,7 +8,7 @@ use crate::grid::Grid;
 /// The centrifugal forces ∫ N ρ t r dA on the nodes of `grid` for ω² = 1 in 1/s², by the work that they do.
 ///
 /// `thickness` t, in meters, is that of an element whose own is 1.
-pub fn centrifugal(grid: &Grid, material: &Material, thickness: f64) -> Functional {
+pub(crate) fn centrifugal(grid: &Grid, material: &Material, thickness: f64) -> Functional {
     let mut forces = vec![Vector::zeros(); grid.nodes.len()];
     for element in &grid.elements {
         let (kind, nodes) = (element.kind(), element.places(&grid.nodes));

@@ -34,7 +34,7 @@ pub struct Condensed {
 
 /// The stiffness of every element of `grid` in turn, of one material; `thickness`, in meters, is that of an element whose own
 /// is 1.
-pub fn element_stiffnesses(
+pub(crate) fn element_stiffnesses(
     grid: &Grid,
     material: &Material,
     thickness: f64,
@@ -45,50 +45,17 @@ pub fn element_stiffnesses(
     })
 }
 
-/// Condenses `grid` to the unknowns of the nodes in `kept`, with the nodes in `fixed` held.
+/// Condenses `grid` to the unknowns of the nodes in `kept`, with the nodes in `fixed` held, the functionals `asked` and the `loads` on its nodes.
 ///
 /// The result has the unknowns (u_x, u_y) of each kept node in the order given, in N/m. A grid that floats, with nothing
-/// fixed, is condensed as well: its stiffness is singular by the rigid motions only. `thickness`, in meters, is that of an
-/// element whose own is 1.
+/// fixed, is condensed as well: its stiffness is singular by the rigid motions only. The thickness, in meters, is that of an
+/// element whose own is 1. A load is given by the work Σ f·u of its forces and condensed as a functional is: L₁₁⁻¹ of both, multiplied, is the functional
+/// under the load with the kept nodes held. No functionals cost nothing.
 ///
 /// # Errors
 ///
 /// [`FemError::NotPositiveDefinite`] if the grid is degenerate.
 pub fn condense(
-    part: &'static str,
-    grid: &Grid,
-    material: &Material,
-    thickness: f64,
-    kept: &[u32],
-    fixed: &[u32],
-) -> Result<Mat<f64>, FemError> {
-    Ok(condense_with(part, grid, (material, thickness), kept, fixed, &[])?.stiffness)
-}
-
-/// Condenses `grid` as [`condense`] does, with each of the functionals `asked` on the kept unknowns. No functionals cost nothing.
-///
-/// # Errors
-///
-/// As [`condense`].
-pub fn condense_with(
-    part: &'static str,
-    grid: &Grid,
-    plate: (&Material, f64),
-    kept: &[u32],
-    fixed: &[u32],
-    asked: &[Functional],
-) -> Result<Condensed, FemError> {
-    condense_loaded(part, grid, plate, (kept, fixed), asked, &[])
-}
-
-/// Condenses `grid` as [`condense_with`] does, with the `loads` on its nodes, each given by the work Σ f·u of its forces.
-///
-/// A load is condensed as a functional is: L₁₁⁻¹ of both, multiplied, is the functional under the load with the kept nodes held.
-///
-/// # Errors
-///
-/// As [`condense`].
-pub fn condense_loaded(
     part: &'static str,
     grid: &Grid,
     (material, thickness): (&Material, f64),
@@ -226,6 +193,12 @@ pub(super) mod tests {
         k
     }
 
+    /// Stiffness of a plate of steel on the nodes `kept`, with those of `fixed` held.
+    fn alone(grid: &Grid, kept: &[u32], fixed: &[u32]) -> Result<Mat<f64>, FemError> {
+        let plate = (&Material::STEEL, 20e-3);
+        Ok(condense("a patch", grid, plate, (kept, fixed), &[], &[])?.stiffness)
+    }
+
     /// K_bb − K_bi K_ii⁻¹ K_ib with dense matrices, all unknowns of `kept` against all that are neither kept nor fixed.
     fn dense_schur(grid: &Grid, kept: &[u32], fixed: &[u32]) -> DMatrix<f64> {
         let k = dense(grid);
@@ -264,8 +237,7 @@ pub(super) mod tests {
     fn the_trailing_factor_is_the_schur_complement_of_a_floating_grid() {
         let grid = patch();
         let kept = [20, 0, 7, 4, 12];
-        let schur =
-            condense("a patch", &grid, &Material::STEEL, 20e-3, &kept, &[]).expect("a sound grid");
+        let schur = alone(&grid, &kept, &[]).expect("a sound grid");
         assert_alike(&schur, &dense_schur(&grid, &kept, &[]));
         // It floats: a translation and a rotation of the kept nodes cost nothing.
         let scale = schur[(0, 0)];
@@ -287,8 +259,7 @@ pub(super) mod tests {
     fn the_trailing_factor_is_the_schur_complement_of_a_held_grid() {
         let grid = patch();
         let (kept, fixed) = ([18, 20, 3], [0, 1, 2]);
-        let schur = condense("a patch", &grid, &Material::STEEL, 20e-3, &kept, &fixed)
-            .expect("a sound grid");
+        let schur = alone(&grid, &kept, &fixed).expect("a sound grid");
         assert_alike(&schur, &dense_schur(&grid, &kept, &fixed));
     }
 
@@ -299,8 +270,7 @@ pub(super) mod tests {
             let nodes = element.nodes();
             *element = Element::quadrilateral([0, 3, 2, 1, 7, 6, 5, 4].map(|i: usize| nodes[i]));
         }
-        let error = condense("a patch", &grid, &Material::STEEL, 20e-3, &[0, 4], &[])
-            .expect_err("a refusal");
+        let error = alone(&grid, &[0, 4], &[]).expect_err("a refusal");
         assert!(matches!(
             error,
             FemError::NotPositiveDefinite {
@@ -328,15 +298,9 @@ pub(super) mod tests {
             .collect();
         for fixed in [&[0, 1, 2][..], &[]] {
             let kept = [18, 20, 3];
-            let condensed = condense_with(
-                "a patch",
-                &grid,
-                (&Material::STEEL, 20e-3),
-                &kept,
-                fixed,
-                &asked,
-            )
-            .expect("a sound grid");
+            let plate = (&Material::STEEL, 20e-3);
+            let condensed = condense("a patch", &grid, plate, (&kept, fixed), &asked, &[]);
+            let condensed = condensed.expect("a sound grid");
             let inner: Vec<u32> = (0..n)
                 .filter(|node| !kept.contains(node) && !fixed.contains(node))
                 .collect();

@@ -14,11 +14,11 @@ use crate::run::{Run, Stopped};
 const PANEL: usize = 256;
 
 /// The lower Cholesky factor of a Hermitian positive definite matrix, of which the lower triangle is read.
-pub struct Cholesky<T: ComplexField>(Mat<T>);
+pub(crate) struct Cholesky<T: ComplexField>(Mat<T>);
 
 impl<T: ComplexField> Cholesky<T> {
     /// Factorizes `a`; `None` if it is not positive definite.
-    pub fn new(mut a: Mat<T>) -> Option<Self> {
+    pub(crate) fn new(mut a: Mat<T>) -> Option<Self> {
         let n = a.nrows();
         let mut memory = MemBuffer::new(llt::factor::cholesky_in_place_scratch::<T>(
             n,
@@ -37,7 +37,7 @@ impl<T: ComplexField> Cholesky<T> {
     }
 
     /// Overwrites `b` with A⁻¹ b.
-    pub fn solve_in_place(&self, b: MatMut<'_, T>) {
+    pub(crate) fn solve_in_place(&self, b: MatMut<'_, T>) {
         let columns = b.ncols();
         let mut memory = MemBuffer::new(llt::solve::solve_in_place_scratch::<T>(
             self.0.nrows(),
@@ -48,19 +48,19 @@ impl<T: ComplexField> Cholesky<T> {
     }
 
     /// Overwrites `b` with L⁻¹ b, so that bᴴ A⁻¹ b becomes a plain product.
-    pub fn half_solve_in_place(&self, b: MatMut<'_, T>) {
+    pub(crate) fn half_solve_in_place(&self, b: MatMut<'_, T>) {
         triangular_solve::solve_lower_triangular_in_place(self.0.as_ref(), b, Par::Seq);
     }
 
     /// Overwrites `b` with L⁻ᴴ b.
-    pub fn other_half_solve_in_place(&self, b: MatMut<'_, T>) {
+    pub(crate) fn other_half_solve_in_place(&self, b: MatMut<'_, T>) {
         triangular_solve::solve_upper_triangular_in_place(self.0.adjoint(), b, Par::Seq);
     }
 }
 
 impl Cholesky<f64> {
     /// L, with zeros above the diagonal.
-    pub fn lower(&self) -> Mat<f64> {
+    pub(crate) fn lower(&self) -> Mat<f64> {
         Mat::from_fn(self.0.nrows(), self.0.ncols(), |row, column| {
             if row < column {
                 0.0
@@ -75,7 +75,7 @@ impl Cholesky<f64> {
     /// # Errors
     ///
     /// [`Stopped`].
-    pub fn new_watched(mut a: Mat<f64>, run: &Run) -> Result<Option<Self>, Stopped> {
+    pub(crate) fn new_watched(mut a: Mat<f64>, run: &Run) -> Result<Option<Self>, Stopped> {
         let n = a.nrows();
         for start in (0..n).step_by(PANEL) {
             run.check()?;
@@ -112,12 +112,12 @@ impl Cholesky<f64> {
 }
 
 /// The number of entries of `a`, for the books of a cache.
-pub fn entries(a: &Mat<f64>) -> usize {
+pub(crate) fn entries(a: &Mat<f64>) -> usize {
     a.nrows() * a.ncols()
 }
 
 /// Copies the lower triangle of `a` to its upper one.
-pub fn mirror_lower(a: &mut Mat<f64>) {
+pub(crate) fn mirror_lower(a: &mut Mat<f64>) {
     for j in 0..a.ncols() {
         for i in 0..j {
             a[(i, j)] = a[(j, i)];
@@ -126,7 +126,7 @@ pub fn mirror_lower(a: &mut Mat<f64>) {
 }
 
 /// Replaces both triangles of `a` by their mean.
-pub fn symmetrize(a: &mut Mat<f64>) {
+pub(crate) fn symmetrize(a: &mut Mat<f64>) {
     for j in 0..a.ncols() {
         for i in 0..j {
             let mean = f64::midpoint(a[(i, j)], a[(j, i)]);

@@ -28,7 +28,7 @@ const INDEPENDENT: f64 = 1e-9;
 
 /// One entry of a sparse Hermitian pair (K, M), in the lower triangle; entries of the same place add up.
 #[derive(Debug, Clone, Copy)]
-pub struct Entry {
+pub(crate) struct Entry {
     /// The column.
     pub column: u32,
     /// The row, not above the diagonal.
@@ -41,7 +41,7 @@ pub struct Entry {
 
 /// A sparse Hermitian pair (K, M), lower triangles of one pattern, column by column.
 #[derive(Debug, Clone)]
-pub struct Pencil {
+pub(crate) struct Pencil {
     count: usize,
     starts: Vec<u32>,
     rows: Vec<u32>,
@@ -51,7 +51,7 @@ pub struct Pencil {
 
 /// One pair that was found.
 #[derive(Debug, Clone)]
-pub struct EigenPair {
+pub(crate) struct EigenPair {
     /// λ.
     pub value: f64,
     /// x, with xᴴ M x = 1.
@@ -62,7 +62,7 @@ pub struct EigenPair {
 
 impl Pencil {
     /// The pair of `count` unknowns with these entries.
-    pub fn new(count: usize, entries: &[Entry]) -> Self {
+    pub(crate) fn new(count: usize, entries: &[Entry]) -> Self {
         let mut ends = vec![0_usize; count + 1];
         for entry in entries {
             ends[entry.column as usize + 1] += 1;
@@ -117,13 +117,8 @@ impl Pencil {
     }
 
     /// The number of unknowns.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.count
-    }
-
-    /// True if it has no unknowns.
-    pub fn is_empty(&self) -> bool {
-        self.count == 0
     }
 
     /// M x, or K x.
@@ -146,12 +141,12 @@ impl Pencil {
     }
 
     /// M x.
-    pub fn mass_times(&self, x: &Mat<c64>) -> Mat<c64> {
+    pub(crate) fn mass_times(&self, x: &Mat<c64>) -> Mat<c64> {
         self.times(&self.mass, x)
     }
 
     /// K x.
-    pub fn stiffness_times(&self, x: &Mat<c64>) -> Mat<c64> {
+    pub(crate) fn stiffness_times(&self, x: &Mat<c64>) -> Mat<c64> {
         self.times(&self.stiffness, x)
     }
 
@@ -160,7 +155,7 @@ impl Pencil {
     /// # Errors
     ///
     /// [`FemError`] if that is not positive definite, or too large.
-    pub fn factor(&self, part: &'static str, shift: f64) -> Result<PencilFactor, FemError> {
+    pub(crate) fn factor(&self, part: &'static str, shift: f64) -> Result<PencilFactor, FemError> {
         let unknowns = self.count;
         let values = self.stiffness.iter().zip(&self.mass);
         let values: Vec<c64> = values.map(|(k, m)| k + m * shift).collect();
@@ -200,14 +195,14 @@ impl Pencil {
 
 /// The Cholesky factor of K + s M.
 #[derive(Debug)]
-pub struct PencilFactor {
+pub(crate) struct PencilFactor {
     symbolic: SymbolicCholesky<u32>,
     values: Vec<c64>,
 }
 
 impl PencilFactor {
     /// Overwrites `b` with (K + s M)⁻¹ b.
-    pub fn solve_in_place(&self, b: &mut Mat<c64>) {
+    pub(crate) fn solve_in_place(&self, b: &mut Mat<c64>) {
         let columns = b.ncols();
         let mut memory = MemBuffer::new(
             self.symbolic
@@ -224,7 +219,7 @@ impl PencilFactor {
 
 /// Lanczos's method on one pair of matrices, which goes on from where it stopped.
 #[derive(Debug)]
-pub struct Lanczos {
+pub(crate) struct Lanczos {
     pencil: Pencil,
     factor: PencilFactor,
     shift: f64,
@@ -244,7 +239,7 @@ impl Lanczos {
     /// # Errors
     ///
     /// As [`Pencil::factor`].
-    pub fn new(part: &'static str, pencil: Pencil, shift: f64) -> Result<Self, FemError> {
+    pub(crate) fn new(part: &'static str, pencil: Pencil, shift: f64) -> Result<Self, FemError> {
         let factor = pencil.factor(part, shift)?;
         let mut random = Random(0x9e37_79b9_7f4a_7c15);
         let mut next = pencil.mass_times(&random.columns(pencil.len(), BLOCK));
@@ -264,17 +259,17 @@ impl Lanczos {
     }
 
     /// The matrices.
-    pub fn pencil(&self) -> &Pencil {
+    pub(crate) fn pencil(&self) -> &Pencil {
         &self.pencil
     }
 
     /// The pairs found so far, the lowest first: none below the last of them is missing.
-    pub fn found(&self) -> &[EigenPair] {
+    pub(crate) fn found(&self) -> &[EigenPair] {
         &self.found
     }
 
     /// True if there are no more than those found.
-    pub fn is_exhausted(&self) -> bool {
+    pub(crate) fn is_exhausted(&self) -> bool {
         self.is_exhausted
     }
 
@@ -283,7 +278,7 @@ impl Lanczos {
     /// # Errors
     ///
     /// [`FemError::Stopped`].
-    pub fn find(&mut self, wanted: usize, run: &Run) -> Result<(), FemError> {
+    pub(crate) fn find(&mut self, wanted: usize, run: &Run) -> Result<(), FemError> {
         while self.found.len() < wanted && !self.is_exhausted {
             for _ in 0..STEPS_BETWEEN {
                 run.check()?;
@@ -393,7 +388,7 @@ impl Random {
 }
 
 /// xᴴ y of two columns.
-pub fn inner(x: &Mat<c64>, y: &Mat<c64>) -> c64 {
+pub(crate) fn inner(x: &Mat<c64>, y: &Mat<c64>) -> c64 {
     let mut product = Mat::<c64>::zeros(1, 1);
     matmul(
         product.as_mut(),

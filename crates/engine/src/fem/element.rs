@@ -8,13 +8,13 @@ use crate::grid::ElementKind;
 use crate::grid::element::MOST_NODES;
 
 /// The components of the displacement of a node.
-pub const COMPONENTS: usize = 2;
+pub(crate) const COMPONENTS: usize = 2;
 
 /// The stiffness of one element, in N/m: unknowns (u_x, u_y) node by node. A triangle fills the first 12 rows and columns.
 pub type ElementStiffness = SMatrix<f64, 16, 16>;
 
 /// The derivatives (∂N/∂x, ∂N/∂y) of the shape functions and the Jacobian's determinant at (ξ, η) of the element on `nodes`.
-pub fn gradients(
+pub(crate) fn gradients(
     kind: ElementKind,
     nodes: &[Vector; MOST_NODES],
     xi: f64,

@@ -4,7 +4,7 @@ use crate::gear::Material;
 
 /// An isotropic law in the plane: σ_x = d ε_x + c ε_y, σ_y = c ε_x + d ε_y, τ = g γ, in Pa.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Law {
+pub(crate) struct Law {
     /// d: of the strain along.
     pub along: f64,
     /// c: of the strain across.
@@ -15,7 +15,7 @@ pub struct Law {
 
 impl Law {
     /// Plane stress: E/(1 − ν²) [[1, ν, 0], [ν, 1, 0], [0, 0, (1 − ν)/2]].
-    pub fn plane_stress(material: &Material) -> Self {
+    pub(crate) fn plane_stress(material: &Material) -> Self {
         let (e, nu) = (material.youngs_modulus, material.poisson_ratio);
         let along = e / (1.0 - nu * nu);
         Self {

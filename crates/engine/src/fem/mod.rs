@@ -5,22 +5,22 @@
 //! rotation); of bodies with an extent along an axis [`axial`], [`prism`], [`surface`] and [`volume`]. Beside them: [`dense`]. It knows grids and materials,
 //! and nothing of gears.
 
-pub mod axial;
-pub mod centrifugal;
-pub mod condensation;
-pub mod dense;
-pub mod eigen;
-pub mod element;
+pub(crate) mod axial;
+pub(crate) mod centrifugal;
+pub(crate) mod condensation;
+pub(crate) mod dense;
+pub(crate) mod eigen;
+pub(crate) mod element;
 mod factor;
-pub mod law;
-pub mod prescribed;
-pub mod prism;
-pub mod recovery;
+pub(crate) mod law;
+pub(crate) mod prescribed;
+pub(crate) mod prism;
+pub(crate) mod recovery;
 mod sparse;
-pub mod surface;
-pub mod volume;
+pub(crate) mod surface;
+pub(crate) mod volume;
 
-pub use sparse::Followers;
+pub(crate) use sparse::Followers;
 
 use crate::run::Stopped;
 

@@ -30,7 +30,7 @@ pub struct Load {
 /// # Errors
 ///
 /// [`FemError::NotPositiveDefinite`] if the grid is degenerate, or the prescribed nodes do not hold it.
-pub fn displacements(
+pub(crate) fn displacements(
     part: &'static str,
     grid: &Grid,
     (material, thickness): (&Material, f64),
@@ -139,6 +139,7 @@ fn solve(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fem::condensation::condense;
     use crate::fem::condensation::tests::patch;
 
     #[test]
@@ -175,9 +176,8 @@ mod tests {
         let fixed: Vec<u32> = grid.elements[3].nodes().to_vec();
         assert!(fixed.contains(&held) && !fixed.contains(&free));
         let plate = (&Material::STEEL, 20e-3);
-        let stiffness =
-            crate::fem::condensation::condense("a patch", &grid, plate.0, plate.1, &[free], &fixed)
-                .expect("sound");
+        let condensed = condense("a patch", &grid, plate, (&[free], &fixed), &[], &[]);
+        let stiffness = condensed.expect("sound").stiffness;
         let load = Load {
             moves: vec![0.0; 2 * fixed.len()],
             forces: vec![(free, vec![300.0, -100.0])],

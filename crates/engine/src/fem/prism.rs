@@ -28,7 +28,7 @@ use crate::grid::element::MOST_NODES;
 use crate::grid::{Element, Grid};
 
 /// The components of the displacement of a node: radial, tangential, axial.
-pub const COMPONENTS: usize = 3;
+pub(crate) const COMPONENTS: usize = 3;
 
 /// The last of them.
 const AXIAL: usize = 2;
@@ -103,28 +103,13 @@ impl Prism<'_> {
         COMPONENTS * self.axial.len()
     }
 
-    /// Condenses the prism to its interface, and asks for the displacement at each of `points`: a node and a direction in polar
-    /// components, for every function along the axis.
+    /// The prism condensed to its interface, with the displacement at each of `points`: a node and a direction in polar components, for every function along
+    /// the axis; and how all unknowns of the nodes `recovered` follow from those that are kept.
     ///
     /// # Errors
     ///
     /// [`FemError::NotPositiveDefinite`] if the grid is degenerate.
     pub fn condense(
-        &self,
-        part: &'static str,
-        interface: &Interface<'_>,
-        points: &[(u32, [f64; COMPONENTS])],
-    ) -> Result<CondensedPrism, FemError> {
-        let (condensed, _) = self.condense_with(part, interface, points, &[])?;
-        Ok(condensed)
-    }
-
-    /// The same, and how all unknowns of the nodes `recovered` follow from those that are kept.
-    ///
-    /// # Errors
-    ///
-    /// As [`Prism::condense`].
-    pub fn condense_with(
         &self,
         part: &'static str,
         interface: &Interface<'_>,
@@ -176,22 +161,6 @@ impl Prism<'_> {
         };
         let (even, odd) = all.partition(is_even);
         vec![even, odd]
-    }
-
-    /// The energy ½ uᵀ K u of the displacements `u` of all nodes, node by node.
-    pub fn energy(&self, u: &[f64]) -> f64 {
-        let size = self.unknowns_of_node();
-        let mut energy = 0.0;
-        self.each_element(&mut |element, k| {
-            let place = |i: usize| size * element.nodes()[i / size] as usize + i % size;
-            let count = size * element.nodes().len();
-            for j in 0..count {
-                for i in 0..count {
-                    energy += 0.5 * u[place(i)] * k(i, j) * u[place(j)];
-                }
-            }
-        });
-        energy
     }
 
     /// Hands each element with its stiffness to `take`.
@@ -578,6 +547,22 @@ mod tests {
         all
     }
 
+    /// The energy ½ uᵀ K u of the displacements `u` of all nodes, node by node.
+    fn energy(prism: &Prism<'_>, u: &[f64]) -> f64 {
+        let size = prism.unknowns_of_node();
+        let mut energy = 0.0;
+        prism.each_element(&mut |element, k| {
+            let place = |i: usize| size * element.nodes()[i / size] as usize + i % size;
+            let count = size * element.nodes().len();
+            for j in 0..count {
+                for i in 0..count {
+                    energy += 0.5 * u[place(i)] * k(i, j) * u[place(j)];
+                }
+            }
+        });
+        energy
+    }
+
     #[test]
     fn rigid_motions_strain_nothing() {
         let square = square();
@@ -593,7 +578,7 @@ mod tests {
                     axial: &axial,
                 };
                 // A stretch as large as the motions.
-                let strained = prism.energy(&unknowns(&prism, |x, _, _| [x, 0.0, 0.0]));
+                let strained = energy(&prism, &unknowns(&prism, |x, _, _| [x, 0.0, 0.0]));
                 let motions: [Motion; 5] = [
                     |_, _, _| [1e-3, 0.0, 0.0],
                     |_, _, _| [0.0, 0.0, 1e-3],
@@ -602,7 +587,7 @@ mod tests {
                     |x, _, z| [z, 0.0, -x],
                 ];
                 for motion in motions {
-                    let energy = prism.energy(&unknowns(&prism, motion));
+                    let energy = energy(&prism, &unknowns(&prism, motion));
                     assert!(energy.abs() < 1e-12 * strained, "{energy:e} {strained:e}");
                 }
             }
@@ -625,7 +610,8 @@ mod tests {
                 twist,
                 axial: &axial,
             };
-            let energy = |u: &dyn Fn(f64, f64, f64) -> [f64; 3]| prism.energy(&unknowns(&prism, u));
+            let energy =
+                |u: &dyn Fn(f64, f64, f64) -> [f64; 3]| energy(&prism, &unknowns(&prism, u));
             let tension = energy(&|x, y, z| [-nu * x, -nu * y, z]);
             let bending =
                 energy(&|x, y, z| [-(z * z + nu * (x * x - y * y)) / 2.0, -nu * x * y, x * z]);
@@ -659,7 +645,7 @@ mod tests {
                 ..Default::default()
             };
             let points = [(12, [0.6, -0.3, 0.7]), (20, [0.0, 1.0, 0.0])];
-            let made = prism.condense_with("a bar", &interface, &points, &[13, 5, 25]);
+            let made = prism.condense("a bar", &interface, &points, &[13, 5, 25]);
             made.expect("definite")
         });
         let matrices = |(condensed, rows): &(CondensedPrism, NodeRows)| {
@@ -699,8 +685,10 @@ mod tests {
                     ..Default::default()
                 },
                 &[],
+                &[],
             )
             .expect("definite")
+            .0
             .stiffness;
         // Consistent loads of a uniform stress on both ends.
         let m = axial.len();

@@ -1,7 +1,7 @@
 //! Functionals of the displacements of a grid: a displacement, a stress.
 //!
 //! A substructure that is condensed together with functionals offers them as rows on its ports
-//! ([`super::condensation::condense_with`]); displacement and stress then need no second solution.
+//! ([`super::condensation::condense`]); displacement and stress then need no second solution.
 //!
 //! From the contact forces of one position to the stresses of a gear:
 //!
@@ -16,8 +16,6 @@
 //!
 //! On a free edge the von Mises stress is the absolute value of the stress along it. Elsewhere, and on loaded edges, take
 //! [`nodal_stresses`]; for the displacement of a node, [`Functional::displacement`].
-
-use std::collections::HashMap;
 
 use super::element::gradients;
 use super::law::Law;
@@ -95,39 +93,8 @@ pub fn edge_stresses(
     strains.into_iter().map(Functional::new).collect()
 }
 
-/// The stresses (σ_xx, σ_yy, τ_xy) in Pa at each of `nodes`: the mean over the elements that meet there.
-///
-/// Where elements of unlike thickness meet the stress jumps, and the mean lies between.
-pub fn nodal_stresses(grid: &Grid, material: &Material, nodes: &[u32]) -> Vec<[Functional; 3]> {
-    let mut meeting: HashMap<u32, Vec<(usize, usize)>> =
-        nodes.iter().map(|node| (*node, Vec::new())).collect();
-    for (index, element) in grid.elements.iter().enumerate() {
-        for (local, node) in element.nodes().iter().enumerate() {
-            if let Some(meeting) = meeting.get_mut(node) {
-                meeting.push((index, local));
-            }
-        }
-    }
-    let of_node = |node: &u32| mean_stress(grid, material, &meeting[node]);
-    nodes.iter().map(of_node).collect()
-}
-
-/// The mean stress of elements at their local nodes.
-fn mean_stress(grid: &Grid, material: &Material, meeting: &[(usize, usize)]) -> [Functional; 3] {
-    let mut stress: [Vec<(u32, Vector)>; 3] = Default::default();
-    let share = 1.0 / meeting.len() as f64;
-    for &(index, local) in meeting {
-        for (node, weights) in stress_at(grid, material, &grid.elements[index], local) {
-            for (terms, weight) in stress.iter_mut().zip(weights) {
-                terms.push((node, share * weight));
-            }
-        }
-    }
-    stress.map(Functional::new)
-}
-
 /// The stresses (σ_xx, σ_yy, τ_xy) in Pa at every node for the displacements `u` of all: the mean over the elements that meet there.
-pub fn stresses(grid: &Grid, material: &Material, u: &[Vector]) -> Vec<[f64; 3]> {
+pub(crate) fn stresses(grid: &Grid, material: &Material, u: &[Vector]) -> Vec<[f64; 3]> {
     let mut sums = vec![([0.0; 3], 0.0); grid.nodes.len()];
     for element in &grid.elements {
         for (local, node) in element.nodes().iter().enumerate() {
@@ -201,15 +168,9 @@ mod tests {
             210e9 / (2.0 * (1.0 + nu)) * gxy,
         ];
         for grid in patches() {
-            let all: Vec<u32> = (0..grid.nodes.len() as u32).collect();
             let field =
                 |p: &Vector| Vector::new(exx * p.x + 0.2 * gxy * p.y, eyy * p.y + 0.8 * gxy * p.x);
             let u: Vec<Vector> = grid.nodes.iter().map(field).collect();
-            for found in nodal_stresses(&grid, &Material::STEEL, &all) {
-                for (stress, expected) in found.iter().zip(expected) {
-                    assert!((stress.value(&u) - expected).abs() < 1e-9 * d * exx);
-                }
-            }
             for found in stresses(&grid, &Material::STEEL, &u) {
                 for (stress, expected) in found.iter().zip(expected) {
                     assert!((stress - expected).abs() < 1e-9 * d * exx);

@@ -14,7 +14,7 @@ const HEIGHTS_PER_DEGREE: usize = 4;
 
 /// The free surface over some edges of the section of a prism.
 #[derive(Debug)]
-pub struct Surface {
+pub(crate) struct Surface {
     twist: f64,
     youngs_modulus: f64,
     poisson_ratio: f64,
@@ -71,7 +71,7 @@ impl SurfaceStress {
 
 impl Surface {
     /// That of `prism` over `edges`: corners and midsides in turn, beginning with a corner; closed ones without their first node again.
-    pub fn new(prism: &Prism<'_>, edges: &[&[u32]], closed: bool) -> Self {
+    pub(crate) fn new(prism: &Prism<'_>, edges: &[&[u32]], closed: bool) -> Self {
         let mut nodes = Vec::new();
         for (edge, numbers) in edges.iter().enumerate() {
             let sides = sides(numbers.len(), nodes.len(), closed);
@@ -93,13 +93,13 @@ impl Surface {
     }
 
     /// The numbers of its nodes in the grid, edge after edge.
-    pub fn nodes(&self) -> Vec<u32> {
+    pub(crate) fn nodes(&self) -> Vec<u32> {
         self.nodes.iter().map(|node| node.number).collect()
     }
 
     /// The stresses at each node and height where the nodes move by `moved`: node by node, in polar components, for each function along the
     /// axis.
-    pub fn stresses(&self, moved: &[f64]) -> Vec<SurfaceStress> {
+    pub(crate) fn stresses(&self, moved: &[f64]) -> Vec<SurfaceStress> {
         let m = self.axial.len();
         let frames: Vec<[Vector; 2]> = self
             .nodes

@@ -91,7 +91,7 @@ impl Entries {
 
 /// Additions by `fields` to the mean displacement of each of `stretches` from a unit force spread over each of the stretches `loaded`: ends along the flank,
 /// the first of them nearer to the root.
-pub fn near_compliance(
+pub(crate) fn near_compliance(
     fields: &[NearField],
     stretches: &[[f64; 2]],
     loaded: &[[f64; 2]],

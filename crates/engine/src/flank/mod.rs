@@ -9,7 +9,7 @@
 
 pub(crate) mod corner;
 pub(crate) mod ends;
-pub mod half_plane;
+pub(crate) mod half_plane;
 pub(crate) mod half_space;
 pub(crate) mod polynomials;
-pub mod table;
+pub(crate) mod table;

@@ -150,12 +150,6 @@ impl GearDeviations {
         self.profile_slope(tooth) - trace.map_or(0.0, |trace| trace.slope(s))
     }
 
-    /// By how much the normal of the flank of `tooth` is inclined at the roll length `s`, as [`SpurGear::inclination`] has it, towards the mate.
-    pub(crate) fn inclination(&self, tooth: usize, s: f64) -> f64 {
-        let trace = self.trace(tooth);
-        self.profile_slope(tooth) - trace.map_or(0.0, |trace| trace.inclination(s))
-    }
-
     /// How far the eccentricity moves the loaded flank of `tooth` of `gear` along its normal at the roll length `s`, to the first order in it, in
     /// the section that is turned by `turn`.
     pub fn runout(&self, gear: &SpurGear, tooth: usize, s: f64, turn: f64) -> f64 {

@@ -6,7 +6,7 @@ use super::axes::{in_axes, polar_axes, rows_in_axes};
 use super::cyclic::{Component, Harmonics, Sector};
 use super::shaft::{EdgeCore, EdgeLoads, OnShaft, ShaftSection, orders_of_edge};
 use crate::fem::FemError;
-use crate::fem::condensation::condense_loaded;
+use crate::fem::condensation::condense;
 use crate::fem::recovery::Functional;
 
 use crate::gear::{Core, Material};
@@ -138,7 +138,7 @@ impl BlankSubstructure {
             .copied()
             .collect();
         let forces: Vec<Functional> = loads.iter().map(|load| load.forces.clone()).collect();
-        let condensed = condense_loaded(
+        let condensed = condense(
             "the blank",
             &grid.grid,
             (material, thickness),

@@ -17,7 +17,7 @@ const PANEL: usize = 32;
 
 /// One sector of a ring: its stiffness on the unknowns (right side, left side, arc) in polar components.
 #[derive(Debug, Clone)]
-pub struct Sector {
+pub(crate) struct Sector {
     /// The number S of sectors in the ring.
     pub count: usize,
     /// The stiffness, in N/m.
@@ -29,7 +29,7 @@ pub struct Sector {
 }
 
 /// The displacements of the sides of one class of a ring when its arc moves or its sides are loaded.
-pub struct ClassSolution {
+pub(crate) struct ClassSolution {
     /// The factor of the sides' stiffness with the turn of the class across a sector; `None` without side nodes.
     pub sides: Option<Cholesky<c64>>,
     /// The stiffness between sides and the harmonics of the class.
@@ -41,14 +41,14 @@ pub struct ClassSolution {
 impl Sector {
     /// The factor e^{i class 2πd/S} from a sector to the one `distance` places counter-clockwise of it; with 1, from the right side of
     /// a sector to its left one.
-    pub fn turn(&self, class: usize, distance: usize) -> c64 {
+    pub(crate) fn turn(&self, class: usize, distance: usize) -> c64 {
         let part = ((class * distance) % self.count) as f64 / self.count as f64;
         let (sin, cos) = (2.0 * std::f64::consts::PI * part).sin_cos();
         c64::new(cos, sin)
     }
 
     /// E: the polar displacements of the arc's nodes for unit amplitudes of `orders`; two columns an order.
-    pub fn arc_of_harmonics(&self, orders: &[i64]) -> Mat<c64> {
+    pub(crate) fn arc_of_harmonics(&self, orders: &[i64]) -> Mat<c64> {
         at_angles(&self.arc_angles, orders)
     }
 
@@ -57,7 +57,7 @@ impl Sector {
     /// # Errors
     ///
     /// [`FemError::NotPositiveDefinite`], or [`FemError::Stopped`].
-    pub fn condense_class(
+    pub(crate) fn condense_class(
         &self,
         class: usize,
         harmonics: &Harmonics,
@@ -131,7 +131,11 @@ impl Sector {
     /// # Errors
     ///
     /// [`FemError::NotPositiveDefinite`].
-    pub fn ring_stiffness(&self, harmonics: &Harmonics, run: &Run) -> Result<Mat<f64>, FemError> {
+    pub(crate) fn ring_stiffness(
+        &self,
+        harmonics: &Harmonics,
+        run: &Run,
+    ) -> Result<Mat<f64>, FemError> {
         if self.count == 1 && self.side_nodes == 0 {
             return self.closed_stiffness(harmonics, run);
         }
@@ -174,7 +178,7 @@ impl Sector {
     /// # Errors
     ///
     /// [`FemError::NotPositiveDefinite`], or [`FemError::Stopped`].
-    pub fn ring_rows(
+    pub(crate) fn ring_rows(
         &self,
         rows: &Mat<f64>,
         harmonics: &Harmonics,
@@ -195,7 +199,12 @@ impl Sector {
     }
 
     /// Rows on the unknowns of sector 0 as rows on the complex amplitudes of the orders of one class.
-    pub fn class_rows(&self, rows: &Mat<f64>, class: usize, solution: &ClassSolution) -> Mat<c64> {
+    pub(crate) fn class_rows(
+        &self,
+        rows: &Mat<f64>,
+        class: usize,
+        solution: &ClassSolution,
+    ) -> Mat<c64> {
         let e = self.arc_of_harmonics(&solution.orders);
         self.class_rows_on(rows, class, &e, solution)
     }
@@ -247,7 +256,7 @@ impl Sector {
     }
 
     /// Rows on both sides of sector 0 as rows on the amplitudes of its right side in one class.
-    pub fn side_rows(&self, rows: &Mat<f64>, class: usize) -> Mat<c64> {
+    pub(crate) fn side_rows(&self, rows: &Mat<f64>, class: usize) -> Mat<c64> {
         let (ns, turn) = (2 * self.side_nodes, self.turn(class, 1));
         Mat::<c64>::from_fn(rows.nrows(), ns, |i, j| {
             c64::new(rows[(i, j)], 0.0) + turn * rows[(i, ns + j)]
@@ -262,7 +271,7 @@ impl Sector {
     }
 
     /// Adds one condensed class, and its conjugate, to the ring's real stiffness.
-    pub fn add_class(
+    pub(crate) fn add_class(
         &self,
         stiffness: &mut Mat<f64>,
         harmonics: &Harmonics,

@@ -5,17 +5,17 @@
 //! interface circle under loads), [`teeth_recovery`] and [`blank::BlankRecovery`]; under loads inside [`teeth_loads`] and [`blank::BlankLoads`]. A blank by
 //! itself: [`annulus`]. The same with an extent along the axis: [`solid`]. Beside them: [`axes`] and `modes`.
 
-pub mod annulus;
-pub mod axes;
-pub mod blank;
-pub mod body;
-pub mod cyclic;
-pub mod harmonics;
+pub(crate) mod annulus;
+pub(crate) mod axes;
+pub(crate) mod blank;
+pub(crate) mod body;
+pub(crate) mod cyclic;
+pub(crate) mod harmonics;
 mod modes;
-pub mod motion;
+pub(crate) mod motion;
 pub(crate) mod shaft;
-pub mod solid;
-pub mod teeth;
-pub mod teeth_loads;
-pub mod teeth_recovery;
-pub mod tooth;
+pub(crate) mod solid;
+pub(crate) mod teeth;
+pub(crate) mod teeth_loads;
+pub(crate) mod teeth_recovery;
+pub(crate) mod tooth;

@@ -10,7 +10,7 @@ use crate::run::Run;
 
 /// Loads that act on all teeth of a ring alike.
 #[derive(Debug, Clone)]
-pub struct TeethLoads {
+pub(crate) struct TeethLoads {
     /// The forces that they exert on the harmonics of the interface circle, a load a column.
     pub forces: Mat<f64>,
     /// How they move the unknowns of every flank while that circle is held, a load a column.
@@ -25,7 +25,7 @@ impl TeethLoads {
     /// # Errors
     ///
     /// [`FemError::NotPositiveDefinite`], or [`FemError::Stopped`].
-    pub fn new(
+    pub(crate) fn new(
         tooth: &ToothSubstructure,
         (rows, loads): (&ToothRows, &ToothLoads),
         ring: &TeethRing,

@@ -6,7 +6,7 @@ use super::axes::{in_axes, polar_axes, rows_in_axes};
 use super::cyclic::Sector;
 use super::modes::compress;
 use crate::fem::FemError;
-use crate::fem::condensation::condense_loaded;
+use crate::fem::condensation::condense;
 use crate::fem::dense::{Cholesky, mirror_lower, symmetrize};
 use crate::fem::recovery::Functional;
 use crate::gear::{SpurGear, Vector, radial};
@@ -98,7 +98,7 @@ impl ToothSubstructure {
             .chain(&grid.arc_nodes)
             .copied()
             .collect();
-        let condensed = condense_loaded(
+        let condensed = condense(
             "the tooth",
             &grid.grid,
             (gear.material(), gear.face_width()),

@@ -1,7 +1,7 @@
 //! Two flanks that face each other: where they are nearest, and how far either sees the other.
 
-use super::meeting::{Meeting, Probe};
-use super::placement::{FlankPlace, Placement, Section, Sight};
+use super::meeting::FlankPoint;
+use super::placement::{FacingPoint, Pose, Section};
 use crate::gear::{GearPair, Member, PairDeviations, SpurGear};
 use crate::root_finding::crossing;
 
@@ -58,7 +58,7 @@ pub struct GapMinimum {
     /// How fast the gap opens towards the root and towards the tip: nothing where flanks touch with a common tangent, the angle between
     /// them where a corner is nearest.
     pub openings: [f64; 2],
-    pub(crate) probe: Probe,
+    pub(crate) flank_point: FlankPoint,
 }
 
 /// Two flanks that face each other.
@@ -81,20 +81,6 @@ pub struct Facing {
     pub off_path: bool,
 }
 
-/// Two flanks as they are placed, seen from the seat's.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct View<'a> {
-    pub(crate) placement: Placement<'a>,
-    pub(crate) seat: Member,
-}
-
-/// A point of the seat's flank and its gap.
-pub(crate) struct FacingPoint {
-    pub(crate) roll_length: f64,
-    pub(crate) place: FlankPlace,
-    pub(crate) sight: Sight,
-}
-
 impl Facing {
     /// How the flanks of a pair of `gears` as drawn face each other, `phase` mesh periods after it passed the pitch point, seen from the gear
     /// whose tip is nearer; `None` where they do not.
@@ -104,8 +90,7 @@ impl Facing {
 
     /// As [`Facing::drawn`], seen from the flank of `seat`.
     pub fn drawn_on(gears: &GearPair, phase: f64, seat: Member) -> Option<Self> {
-        let placement = Placement::drawn(gears, phase);
-        View { placement, seat }.facing(phase)
+        Pose::drawn(gears, phase, seat).facing(phase)
     }
 
     /// How the flanks of pair `n` of `gears` with these `deviations` face each other at the mesh position `eta`, the driven gear lagging by
@@ -119,8 +104,8 @@ impl Facing {
     ) -> Option<Self> {
         let section = Section::straight(eta, n);
         let seat = nearer_tip(gears, section.phase);
-        let placement = Placement::real(gears, deviations, section, lag);
-        View { placement, seat }.facing(section.phase)
+        let placed = (seat, section.phase);
+        Pose::real((gears, deviations), section, lag, placed).facing(section.phase)
     }
 
     /// About how much memory it takes beside itself, in bytes.
@@ -162,7 +147,7 @@ pub(crate) fn nearer_tip(gears: &GearPair, phase: f64) -> Member {
 /// Two flanks as they face each other where they just touch.
 #[derive(Debug, Clone)]
 pub(crate) struct Touching<'a> {
-    pub(crate) view: View<'a>,
+    pub(crate) view: Pose<'a>,
     pub(crate) facing: Facing,
     /// How far the driven gear lags there. The rest of the way, [`Facing::touch`], is so short that it is straight.
     pub(crate) lag: f64,
@@ -172,15 +157,14 @@ impl<'a> Touching<'a> {
     /// The flanks of `pair` with these `deviations` in a `section`, seen from that of `seat`: turned on from the lag `from` until they touch `within`
     /// so long a way.
     pub(crate) fn of(
-        (pair, deviations): (&'a GearPair, &'a PairDeviations),
+        made: (&'a GearPair, &'a PairDeviations),
         section: Section,
         seat: Member,
         from: f64,
         within: f64,
     ) -> Option<Self> {
         let at = |lag: f64| {
-            let placement = Placement::real(pair, deviations, section, lag);
-            let view = View { placement, seat };
+            let view = Pose::real(made, section, lag, (seat, section.phase));
             let facing = view.facing(section.phase)?;
             Some(Self { view, facing, lag })
         };
@@ -205,20 +189,7 @@ impl<'a> Touching<'a> {
     }
 }
 
-impl<'a> View<'a> {
-    /// The same flanks, seen from the other gear.
-    pub(crate) fn seen_from_mate(&self) -> Self {
-        Self {
-            seat: self.seat.other(),
-            ..*self
-        }
-    }
-
-    /// The gears.
-    pub(crate) fn gears(&self) -> &'a GearPair {
-        self.placement.gears()
-    }
-
+impl Pose<'_> {
     /// Values of the seat and of the other gear, as driving and driven.
     pub(crate) fn on_both<T: Copy>(&self, seat: T, other: T) -> [T; 2] {
         match self.seat {
@@ -229,7 +200,7 @@ impl<'a> View<'a> {
 
     /// How they face each other, `phase` mesh periods after they passed the pitch point.
     pub(crate) fn facing(&self, phase: f64) -> Option<Facing> {
-        let gears = self.gears();
+        let gears = self.pair;
         let s_1 = gears.roll_length_of(phase);
         let [nominal, _] = self.on_both(s_1, gears.line_of_action() - s_1);
         let range = self.range()?;
@@ -252,39 +223,21 @@ impl<'a> View<'a> {
 
     /// The point at `arc` of the seat's flank; `None` inside the other base circle.
     pub(crate) fn point(&self, arc: f64) -> Option<FacingPoint> {
-        let flank = self.gears().gear(self.seat).flank();
-        let roll_length = flank.roll_length_at_arc(arc);
-        let place = self.placement.place(self.seat, roll_length);
-        Some(FacingPoint {
-            roll_length,
-            sight: self.placement.sight(self.seat.other(), place.point)?,
-            place,
-        })
+        let flank = self.pair.gear(self.seat).flank();
+        self.point_at(flank.roll_length_at_arc(arc))
     }
 
-    /// How the flanks meet at `point`.
-    pub(crate) fn meeting(&self, point: &FacingPoint) -> Meeting {
-        self.placement
-            .meeting(self.seat, &point.place, &point.sight)
-    }
-
-    /// `point`, to be followed as the gears turn on.
-    pub(crate) fn probe(&self, point: &FacingPoint) -> Probe {
-        let removed = self.gears().gear(self.seat.other());
-        let (center, _) = self.placement.frame(self.seat);
-        Probe::new(
-            point.roll_length,
-            &point.place,
-            &point.sight,
-            removed.removed(point.sight.roll_length),
-            center,
-        )
+    /// `point`, to be evaluated at many positions.
+    pub(crate) fn flank_point(&self, point: &FacingPoint) -> FlankPoint {
+        let opposite = self.pair.gear(self.seat.other());
+        let (center, _) = self.frame(self.seat);
+        FlankPoint::new(point, opposite.removed(point.gap.roll_length), center)
     }
 
     /// The roll length that `arc` sees on the other flank; it falls towards the seat's tip.
     fn seen_from(&self, arc: f64) -> f64 {
         self.point(arc)
-            .map_or(f64::NEG_INFINITY, |point| point.sight.roll_length)
+            .map_or(f64::NEG_INFINITY, |point| point.gap.roll_length)
     }
 
     /// The part of the seat's flank that sees the other flank between its form circle, or somewhat below the corner of its undercut, and its tip, as far as
@@ -292,7 +245,7 @@ impl<'a> View<'a> {
     pub(crate) fn range(&self) -> Option<FlankRange> {
         let range = self.seen_range()?;
         let beyond_least = |arc: f64| {
-            let arms = self.point(arc).map(|point| self.meeting(&point).arms);
+            let arms = self.point(arc).map(|point| self.gap_and_arms(&point).arms);
             arms.map_or(f64::NEG_INFINITY, |arms| arms[0].min(arms[1]) - LEAST_ARM)
         };
         let ends = [range.from, range.to].map(|arc| (arc, beyond_least(arc)));
@@ -318,10 +271,7 @@ impl<'a> View<'a> {
 
     /// The part of the seat's flank that sees the other flank, whether a force there drives or not.
     fn seen_range(&self) -> Option<FlankRange> {
-        let (gear, mate) = (
-            self.gears().gear(self.seat),
-            self.gears().gear(self.seat.other()),
-        );
+        let (gear, mate) = (self.pair.gear(self.seat), self.pair.gear(self.seat.other()));
         // The face of a chamfer is far from the other flank; its edge is the corner that touches.
         let (_, high) = gear.flank_arcs();
         let low = gear.flank().arc_length(gear.lowest_roll_length());
@@ -368,7 +318,7 @@ impl<'a> View<'a> {
 
     /// The rising places within `range` of the roll lengths `of` either gear.
     fn places_of(&self, of: impl Fn(&SpurGear) -> Vec<f64>, range: &FlankRange) -> Vec<f64> {
-        let [gear, mate] = [self.seat, self.seat.other()].map(|member| self.gears().gear(member));
+        let [gear, mate] = [self.seat, self.seat.other()].map(|member| self.pair.gear(member));
         let own = of(gear).into_iter();
         let own = own.map(|s| gear.flank().arc_length(s));
         let seen = of(mate).into_iter();
@@ -384,10 +334,7 @@ impl<'a> View<'a> {
     /// The arc that sees the roll length `sought` of the other flank, within `range` where that is undercut.
     fn arc_that_sees(&self, sought: f64, range: &FlankRange) -> Option<f64> {
         const STEPS: u32 = 12;
-        let (gear, mate) = (
-            self.gears().gear(self.seat),
-            self.gears().gear(self.seat.other()),
-        );
+        let (gear, mate) = (self.pair.gear(self.seat), self.pair.gear(self.seat.other()));
         // The corner of an undercut flank touches far off the line of action, and beside it the mate passes the base circle.
         if mate.is_undercut() {
             let beyond = |arc: f64| self.seen_from(arc) - sought;
@@ -396,15 +343,15 @@ impl<'a> View<'a> {
             return within.then(|| crossing(from, to, beyond));
         }
         // Flanks that touch share the line of action.
-        let opposite = self.gears().line_of_action() - sought;
+        let opposite = self.pair.line_of_action() - sought;
         let mut arc = gear.flank().arc_length(opposite.max(0.0));
         for _ in 0..STEPS {
             let point = self.point(arc)?;
-            let missed = sought - point.sight.roll_length;
+            let missed = sought - point.gap.roll_length;
             if missed.abs() <= 1e-15 * mate.base_radius() {
                 break;
             }
-            let (_, growth) = point.sight.change(mate.base_radius(), point.place.way);
+            let (_, growth) = self.change(&point);
             arc = (arc + missed / growth).max(0.0);
         }
         Some(arc)
@@ -416,7 +363,7 @@ impl<'a> View<'a> {
     /// Modifications of other kinds may give it several minima; between kinks each is found in the same way.
     fn least_places(&self, range: &FlankRange, kinks: &[f64]) -> Vec<f64> {
         let FlankRange { from, to, .. } = *range;
-        if self.gears().driving().is_convex() && self.gears().driven().is_convex() {
+        if self.pair.driving().is_convex() && self.pair.driven().is_convex() {
             return vec![self.least_between(from, to, kinks)];
         }
         let evenly = (0..=PLACES).map(|i| from + (to - from) * f64::from(i) / f64::from(PLACES));
@@ -478,7 +425,7 @@ impl<'a> View<'a> {
 
     fn minimum(&self, arc: f64, range: &FlankRange) -> Option<GapMinimum> {
         let point = self.point(arc)?;
-        let meeting = self.meeting(&point);
+        let met = self.gap_and_arms(&point);
         let beside = 1e-6 * (range.to - range.from);
         let opening = |place: f64, sign: f64| {
             let inside = range.from <= place && place <= range.to;
@@ -486,14 +433,14 @@ impl<'a> View<'a> {
         };
         Some(GapMinimum {
             arc,
-            touch: meeting.gap / meeting.arms[1],
-            roll_lengths: self.on_both(point.roll_length, point.sight.roll_length),
-            arms: meeting.arms,
+            touch: met.gap / met.arms[1],
+            roll_lengths: self.on_both(point.roll_length, point.gap.roll_length),
+            arms: met.arms,
             openings: [
                 opening(arc - beside, -1.0).unwrap_or_default(),
                 opening(arc + beside, 1.0).unwrap_or_default(),
             ],
-            probe: self.probe(&point),
+            flank_point: self.flank_point(&point),
         })
     }
 
@@ -504,7 +451,7 @@ impl<'a> View<'a> {
         if range.ends[1] != RangeEnd::MateFillet {
             return None;
         }
-        let gear = self.gears().gear(self.seat);
+        let gear = self.pair.gear(self.seat);
         let (_, tip) = gear.flank_arcs();
         let tip = gear
             .chamfer_edge()
@@ -512,19 +459,14 @@ impl<'a> View<'a> {
         let gaps = (1..=TIP_POINTS).map(|i| {
             let arc = range.to + (tip - range.to) * f64::from(i) / f64::from(TIP_POINTS);
             let s = gear.flank().roll_length_at_arc(arc);
-            let point = self.placement.place(self.seat, s).point;
-            self.placement.fillet_distance(self.seat.other(), point)
+            self.fillet_distance(self.place(s).point)
         });
         gaps.reduce(f64::min)
     }
 
     /// The slope of the gap along the seat's flank, towards its tip.
     fn slope(&self, arc: f64) -> f64 {
-        let mate = self.gears().gear(self.seat.other());
-        self.point(arc).map_or(0.0, |point| {
-            let change = point.sight.change(mate.base_radius(), point.place.way);
-            change.0
-        })
+        self.point(arc).map_or(0.0, |point| self.change(&point).0)
     }
 }
 
@@ -646,9 +588,8 @@ pub(crate) mod tests {
             let pair = GearPair::new(gear(20, radius), gear(40, radius), 60.2e-3).expect("meshes");
             for i in -100..100 {
                 let phase = 0.02 * f64::from(i);
-                let placement = Placement::drawn(&pair, phase);
                 let seat = nearer_tip(&pair, phase);
-                let view = View { placement, seat };
+                let view = Pose::drawn(&pair, phase, seat);
                 let (Some(range), Some(seen)) = (view.range(), view.seen_range()) else {
                     // Both tips turn away from the line of action, if they face each other at all.
                     last_ones += i32::from(view.seen_range().is_some());
@@ -657,7 +598,7 @@ pub(crate) mod tests {
                 ended += i32::from(range != seen);
                 let arms_at = |arc: f64| {
                     let point = view.point(arc).expect("outside the base circle");
-                    view.meeting(&point).arms
+                    view.gap_and_arms(&point).arms
                 };
                 for k in 0..=50 {
                     let arc = range.from + (range.to - range.from) * f64::from(k) / 50.0;
@@ -669,7 +610,7 @@ pub(crate) mod tests {
                 let first = view.facing(phase).expect("they face each other").minima[0];
                 for (member, arc) in tips {
                     let place = view.point(arc).expect("outside the base circle");
-                    let on_both = view.on_both(place.roll_length, place.sight.roll_length);
+                    let on_both = view.on_both(place.roll_length, place.gap.roll_length);
                     let is_cut = arc != seen.from && arc != seen.to;
                     let on_rounding = Member::BOTH
                         .map(|of| on_both[of.index()] > pair.gear(of).tip_form_roll_length());
@@ -745,21 +686,15 @@ pub(crate) mod tests {
                 let Some(facing) = Facing::drawn(&pair, eta) else {
                     continue;
                 };
-                let view = View {
-                    placement: Placement::drawn(&pair, eta),
-                    seat: facing.seat,
-                };
+                let view = Pose::drawn(&pair, eta, facing.seat);
                 let FlankRange { from, to, .. } = facing.range;
                 let least = (0..=2000)
                     .filter_map(|k| view.point(from + (to - from) * f64::from(k) / 2000.0))
-                    .map(|point| point.sight.gap)
+                    .map(|point| point.gap.gap)
                     .fold(f64::INFINITY, f64::min);
                 let nearest = view.point(facing.minima[0].arc).expect("it is seen");
                 // Samples stand 2.2 µm apart: half of that times the slope of the relief, where a kink is nearest.
-                assert!(
-                    (-1e-15..4e-9).contains(&(least - nearest.sight.gap)),
-                    "{eta}"
-                );
+                assert!((-1e-15..4e-9).contains(&(least - nearest.gap.gap)), "{eta}");
             }
         }
     }

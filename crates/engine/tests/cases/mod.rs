@@ -21,8 +21,8 @@ use meshwright_engine::gear::{
 };
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
-use meshwright_engine::ring::teeth::FARTHEST_COUPLED;
 use meshwright_engine::run::Run;
+use meshwright_engine::substructures::FARTHEST_COUPLED;
 
 /// The gears of the paper and of CalculiX but for their tooth counts and blanks: m 2 mm, α 20°, b 20 mm.
 pub(crate) fn gear(tooth_count: u32, bore_radius: f64) -> GearData {

@@ -7,7 +7,6 @@ use meshwright_engine::analysis::{
     Analysis, Case, ContactSolver, Curve, Warning, analyze, pair_model,
 };
 use meshwright_engine::contact::MeshContact;
-use meshwright_engine::flank::half_plane::{hertz, logarithm_factor};
 use meshwright_engine::gear::{
     GearData, GearPair, HoleShape, Member, ModificationData, PlaneState, ReliefStart, SpurGear,
     TablePlaces, TipEdge, ToothDeviations, Vector,
@@ -15,6 +14,7 @@ use meshwright_engine::gear::{
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
+use meshwright_engine::substructures::{hertz, logarithm_factor};
 
 use crate::cases::{self, Made};
 use crate::drawn::DrawnPair;

@@ -6,9 +6,8 @@ use meshwright_engine::analysis::pair_model;
 use meshwright_engine::contact::WarmStart;
 use meshwright_engine::gear::Material;
 use meshwright_engine::grid::{BlankGrid, GridLevel};
-use meshwright_engine::ring::blank::BlankSubstructure;
-use meshwright_engine::ring::cyclic::{Component, Harmonics};
 use meshwright_engine::run::Run;
+use meshwright_engine::substructures::{BlankSubstructure, Component, Harmonics};
 
 use crate::support::{case, gear, library, pair, standard_pair};
 

@@ -3,10 +3,10 @@
 use std::f64::consts::TAU;
 
 use meshwright_engine::analysis::fields::{GearField, fields};
-use meshwright_engine::fem::element;
 use meshwright_engine::gear::{GearPair, Hole, HoleShape, Material, Member, Vector};
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::run::Run;
+use meshwright_engine::substructures::element_stiffness;
 
 use crate::support::{case, gear, holed, library, pair, relieved, solve};
 
@@ -32,7 +32,7 @@ fn center(member: Member) -> Vector {
 fn hub_moment(field: &GearField, center: Vector, bore_radius: f64) -> f64 {
     let mut forces = vec![Vector::zeros(); field.nodes.len()];
     for (element, thickness) in field.elements.iter().zip(&field.thicknesses) {
-        let stiffness = element::stiffness(
+        let stiffness = element_stiffness(
             element.kind(),
             &element.places(&field.nodes),
             &Material::STEEL,

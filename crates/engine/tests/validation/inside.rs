@@ -1,16 +1,12 @@
 //! Stresses inside a whole gear by recovery rows against the same gear solved whole, and settled with the grid.
 
-use meshwright_engine::assembly::interface::default_interface_radius;
-use meshwright_engine::fem::recovery::edge_stresses;
 use meshwright_engine::gear::{Core, SpurGear};
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
-use meshwright_engine::ring::blank::BlankSubstructure;
-use meshwright_engine::ring::cyclic::Harmonics;
-use meshwright_engine::ring::motion::InterfaceMotion;
-use meshwright_engine::ring::teeth::TeethRing;
-use meshwright_engine::ring::teeth_recovery::TeethRecovery;
-use meshwright_engine::ring::tooth::{ToothSubstructure, modal_loads};
 use meshwright_engine::run::Run;
+use meshwright_engine::substructures::{
+    BlankSubstructure, Harmonics, InterfaceMotion, TeethRecovery, TeethRing, ToothSubstructure,
+    default_interface_radius, edge_stresses, modal_loads, tooth_angle,
+};
 
 use crate::support::{gear, holed};
 use crate::whole::WholeGear;
@@ -129,15 +125,15 @@ fn by_the_whole(level: GridLevel, teeth: &[usize], orders: usize) -> Stresses {
     let mut nodal = whole.no_forces();
     for (loaded, forces) in LOADED.into_iter().zip(&forces) {
         for (i, force) in forces.chunks(2).enumerate() {
-            let t = gear.flank().tangent_angle(tooth.flank_roll_lengths[i])
-                + meshwright_engine::ring::axes::tooth_angle(loaded, 18);
+            let t =
+                gear.flank().tangent_angle(tooth.flank_roll_lengths[i]) + tooth_angle(loaded, 18);
             nodal[whole.flank_node(loaded, i) as usize] +=
                 force[0] * meshwright_engine::gear::tangential(t);
         }
     }
     let u = &whole.whole.solve(&[nodal])[0];
     // Strains along an edge do not change as it turns with its tooth or sector.
-    let along = |stresses: &[meshwright_engine::fem::recovery::Functional],
+    let along = |stresses: &[meshwright_engine::substructures::Functional],
                  numbers: &[u32],
                  turn: f64| {
         let back: Vec<_> = (0..numbers.len())
@@ -157,13 +153,7 @@ fn by_the_whole(level: GridLevel, teeth: &[usize], orders: usize) -> Stresses {
     Stresses {
         fillets: teeth
             .iter()
-            .map(|t| {
-                along(
-                    &fillet,
-                    &whole.teeth[*t],
-                    meshwright_engine::ring::axes::tooth_angle(*t, 18),
-                )
-            })
+            .map(|t| along(&fillet, &whole.teeth[*t], tooth_angle(*t, 18)))
             .collect(),
         holes: (0..3)
             .map(|hole| along(&edge, &whole.sectors[hole], 0.21 + turn * hole as f64))

@@ -4,7 +4,6 @@
 use std::sync::Arc;
 
 use meshwright_engine::analysis::{Case, ContactSolver, Curve, StiffnessRule, analyze, pair_model};
-use meshwright_engine::assembly::interface::{default_interface_radius, harmonics};
 use meshwright_engine::assembly::{Parts, TeethSpec};
 use meshwright_engine::contact::{MeshCells, WarmStart, light_contact};
 use meshwright_engine::gear::{GearPair, Member, SpurGear, Vector, radial, tangential};
@@ -12,10 +11,10 @@ use meshwright_engine::grid::ring_grid::ELEMENTS_PER_TOOTH;
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
 use meshwright_engine::library::Library;
 use meshwright_engine::quadrature::GAUSS_3;
-use meshwright_engine::ring::axes::tooth_angle;
-use meshwright_engine::ring::blank::BlankSubstructure;
-use meshwright_engine::ring::body::Coupling;
 use meshwright_engine::run::Run;
+use meshwright_engine::substructures::{
+    BlankSubstructure, Coupling, default_interface_radius, harmonics, tooth_angle,
+};
 use nalgebra::DMatrix;
 
 use crate::support::{

@@ -6,13 +6,12 @@
 //! boundaries are alike and to the fourth order of the elements' length where they share no node. (A toothed ring has no field of constant strain without tractions on its flanks, and the blank's
 //! substructure holds its bore; so the linear field is imposed on two rings of the blank's own elements.)
 
-use meshwright_engine::assembly::interface::default_interface_radius;
 use meshwright_engine::gear::{Material, SpurGear, Vector, radial};
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
-use meshwright_engine::ring::cyclic::{Component, Harmonics};
-use meshwright_engine::ring::teeth::TeethRing;
-use meshwright_engine::ring::tooth::ToothSubstructure;
 use meshwright_engine::run::Run;
+use meshwright_engine::substructures::{
+    Component, Harmonics, TeethRing, ToothSubstructure, default_interface_radius,
+};
 
 use crate::support::{gear, holed};
 use crate::whole::{Assembly, Hold, Whole, WholeGear, on_circle, whole_sides};

@@ -3,16 +3,13 @@
 use std::collections::HashMap;
 
 use faer::Mat;
-use meshwright_engine::assembly::interface::{default_interface_radius, harmonics};
 use meshwright_engine::gear::{SpurGear, Vector, radial, tangential};
 use meshwright_engine::grid::{BlankGrid, Element, Grid, GridLevel, ToothGrid};
-use meshwright_engine::ring::axes::tooth_angle;
-use meshwright_engine::ring::blank::BlankSubstructure;
-use meshwright_engine::ring::body::Coupling;
-use meshwright_engine::ring::cyclic::Harmonics;
-use meshwright_engine::ring::teeth::TeethRing;
-use meshwright_engine::ring::tooth::ToothSubstructure;
 use meshwright_engine::run::Run;
+use meshwright_engine::substructures::{
+    BlankSubstructure, Coupling, Harmonics, TeethRing, ToothSubstructure, default_interface_radius,
+    harmonics, tooth_angle,
+};
 
 use crate::support::{gear, holed};
 use crate::whole::{Assembly, Hold, Whole, WholeGear, on_circle, whole_tooth_sides};

@@ -10,9 +10,9 @@ use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::Llt;
 use faer::sparse::{SparseColMat, Triplet};
 use faer::{Mat, Side};
-use meshwright_engine::fem::element;
 use meshwright_engine::gear::{Material, Vector, radial, tangential};
 use meshwright_engine::grid::{BlankGrid, Element, Grid, ToothGrid};
+use meshwright_engine::substructures::{ElementStiffness, element_stiffness};
 
 /// What holds a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -123,7 +123,7 @@ pub(crate) fn whole_tooth_sides(grid: &ToothGrid) -> (Vec<u32>, Vec<u32>) {
 /// An assembly with its factorized stiffness on the free nodes and the amplitudes of the interface circle.
 pub(crate) struct Whole {
     pub(crate) assembly: Assembly,
-    stiffnesses: Vec<element::ElementStiffness>,
+    stiffnesses: Vec<ElementStiffness>,
     /// The orders 0 … M of the interface circle.
     largest_order: usize,
     /// The first unknown of each free node.
@@ -162,7 +162,7 @@ impl Whole {
             .iter()
             .map(|element| {
                 let points = element.places(&assembly.nodes);
-                element::stiffness(
+                element_stiffness(
                     element.kind(),
                     &points,
                     material,

@@ -11,7 +11,8 @@ use crate::contact::{ContactProblem, ContactSolution, solve_active_set};
 use crate::fem::dense::mirror_lower;
 use crate::flank::half_plane::{Entries, hertz, near_compliance};
 use crate::gear::{Member, TipEdge};
-use crate::touch::facing::{Facing, View};
+use crate::touch::facing::Facing;
+use crate::touch::placement::Pose;
 
 /// Cells on the core of a patch.
 const CELLS: usize = 24;
@@ -114,7 +115,7 @@ impl Spring {
 
     /// As [`Spring::hertz`], of the flanks of `facing` as `view` sees them, of slices one meter long; and the normal gap between them.
     pub(super) fn patch(
-        view: &View<'_>,
+        view: &Pose<'_>,
         facing: &Facing,
         cosine: f64,
         of: Line,
@@ -137,7 +138,7 @@ impl Spring {
         let arms = vec![1.0; patch.cells.len()];
         match ContactProblem::new(compliance, gaps, arms) {
             Ok(problem) => {
-                let gears = view.gears();
+                let gears = view.pair;
                 let cells = Cells {
                     scale: gears.driving().data().rack.module,
                     sharp: Member::BOTH
@@ -335,7 +336,6 @@ mod tests {
     use crate::flank::half_plane::logarithm_factor;
     use crate::gear::spur::tests::paper_gear;
     use crate::gear::{GearPair, PlaneState, SpurGear};
-    use crate::touch::placement::Placement;
 
     const COSINE: f64 = 0.95;
     const DENSITY: f64 = 1e5;
@@ -350,10 +350,7 @@ mod tests {
     fn patch(phase: f64, along: f64) -> (Spring, f64) {
         let (pair, factor) = pair();
         let facing = Facing::drawn(&pair, phase).expect("they face each other");
-        let view = View {
-            placement: Placement::drawn(&pair, phase),
-            seat: facing.seat,
-        };
+        let view = Pose::drawn(&pair, phase, facing.seat);
         let [s, other] = facing.minima[0].roll_lengths.map(|s| s / COSINE);
         let of = Line {
             along,

@@ -15,7 +15,7 @@ use crate::run::Run;
 
 /// Response of the flanks of all teeth, and of the interface circle, to loads on the flank of tooth 0, class by class.
 #[derive(Debug)]
-pub struct ClassAnswers {
+pub(crate) struct ClassAnswers {
     /// The class k of each.
     pub class: usize,
     /// The orders of the class on the interface circle.
@@ -35,7 +35,7 @@ pub struct ClassAnswers {
 /// # Errors
 ///
 /// [`FemError`], or [`FemError::Stopped`].
-pub fn answers(
+pub(crate) fn answers(
     tooth: &SolidTooth,
     below: &[Mat<c64>],
     wanted: Option<usize>,
@@ -130,7 +130,7 @@ impl ClassOfRing {
 
 /// How the interfaces of all teeth move in one class.
 #[derive(Debug)]
-pub struct ClassMotion {
+pub(crate) struct ClassMotion {
     /// The class k.
     pub class: usize,
     /// Its orders on the interface circle.
@@ -149,7 +149,7 @@ pub struct ClassMotion {
 /// # Errors
 ///
 /// As [`answers`].
-pub fn motions(
+pub(crate) fn motions(
     tooth: &SolidTooth,
     below: &[Mat<c64>],
     wanted: Option<usize>,
@@ -171,7 +171,7 @@ pub fn motions(
 
 /// How the interfaces of all teeth move in one class under given forces.
 #[derive(Debug)]
-pub struct ForcedClass {
+pub(crate) struct ForcedClass {
     /// The class k.
     pub class: usize,
     /// Its orders on the interface circle.
@@ -186,7 +186,7 @@ pub struct ForcedClass {
 /// # Errors
 ///
 /// As [`answers`].
-pub fn forced(
+pub(crate) fn forced(
     tooth: &SolidTooth,
     below: &[Mat<c64>],
     (on_flank, on_order): (
@@ -218,7 +218,7 @@ pub fn forced(
 }
 
 /// Motion of the interfaces of the teeth at each of `distances` counter-clockwise of tooth 0, from that of each class: its number, its orders and its unknowns.
-pub fn interfaces<'a>(
+pub(crate) fn interfaces<'a>(
     sector: &SolidSector,
     classes: impl Iterator<Item = (usize, &'a [i64], &'a Mat<c64>)>,
     distances: &[usize],
@@ -238,7 +238,7 @@ pub fn interfaces<'a>(
 
 /// The sum over all classes of `of` turned by their share of `distance` teeth, over Z: the block between the tooth `distance`
 /// places counter-clockwise of another, and that one.
-pub fn between_teeth<'a>(
+pub(crate) fn between_teeth<'a>(
     classes: impl Iterator<Item = (usize, &'a Mat<c64>)>,
     tooth_count: usize,
     distance: usize,

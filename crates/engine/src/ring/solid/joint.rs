@@ -33,7 +33,7 @@ pub fn trace(narrow: &AxialBasis, wide: &AxialBasis, order: i64, twist: f64) -> 
 /// # Errors
 ///
 /// [`FemError::NotPositiveDefinite`].
-pub fn carried(
+pub(crate) fn carried(
     stiffness: &Mat<c64>,
     lower: &AxialBasis,
     upper: &AxialBasis,
@@ -63,7 +63,7 @@ pub fn carried(
 /// # Errors
 ///
 /// As [`carried`].
-pub fn below(
+pub(crate) fn below(
     stiffness: &Mat<c64>,
     [lower, upper]: [&AxialBasis; 2],
     (order, twist): (i64, f64),

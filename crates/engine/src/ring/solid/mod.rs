@@ -5,10 +5,10 @@
 //! order), [`shaft`] (the part under a gear of one piece with it), [`joint`] (parts of unlike width), [`web`] (one with holes), [`tooth`] and [`gear`], which
 //! joins them.
 
-pub mod gear;
-pub mod joint;
-pub mod revolution;
-pub mod sector;
-pub mod shaft;
-pub mod tooth;
-pub mod web;
+pub(crate) mod gear;
+pub(crate) mod joint;
+pub(crate) mod revolution;
+pub(crate) mod sector;
+pub(crate) mod shaft;
+pub(crate) mod tooth;
+pub(crate) mod web;

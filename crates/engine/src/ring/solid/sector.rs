@@ -7,7 +7,7 @@ use faer::{Mat, c64};
 
 /// A sector on its interface: right side, left side, arcs, node by node.
 #[derive(Debug, Clone)]
-pub struct SolidSector {
+pub(crate) struct SolidSector {
     /// The number S of sectors in the ring.
     pub count: usize,
     /// The unknowns of a node.
@@ -22,7 +22,7 @@ pub struct SolidSector {
 
 /// Displacement of an arc: blocks of unknowns.
 #[derive(Debug, Clone)]
-pub enum Arc {
+pub(crate) enum Arc {
     /// The nodes at these angles.
     Nodes(Vec<f64>),
     /// The amplitudes a_0, a_1, b_1, … of Σ a_n cos nφ + b_n sin nφ up to an order: of a whole circle.
@@ -55,7 +55,7 @@ impl Arc {
     }
 
     /// The amplitudes of [`Arc::Harmonics`] at nodes: a row for each of `angles`.
-    pub fn harmonics_at(angles: &[f64], largest: usize) -> Mat<f64> {
+    pub(crate) fn harmonics_at(angles: &[f64], largest: usize) -> Mat<f64> {
         Mat::from_fn(angles.len(), 2 * largest + 1, |i, j| {
             let (sin, cos) = (j.div_ceil(2) as f64 * angles[i]).sin_cos();
             if j > 0 && j.is_multiple_of(2) {
@@ -69,7 +69,7 @@ impl Arc {
 
 impl SolidSector {
     /// The interface alone, its arcs given node by node at these angles.
-    pub fn with_nodes(&self, angles: &[Vec<f64>]) -> Self {
+    pub(crate) fn with_nodes(&self, angles: &[Vec<f64>]) -> Self {
         Self {
             stiffness: Mat::zeros(0, 0),
             arcs: angles.iter().cloned().map(Arc::Nodes).collect(),
@@ -78,20 +78,20 @@ impl SolidSector {
     }
 
     /// The orders of `class` up to `largest`.
-    pub fn orders(&self, class: usize, largest: usize) -> Vec<i64> {
+    pub(crate) fn orders(&self, class: usize, largest: usize) -> Vec<i64> {
         let harmonics = crate::ring::cyclic::Harmonics { largest };
         harmonics.orders_of_class(class, self.count)
     }
 
     /// e^{i order angle}.
-    pub fn turn(order: i64, angle: f64) -> c64 {
+    pub(crate) fn turn(order: i64, angle: f64) -> c64 {
         let (sin, cos) = (order as f64 * angle).sin_cos();
         c64::new(cos, sin)
     }
 
     /// Weight of a class in the sector `ahead` places counter-clockwise of `count`, if it stands for the opposite one too, its conjugate: the real part is to
     /// be taken.
-    pub fn part(class: usize, ahead: usize, count: usize) -> c64 {
+    pub(crate) fn part(class: usize, ahead: usize, count: usize) -> c64 {
         // The class may be its own opposite.
         let share = match (2 * class).is_multiple_of(count) {
             true => 1.0,
@@ -102,12 +102,12 @@ impl SolidSector {
     }
 
     /// The unknowns of a class: those of one side, and on each arc those of each of `orders`.
-    pub fn unknowns(&self, orders: &[i64]) -> usize {
+    pub(crate) fn unknowns(&self, orders: &[i64]) -> usize {
         self.size * (self.side_nodes + self.arcs.len() * orders.len())
     }
 
     /// `rows` on the interface as rows on the unknowns of the class: sides, then arc by arc, order by order.
-    pub fn on_class(&self, rows: &Mat<f64>, class: usize, orders: &[i64]) -> Mat<c64> {
+    pub(crate) fn on_class(&self, rows: &Mat<f64>, class: usize, orders: &[i64]) -> Mat<c64> {
         let (size, sides) = (self.size, self.size * self.side_nodes);
         let angle = std::f64::consts::TAU * (class % self.count) as f64 / self.count as f64;
         let across = Self::turn(1, angle);
@@ -139,7 +139,7 @@ impl SolidSector {
     }
 
     /// How the interface moves where the unknowns of the class are `motion`, a column for each of several.
-    pub fn off_class(&self, motion: &Mat<c64>, class: usize, orders: &[i64]) -> Mat<c64> {
+    pub(crate) fn off_class(&self, motion: &Mat<c64>, class: usize, orders: &[i64]) -> Mat<c64> {
         let (size, sides) = (self.size, self.size * self.side_nodes);
         let angle = std::f64::consts::TAU * (class % self.count) as f64 / self.count as f64;
         let across = Self::turn(1, angle);
@@ -172,7 +172,7 @@ impl SolidSector {
     }
 
     /// Adds the part `of` a class, and as its conjugate of the opposite one, to `sums`, one for each sector.
-    pub fn add_to_each(&self, class: usize, of: &Mat<c64>, sums: &mut [Vec<f64>]) {
+    pub(crate) fn add_to_each(&self, class: usize, of: &Mat<c64>, sums: &mut [Vec<f64>]) {
         for (number, sum) in sums.iter_mut().enumerate() {
             let turn = Self::part(class, number, self.count);
             sum.resize(of.nrows(), 0.0);
@@ -183,7 +183,7 @@ impl SolidSector {
     }
 
     /// The Hermitian stiffness of one sector on the unknowns of the class.
-    pub fn class_stiffness(&self, class: usize, orders: &[i64]) -> Mat<c64> {
+    pub(crate) fn class_stiffness(&self, class: usize, orders: &[i64]) -> Mat<c64> {
         let half = self.on_class(&self.stiffness, class, orders);
         // Pᴴ (K P): the same on the rows of K P, which are the conjugates of the columns of its adjoint.
         let adjoint = half.adjoint().to_owned();

@@ -15,7 +15,7 @@ use crate::quadrature::gauss_legendre;
 
 /// The part of a body of one piece with its shaft that is inside the radius of the shaft.
 #[derive(Debug, Clone)]
-pub struct SolidShaft<'a> {
+pub(crate) struct SolidShaft<'a> {
     /// The shaft as a layer whose inner radius is 0.
     pub body: Revolution<'a>,
     /// The ends of it through which the torque enters, half of it each where it is both.
@@ -38,7 +38,7 @@ impl SolidShaft<'_> {
     /// # Errors
     ///
     /// [`FemError::NotPositiveDefinite`].
-    pub fn on_outer(&self, order: i64) -> Result<Mat<c64>, FemError> {
+    pub(crate) fn on_outer(&self, order: i64) -> Result<Mat<c64>, FemError> {
         let size = self.body.size();
         let matrices = self.body.axial.matrices();
         let held = self.held(order);

@@ -13,7 +13,7 @@ use crate::grid::ToothGrid;
 ///
 /// Displacements and loads of the flank stand node by node, from the form point to the tip corner, function by function.
 #[derive(Debug, Clone)]
-pub struct SolidTooth {
+pub(crate) struct SolidTooth {
     /// The sector on its interface.
     pub sector: SolidSector,
     /// The normal displacements of the flank by those of the interface.
@@ -32,7 +32,11 @@ impl SolidTooth {
     /// # Errors
     ///
     /// [`FemError`] if the grid is degenerate.
-    pub fn new(gear: &SolidGear, grid: &ToothGrid, axial: &AxialBasis) -> Result<Self, FemError> {
+    pub(crate) fn new(
+        gear: &SolidGear,
+        grid: &ToothGrid,
+        axial: &AxialBasis,
+    ) -> Result<Self, FemError> {
         let (tooth, _) = Self::with_nodes(gear, grid, axial, &[])?;
         Ok(tooth)
     }
@@ -42,7 +46,7 @@ impl SolidTooth {
     /// # Errors
     ///
     /// As [`SolidTooth::new`].
-    pub fn with_nodes(
+    pub(crate) fn with_nodes(
         gear: &SolidGear,
         grid: &ToothGrid,
         axial: &AxialBasis,
@@ -66,7 +70,7 @@ impl SolidTooth {
             kept: &kept,
             ..Default::default()
         };
-        let (condensed, rows) = prism.condense_with("the tooth", &interface, &points, recovered)?;
+        let (condensed, rows) = prism.condense("the tooth", &interface, &points, recovered)?;
         let tooth = Self {
             sector: SolidSector {
                 count: section.tooth_count() as usize,
@@ -89,7 +93,7 @@ impl SolidTooth {
 /// # Errors
 ///
 /// [`FemError`] if the grid is degenerate.
-pub fn flank_compliance_alone(
+pub(crate) fn flank_compliance_alone(
     gear: &SolidGear,
     grid: &ToothGrid,
     axial: &AxialBasis,
@@ -106,12 +110,12 @@ pub fn flank_compliance_alone(
         fixed: &grid.arc_nodes,
         ..Default::default()
     };
-    let (condensed, rows) = prism.condense_with("the tooth", &interface, &points, recovered)?;
+    let (condensed, rows) = prism.condense("the tooth", &interface, &points, recovered)?;
     Ok((condensed.held, rows))
 }
 
 /// The nodes of the loaded flank with their outward normals in polar components: (n cos β_b, −τ r_b cos β_b), n that of the section.
-pub fn flank_normals(gear: &SolidGear, grid: &ToothGrid) -> Vec<(u32, [f64; COMPONENTS])> {
+pub(crate) fn flank_normals(gear: &SolidGear, grid: &ToothGrid) -> Vec<(u32, [f64; COMPONENTS])> {
     let flank = gear.section().flank();
     let (sin, cos) = (gear.twist() * flank.base_radius()).atan().sin_cos();
     let nodes = grid.flank_nodes.iter().zip(&grid.flank_roll_lengths);

@@ -100,7 +100,7 @@ impl<'a> HoledRing<'a> {
             followers: &followers,
             fixed: held,
         };
-        let (condensed, rows) = prism.condense_with("the web", &interface, &[], recovered)?;
+        let (condensed, rows) = prism.condense("the web", &interface, &[], recovered)?;
         let angles: Vec<_> = circles.into_iter().map(|(_, angles)| angles).collect();
         let arcs = angles.iter().map(|angles| match is_whole {
             true => Arc::Harmonics(largest),
@@ -240,7 +240,7 @@ impl<'a> HoledRing<'a> {
 }
 
 /// The blocks of unknowns, one a node or an amplitude, that [`HoledRing::new`] keeps of a sector `grid` whose bore is `carried` or held.
-pub fn condensed_blocks(grid: &BlankGrid, carried: bool, largest: usize) -> usize {
+pub(crate) fn condensed_blocks(grid: &BlankGrid, carried: bool, largest: usize) -> usize {
     let (right, left) = &grid.side_nodes;
     let on = |nodes: &[u32]| match right.is_empty() {
         true => 2 * largest + 1,
@@ -264,12 +264,12 @@ fn following(stiffness: &Mat<c64>, outer: usize) -> Result<Mat<c64>, FemError> {
 }
 
 /// That of an order of either sign, of those of 0 and more.
-pub fn of_order(orders: &[Mat<c64>], order: i64) -> Mat<c64> {
+pub(crate) fn of_order(orders: &[Mat<c64>], order: i64) -> Mat<c64> {
     conjugate_below_zero(&orders[order.unsigned_abs() as usize], order)
 }
 
 /// That of an order of either sign, of that of 0 or more; or the other way.
-pub fn conjugate_below_zero(of: &Mat<c64>, order: i64) -> Mat<c64> {
+pub(crate) fn conjugate_below_zero(of: &Mat<c64>, order: i64) -> Mat<c64> {
     if order < 0 {
         of.conjugate().to_owned()
     } else {
