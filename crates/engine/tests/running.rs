@@ -7,7 +7,9 @@ use std::f64::consts::PI;
 use cases::{case, gear, holed, pair, relieved};
 use meshwright_engine::analysis::running::{Bore, Running, RunningGear};
 use meshwright_engine::analysis::stress::PeakStress;
-use meshwright_engine::analysis::{AnalysisError, Case, Curve, RotationSpeed, Warning, analyze};
+use meshwright_engine::analysis::{
+    AnalysisError, Case, Curve, Model, RotationSpeed, SectionHoles, Warning, analyze,
+};
 use meshwright_engine::gear::{GearPair, Member, PairDeviations};
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
@@ -69,6 +71,32 @@ fn rotation_alone_moves_the_order_of_the_holes_as_independent_elements_do() {
         let found = hole_order(&at_speed(holes, Bore::Held, 20_000.0), &library);
         let ratio = found / expected;
         assert!(ratio > 1.0 && ratio < 1.1, "{holes:?}: {found}");
+    }
+}
+
+#[test]
+fn all_methods_of_the_plane_see_what_rotation_does() {
+    // The flexible method solves each position with all that holes do. What speed adds is in the contact of the round or rigid gears of the other two.
+    let library = Library::default();
+    let of = |holes: SectionHoles, rpm: f64| {
+        let mut case = at_speed((6, 10.5e-3), Bore::Held, rpm);
+        case.model = Model::Section(holes);
+        solved(&case, &library)
+    };
+    let at_speed = |holes| {
+        let curve = of(holes, 20_000.0);
+        curve.running.and_then(|running| running.hole_order).expect("it has holes")
+    };
+    let exact = at_speed(SectionHoles::Whole);
+    for holes in [SectionHoles::FirstOrder, SectionHoles::Fitted] {
+        let found = at_speed(holes);
+        println!("{holes:?} {} of {exact:e}", found / exact);
+        assert!((found / exact - 1.0).abs() < 0.03, "{holes:?}: {found} {exact}");
+        // At rest every digit is that of a pair that does not run.
+        let at_rest = of(holes, 0.0);
+        let mut case = self::at_speed((6, 10.5e-3), Bore::Held, 0.0);
+        (case.model, case.running) = (Model::Section(holes), None);
+        assert_eq!(at_rest.transmission_error, solved(&case, &library).transmission_error);
     }
 }
 

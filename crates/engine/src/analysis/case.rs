@@ -46,6 +46,14 @@ impl Method {
         matches!(self, Self::Flexible | Self::ThreeDimensional)
     }
 
+    /// True if it sees that gears rotate, are warm and are pressed onto shafts.
+    pub fn sees_running(self) -> bool {
+        matches!(
+            self,
+            Self::Flexible | Self::Decomposition | Self::ProjectedDecomposition
+        )
+    }
+
     /// True if it computes the best turn of the holes of both gears.
     pub fn finds_hole_phase(self) -> bool {
         matches!(
@@ -198,7 +206,7 @@ pub struct Case {
     pub stress: bool,
     /// The speed of the driving gear, if frequencies are wanted.
     pub driving_speed: Option<RotationSpeed>,
-    /// How the pair runs: seen by [`SectionHoles::Whole`] alone.
+    /// How the pair runs, where the method sees that ([`Method::sees_running`]).
     pub running: Option<Running>,
 }
 
@@ -268,7 +276,7 @@ impl Case {
     /// How it runs, by a method that sees that.
     pub(super) fn runs(&self) -> Option<&Running> {
         let running = self.running.as_ref();
-        running.filter(|_| self.model == Model::Section(SectionHoles::Whole))
+        running.filter(|_| self.method().sees_running())
     }
 
     /// The same at rest, as warm and on the same shafts, which a curve at speed is compared with; `None` at rest, and where that says nothing of its holes.
@@ -306,9 +314,11 @@ impl Case {
             .collect()
     }
 
-    /// True if all flanks stand as drawn, so that contact on rotationally symmetric blanks repeats with every mesh period.
+    /// True if the flanks of all teeth of a gear are alike, so that contact on rotationally symmetric blanks repeats with every mesh period. A gear without
+    /// holes grows evenly, and so does one with holes under heat alone.
     fn flanks_are_alike(&self) -> bool {
-        self.pair.is_as_drawn() && self.runs().is_none()
+        let grow_alike = |running: &Running| self.holed().is_empty() || running.grows_evenly();
+        self.pair.is_as_drawn() && self.runs().is_none_or(grow_alike)
     }
 
     /// The mesh positions after which contact on blanks that are alike all around repeats: those of one mesh period, or of the whole
