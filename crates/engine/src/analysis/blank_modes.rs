@@ -4,6 +4,7 @@ use super::case::Case;
 use super::error::AnalysisError;
 use super::estimate::Estimate;
 use super::running::RotationSpeed;
+use crate::fem::FemError;
 use crate::gear::{Helix, Member, SolidGear, SolidGearError};
 use crate::run::Run;
 use crate::vibration::campbell::Crossing;
@@ -67,22 +68,27 @@ pub fn blank_modes(
     run: &Run,
 ) -> Result<[Vec<MetMode>; 2], AnalysisError> {
     let of = |member: Member| {
-        let failed = |reason: String| AnalysisError::Discretization { member, reason };
-        let gear = case
-            .solid_gear(member)
-            .map_err(|error| failed(error.to_string()))?;
-        match vibration::modes(&gear, request.asked, run) {
-            Ok(modes) => Ok(modes
-                .into_iter()
-                .map(|mode| met(mode, case, member, request))
-                .collect()),
-            Err(ModesError::Fem(crate::fem::FemError::Stopped(stopped))) => {
-                Err(AnalysisError::Stopped(stopped))
-            }
-            Err(error) => Err(failed(error.to_string())),
-        }
+        let gear = case.solid_gear(member);
+        let gear = gear.map_err(|error| AnalysisError::Discretization {
+            member,
+            reason: error.to_string(),
+        })?;
+        let modes = vibration::modes(&gear, request.asked, run);
+        let modes = modes.map_err(|error| of_modes(error, member))?.into_iter();
+        Ok::<_, AnalysisError>(modes.map(|mode| met(mode, case, member, request)).collect())
     };
     Ok([of(Member::Driving)?, of(Member::Driven)?])
+}
+
+/// `error` as that of the gear `member`.
+pub(super) fn of_modes(error: ModesError, member: Member) -> AnalysisError {
+    match error {
+        ModesError::Fem(FemError::Stopped(stopped)) => AnalysisError::Stopped(stopped),
+        error => AnalysisError::Discretization {
+            member,
+            reason: error.to_string(),
+        },
+    }
 }
 
 /// `mode` of a gear of `case` with the speeds of `request` at which the mesh meets it.

@@ -48,18 +48,12 @@ impl Method {
 
     /// True if it sees that gears rotate, are warm and are pressed onto shafts.
     pub fn sees_running(self) -> bool {
-        matches!(
-            self,
-            Self::Flexible | Self::Decomposition | Self::ProjectedDecomposition
-        )
+        self != Self::LoadDistribution
     }
 
     /// True if it computes the best turn of the holes of both gears.
     pub fn finds_hole_phase(self) -> bool {
-        matches!(
-            self,
-            Self::Flexible | Self::Decomposition | Self::ProjectedDecomposition
-        )
+        self.sees_holes()
     }
 
     /// True if it takes the holes of the blanks into account.
@@ -159,6 +153,22 @@ impl Model {
             Self::Faces(_, FaceHoles::Whole) => Method::ThreeDimensional,
             Self::Faces(_, FaceHoles::FirstOrder) => Method::ThreeDimensionalProjected,
             Self::Formulas(_) => Method::LoadDistribution,
+        }
+    }
+}
+
+impl Model {
+    /// The same without the search for an even load.
+    fn without_cure(&self) -> Self {
+        match self {
+            Self::Faces(faces, holes) => {
+                let faces = Faces {
+                    cure: false,
+                    ..(**faces).clone()
+                };
+                Self::Faces(Box::new(faces), *holes)
+            }
+            Self::Section(_) | Self::Formulas(_) => self.clone(),
         }
     }
 }
@@ -291,6 +301,7 @@ impl Case {
                 driving_speed: RotationSpeed(0.0),
                 ..*running
             }),
+            model: self.model.without_cure(),
             resolution: Resolution {
                 error_estimate: false,
                 ..self.resolution
