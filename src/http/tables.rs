@@ -345,7 +345,7 @@ fn make(
         }
         File::HolePhase => {
             let phase = results.hole_phase.as_ref().ok_or_else(|| {
-                let detail = "These results have no hole_phase: it is found in the plane for gears as drawn that repeat at one order, over whole true periods.";
+                let detail = "These results have no hole_phase: it is found for gears at rest and as drawn that repeat at one order, over whole true periods.";
                 Problem::new(Code::NotFound, detail)
             });
             Ok(pictures::answer(pictures::hole_phase(phase?)))

@@ -6,7 +6,10 @@
 //! apart: 259 N/µm at S2, η = 0.1875. Our own series (tests/reference/calculix) keep each load for a second step and have 284 there, as
 //! the engine has. So k at corners is compared in our own series only, and in S1 to S3 δ at 1.02 T instead.
 
-use meshwright_engine::analysis::pair_model;
+use std::f64::consts::TAU;
+
+use meshwright_engine::analysis::running::{Bore, Running, RunningGear};
+use meshwright_engine::analysis::{RotationSpeed, analyze, pair_model};
 use meshwright_engine::contact::{MeshContact, WarmStart};
 use meshwright_engine::gear::{
     GearData, GearPair, Hole, HoleShape, Material, ModificationData, ReliefData, ReliefShape,
@@ -510,4 +513,65 @@ fn four_unequal_holes_follow_calculix() {
         Corners::Settled,
         7,
     );
+}
+
+#[test]
+fn rotation_moves_the_order_of_ten_holes_as_calculix_has_it() {
+    // Ten positions over a hole period, each solved at rest and with centrifugal forces, bores held.
+    let document = reference("calculix-rotation.json");
+    let rpm = document["inputs"]["driving_speed_rpm"]
+        .as_f64()
+        .expect("a speed");
+    let positions = document["positions"].as_array().expect("positions");
+    let expected: Vec<f64> = positions
+        .iter()
+        .map(|position| {
+            let beyond = &position["loads"][0]["at_speed"]["beyond_rest_um"];
+            1e-6 * beyond.as_f64().expect("solved at rest and at speed")
+        })
+        .collect();
+    assert_eq!(expected.len(), 10);
+    let solid = relieved(gear(50, 15e-3));
+    let holes = holed(solid.clone(), 10, 34e-3, 7.5e-3, 0.0);
+    let mut case = case(pair(solid, holes, 100.5e-3), &[115.0]);
+    case.resolution.positions_per_mesh_period = 2;
+    case.resolution.first_position = 0.25;
+    let delta = |rpm: f64| {
+        let mut case = case.clone();
+        let gear = RunningGear {
+            thermal_strain: 0.0,
+            bore: Bore::Held,
+            tensile_strength: None,
+        };
+        case.running = Some(Running {
+            driving_speed: RotationSpeed(rpm / 60.0),
+            gears: [gear; 2],
+        });
+        let found = analyze(&case, library(), &Run::unattended()).expect("solves");
+        found.curves[0].transmission_error.clone()
+    };
+    let (at_rest, turning) = (delta(0.0), delta(rpm));
+    let found: Vec<f64> = turning.iter().zip(&at_rest).map(|(a, b)| a - b).collect();
+    for (found, expected) in at_rest.iter().zip(positions) {
+        let delta = &expected["loads"][0]["transmission_error_um"];
+        let expected = 1e-6 * delta.as_f64().expect("solved");
+        assert!(
+            (found / expected - 1.0).abs() < LEVEL.0,
+            "{found} {expected}"
+        );
+    }
+    // The line of the holes among ten values over their period.
+    let line = |values: &[f64]| {
+        let part = |of: fn(f64) -> f64| {
+            let each = values.iter().enumerate();
+            each.map(|(i, value)| value * of(TAU * i as f64 / 10.0) / 5.0)
+                .sum::<f64>()
+        };
+        [part(f64::cos), part(f64::sin)]
+    };
+    let [one, other] = [&found, &expected].map(|values| line(values));
+    let apart = (one[0] - other[0]).hypot(one[1] - other[1]);
+    let size = other[0].hypot(other[1]);
+    println!("{:.2} nm apart, of {:.1} nm", 1e9 * apart, 1e9 * size);
+    assert!(apart < f64::max(0.01 * size, 5e-9), "{apart} of {size}");
 }

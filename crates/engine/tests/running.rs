@@ -4,11 +4,16 @@ mod cases;
 
 use std::f64::consts::PI;
 
-use cases::{case, gear, holed, pair, relieved};
+use cases::{along_faces, case, gear, holed, model_by, pair, relieved};
 use meshwright_engine::analysis::running::{Bore, Running, RunningGear};
 use meshwright_engine::analysis::stress::PeakStress;
-use meshwright_engine::analysis::{AnalysisError, Case, Curve, RotationSpeed, Warning, analyze};
-use meshwright_engine::gear::{GearPair, Member, PairDeviations};
+use meshwright_engine::analysis::{
+    AnalysisError, Case, Curve, Method, Model, RotationSpeed, SectionHoles, Warning, analyze,
+};
+use meshwright_engine::assembly::FaceResolution;
+use meshwright_engine::gear::{
+    Alignment, GearPair, Helix, Member, PairDeviations, SolidGear, SolidPair,
+};
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
@@ -70,6 +75,81 @@ fn rotation_alone_moves_the_order_of_the_holes_as_independent_elements_do() {
         let ratio = found / expected;
         assert!(ratio > 1.0 && ratio < 1.1, "{holes:?}: {found}");
     }
+}
+
+#[test]
+fn all_methods_of_the_plane_see_what_rotation_does() {
+    // The flexible method solves each position with all that holes do. What speed adds is in the contact of the round or rigid gears of the other two.
+    let library = Library::default();
+    let of = |holes: SectionHoles, rpm: f64| {
+        let mut case = at_speed((6, 10.5e-3), Bore::Held, rpm);
+        case.model = Model::Section(holes);
+        solved(&case, &library)
+    };
+    let at_speed = |holes| {
+        let curve = of(holes, 20_000.0);
+        curve
+            .running
+            .and_then(|running| running.hole_order)
+            .expect("it has holes")
+    };
+    let exact = at_speed(SectionHoles::Whole);
+    for holes in [SectionHoles::FirstOrder, SectionHoles::Fitted] {
+        let found = at_speed(holes);
+        println!("{holes:?} {} of {exact:e}", found / exact);
+        assert!(
+            (found / exact - 1.0).abs() < 0.03,
+            "{holes:?}: {found} {exact}"
+        );
+        // At rest every digit is that of a pair that does not run.
+        let at_rest = of(holes, 0.0);
+        let mut case = self::at_speed((6, 10.5e-3), Bore::Held, 0.0);
+        (case.model, case.running) = (Model::Section(holes), None);
+        assert_eq!(
+            at_rest.transmission_error,
+            solved(&case, &library).transmission_error
+        );
+    }
+}
+
+#[test]
+#[ignore = "./test all"]
+fn what_rotation_does_to_a_narrow_pair_in_space_is_what_it_does_in_the_plane() {
+    let library = Library::default();
+    let plane = at_speed((10, 7.5e-3), Bore::Held, 20_000.0);
+    let gears = Member::BOTH.map(|member| {
+        let mut data = plane.pair.gear(member).data().clone();
+        data.face_width = 2e-3;
+        SolidGear::new(data, Helix::STRAIGHT, 0.0, None).expect("can be made")
+    });
+    let leads = [Vec::new(), Vec::new()];
+    let pair = SolidPair::new(gears, leads, 100.5e-3, Alignment::default()).expect("meshes");
+    let section = pair.section().clone();
+    let torque = [TORQUE / 10.0];
+    let mut case = along_faces(pair, (FaceResolution::DRAFT, 8), &torque);
+    case.running = plane.running;
+    case.resolution.positions_per_mesh_period = 20;
+    let model = case.model.clone();
+    let found = [
+        Method::Flexible,
+        Method::ThreeDimensional,
+        Method::ThreeDimensionalProjected,
+    ]
+    .map(|method| {
+        let case = Case {
+            pair: section.clone(),
+            model: model_by(method, &model),
+            ..case.clone()
+        };
+        hole_order(&case, &library)
+    });
+    let [plane, space, projected] = found;
+    println!("{found:?}");
+    assert!((space / plane - 1.0).abs() < 0.02, "{space} {plane}");
+    assert!(
+        (projected / plane - 1.0).abs() < 0.03,
+        "{projected} {plane}"
+    );
 }
 
 #[test]
@@ -190,6 +270,24 @@ fn a_fit_that_comes_loose_is_told_with_its_speed_and_a_rim_that_breaks_is_refuse
     // Stresses grow with the square of the speed.
     let bearable = (500.0 * 500.0 * 100e6 / stress).sqrt();
     assert!((speed / bearable - 1.0).abs() < 1e-9, "{speed} {bearable}");
+}
+
+#[test]
+fn the_turn_of_a_blank_is_fitted_as_drawn_whatever_its_teeth_deviate_by() {
+    let mut case = at_speed((6, 10.5e-3), Bore::Held, 0.0);
+    (case.model, case.running) = (Model::Section(SectionHoles::Fitted), None);
+    let fit = |case: &Case| {
+        let parts = solved(case, &Library::default()).decomposition;
+        let fit = parts.expect("its parts").blanks.remove(0);
+        (fit.mean, fit.amplitude, fit.phase)
+    };
+    let drawn = fit(&case);
+    let [driving, driven] = Member::BOTH.map(|member| case.pair.gear(member).data().clone());
+    let mut driving = driving;
+    driving.deviations.cumulative_pitch = (0..50).map(|i| 1e-6 * f64::from(i * 7 % 11)).collect();
+    case.pair = pair(driving, driven, 100.5e-3);
+    case.resolution.span_mesh_periods = Some(1);
+    assert_eq!(fit(&case), drawn);
 }
 
 #[test]

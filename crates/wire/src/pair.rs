@@ -119,7 +119,7 @@ impl PairDocument {
     }
 
     /// The pair along its faces, if its gears can be made and mesh; faults are reported to `errors`.
-    pub(super) fn to_solid_pair(&self, errors: &Errors) -> Option<SolidPair> {
+    pub(super) fn to_solid_pair(&self, growth: f64, errors: &Errors) -> Option<SolidPair> {
         let [driving, driven] = self.made(errors, |gear, member| {
             gear.to_solid(&format!("/pair/{member}"), self.helix(member))
         })?;
@@ -135,14 +135,16 @@ impl PairDocument {
         let pair = SolidPair::new(
             gears,
             [self.driving.leads(), self.driven.leads()],
-            from_mm(self.center_distance_mm),
+            growth * from_mm(self.center_distance_mm),
             alignment,
         );
         let found = match pair {
             Ok(pair) => return Some(pair),
-            Err(SolidPairError::Section(error)) => {
-                self.field_error([&sections[0], &sections[1]], overlap_ratio, &error)
-            }
+            Err(SolidPairError::Section(error)) => self.refused(
+                [&sections[0], &sections[1]],
+                (overlap_ratio, growth),
+                &error,
+            ),
             Err(SolidPairError::FacesDoNotOverlap {
                 axial_offset,
                 nearest,
@@ -197,20 +199,27 @@ impl PairDocument {
         let (one, other) = (driving.clone(), driven.clone());
         let distance = growth * from_mm(self.center_distance_mm);
         let pair = GearPair::new(one, other, distance);
-        let refused = |error: GearPairError| {
-            let gears = [&driving, &driven];
-            if growth == 1.0 {
-                return self.field_error(gears, 0.0, &error);
-            }
-            let warm = Self {
-                center_distance_mm: growth * self.center_distance_mm,
-                ..self.clone()
-            };
-            let error = warm.field_error(gears, 0.0, &error)?;
-            let detail = format!("In lengths of the warm gears: {}", error.detail);
-            Some(FieldError::new("/running", error.code, detail))
-        };
+        let refused = |error| self.refused([&driving, &driven], (0.0, growth), &error);
         errors.report(pair.map_err(refused))
+    }
+
+    /// Why `gears` of so much overlap cannot mesh at a center distance that has grown by `growth`.
+    fn refused(
+        &self,
+        gears: [&SpurGear; 2],
+        (overlap_ratio, growth): (f64, f64),
+        error: &GearPairError,
+    ) -> Option<FieldError> {
+        if growth == 1.0 {
+            return self.field_error(gears, overlap_ratio, error);
+        }
+        let warm = Self {
+            center_distance_mm: growth * self.center_distance_mm,
+            ..self.clone()
+        };
+        let error = warm.field_error(gears, overlap_ratio, error)?;
+        let detail = format!("In lengths of the warm gears: {}", error.detail);
+        Some(FieldError::new("/running", error.code, detail))
     }
 
     /// Both gears, if they can be made and could mesh; faults are reported to `errors`.

@@ -19,7 +19,8 @@ words! {
 
 document! {
     /// How the pair runs. Rotation, heat and press fits move the flanks, which the contact takes as deviations of the drawn flanks, and stress roots and hole
-    /// edges beside the load. Compliances stay those of the drawing, and a load acts on bores that are held. The method `flexible` sees it.
+    /// edges beside the load. Compliances stay those of the drawing, and a load acts on bores that are held. All methods by finite elements see it;
+    /// press fits and stresses of rotation are seen in the plane alone.
     pub struct RunningDocument as "Running", "Running" {
         /// The speed of the driving gear, whose square the pull of rotation grows with.
         pub(crate) driving_speed_rpm: f64 =
@@ -123,20 +124,30 @@ impl RunningDocument {
     /// Refuses what goes together with no method, gear or backlash of the submission: `pair` at its warm center distance.
     pub(super) fn check(
         &self,
-        (method, document, pair): (Method, &PairDocument, &GearPair),
+        (method, stress): (Method, bool),
+        (document, pair): (&PairDocument, &GearPair),
         errors: &Errors,
     ) {
-        if method != Method::Flexible {
-            let code = if method.sees_faces() {
-                Code::NotInThreeDimensions
-            } else {
-                Code::QuantityNotTold
-            };
+        let unseen = |pointer: &str, code| {
             let detail = format!(
-                "/running is not seen by the method {}; flexible sees it.",
+                "{pointer} is not seen by the method {}; flexible sees it.",
                 method.word()
             );
-            errors.push(FieldError::new("/running", code, detail));
+            errors.push(FieldError::new(pointer, code, detail));
+        };
+        if !method.sees_running() {
+            unseen("/running", Code::QuantityNotTold);
+        }
+        if method.sees_faces() && self.press_fit_um.is_some() {
+            unseen("/running/press_fit_um", Code::NotInThreeDimensions);
+        }
+        if method.sees_faces() && stress {
+            let detail = "/stress is asked for beside /running: along faces stresses are those of the load alone. The method flexible adds those of rotation; leave one of them out.";
+            errors.push(FieldError::new(
+                "/stress",
+                Code::NotInThreeDimensions,
+                detail.to_owned(),
+            ));
         }
         for (member, fit) in Member::BOTH.into_iter().zip(self.press_fits()) {
             let shaft = pair.gear(member).data().blank.shaft();

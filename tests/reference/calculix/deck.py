@@ -60,11 +60,20 @@ def turning_hub(pair, grid, hub, first):
     return tied
 
 
+def pull_of_rotation(pair, grids, speed):
+    """Centrifugal loads of both gears about their axes, the driving one at `speed` in 1/s."""
+    for which, (gear, grid) in enumerate(zip(pair.gears, grids)):
+        square = (speed * pair.driving.z / gear.z) ** 2
+        x, y = pair.centers[which]
+        for region in np.unique(grid.regions):
+            yield f"G{which}R{region}, CENTRIF, {number(square)}, {number(x)}, {number(y)}, 0., 0., 0., 1.\n"
+
+
 def write_deck(path, pair, grids, pairs, steps, contact_stiffness, printed=()):
     """Writes the deck.
 
-    `pairs` are the tooth pairs in reach, `steps` the load F (N) of each step and whether it is to be solved sharply,
-    `printed` the node sets (name, gear, nodes) whose displacements are printed.
+    `pairs` are the tooth pairs in reach, `steps` the load F (N) of each step, whether it is to be solved sharply, and the
+    angular speed of the driving gear (1/s), `printed` the node sets (name, gear, nodes) whose displacements are printed.
     """
     offset = (0, len(grids[0].nodes))
     element_offset = (0, len(grids[0].triangles))
@@ -83,7 +92,8 @@ def write_deck(path, pair, grids, pairs, steps, contact_stiffness, printed=()):
                     out.write(f"{element_offset[which] + k + 1}, {nodes}\n")
                 e, nu = plane_stress_as_plane_strain(gear.youngs_modulus, gear.poisson_ratio)
                 e *= region_thickness(gear, region, pair.face_width)
-                out.write(f"*MATERIAL, NAME=M{name}\n*ELASTIC\n{number(e)}, {number(nu)}\n")
+                density = gear.density * region_thickness(gear, region, pair.face_width)
+                out.write(f"*MATERIAL, NAME=M{name}\n*ELASTIC\n{number(e)}, {number(nu)}\n*DENSITY\n{number(density)}\n")
                 out.write(f"*SOLID SECTION, ELSET={name}, MATERIAL=M{name}\n1.\n")
         out.write("*BOUNDARY\n")
         out.writelines(f"{n + 1}, 1, 2\n" for n in grids[0].edge_nodes("bore"))
@@ -100,10 +110,13 @@ def write_deck(path, pair, grids, pairs, steps, contact_stiffness, printed=()):
         for name, which, nodes in printed:
             out.write(f"*NSET, NSET={name}\n")
             out.writelines(f"{offset[which] + n + 1},\n" for n in nodes)
-        for force, settled in steps:
+        for force, settled, speed in steps:
             out.write("*STEP, INC=60\n*STATIC\n1., 1., 1e-4, 1.\n")
             out.write(CONTROLS[settled])
             out.write(f"*CLOAD\n{hub}, 1, {number(force / pair.face_width)}\n")
+            out.write("*DLOAD, OP=NEW\n")
+            if speed:
+                out.writelines(pull_of_rotation(pair, grids, speed))
             out.write("*NODE PRINT, NSET=HUB, FREQUENCY=999\nU\n")
             for name, _, _ in printed:
                 out.write(f"*NODE PRINT, NSET={name}, FREQUENCY=999\nU\n")

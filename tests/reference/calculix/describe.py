@@ -45,6 +45,8 @@ def inputs(series):
         "gear1": gear_inputs(pair.driving),
         "gear2": gear_inputs(pair.driven),
         "derived": derived(pair),
+        "driving_speed_rpm": series.driving_speed_rpm or None,
+        "density_t_per_mm3": series.driving_speed_rpm and pair.driving.density or None,
         "T_Nm": list(series.torques),
         "options": {key: value for key, value in asdict(series.options).items() if value is not None},
         "definition": DEFINITION,
@@ -110,7 +112,7 @@ def derived(pair):
 def submission(series):
     """The same pair in the words of the service."""
     pair = series.pair
-    return {
+    document = {
         "method": "flexible",
         "pair": {
             "center_distance_mm": pair.center_distance,
@@ -119,6 +121,9 @@ def submission(series):
         },
         "output_torques_n_m": list(series.torques),
     }
+    if series.driving_speed_rpm:
+        document["running"] = {"driving_speed_rpm": series.driving_speed_rpm, "bore": "held"}
+    return document
 
 
 def gear_submission(gear, face_width):

@@ -80,6 +80,8 @@ class Gear:
     pitch_deviations: dict = field(default_factory=dict)
     youngs_modulus: float = 210000.0
     poisson_ratio: float = 0.3
+    # In tonnes per cubic millimeter.
+    density: float = 7.85e-9
 
     @property
     def alpha(self):

@@ -7,6 +7,7 @@ import argparse
 import json
 import tempfile
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from math import pi
 from pathlib import Path
 
 from describe import as_text, describe
@@ -26,7 +27,8 @@ def solve_and_keep(name, eta, refinement, work):
     options = series.options.refined(refinement, series.refined)
     try:
         every = series.positions.index(eta) % series.stiffness_every == 0 or eta == series.check_at
-        position = solve_position(series.pair, eta, series.torques, options, folder, every, series.stress)
+        speed = series.driving_speed_rpm * pi / 30
+        position = solve_position(series.pair, eta, series.torques, options, folder, every, series.stress, speed)
     except Exception as error:
         # A position without a solution is said, not dropped.
         position = {"mesh_position": eta, "loads": [], "converged": False, "error": str(error)}

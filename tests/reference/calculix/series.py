@@ -25,6 +25,8 @@ class Series:
     # The sizes that are refined there.
     refined: tuple = ALL_SIZES
     stress: bool = False
+    # Speed of the driving gear in revolutions per minute; each position is solved at rest and at this speed.
+    driving_speed_rpm: float = 0.0
     # The file of the series that this one reproduces, if it is a check of the set-up.
     reproduces: str = None
 
@@ -100,6 +102,7 @@ def all_series():
         chamfer(),
         steep_relief(),
         undercut(),
+        rotation(),
     ]
     return {series.name: series for series in listed}
 
@@ -261,4 +264,18 @@ def undercut():
         Options(contact=0.008, fillet=0.08, tooth=1.2, body=2.5, strip=0.12, core=0.0015, core_reach=0.015, contact_stiffness=3e9),
         check_at=0.45,
         stiffness_every=8,
+    )
+
+
+def rotation():
+    # Ten holes stand at 36 degrees, five mesh periods: the curve repeats with the holes.
+    holes = tuple(Hole(34.0, 7.5, np.radians(36.0 * k)) for k in range(10))
+    return Series(
+        "calculix-rotation",
+        "ten holes in the driven gear, at rest and at 20,000 rpm: over one hole period, at two places of each mesh period",
+        standard_pair(driven=dict(holes=holes)),
+        (115.0,),
+        tuple(0.25 + 0.5 * k for k in range(10)),
+        check_at=1.25,
+        driving_speed_rpm=20000.0,
     )

@@ -117,8 +117,9 @@ def run_ccx(folder, name):
     return "Job finished" in log, len(re.findall(r"^ iteration ", log, re.M))
 
 
-def solve_position(pair, eta, torques, options, folder, stiffness=True, stress=False):
-    """Solves one position at each torque (N m) and, for the stiffness, at its step.
+def solve_position(pair, eta, torques, options, folder, stiffness=True, stress=False, speed=0.0):
+    """Solves one position at each torque (N m) and, for the stiffness, at its step; with a speed of the driving gear (1/s) at
+    the torque and that speed instead.
 
     Returns a dictionary as it stands in the result files.
     """
@@ -130,8 +131,12 @@ def solve_position(pair, eta, torques, options, folder, stiffness=True, stress=F
     rb2 = pair.driven.rb
     # CalculiX divides the faces that touch only when a load step begins, before they slide by some micrometers; where a
     # corner touches that matters, so the load is kept for a second step.
-    factors = [(1.0, False), (1.0, True), (STEP, True)][: 3 if stiffness else 2]
-    load_steps = [(factor * torque * 1e3 / rb2, sharp) for torque in torques for factor, sharp in factors]
+    factors = [(1.0, False, 0.0), (1.0, True, 0.0)]
+    if speed:
+        factors.append((1.0, True, speed))
+    elif stiffness:
+        factors.append((STEP, True, 0.0))
+    load_steps = [(factor * torque * 1e3 / rb2, *how) for torque in torques for factor, *how in factors]
     printed = []
     if stress:
         from stress import fillet_sets
@@ -169,7 +174,10 @@ def solve_position(pair, eta, torques, options, folder, stiffness=True, stress=F
             "force_balance": round(at["sum"] * pair.face_width / force - 1, 6),
             "moment_balance": round(at["moment"] * pair.face_width / (force * rb2) - 1, 6),
         }
-        if stiffness and len(steps) > settled + 1:
+        if speed and len(steps) > settled + 1:
+            turning = position.built_in + steps[settled + 1]["hub"]
+            load["at_speed"] = {"transmission_error_um": round(turning * 1e3, 4), "beyond_rest_um": round((turning - delta) * 1e3, 5)}
+        elif stiffness and len(steps) > settled + 1:
             step = position.built_in + steps[settled + 1]["hub"] - delta
             load["stiffness_step_2_percent_n_per_um"] = round((STEP - 1) * force / step * 1e-3, 2)
         if stress:

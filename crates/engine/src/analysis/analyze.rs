@@ -147,7 +147,9 @@ fn passed(
         Model::Section(SectionHoles::Fitted) => in_plane(decomposition::solve),
         Model::Section(SectionHoles::FirstOrder) => in_plane(projected::solve),
         Model::Faces(faces, holes) => {
-            three_dimensional::solve((case, faces, *holes), pass, parts, run)
+            let drawn = case.pair.deviations();
+            let deviations = state.map_or(&drawn, |state| &state.deviations);
+            three_dimensional::solve((case, faces, *holes), deviations, pass, parts, run)
         }
         Model::Formulas(formulas) => load_distribution::solve(case, *formulas, pass, run),
     }

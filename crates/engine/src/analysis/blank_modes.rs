@@ -4,6 +4,7 @@ use super::case::Case;
 use super::error::AnalysisError;
 use super::estimate::Estimate;
 use super::running::RotationSpeed;
+use crate::fem::FemError;
 use crate::gear::{Helix, Member, SolidGear, SolidGearError};
 use crate::run::Run;
 use crate::vibration::campbell::Crossing;
@@ -66,20 +67,17 @@ pub fn blank_modes(
     request: &ModesRequest,
     run: &Run,
 ) -> Result<[Vec<MetMode>; 2], AnalysisError> {
-    let failed = |member: Member, reason: String| AnalysisError::Discretization { member, reason };
     let gear = |member: Member| {
         let gear = case.solid_gear(member);
-        gear.map_err(|error| failed(member, error.to_string()))
+        gear.map_err(|error| AnalysisError::Discretization {
+            member,
+            reason: error.to_string(),
+        })
     };
     let gears = [gear(Member::Driving)?, gear(Member::Driven)?];
     let of = |member: Member| {
         let modes = vibration::modes(&gears[member.index()], request.asked, run);
-        modes.map_err(|error| match error {
-            ModesError::Fem(crate::fem::FemError::Stopped(stopped)) => {
-                AnalysisError::Stopped(stopped)
-            }
-            error => failed(member, error.to_string()),
-        })
+        modes.map_err(|error| of_modes(error, member))
     };
     let driving = of(Member::Driving)?;
     // Equal gears vibrate alike.
@@ -93,6 +91,17 @@ pub fn blank_modes(
         modes.map(|mode| met(mode, case, member, request)).collect()
     };
     Ok([met(driving, Member::Driving), met(driven, Member::Driven)])
+}
+
+/// `error` as that of the gear `member`.
+pub(super) fn of_modes(error: ModesError, member: Member) -> AnalysisError {
+    match error {
+        ModesError::Fem(FemError::Stopped(stopped)) => AnalysisError::Stopped(stopped),
+        error => AnalysisError::Discretization {
+            member,
+            reason: error.to_string(),
+        },
+    }
 }
 
 /// `mode` of a gear of `case` with the speeds of `request` at which the mesh meets it.

@@ -46,12 +46,14 @@ impl Method {
         matches!(self, Self::Flexible | Self::ThreeDimensional)
     }
 
+    /// True if it sees that gears rotate, are warm and are pressed onto shafts.
+    pub fn sees_running(self) -> bool {
+        self != Self::LoadDistribution
+    }
+
     /// True if it computes the best turn of the holes of both gears.
     pub fn finds_hole_phase(self) -> bool {
-        matches!(
-            self,
-            Self::Flexible | Self::Decomposition | Self::ProjectedDecomposition
-        )
+        self.sees_holes()
     }
 
     /// True if it takes the holes of the blanks into account.
@@ -155,6 +157,22 @@ impl Model {
     }
 }
 
+impl Model {
+    /// The same without the search for an even load.
+    fn without_cure(&self) -> Self {
+        match self {
+            Self::Faces(faces, holes) => {
+                let faces = Faces {
+                    cure: false,
+                    ..(**faces).clone()
+                };
+                Self::Faces(Box::new(faces), *holes)
+            }
+            Self::Section(_) | Self::Formulas(_) => self.clone(),
+        }
+    }
+}
+
 /// A place in a curve, and its contact.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
@@ -198,7 +216,7 @@ pub struct Case {
     pub stress: bool,
     /// The speed of the driving gear, if frequencies are wanted.
     pub driving_speed: Option<RotationSpeed>,
-    /// How the pair runs: seen by [`SectionHoles::Whole`] alone.
+    /// How the pair runs, where the method sees that ([`Method::sees_running`]).
     pub running: Option<Running>,
 }
 
@@ -268,7 +286,7 @@ impl Case {
     /// How it runs, by a method that sees that.
     pub(super) fn runs(&self) -> Option<&Running> {
         let running = self.running.as_ref();
-        running.filter(|_| self.model == Model::Section(SectionHoles::Whole))
+        running.filter(|_| self.method().sees_running())
     }
 
     /// The same at rest, as warm and on the same shafts, which a curve at speed is compared with; `None` at rest, and where that says nothing of its holes.
@@ -283,6 +301,7 @@ impl Case {
                 driving_speed: RotationSpeed(0.0),
                 ..*running
             }),
+            model: self.model.without_cure(),
             resolution: Resolution {
                 error_estimate: false,
                 ..self.resolution
@@ -306,9 +325,11 @@ impl Case {
             .collect()
     }
 
-    /// True if all flanks stand as drawn, so that contact on rotationally symmetric blanks repeats with every mesh period.
+    /// True if the flanks of all teeth of a gear are alike, so that contact on rotationally symmetric blanks repeats with every mesh period. A gear without
+    /// holes grows evenly, and so does one with holes under heat alone.
     fn flanks_are_alike(&self) -> bool {
-        self.pair.is_as_drawn() && self.runs().is_none()
+        let grow_alike = |running: &Running| self.holed().is_empty() || running.grows_evenly();
+        self.pair.is_as_drawn() && self.runs().is_none_or(grow_alike)
     }
 
     /// The mesh positions after which contact on blanks that are alike all around repeats: those of one mesh period, or of the whole

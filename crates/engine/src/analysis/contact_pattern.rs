@@ -1,7 +1,7 @@
 //! The contact pattern: where the flanks touch over a period, and how they press there; and the lines of contact that make it.
 
 use super::case::Faces;
-use super::three_dimensional::{face_model, yields};
+use super::three_dimensional::{running_model, yields};
 use super::{AnalysisError, Case};
 use crate::assembly::Parts;
 use crate::contact::face::{FaceContact, SliceLoad};
@@ -89,7 +89,8 @@ pub fn contact_pattern(
     let Some(faces) = &case.faces().map(|faces| faces.at(case.resolution.grid)) else {
         return Ok(None);
     };
-    let model = face_model(faces, &yields(faces, parts, run)?);
+    let yields = yields(faces, parts, run)?;
+    let model = running_model((case, faces), &yields, parts, run)?;
     let positions = case.mesh_positions();
     let flanks = Member::BOTH.map(|member| FlankBands::of(&faces.pair, member));
     let map = Map {

@@ -17,7 +17,7 @@ use crate::assembly::{Blanks, CutGear, PartError};
 use crate::contact::positions::contacts_keeping;
 use crate::contact::{MeshContact, PairModel};
 use crate::fem::FemError;
-use crate::gear::Member;
+use crate::gear::{Member, PairDeviations};
 use crate::ring::annulus::{Annulus, Imposed};
 use crate::ring::motion::InterfaceMotion;
 
@@ -46,11 +46,14 @@ pub(super) fn solve(setup: Setup<'_>, pass: &Pass) -> Result<Analysis, AnalysisE
         pair: case.pair.as_drawn(),
         ..case.clone()
     };
+    let as_drawn = PairDeviations::NONE;
     let of_drawn = Setup {
         case: &drawn,
+        deviations: &as_drawn,
         ..setup
     };
-    let apart = (drawn.pair != case.pair).then(|| ModeledPair::new(of_drawn, Blanks::HoledRigid));
+    let deviates = !setup.deviations.are_none();
+    let apart = deviates.then(|| ModeledPair::new(of_drawn, Blanks::HoledRigid));
     let apart = apart.transpose()?;
     let rigid_as_drawn = apart.as_ref().unwrap_or(&rigid);
     let mut degrees_of_freedom = rigid.degrees_of_freedom;

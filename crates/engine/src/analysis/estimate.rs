@@ -4,7 +4,9 @@ use super::at_speed::{run_up_cost, usual_stiffness};
 use super::case::Model;
 use super::case::{Case, Faces};
 use super::forces::{ForcesRequest, TablePlan};
+use super::hole_phase::PhasePlan;
 use super::plan::{Pass, Plan};
+use super::running::Running;
 use crate::assembly::FaceYieldSpec;
 use crate::assembly::blank::blank_grid;
 use crate::assembly::interface::{harmonics, interface_radius, orders_of_blank};
@@ -14,6 +16,7 @@ use crate::gear::{Member, SpurGear, gcd};
 use crate::grid::{GridLevel, ToothGrid};
 use crate::ring::shaft::orders_of_edge;
 use crate::touch::facing::Facing;
+use crate::vibration::rotation;
 
 /// Seconds of one core for the first contact solution at a fraction of the mesh period, for each further one there, and for a linear
 /// system of the augmented Lagrangian, all with the cells of [`CELLS`]; for a node of a factorized grid; and for a multiplication and
@@ -95,7 +98,8 @@ fn add_contacts(estimate: &mut Estimate, plan: &Plan) {
         Model::Formulas(_) => SECONDS[0] / 10.0 * plan.solutions() as f64,
         Model::Faces(faces, _) => {
             estimate.memory += 8 * (positions * faces.slices as u64);
-            along_faces(plan, faces)
+            let phase = plan.hole_phase.as_ref().map_or(0, PhasePlan::solutions);
+            along_faces(plan, faces) + of_slices(faces, case.resolution.grid, phase)
         }
         Model::Section(_) => {
             let of_passes = case.output_torques.iter().flat_map(|torque| {
@@ -190,24 +194,37 @@ fn add_faces(estimate: &mut Estimate, plan: &Plan, faces: &Faces) {
         for member in Member::BOTH {
             let spec = FaceYieldSpec::new(faces.pair.gear(member), resolution);
             let gear = case.pair.gear(member);
-            let webs = f64::from(gear.data().blank.web_in(gear.face_width()).is_some());
+            // Once more with each turn of its blank, and in the mirror.
+            let again = plan.hole_phase.as_ref().filter(|_| number == 0);
+            let turned = f64::from(again.map_or(1, |phase| 1 + phase.joined(member)));
+            let mirrored = f64::from(1 + u8::from(again.is_some()));
+            let webs = mirrored * f64::from(gear.data().blank.web_in(gear.face_width()).is_some());
             let functions = spec.functions_across() as f64;
             let growth = functions / 9.0;
             estimate.seconds +=
-                per_gear * growth.powf(2.5) * nodes * f64::sqrt(nodes) + webs * per_web;
+                mirrored * per_gear * growth.powf(2.5) * nodes * f64::sqrt(nodes) + webs * per_web;
             let bytes =
                 FACE_MEMORY[0] * growth.powi(2) * nodes * f64::sqrt(nodes) + webs * FACE_MEMORY[1];
             let condensed = spec.condensed_unknowns() as f64;
-            estimate.seconds += HOLED_SECONDS * condensed.powi(3);
+            estimate.seconds += turned * HOLED_SECONDS * condensed.powi(3);
             let coupled = spec.coupled_unknowns().map(|count| count as f64);
             let flank = spec.basis_len() as f64 * repeated_teeth(gear);
-            estimate.seconds += SECONDS[4] * coupling(coupled, flank);
+            estimate.seconds += turned * SECONDS[4] * coupling(coupled, flank);
             let coupling = 8.0 * (3.0 * coupled[0].powi(2) + 2.0 * coupled[1] * flank);
             estimate.memory += (bytes + HOLED_MEMORY * condensed.powi(2) + coupling) as u64;
             if number == 0 {
                 let teeth = f64::from(gear.tooth_count());
                 estimate.degrees_of_freedom +=
                     (3.0 * functions * nodes * SECTION_NODES * teeth) as u64;
+            }
+        }
+        let turns = |running: &Running| running.driving_speed.0 != 0.0;
+        if number == 0 && case.runs().is_some_and(turns) {
+            for member in Member::BOTH {
+                let [seconds, bytes] = rotation::estimate(faces.pair.gear(member));
+                estimate.seconds += seconds;
+                // Both at once, before the contacts.
+                estimate.memory += bytes as u64 / 2;
             }
         }
         if pass.stress {
@@ -236,16 +253,20 @@ fn coupling([set, all]: [f64; 2], functions: f64) -> f64 {
 
 /// Seconds that the contacts of `plan` take along the faces.
 fn along_faces(plan: &Plan, faces: &Faces) -> f64 {
+    let torques = plan.case.loaded_torques().count() as u64;
+    let of_pass = |pass: &Pass| {
+        let solutions = pass.solutions() + EVENING * pass.evened.len() as u64;
+        of_slices(faces, pass.level, torques * solutions)
+    };
+    plan.passes.iter().map(of_pass).sum()
+}
+
+/// Seconds that so many contacts along `faces` take at a grid `level`.
+fn of_slices(faces: &Faces, level: GridLevel, solutions: u64) -> f64 {
     let [.., per_slice] = FACE_SECONDS;
     // Two pairs or more carry along all of the face.
     let lines = 1.0 + faces.pair.total_contact_ratio();
-    let torques = plan.case.loaded_torques().count() as u64;
-    let of_pass = |pass: &Pass| {
-        let slices = faces.at(pass.level).slices as f64 * lines;
-        let solutions = pass.solutions() + EVENING * pass.evened.len() as u64;
-        per_slice * slices * (torques * solutions) as f64
-    };
-    plan.passes.iter().map(of_pass).sum()
+    per_slice * faces.at(level).slices as f64 * lines * solutions as f64
 }
 
 /// Seconds that so many contacts of `case` under a torque take in the plane, of which so many are the first at their fraction of the mesh period.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::case::Faces;
 use super::fields::{Fields, GearField, free_edges};
-use super::three_dimensional::{face_model, yields};
+use super::three_dimensional::{running_model, yields};
 use super::{AnalysisError, Case};
 use crate::assembly::face_inside::MovedParts;
 use crate::assembly::{FaceInside, FaceYield, FaceYieldSpec, Parts};
@@ -73,8 +73,8 @@ fn of_gears<T: Send>(
         return Ok(None);
     };
     let yields = yields(faces, parts, run)?;
-    let contacts =
-        face_model(faces, &yields).contacts(case.pair.load(output_torque), &[eta], run)?;
+    let model = running_model((case, faces), &yields, parts, run)?;
+    let contacts = model.contacts(case.pair.load(output_torque), &[eta], run)?;
     let Some(contact) = contacts.first() else {
         return Ok(None);
     };

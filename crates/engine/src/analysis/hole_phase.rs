@@ -6,18 +6,18 @@ use crate::gear::{GearPair, Member};
 /// Places of a hole pitch, at least, at which the term of the driving holes is known: as many as show five harmonics of the hole order.
 const LEAST_PLACES: u32 = 12;
 
-/// Positions in a mesh period at which the first order is known, and the best turn is solved in full: at most, and at least where they divide those of the
+/// Positions in a mesh period at which the first order is known, and turns are solved in full: at most, and at least where they divide those of the
 /// curve. The effect of holes changes slowly over a mesh period.
 const POSITIONS: [[u32; 2]; 2] = [[20, 10], [10, 5]];
 
-/// A turn of the driving blank, and its amplitudes at first order.
+/// A turn of the driving blank, and its amplitudes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AtTurn {
     /// The turn in radians, counter-clockwise.
     pub turn: f64,
-    /// The amplitude of δ at the order of the holes in meters.
+    /// The amplitude of δ at the order of the holes in meters, by full solutions at two turns.
     pub amplitude: f64,
-    /// The peak-to-peak of δ in meters, at up to 20 positions of each mesh period.
+    /// The peak-to-peak of δ in meters at first order, at up to 20 positions of each mesh period.
     pub peak_to_peak: f64,
 }
 
@@ -30,7 +30,7 @@ pub struct HolePhase {
     pub order: u32,
     /// The turn from where the driving blank stands, from 0 to 2π/N_1, counter-clockwise.
     pub turn_of_driving: f64,
-    /// The amplitude of δ at this order with it, by a full solution.
+    /// The amplitude of δ at this order with it, by full solutions at two turns.
     pub amplitude: f64,
     /// That of the curve.
     pub amplitude_now: f64,
@@ -50,10 +50,11 @@ pub(super) struct PhasePlan {
 }
 
 impl PhasePlan {
-    /// That of `case`; `None` where both blanks do not repeat at one order, teeth deviate, or the method has no spectrum of holes in the plane.
+    /// That of `case`; `None` where both blanks do not repeat at one order, teeth deviate, the gears run, or the method sees no holes.
     pub(super) fn of(case: &Case) -> Option<Self> {
         if !case.method().finds_hole_phase()
             || !case.pair.is_as_drawn()
+            || case.runs().is_some()
             || !case.covers_whole_periods()
         {
             return None;
@@ -72,22 +73,22 @@ impl PhasePlan {
         })
     }
 
-    /// Its contact solutions: one mesh period for either pair of flanks, and the best turn in full.
+    /// Its contact solutions, for either pair of flanks: one mesh period, and two turns in full.
     pub(super) fn solutions(&self) -> u64 {
         let [first_order, full] = self.per_period.map(u64::from);
-        2 * first_order + u64::from(self.ratio[1]) * full
+        2 * (first_order + 2 * u64::from(self.ratio[1]) * full)
     }
 
     /// Number of them that are the first at their fraction of the mesh period.
     pub(super) fn first_solutions(&self) -> u64 {
         let [first_order, full] = self.per_period.map(u64::from);
-        2 * first_order + full
+        2 * (first_order + 2 * full)
     }
 
     /// How often `member` is joined with its blank for it, beside the curve: in the mirror, and the driving gear at each turn.
     pub(super) fn joined(&self, member: Member) -> u32 {
         match member {
-            Member::Driving => 2 * self.turns(),
+            Member::Driving => 2 * self.turns() + 3,
             Member::Driven => 1,
         }
     }

@@ -8,7 +8,8 @@
 //! ```
 //!
 //! T_1(f, u) is the addition of the driving holes at the fraction f of the mesh period where a hole has moved on by u hole pitches under the tooth. Its q teeth
-//! are q places of u, and a blank turned by a part of their distance gives as many between them. One full solution at the best turn confirms it.
+//! are q places of u, and a blank turned by a part of their distance gives as many between them. Full solutions at the turn that is the best by these terms,
+//! and half a hole pitch from it, tell what both parts are beyond the first order.
 
 use std::f64::consts::TAU;
 
@@ -16,11 +17,9 @@ use super::AnalysisError;
 use super::case::Case;
 use super::curve::Curve;
 use super::hole_phase::{AtTurn, HolePhase, PhasePlan};
-use super::projected::{round_average, yielded};
 use super::setup::Setup;
-use crate::assembly::Blanks;
-use crate::contact::positions::{contacts, contacts_keeping};
-use crate::contact::{ContactCells, ContactSolution, PairLoads};
+use super::turned_pair::TurnedPair;
+use crate::contact::PairLoads;
 use crate::fourier::harmonics;
 use crate::gear::Member;
 
@@ -45,23 +44,17 @@ impl PhasePlan {
             return Ok(None);
         };
         let hole_pitch = TAU / f64::from(case.pair.driving().hole_repeats());
-        let terms = Terms::of(self, setup)?;
+        let terms = Terms::of(self, setup)?.corrected(self, setup)?;
         let best = terms.best();
-        let mirrored = Case {
-            pair: case.pair.mirror_image_of_gears(),
-            ..case.clone()
+        let mirrored = case.mirror_image_of_gears();
+        let mirrored = Setup {
+            case: &mirrored,
+            ..setup
         };
-        let other = Terms::of(
-            self,
-            Setup {
-                case: &mirrored,
-                ..setup
-            },
-        )?
-        .best();
+        let other = Terms::of(self, mirrored)?.corrected(self, mirrored)?.best();
         let over_turn = (0..=TURNS).map(|i| {
             let place = f64::from(i) / f64::from(TURNS);
-            let curve = terms.curve(place);
+            let curve = terms.first_order.curve(place);
             let [low, high] = [f64::min, f64::max].map(|pick| curve.iter().copied().reduce(pick));
             AtTurn {
                 turn: place * hole_pitch,
@@ -73,7 +66,7 @@ impl PhasePlan {
             output_torque: self.output_torque,
             order: case.pair.driven().hole_repeats(),
             turn_of_driving: best * hole_pitch,
-            amplitude: self.confirmed(&terms, best, setup)?,
+            amplitude: terms.amplitude(best),
             amplitude_now,
             // The mirror shows a turn the other way round.
             other_flanks_turn: (1.0 - other).fract() * hole_pitch,
@@ -90,40 +83,40 @@ impl PhasePlan {
         lines.get((p * span / q) as usize - 1).copied()
     }
 
-    /// The amplitude with the driving blank turned by `place` hole pitches, by a full solution: its addition to the first order has no kinks of the mesh, so
-    /// that few positions are enough.
-    fn confirmed(&self, terms: &Terms, place: f64, setup: Setup<'_>) -> Result<f64, AnalysisError> {
+    /// By how much the line at the order of the holes is beyond the first order of `terms` with the driving blank turned by `place` hole pitches, by a full
+    /// solution: the difference has no kinks of the mesh, so that few positions are enough.
+    fn beyond(
+        &self,
+        terms: &Terms,
+        place: f64,
+        setup: Setup<'_>,
+    ) -> Result<[f64; 2], AnalysisError> {
         let case = turned(setup.case, place);
-        let (model, _) = Setup {
+        let pair = TurnedPair::new(Setup {
             case: &case,
             ..setup
-        }
-        .model(Blanks::Flexible)?;
+        })?;
         let [first_order, full] = self.per_period;
         let positions: Vec<f64> = (0..self.ratio[1] * full)
             .map(|i| f64::from(i) / f64::from(full))
             .collect();
         let load = case.pair.load(self.output_torque);
-        let exact = contacts(model.as_drawn(), load, &positions, setup.run)?;
+        let exact = pair.on_blanks(load, &positions, setup.run)?;
         let curve = terms.curve(place);
         let known = curve.iter().step_by((first_order / full) as usize);
         let beyond: Vec<f64> = exact
             .iter()
             .zip(known)
-            .map(|(exact, known)| exact.transmission_error - known)
+            .map(|(exact, known)| exact - known)
             .collect();
-        let [a, b] = [&curve, &beyond].map(|values| line(values, self.ratio[0]));
-        Ok((a[0] + b[0]).hypot(a[1] + b[1]))
+        Ok(line(&beyond, self.ratio[0]))
     }
 }
 
 /// `case` with its driving blank turned by `place` hole pitches.
 fn turned(case: &Case, place: f64) -> Case {
     let hole_pitch = TAU / f64::from(case.pair.driving().hole_repeats());
-    Case {
-        pair: case.pair.with_driving_blank_turned(place * hole_pitch),
-        ..case.clone()
-    }
+    case.with_driving_blank_turned(place * hole_pitch)
 }
 
 /// The transmission error of a pair at first order, whatever the turn of its driving blank.
@@ -140,46 +133,39 @@ impl Terms {
     fn of(plan: &PhasePlan, setup: Setup<'_>) -> Result<Self, AnalysisError> {
         let Setup { case, run, .. } = setup;
         let ([p, q], turns) = (plan.ratio, plan.turns());
-        let (whole, _) = setup.model(Blanks::Flexible)?;
-        let round = round_average(&whole, &Member::BOTH);
+        let pair = TurnedPair::new(setup)?;
         let per_period = plan.per_period[0];
         let fractions: Vec<f64> = (0..per_period)
             .map(|i| f64::from(i) / f64::from(per_period))
             .collect();
-        let keep = |cells: &ContactCells<'_>, solution: &ContactSolution| {
-            cells.loads(&[&solution.forces, &solution.load_derivative])
-        };
         let load = case.pair.load(plan.output_torque);
-        let solved = contacts_keeping(round.as_drawn(), load, &fractions, run, keep)?;
+        let solved = pair.on_round_blanks(load, &fractions, run)?;
         let places = (q * turns) as usize;
         // T_1 at u = j/(q turns) hole pitches: the tooth n stands n ν on from tooth 0, a turned blank by less than 1/q.
         let mut driving = vec![vec![0.0; places]; solved.len()];
         for turn in 0..turns {
             let of_turn;
-            let model = if turn == 0 {
-                &whole
+            let turned = if turn == 0 {
+                &pair
             } else {
                 let case = turned(case, f64::from(turn) / places as f64);
-                of_turn = Setup {
+                of_turn = TurnedPair::new(Setup {
                     case: &case,
                     ..setup
-                }
-                .model(Blanks::Flexible)?
-                .0;
+                })?;
                 &of_turn
             };
             for ((_, loads), values) in solved.iter().zip(&mut driving) {
-                let alike = yielded(&round, &[Member::Driving], loads, 0)[0];
+                let alike = pair.added_round(Member::Driving, loads);
                 for n in 0..q {
                     let place = turn + turns * (n * p % q);
-                    let own = yielded(model, &[Member::Driving], loads, i64::from(n))[0];
+                    let own = turned.added(Member::Driving, loads, n);
                     values[place as usize] = own - alike;
                 }
             }
         }
         let driven = |loads: &[PairLoads], n: u32| {
-            let of = |model, n| yielded(model, &[Member::Driven], loads, n)[0];
-            of(&whole, i64::from(n)) - of(&round, 0)
+            pair.added(Member::Driven, loads, n) - pair.added_round(Member::Driven, loads)
         };
         let means: Vec<f64> = driving
             .iter()
@@ -189,9 +175,7 @@ impl Terms {
             solved
                 .iter()
                 .zip(&means)
-                .map(move |((contact, loads), mean)| {
-                    contact.transmission_error + mean + driven(loads, n)
-                })
+                .map(move |((delta, loads), mean)| delta + mean + driven(loads, n))
         });
         Ok(Self {
             ratio: plan.ratio,
@@ -222,32 +206,77 @@ impl Terms {
         self.still.iter().enumerate().map(at).collect()
     }
 
-    /// The amplitude of this curve at the order of the holes.
+    /// Cosine and sine of this curve at the order of the holes.
+    fn line(&self, place: f64) -> [f64; 2] {
+        line(&self.curve(place), self.ratio[0])
+    }
+
+    /// These with what full solutions say of both parts, under the torque of `plan`.
+    fn corrected(self, plan: &PhasePlan, setup: Setup<'_>) -> Result<Corrected, AnalysisError> {
+        let at = best(|place| size(self.line(place)));
+        let here = plan.beyond(&self, at, setup)?;
+        let opposite = plan.beyond(&self, (at + 0.5).fract(), setup)?;
+        Ok(Corrected {
+            at,
+            still: [0, 1].map(|i| f64::midpoint(here[i], opposite[i])),
+            moving: [0, 1].map(|i| (here[i] - opposite[i]) / 2.0),
+            first_order: self,
+        })
+    }
+}
+
+/// Terms of first order, with what is beyond it at the order of the holes: a part that stands still, and one that turns with the driving blank.
+struct Corrected {
+    first_order: Terms,
+    still: [f64; 2],
+    /// Where the driving blank is turned by `at` hole pitches.
+    moving: [f64; 2],
+    at: f64,
+}
+
+impl Corrected {
+    /// The amplitude at the order of the holes with the driving blank turned by `place` hole pitches.
     fn amplitude(&self, place: f64) -> f64 {
-        let [cosine, sine] = line(&self.curve(place), self.ratio[0]);
-        cosine.hypot(sine)
+        let [x, y] = self.first_order.line(place);
+        // cos(θ + φ) of a further turn φ has the cosine cos φ and the sine −sin φ.
+        let (sin, cos) = (TAU * (place - self.at)).sin_cos();
+        let [a, b] = self.moving;
+        size([
+            x + self.still[0] + a * cos + b * sin,
+            y + self.still[1] + b * cos - a * sin,
+        ])
     }
 
     /// The place of a hole pitch, from 0 to 1, at which the amplitude is least.
     fn best(&self) -> f64 {
-        let step = 1.0 / f64::from(TURNS);
-        let places = (0..TURNS).map(|i| f64::from(i) * step);
-        let known = places.map(|place| (place, self.amplitude(place)));
-        let (middle, _) = known
-            .min_by(|a, b| a.1.total_cmp(&b.1))
-            .unwrap_or((0.0, 0.0));
-        let golden = (5_f64.sqrt() - 1.0) / 2.0;
-        let [mut low, mut high] = [middle - step, middle + step];
-        for _ in 0..STEPS {
-            let part = golden * (high - low);
-            if self.amplitude(high - part) < self.amplitude(low + part) {
-                high = low + part;
-            } else {
-                low = high - part;
-            }
-        }
-        ((low + high) / 2.0).rem_euclid(1.0)
+        best(|place| self.amplitude(place))
     }
+}
+
+/// The place of a hole pitch, from 0 to 1, at which the `amplitude` is least.
+fn best(amplitude: impl Fn(f64) -> f64) -> f64 {
+    let step = 1.0 / f64::from(TURNS);
+    let places = (0..TURNS).map(|i| f64::from(i) * step);
+    let known = places.map(|place| (place, amplitude(place)));
+    let (middle, _) = known
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+        .unwrap_or((0.0, 0.0));
+    let golden = (5_f64.sqrt() - 1.0) / 2.0;
+    let [mut low, mut high] = [middle - step, middle + step];
+    for _ in 0..STEPS {
+        let part = golden * (high - low);
+        if amplitude(high - part) < amplitude(low + part) {
+            high = low + part;
+        } else {
+            low = high - part;
+        }
+    }
+    ((low + high) / 2.0).rem_euclid(1.0)
+}
+
+/// The amplitude of a line by its cosine and sine.
+fn size([cosine, sine]: [f64; 2]) -> f64 {
+    cosine.hypot(sine)
 }
 
 /// Cosine and sine of `values`, at equal steps over a period, that repeat `times` in it.

@@ -28,15 +28,15 @@ pub(super) fn curve(
     let at = |eta, contact: Result<MeshContact, PositionError>| {
         contact.map_err(|error| AnalysisError::at_position(error, eta))
     };
+    let drawn = || case.pair.deviations();
+    let deviations = state.map_or_else(drawn, |state| state.deviations.clone());
     let contact: Light<'_> = match &case.model {
         Model::Section(_) => {
-            let drawn = || case.pair.deviations();
-            let deviations = state.map_or_else(drawn, |state| state.deviations.clone());
             Box::new(move |eta| at(eta, light_contact(&case.pair, &deviations, eta)))
         }
         Model::Faces(faces, _) => {
             let slices = faces.at(case.resolution.grid).slices;
-            let flanks = FaceFlanks::new(faces.pair.clone(), slices);
+            let flanks = FaceFlanks::new(faces.pair.clone(), slices).deviating(deviations);
             Box::new(move |eta| at(eta, flanks.light_contact(eta)))
         }
         Model::Formulas(formulas) => {

@@ -58,6 +58,7 @@ mod spun_pair;
 mod statistics;
 pub mod stress;
 mod three_dimensional;
+mod turned_pair;
 mod under_load;
 pub mod warning;
 mod windows;

@@ -59,6 +59,12 @@ impl Running {
         f64::midpoint(self.gears[0].thermal_strain, self.gears[1].thermal_strain)
     }
 
+    /// True if all teeth of a gear grow alike, whatever its holes are: at rest, and without a press fit.
+    pub(super) fn grows_evenly(&self) -> bool {
+        let is_fitted = |gear: &RunningGear| matches!(gear.bore, Bore::PressFit { .. });
+        self.driving_speed.0 == 0.0 && !self.gears.iter().any(is_fitted)
+    }
+
     /// The thermal growth of the flanks of both gears of `pair` beyond their common part.
     pub fn thermal_growth(&self, pair: &GearPair) -> [FlankGrowth; 2] {
         Member::BOTH.map(|member| {

@@ -6,15 +6,18 @@
 use std::sync::Arc;
 
 use super::AnalysisError;
-use super::case::Case;
+use super::blank_modes::of_modes;
+use super::case::{Case, Model};
 use super::running::{Bore, RestingStresses, Running};
 use super::setup::Setup;
 use super::warning::Warning;
 use crate::assembly::{Blanks, InnerLoad, Parts, Spun};
-use crate::gear::{Core, FlankGrowth, Member, PairDeviations, SpurGear};
+use crate::gear::{Core, FlankGrowth, GearPair, Member, PairDeviations, SolidGear, SpurGear};
 use crate::grid::GridLevel;
 use crate::ring::blank::Hold;
 use crate::run::Run;
+use crate::vibration::BoreSupport;
+use crate::vibration::rotation::PulledTeeth;
 
 /// How far apart loaded teeth are coupled in the gears whose rotation is solved: nothing depends on it.
 const COUPLED: usize = 4;
@@ -54,7 +57,12 @@ impl PairState {
         };
         let drawn = case.pair.deviations();
         let setup = Setup::new((case, &drawn), level, COUPLED, parts, run);
-        let of = |member| GearState::of(&setup, running, member);
+        let of = |member| match &case.model {
+            Model::Faces(faces, _) => {
+                GearState::along_faces((case, running), faces.pair.gear(member), member, run)
+            }
+            Model::Section(_) | Model::Formulas(_) => GearState::of(&setup, running, member),
+        };
         let (driving, driven) = rayon::join(|| of(Member::Driving), || of(Member::Driven));
         let states = [driving?, driven?];
         let growth = states.each_ref().map(|state| &state.growth);
@@ -75,8 +83,8 @@ impl PairState {
 }
 
 impl GearState {
-    fn of(setup: &Setup<'_>, running: &Running, member: Member) -> Result<Self, AnalysisError> {
-        let pair = &setup.case.pair;
+    /// The gear `member` of `pair` as warm as it runs.
+    fn warm(pair: &GearPair, running: &Running, member: Member) -> Self {
         let (gear, own) = (pair.gear(member), &running.gears[member.index()]);
         let mut state = Self {
             tips: own.thermal_strain * gear.tip_radius(),
@@ -84,6 +92,62 @@ impl GearState {
         };
         let strain = own.thermal_strain - running.shared_strain();
         state.growth.add_strain(gear, strain);
+        state
+    }
+
+    /// The gear `member` of a case in three dimensions: its bore is held or free, and its stresses are not found.
+    fn along_faces(
+        (case, running): (&Case, &Running),
+        gear: &SolidGear,
+        member: Member,
+        run: &Run,
+    ) -> Result<Self, AnalysisError> {
+        let (pair, own) = (&case.pair, &running.gears[member.index()]);
+        let mut state = Self::warm(pair, running, member);
+        let speed = running.angular_speed(pair, member);
+        if speed == 0.0 {
+            return Ok(state);
+        }
+        let section = pair.gear(member);
+        let bore = match (section.data().blank.core, own.bore) {
+            (Core::Bore, Bore::Free) => BoreSupport::Free,
+            (Core::Shaft { .. }, _) | (_, Bore::Held | Bore::PressFit { .. }) => BoreSupport::Held,
+        };
+        let pulled = PulledTeeth::of(gear, bore, run).map_err(|error| of_modes(error, member))?;
+        let square = speed * speed;
+        state.tips += square * pulled.tips;
+        let shares: Vec<f64> = pulled.heights.iter().map(|(_, share)| *share).collect();
+        let heights: Vec<f64> = pulled.heights.iter().map(|(z, _)| *z).collect();
+        let means: Vec<Vec<f64>> = pulled
+            .flanks
+            .iter()
+            .map(|rows| mean(rows, &shares))
+            .collect();
+        let roll_lengths = &pulled.roll_lengths;
+        state
+            .growth
+            .add_flanks(section, roll_lengths, &means, square);
+        let along = |rows: &Vec<Vec<f64>>| -> Vec<f64> {
+            let of_rows: Vec<f64> = rows
+                .iter()
+                .map(|row| along_flank(roll_lengths, row))
+                .collect();
+            let middle: f64 = of_rows
+                .iter()
+                .zip(&shares)
+                .map(|(row, share)| row * share)
+                .sum();
+            of_rows.iter().map(|row| row - middle).collect()
+        };
+        let along: Vec<Vec<f64>> = pulled.flanks.iter().map(along).collect();
+        state.growth.add_along(&heights, &along, square);
+        Ok(state)
+    }
+
+    fn of(setup: &Setup<'_>, running: &Running, member: Member) -> Result<Self, AnalysisError> {
+        let pair = &setup.case.pair;
+        let (gear, own) = (pair.gear(member), &running.gears[member.index()]);
+        let mut state = Self::warm(pair, running, member);
         let speed = running.angular_speed(pair, member);
         let interference = match own.bore {
             Bore::PressFit { interference } => interference,
@@ -149,6 +213,24 @@ impl GearState {
             add_lists(&mut self.stresses.in_blank, &load.in_blank, amount);
         }
     }
+}
+
+/// The mean of `rows`, each of which has its share of the face.
+fn mean(rows: &[Vec<f64>], shares: &[f64]) -> Vec<f64> {
+    let mut mean = vec![0.0; rows.first().map_or(0, Vec::len)];
+    for (row, share) in rows.iter().zip(shares) {
+        for (sum, value) in mean.iter_mut().zip(row) {
+            *sum += share * value;
+        }
+    }
+    mean
+}
+
+/// The mean of `values` over the roll length.
+fn along_flank(roll_lengths: &[f64], values: &[f64]) -> f64 {
+    let pieces = roll_lengths.windows(2).zip(values.windows(2));
+    let sums = pieces.map(|(s, values)| (s[1] - s[0]) * f64::midpoint(values[0], values[1]));
+    sums.sum::<f64>() / (roll_lengths[roll_lengths.len() - 1] - roll_lengths[0])
 }
 
 /// Adds so much of `lists` to `sums`, which are empty at first.
@@ -217,5 +299,128 @@ impl Setup<'_> {
     fn spun(&self, member: Member, hold: Hold) -> Result<Option<Arc<Spun>>, AnalysisError> {
         let spec = self.spec(Blanks::Flexible);
         Ok(spec.spun(member, hold, self.parts, self.run)?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analysis::case::tests::plain;
+    use crate::analysis::running::{RotationSpeed, RunningGear};
+    use crate::analysis::{FaceHoles, Faces, SectionHoles};
+    use crate::assembly::{FaceResolution, MakeAll};
+    use crate::gear::spur::tests::paper_gear;
+    use crate::gear::{Alignment, Helix, HolePattern, SolidPair, Web};
+
+    /// 50/50 teeth of a face, the driven gear with six holes and, where it is given, a web of the thickness with its middle so far from that of the face.
+    fn pair(face_width: f64, beta: f64, web: Option<[f64; 2]>) -> SolidPair {
+        let gear = |sign: f64, is_holed: bool| {
+            let mut data = paper_gear(50);
+            data.face_width = face_width;
+            let mut offset = 0.0;
+            if is_holed {
+                data.blank.holes = HolePattern {
+                    count: 6,
+                    circle_radius: 31e-3,
+                    radius: 8e-3,
+                    phase: 0.1,
+                }
+                .holes();
+                data.blank.web = web.map(|[thickness, _]| Web {
+                    inner_radius: 20e-3,
+                    outer_radius: 42e-3,
+                    thickness,
+                });
+                offset = web.map_or(0.0, |[_, offset]| offset);
+            }
+            SolidGear::new(data, Helix::right(sign * beta), offset, None).expect("can be made")
+        };
+        let gears = [gear(1.0, false), gear(-1.0, true)];
+        let distance = 2.0 * gears[0].section().reference_radius() + 0.5e-3;
+        let leads = [Vec::new(), Vec::new()];
+        SolidPair::new(gears, leads, distance, Alignment::default()).expect("meshes")
+    }
+
+    fn state(pair: &SolidPair, along_faces: bool, bore: Bore) -> PairState {
+        let model = if along_faces {
+            let faces = Faces {
+                pair: pair.clone(),
+                resolution: FaceResolution::DRAFT,
+                slices: 20,
+                at_each_position: false,
+                cure: false,
+            };
+            Model::Faces(Box::new(faces), FaceHoles::Whole)
+        } else {
+            Model::Section(SectionHoles::Whole)
+        };
+        let mut case = plain(pair.section().clone(), model, 10.0, 8);
+        let gear = RunningGear {
+            thermal_strain: 0.0,
+            bore,
+            tensile_strength: None,
+        };
+        case.running = Some(Running {
+            driving_speed: RotationSpeed(20_000.0 / 60.0),
+            gears: [gear; 2],
+        });
+        let run = Run::unattended();
+        let state = PairState::of(&case, GridLevel::Standard, &MakeAll, &run).expect("solves");
+        state.expect("it runs")
+    }
+
+    #[test]
+    fn a_narrow_face_moves_in_space_as_in_the_plane() {
+        // One body, two solutions: the plane by grids of its own, space by others of half the fineness.
+        let pair = pair(1e-3, 0.0, Some([0.4e-3, 0.0]));
+        for bore in [Bore::Held, Bore::Free] {
+            let [plane, space] = [false, true].map(|along_faces| state(&pair, along_faces, bore));
+            for member in Member::BOTH {
+                let gear = pair.section().gear(member);
+                let (form, tip) = (gear.form_roll_length(), gear.tip_roll_length());
+                let at = |state: &PairState, tooth: usize, s: f64| {
+                    let of = state.deviations.of_gear(member);
+                    of.at(tooth, s)
+                };
+                let places: Vec<(usize, f64)> = (0..25)
+                    .flat_map(|tooth| [form, 0.5 * (form + tip), tip].map(|s| (tooth, s)))
+                    .collect();
+                let both = [&plane, &space]
+                    .map(|state| places.iter().map(|(tooth, s)| at(state, *tooth, *s)));
+                let largest = both[0].clone().fold(0.0, |most: f64, u| most.max(u.abs()));
+                let apart = both[0].clone().zip(both[1].clone());
+                let apart = apart.fold(0.0, |most: f64, (u, v)| most.max((u - v).abs()));
+                println!("{bore:?} {member}: {apart:e} of {largest:e}");
+                assert!(
+                    apart < 0.01 * largest,
+                    "{bore:?} {member}: {apart} {largest}"
+                );
+            }
+            for (plane, space) in plane.radial_growth.into_iter().zip(space.radial_growth) {
+                assert!((space / plane - 1.0).abs() < 3e-3, "{space} {plane}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_rim_goes_out_farther_where_no_web_holds_it() {
+        let ends = |offset: f64| {
+            let pair = pair(20e-3, 0.0, Some([4e-3, offset]));
+            let state = state(&pair, true, Bore::Held);
+            let driven = state.deviations.of_gear(Member::Driven);
+            [-10e-3, offset, 10e-3].map(|z| -driven.removed_by_lead(0, z, 20e-3))
+        };
+        let [minus, middle, plus] = ends(0.0);
+        assert!(
+            (minus - plus).abs() < 1e-9 && plus - middle > 0.2e-6,
+            "{minus} {middle} {plus}"
+        );
+        // A web at one side turns the rim about it.
+        let [minus, _, plus] = ends(6e-3);
+        let [image, _, other] = ends(-6e-3);
+        assert!((minus - plus).abs() > 1e-6, "{minus} {plus}");
+        assert!(
+            (minus - other).abs() < 1e-3 * minus.abs() && (plus - image).abs() < 1e-3 * minus.abs()
+        );
     }
 }

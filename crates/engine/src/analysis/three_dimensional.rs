@@ -12,6 +12,7 @@ use super::first_order::with_holes;
 use super::found::{Found, Kept};
 use super::plan::{Pass, Sweep};
 use super::setup::Solved;
+use super::spun_pair::PairState;
 use super::stress::{GearStresses, PositionPeaks};
 use super::under_load::curves;
 use super::warning::warn_of_corner;
@@ -20,15 +21,16 @@ use crate::assembly::{FaceYield, FaceYieldSpec, Parts};
 use crate::contact::face::even::{STRIPS, face_load_factor};
 use crate::contact::face::{FaceContact, FaceModel, FlankYield};
 use crate::contact::{MeshContact, PairLoads};
-use crate::gear::Member;
+use crate::gear::{Member, PairDeviations};
 use crate::run::Run;
 
 /// There is a warning of a tip corner from this part of the load: one of many slices touches nearly always.
 const WARNED_OF: f64 = 0.005;
 
-/// Computes `case` along its faces at the grid level of `pass`.
+/// Computes `case` along its faces at the grid level of `pass`; its teeth have these `deviations`.
 pub(super) fn solve(
     (case, asked, holes): (&Case, &Faces, FaceHoles),
+    deviations: &PairDeviations,
     pass: &Pass,
     parts: &dyn Parts,
     run: &Run,
@@ -40,7 +42,7 @@ pub(super) fn solve(
         .stress
         .then(|| FaceStressModel::new(faces, &yields, parts, run));
     let stress = stress.transpose()?;
-    let pair = OfFaces::new((case, faces), &yields, run);
+    let pair = OfFaces::new((case, faces, deviations), &yields, run);
     let find = |load: f64, sweep: &Sweep| {
         let found = match holes {
             FaceHoles::FirstOrder => pair.projected(load, sweep),
@@ -134,14 +136,18 @@ struct OfFaces<'a> {
 }
 
 impl<'a> OfFaces<'a> {
-    fn new((case, faces): (&'a Case, &Faces), yields: &[Arc<FaceYield>; 2], run: &'a Run) -> Self {
+    fn new(
+        (case, faces, deviations): (&'a Case, &Faces, &PairDeviations),
+        yields: &[Arc<FaceYield>; 2],
+        run: &'a Run,
+    ) -> Self {
         let round = yields.each_ref().map(|of| Arc::new(of.round_average()));
         let uneven = |member: &Member| yields[member.index()].repeats_after() > 1;
         Self {
             case,
             run,
-            whole: face_model(faces, yields),
-            round: face_model(faces, &round),
+            whole: face_model(faces, yields).deviating(deviations.clone()),
+            round: face_model(faces, &round).deviating(deviations.clone()),
             uneven: Member::BOTH.into_iter().filter(uneven).collect(),
         }
     }
@@ -213,6 +219,22 @@ pub(super) fn face_model(faces: &Faces, yields: &[Arc<FaceYield>; 2]) -> FaceMod
         .each_ref()
         .map(|of| Arc::clone(of) as Arc<dyn FlankYield>);
     FaceModel::new(faces.pair.clone(), yields, faces.slices, one.min(other))
+}
+
+/// The pair of `case` along its `faces`, whose flanks yield as `yields`, as it runs.
+pub(super) fn running_model(
+    (case, faces): (&Case, &Faces),
+    yields: &[Arc<FaceYield>; 2],
+    parts: &dyn Parts,
+    run: &Run,
+) -> Result<FaceModel, AnalysisError> {
+    let model = face_model(faces, yields);
+    Ok(
+        match PairState::of(case, case.resolution.grid, parts, run)? {
+            Some(state) => model.deviating(state.deviations),
+            None => model,
+        },
+    )
 }
 
 impl FlankYield for FaceYield {

@@ -21,6 +21,8 @@ pub struct GearDeviations {
     profiles: Option<Profiles>,
     /// Removal by the trace of each lead. Empty where there are none.
     leads: Vec<LeadModification>,
+    /// The growth of each flank along the face, less its mean, as removal. Empty where flanks grow alike along their faces.
+    grown: Vec<LeadModification>,
     /// The roll lengths between which a profile slope deviation grows from nothing to all of it.
     ends: [f64; 2],
     eccentricity: Option<Eccentricity>,
@@ -35,6 +37,7 @@ impl GearDeviations {
         lead_slopes: Vec::new(),
         profiles: None,
         leads: Vec::new(),
+        grown: Vec::new(),
         ends: [0.0, 1.0],
         eccentricity: None,
     };
@@ -75,6 +78,7 @@ impl GearDeviations {
             profile_slopes: teeth.profile_slope,
             profiles,
             leads: leads.collect(),
+            grown: Vec::new(),
             lead_slopes: teeth.lead_slope,
             ends: [gear.form_roll_length(), gear.tip_roll_length()],
             eccentricity: teeth.eccentricity,
@@ -89,6 +93,7 @@ impl GearDeviations {
             && self.lead_slopes.is_empty()
             && self.profiles.is_none()
             && self.leads.is_empty()
+            && self.grown.is_empty()
             && self.eccentricity.is_none()
     }
 
@@ -114,16 +119,20 @@ impl GearDeviations {
         let slope = LeadModification::Slope {
             amount: self.lead_slopes.get(tooth).copied().unwrap_or(0.0),
         };
-        let trace = self.leads.get(tooth);
-        slope.removed(z, width) + trace.map_or(0.0, |trace| trace.removed(z, width))
+        let lists = [self.leads.get(tooth), self.grown.get(tooth)];
+        let lists = lists.into_iter().flatten();
+        slope.removed(z, width) + lists.map(|lead| lead.removed(z, width)).sum::<f64>()
     }
 
     /// The most that the lead of any tooth removes or adds.
     pub fn largest_lead(&self) -> f64 {
-        let traces = self.leads.iter().flat_map(LeadModification::entries);
-        let slopes = self.lead_slopes.iter();
         let most = |all: f64, each: &f64| each.abs().max(all);
-        slopes.fold(0.0, most) + traces.fold(0.0, most)
+        let largest = |leads: &[LeadModification]| {
+            let entries = leads.iter().flat_map(LeadModification::entries);
+            entries.fold(0.0, most)
+        };
+        let slopes = self.lead_slopes.iter().fold(0.0, most);
+        slopes + largest(&self.leads) + largest(&self.grown)
     }
 
     /// Part of [`GearDeviations::at`] that is the same all along the flank of `tooth`.
@@ -206,6 +215,7 @@ impl GearDeviations {
             turns,
             other_turns,
             profile_slopes: slopes,
+            grown: growth.along.clone(),
             ..self
         }
     }
@@ -259,13 +269,16 @@ impl Trace<'_> {
     }
 }
 
-/// How the loaded flanks of a gear that runs stand out beyond its drawing: along the normal, linear in the roll length. Empty lists are no growth.
+/// How the loaded flanks of a gear that runs stand out beyond its drawing: along the normal, linear in the roll length, with a variation along the face that is the
+/// same at all roll lengths. Empty lists are no growth.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct FlankGrowth {
     /// At the form circle, in meters, tooth by tooth.
     at_form: Vec<f64>,
     /// By how much more at the tip circle.
     to_tip: Vec<f64>,
+    /// Along the face, less the mean, as removal.
+    along: Vec<LeadModification>,
 }
 
 impl FlankGrowth {
@@ -311,6 +324,15 @@ impl FlankGrowth {
             .map(|value| amount * value)
         };
         self.add(flanks.iter().map(line).collect());
+    }
+
+    /// Adds `amount` times how far the flank of each tooth stands out at the rising `heights` beyond its mean.
+    pub fn add_along(&mut self, heights: &[f64], beyond_mean: &[Vec<f64>], amount: f64) {
+        let lead = |beyond: &Vec<f64>| LeadModification::Table {
+            places: heights.to_vec(),
+            removed: beyond.iter().map(|beyond| -amount * beyond).collect(),
+        };
+        self.along.extend(beyond_mean.iter().map(lead));
     }
 
     fn add(&mut self, lines: Vec<[f64; 2]>) {

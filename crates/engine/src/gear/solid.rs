@@ -283,6 +283,14 @@ impl SolidGear {
         }
     }
 
+    /// The same gear with another section of the same teeth.
+    pub(super) fn with_section(&self, section: &SpurGear) -> Self {
+        Self {
+            section: section.clone(),
+            ..self.clone()
+        }
+    }
+
     /// The same gear without holes.
     pub fn without_holes(&self) -> Self {
         Self {

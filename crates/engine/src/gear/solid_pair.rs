@@ -229,6 +229,33 @@ impl SolidPair {
         }
     }
 
+    /// The same with the blanks that stand under the other flanks: the holes of this pair as they are seen from the other side
+    /// ([`GearPair::mirror_image_of_gears`]). Its teeth do not deviate.
+    pub fn turned_over_with_blanks(&self) -> Self {
+        let turned = self.turned_over();
+        let section = self.section.as_drawn().mirror_image_of_gears();
+        let [driving, driven] = &turned.gears;
+        Self {
+            gears: [
+                driving.with_section(section.driving()),
+                driven.with_section(section.driven()),
+            ],
+            section,
+            ..turned
+        }
+    }
+
+    /// The same with the driving blank turned by `angle` under its teeth, counter-clockwise.
+    pub fn with_driving_blank_turned(&self, angle: f64) -> Self {
+        let section = self.section.with_driving_blank_turned(angle);
+        let [driving, driven] = &self.gears;
+        Self {
+            gears: [driving.with_section(section.driving()), driven.clone()],
+            section,
+            ..self.clone()
+        }
+    }
+
     /// The transverse section: a pair of spur gears.
     pub fn section(&self) -> &GearPair {
         &self.section

@@ -11,6 +11,7 @@
 pub mod campbell;
 pub mod heights;
 mod mode;
+pub mod rotation;
 mod section;
 mod system;
 mod teeth;
@@ -155,12 +156,65 @@ impl Class<'_> {
 }
 
 impl Body<'_> {
-    fn modes(&self, asked: ModesAsked, run: &Run) -> Result<Vec<Mode>, FemError> {
+    /// The functions along the axis of all parts, and where the faces of each part are.
+    fn heights(&self) -> (Heights, Vec<[f64; 2]>) {
         let parts = &self.blank.parts;
         let faces: Vec<[f64; 2]> = parts.iter().map(|part| part.heights).collect();
         let depth = |part: &Layer| part.outer_radius - part.inner_radius;
         let narrowest = parts.iter().map(depth).fold(f64::INFINITY, f64::min);
-        let heights = &Heights::new(&faces, narrowest);
+        (Heights::new(&faces, narrowest), faces)
+    }
+
+    /// The largest order of the circle on which the teeth stand.
+    fn largest_order(&self) -> usize {
+        (self.blank.section.around / 2).min(MOST_ORDERS)
+    }
+
+    /// The teeth on one sector of the blank.
+    fn teeth_in_sector(&self) -> f64 {
+        let teeth = self
+            .teeth
+            .map_or(0.0, |(gear, _)| f64::from(gear.section().tooth_count()));
+        teeth / self.blank.section.sectors as f64
+    }
+
+    /// The shift s.
+    fn shift(&self) -> f64 {
+        let outer = self.blank.parts[0].outer_radius;
+        let shear = self.material.shear_modulus() / self.material.density;
+        SHIFT * shear / outer.powi(2)
+    }
+
+    /// The unknowns of a class of motions, and the entries of its matrices: with the teeth that `of_order` has on the orders of the circle.
+    fn assembled<'t>(
+        &self,
+        system: &System<'_>,
+        (parity, class): (Parity, usize),
+        of_order: impl Fn(i64) -> Option<&'t TeethOrder>,
+    ) -> (Numbering, Vec<Entry>) {
+        let (sectors, largest) = (system.section.sectors as i64, self.largest_order() as i64);
+        let of_class = |order: &i64| order.rem_euclid(sectors) == class as i64;
+        let orders: Vec<i64> = (-largest..=largest).filter(of_class).collect();
+        let numbering = system.numbering(parity, class, &orders);
+        let mut entries: Vec<Entry> = Vec::new();
+        system.assemble(&numbering, &mut entries);
+        let (share, size) = (self.teeth_in_sector(), numbering.amplitude_size());
+        for (k, order) in orders.iter().enumerate() {
+            let first = numbering.first_amplitude + k * size;
+            let Some(of_order) = of_order(*order) else {
+                continue;
+            };
+            match order {
+                0.. => of_order.add(first, share, &mut entries),
+                _ => of_order.add_opposite(first, share, &mut entries),
+            }
+        }
+        (numbering, entries)
+    }
+
+    fn modes(&self, asked: ModesAsked, run: &Run) -> Result<Vec<Mode>, FemError> {
+        let (heights, faces) = self.heights();
+        let heights = &heights;
         let system = &System::new(
             &self.blank.section,
             heights,
@@ -168,7 +222,7 @@ impl Body<'_> {
             self.material,
             asked.bore,
         );
-        let largest = (self.blank.section.around / 2).min(MOST_ORDERS);
+        let largest = self.largest_order();
         let teeth = self.teeth_orders(heights, largest, run)?;
         let sectors = self.blank.section.sectors;
         let keys: Vec<(Parity, usize)> = heights
@@ -181,7 +235,7 @@ impl Body<'_> {
             .map(|(parity, class)| {
                 let of_parity = teeth.iter().find(|(of, _)| *of == parity);
                 let orders = of_parity.map(|(_, orders)| orders.as_slice());
-                self.class(system, (parity, class), (largest, orders), run)
+                self.class(system, (parity, class), orders, run)
             })
             .collect::<Result<_, _>>()?;
         // Where no symmetry is used, a double mode is found twice.
@@ -323,33 +377,14 @@ impl Body<'_> {
         &self,
         system: &'s System<'s>,
         (parity, class): (Parity, usize),
-        (largest, teeth): (usize, Option<&[TeethOrder]>),
+        teeth: Option<&[TeethOrder]>,
         run: &Run,
     ) -> Result<Class<'s>, FemError> {
         run.check()?;
-        let sectors = system.section.sectors as i64;
-        let largest = largest as i64;
-        let of_class = |order: &i64| order.rem_euclid(sectors) == class as i64;
-        let orders: Vec<i64> = (-largest..=largest).filter(of_class).collect();
-        let numbering = system.numbering(parity, class, &orders);
-        let mut entries: Vec<Entry> = Vec::new();
-        system.assemble(&numbering, &mut entries);
-        if let (Some(teeth), Some((gear, _))) = (teeth, self.teeth) {
-            let share = f64::from(gear.section().tooth_count()) / sectors as f64;
-            let size = numbering.amplitude_size();
-            for (k, order) in orders.iter().enumerate() {
-                let first = numbering.first_amplitude + k * size;
-                let of_order = &teeth[order.unsigned_abs() as usize];
-                match order {
-                    0.. => of_order.add(first, share, &mut entries),
-                    _ => of_order.add_opposite(first, share, &mut entries),
-                }
-            }
-        }
+        let of_order = |order: i64| teeth.map(|teeth| &teeth[order.unsigned_abs() as usize]);
+        let (numbering, entries) = self.assembled(system, (parity, class), of_order);
         let pencil = Pencil::new(numbering.count, &entries);
-        let outer = self.blank.parts[0].outer_radius;
-        let shear = self.material.shear_modulus() / self.material.density;
-        let shift = SHIFT * shear / outer.powi(2);
+        let shift = self.shift();
         let mut lanczos = Lanczos::new("the blank", pencil, shift)?;
         lanczos.find(AT_FIRST, run)?;
         let is_free = numbering.turn.is_some();

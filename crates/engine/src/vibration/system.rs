@@ -22,6 +22,8 @@ pub enum BoreSupport {
     Held,
     /// The bore turns about its axis as a rigid ring, and is held otherwise.
     FreeToTurn,
+    /// Nothing.
+    Free,
 }
 
 /// A section with its material.
@@ -287,7 +289,11 @@ impl<'a> System<'a> {
         };
         let mut is_own = vec![true; section.grid.nodes.len()];
         let (right, left) = &section.sides;
-        for node in section.arc.iter().chain(&section.bore).chain(left) {
+        let carried: &[u32] = match self.support {
+            BoreSupport::Held | BoreSupport::FreeToTurn => &section.bore,
+            BoreSupport::Free => &[],
+        };
+        for node in section.arc.iter().chain(carried).chain(left) {
             is_own[*node as usize] = false;
         }
         for (node, span) in self.spans.iter().enumerate() {
@@ -409,6 +415,56 @@ impl<'a> System<'a> {
         arc.on_orders(self, numbering, entries);
     }
 
+    /// The pull of rotation on the unknowns for ω² = 1 in 1/s²: the mass times the radius.
+    pub(super) fn pull(&self, numbering: &Numbering) -> Mat<c64> {
+        let grid = &self.section.grid;
+        let mut pull = Mat::<c64>::zeros(numbering.count, 1);
+        let elements = grid.elements.iter().zip(&self.section.part_of);
+        for ((element, part), matrices) in elements.zip(&self.elements) {
+            let part = &self.parts[*part];
+            let width = |p: usize| (0..part.count()).map(move |q| part.products[(p, q)]);
+            let widths: Vec<f64> = (0..part.count()).map(|p| width(p).sum()).collect();
+            let radii = element.nodes().iter();
+            let radii = radii.map(|node| grid.nodes[*node as usize].norm());
+            for (a, node) in element.nodes().iter().enumerate() {
+                for component in 0..COMPONENTS - 1 {
+                    let by_radius = radii.clone().enumerate();
+                    let by_radius = by_radius.map(|(b, r)| {
+                        r * matrices.mass[(COMPONENTS * a + component, COMPONENTS * b)]
+                    });
+                    let force: f64 = by_radius.sum();
+                    for (p, width) in widths.iter().enumerate() {
+                        let of = (*node, component, part.first + p);
+                        self.each_followed(numbering, of, |unknown, share| {
+                            pull[(unknown, 0)] += share.conj() * (force * width);
+                        });
+                    }
+                }
+            }
+        }
+        pull
+    }
+
+    /// Calls `each` with the unknowns, and their shares, that `component` of the function `index` at `node` follows.
+    fn each_followed(
+        &self,
+        numbering: &Numbering,
+        (node, component, index): (u32, usize, usize),
+        mut each: impl FnMut(usize, c64),
+    ) {
+        let terms = &numbering.terms[node as usize];
+        if terms.is_empty()
+            && let Some((unknown, share)) = self.follows(numbering, (node, component, index))
+        {
+            each(unknown as usize, share);
+        }
+        for (block, share) in terms {
+            if let Some(unknown) = numbering.blocks[*block].unknown(component, index) {
+                each(unknown, *share);
+            }
+        }
+    }
+
     /// The displacement of `component` of the function `index` at `node`, by the unknowns.
     pub(super) fn displacement(
         &self,
@@ -416,18 +472,11 @@ impl<'a> System<'a> {
         x: &Mat<c64>,
         (node, component, index): (u32, usize, usize),
     ) -> c64 {
-        let terms = &numbering.terms[node as usize];
-        if terms.is_empty() {
-            let follows = self.follows(numbering, (node, component, index));
-            return follows.map_or(c64::new(0.0, 0.0), |(unknown, share)| {
-                x[(unknown as usize, 0)] * share
-            });
-        }
-        let of_term = |(block, share): &(usize, c64)| {
-            let unknown = numbering.blocks[*block].unknown(component, index)?;
-            Some(x[(unknown, 0)] * share)
-        };
-        terms.iter().filter_map(of_term).sum()
+        let mut sum = c64::new(0.0, 0.0);
+        self.each_followed(numbering, (node, component, index), |unknown, share| {
+            sum += x[(unknown, 0)] * share;
+        });
+        sum
     }
 
     /// The displacement of `node` in the middle of its part.

@@ -9,7 +9,7 @@ use super::heights::{Heights, Parity};
 use super::section::Section;
 use super::system::{BoreSupport, Numbering, System};
 use crate::fem::FemError;
-use crate::fem::eigen::{Entry, Pencil};
+use crate::fem::eigen::{Entry, Pencil, PencilFactor};
 use crate::gear::SpurGear;
 use crate::grid::{GridError, GridLevel, ToothGrid};
 
@@ -19,6 +19,17 @@ pub(super) struct ToothCell {
     pub(super) section: Section,
     /// The node on the loaded flank next to the reference circle.
     pub(super) pitch_node: u32,
+    /// The nodes of the loaded flank, each with its roll length, rising.
+    pub(super) flank: Vec<(f64, u32)>,
+}
+
+/// A tooth under the pull of rotation for ω² = 1 in 1/s².
+#[derive(Debug)]
+pub(super) struct PulledTooth {
+    /// Its force on the amplitude of an order of the circle.
+    pub(super) on_circle: Mat<c64>,
+    /// The displacement of the unknowns of the cell beside the circle, while that is held.
+    pub(super) held: Mat<c64>,
 }
 
 /// The ring of teeth on one order of its circle, for each tooth.
@@ -51,6 +62,12 @@ impl ToothCell {
         let z = gear.tooth_count() as usize;
         Ok(Self {
             pitch_node: pitch_node.copied().unwrap_or(0),
+            flank: tooth
+                .flank_roll_lengths
+                .iter()
+                .copied()
+                .zip(tooth.flank_nodes.iter().copied())
+                .collect(),
             section: Section {
                 part_of: vec![0; tooth.grid.elements.len()],
                 sectors: z,
@@ -87,9 +104,7 @@ impl TeethOrder {
         let mut entries = Vec::new();
         system.assemble(&numbering, &mut entries);
         let (inner, all) = (numbering.first_amplitude, numbering.count);
-        let is_inner = |entry: &&Entry| (entry.row as usize) < inner;
-        let within: Vec<Entry> = entries.iter().filter(is_inner).copied().collect();
-        let factor = Pencil::new(inner, &within).factor("the teeth", 0.0)?;
+        let factor = within(inner, &entries)?;
         // Forces of an amplitude on the inner unknowns while they are held: entries of its rows are the conjugate.
         let mut forces = Mat::<c64>::zeros(inner, all - inner);
         for entry in &entries {
@@ -111,6 +126,24 @@ impl TeethOrder {
             mass: reduced(pencil.mass_times(&follows)),
             follows,
             numbering,
+        })
+    }
+
+    /// A tooth of the same `system` under the pull of rotation.
+    ///
+    /// # Errors
+    ///
+    /// As [`TeethOrder::new`].
+    pub(super) fn pulled(&self, system: &System<'_>) -> Result<PulledTooth, FemError> {
+        let mut entries = Vec::new();
+        system.assemble(&self.numbering, &mut entries);
+        let inner = self.numbering.first_amplitude;
+        let pull = system.pull(&self.numbering);
+        let mut held = pull.subrows(0, inner).to_owned();
+        within(inner, &entries)?.solve_in_place(&mut held);
+        Ok(PulledTooth {
+            on_circle: self.follows.adjoint() * pull,
+            held,
         })
     }
 
@@ -137,4 +170,11 @@ impl TeethOrder {
             }
         }
     }
+}
+
+/// The factor of the stiffness of the first `inner` unknowns among `entries`.
+fn within(inner: usize, entries: &[Entry]) -> Result<PencilFactor, FemError> {
+    let is_inner = |entry: &&Entry| (entry.row as usize) < inner;
+    let within: Vec<Entry> = entries.iter().filter(is_inner).copied().collect();
+    Pencil::new(inner, &within).factor("the teeth", 0.0)
 }

@@ -79,8 +79,8 @@ document! {
         /// The force over mesh position and approach; absent unless the submission asks for it.
         force_table?: ForceTableDocument =
             forces.map(|forces| ForceTableDocument::of(&forces.table)),
-        /// How the holes of both gears stand best. Null where the gears do not repeat at one order
-        /// or teeth deviate, over a part of the true period, for methods along faces and the load
+        /// How the holes of both gears stand best. Null where the gears do not repeat at one order,
+        /// teeth deviate or the gears run, over a part of the true period, for the load
         /// distribution, and in results of versions before 0.6.
         #[serde(default, serialize_with = "one_or_null")]
         #[schema(required)]

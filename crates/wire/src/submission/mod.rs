@@ -123,7 +123,7 @@ impl SubmissionDocument {
     ) -> Option<Submission> {
         let solid = if self.method.sees_faces() {
             self.refuse_plane_choices(errors);
-            Some(self.pair.to_solid_pair(errors)?)
+            Some(self.pair.to_solid_pair(self.distance_growth(), errors)?)
         } else {
             self.pair
                 .refuse_three_dimensions(self.method.word(), errors);

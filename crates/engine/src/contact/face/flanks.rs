@@ -41,6 +41,15 @@ impl FaceFlanks {
         }
     }
 
+    /// The same, whose teeth have these `deviations`.
+    pub fn deviating(self, deviations: PairDeviations) -> Self {
+        let Self { pair, slices, .. } = self;
+        Self {
+            deviations,
+            ..Self::new(pair, slices)
+        }
+    }
+
     /// The moduli of both gears in plane strain.
     pub(super) fn moduli(&self) -> [f64; 2] {
         Member::BOTH.map(|member| self.plane_strain.gear(member).material().youngs_modulus)

@@ -8,7 +8,7 @@ use super::flanks::FaceFlanks;
 use crate::contact::PositionError;
 use crate::contact::memo::Memo;
 use crate::fem::dense::entries;
-use crate::gear::{Member, SolidPair};
+use crate::gear::{Member, PairDeviations, SolidPair};
 
 /// How the flanks of one gear give way, smoothly, to forces normal to them.
 ///
@@ -125,6 +125,15 @@ impl FaceModel {
             coupled,
             smooth: Memo::new(MOST_BYTES, |smooth| size_of::<f64>() * entries(smooth)),
             reaches: Memo::new(MOST_REACHES, size_of_val),
+        }
+    }
+
+    /// The same, whose teeth have these `deviations`.
+    pub fn deviating(self, deviations: PairDeviations) -> Self {
+        Self {
+            flanks: self.flanks.deviating(deviations),
+            reaches: Memo::new(MOST_REACHES, size_of_val),
+            ..self
         }
     }
 

@@ -57,6 +57,13 @@ fn gears_and_housing_grow_by_their_own_expansions() {
     // In lengths of gears that have grown by 50 K in the mean.
     let expected = 100.5e-3 * (1.0 + 30.0 * 23e-6) / (1.0 + 50.0 * 11.5e-6);
     assert!((submission.case().pair.center_distance() - expected).abs() < 1e-15);
+    // Along faces too.
+    let along = with(
+        running(&warm(50.0, 23e-6)),
+        &[("/method", json!("three_dimensional"))],
+    );
+    let along = parse(&along).expect("valid").case().pair.center_distance();
+    assert_eq!(along, submission.case().pair.center_distance());
     let alike = parse(&running(&warm(70.0, 11.5e-6))).expect("valid");
     assert!((alike.case().pair.center_distance() - 100.5e-3).abs() < 1e-15);
 }
@@ -65,13 +72,21 @@ fn gears_and_housing_grow_by_their_own_expansions() {
 fn what_cannot_run_is_refused_with_its_place() {
     let turning = json!({ "driving_speed_rpm": 12_000 });
     let by = |method: &str| with(running(&turning), &[("/method", json!(method))]);
-    fault(&by("decomposition"), "/running", Code::QuantityNotTold);
     fault(&by("load_distribution"), "/running", Code::QuantityNotTold);
-    fault(
-        &by("three_dimensional"),
-        "/running",
-        Code::NotInThreeDimensions,
-    );
+    for method in [
+        "decomposition",
+        "projected_decomposition",
+        "three_dimensional",
+        "three_dimensional_projected",
+    ] {
+        parse(&by(method)).expect("it sees what rotation does");
+    }
+    let fitted = running(&json!({ "press_fit_um": { "driving": 20 } }));
+    let fitted = with(fitted, &[("/method", json!("three_dimensional"))]);
+    let place = "/running/press_fit_um";
+    fault(&fitted, place, Code::NotInThreeDimensions);
+    let stressed = with(by("three_dimensional"), &[("/stress", json!(true))]);
+    fault(&stressed, "/stress", Code::NotInThreeDimensions);
     let run_up = json!({ "driving_speed_rpm": 3000 });
     let run_up = with(running(&turning), &[("/dynamics", run_up)]);
     fault(&run_up, "/dynamics", Code::QuantityNotTold);
