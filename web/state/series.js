@@ -24,6 +24,7 @@ import { fixed, number } from "./numbers.js";
  * @property {string} title
  * @property {string} unit
  * @property {(curve: Curve) => (number | null)[]} [of]
+ * @property {(curve: Curve) => Extreme[]} [between] its extremes, which may lie between positions
  * @property {(curve: Curve) => Part[]} [ofLive]
  * @property {(curve: Curve) => Part[]} [whole]
  * @property {string} [note]
@@ -34,6 +35,7 @@ import { fixed, number } from "./numbers.js";
  */
 
 /** @typedef {[number, number]} Point */
+/** @typedef {{ at: number, value: number }} Extreme */
 /** @typedef {[number, number, number, number]} Box */
 /** @typedef {{ order: number, label: string, value: number }} OrderName */
 
@@ -46,18 +48,63 @@ export const LEAST_AMPLITUDE = 1e-4;
  */
 export const DASHES = [[], [7, 4], [2, 3], [10, 3, 2, 3], [12, 4], [4, 2, 1, 2], [1, 2]];
 
+/**
+ * The least and the largest value of a curve, which may lie between its positions; none of those that its results do
+ * not tell.
+ *
+ * @type {(statistics: Partial<import("./documents.js").Schemas["StatisticsValues"]> | undefined) => Extreme[]}
+ */
+export function extremesIn({ smallest, smallest_at, largest, largest_at } = {}) {
+  const all = [
+    { at: smallest_at, value: smallest },
+    { at: largest_at, value: largest },
+  ];
+  return all.flatMap(({ at, value }) => (typeof at === "number" && typeof value === "number" ? [{ at, value }] : []));
+}
+
+/** Positions so close are one, in mesh periods. */
+const SAME_PLACE = 1e-9;
+
+/**
+ * A curve with its extremes in it.
+ *
+ * @type {<V>(x: number[], values: V[], extremes: Extreme[]) => { x: number[], values: (V | number)[] }}
+ */
+export function withExtremes(x, values, extremes) {
+  /** @type {{ x: number[], values: any[] }} */
+  const line = { x: [...x], values: [...values] };
+  for (const { at, value } of extremes) {
+    const after = line.x.findIndex((each) => each > at - SAME_PLACE);
+    const i = after < 0 ? line.x.length : after;
+    // A line begins where its period does.
+    if (i === 0 || Math.abs(line.x[i] - at) <= SAME_PLACE) continue;
+    line.x.splice(i, 0, at);
+    line.values.splice(i, 0, value);
+  }
+  return line;
+}
+
 /** @type {(values: number[]) => number[]} */
 const micro = (values) => values.map((value) => value * 1e-6);
 
 /** @type {Panel[]} */
 export const PANELS = [
-  { id: "ste", question: "noise", title: "Transmission error", unit: "µm", of: (curve) => curve.transmission_error_um },
+  {
+    id: "ste",
+    question: "noise",
+    title: "Transmission error",
+    unit: "µm",
+    of: (curve) => curve.transmission_error_um,
+    between: (curve) => extremesIn(curve.statistics.transmission_error_um),
+  },
   {
     id: "stiffness",
     question: "noise",
     title: "Mesh stiffness, tangent",
     unit: "N/µm",
     of: (curve) => micro(curve.mesh_stiffness_tangent_n_per_m),
+    between: (curve) =>
+      extremesIn(curve.statistics.mesh_stiffness_tangent_n_per_m).map(({ at, value }) => ({ at, value: 1e-6 * value })),
   },
   {
     id: "share",
@@ -190,8 +237,7 @@ export function linesOf(panel, designs, crowded = false) {
       repeated(
         {
           name: several ? `${name}, ${number(curve.output_torque_n_m)} N m` : name,
-          values: panel.of?.(curve) ?? [],
-          x: curve.mesh_position,
+          ...withExtremes(curve.mesh_position, panel.of?.(curve) ?? [], panel.between?.(curve) ?? []),
           span: spanOf(curve),
           look: look ?? i,
           dash: DASHES[(several ? j : (look ?? i)) % DASHES.length],
@@ -337,7 +383,7 @@ export function wordsOf(panel, designs) {
     const found = extremes(line.values);
     if (!found) return [];
     const [[least, i], [most, j]] = found;
-    const range = `from ${number(least)} at position ${fixed(line.x[i], 2)} to ${number(most)} at ${fixed(line.x[j], 2)}, peak-to-peak ${number(most - least, 3)} ${panel.unit}`;
+    const range = `from ${number(least)} at position ${fixed(line.x[i], 2)} to ${number(most)} at ${fixed(line.x[j], 2)}, peak-to-peak ${panel.unit === "µm" ? fixed(most - least, 3) : number(most - least, 3)} ${panel.unit}`;
     return [`${line.name}: ${range}.`];
   });
   const gaps =

@@ -1,6 +1,8 @@
 // @ts-check
 // Results as tables, and the names of files.
 
+import { extremesIn } from "./series.js";
+
 /** @import { Curve, Results } from "./documents.js" */
 
 /**
@@ -74,8 +76,27 @@ export const withCommas = (csv) =>
     return `${!cell.startsWith('"') && cell.includes(";") ? `"${value}"` : value}${end === "," ? ";" : end}`;
   });
 
+/** Columns whose extremes may lie between positions. */
+const BETWEEN = /** @type {const} */ (["transmission_error_um", "mesh_stiffness_tangent_n_per_m"]);
+
 /**
- * Every curve of the results as one table: a line for each torque and position.
+ * The places between positions at which a column has an extreme, each with the columns that are known there.
+ *
+ * @type {(curve: Curve) => Map<number, Partial<Record<string, number>>>}
+ */
+function placesBetween({ statistics, mesh_position: positions }) {
+  /** @type {Map<number, Partial<Record<string, number>>>} */
+  const found = new Map();
+  for (const name of BETWEEN)
+    for (const { at, value } of extremesIn(statistics[name]))
+      if (!positions.some((position) => Math.abs(position - at) < 1e-9))
+        found.set(at, { ...found.get(at), [name]: value });
+  return found;
+}
+
+/**
+ * Every curve of the results as one table: a line for each torque and position, and for each extreme between positions,
+ * where a line has that value alone.
  *
  * @type {(results: Results) => string}
  */
@@ -95,14 +116,25 @@ export function csv(results) {
   for (const curve of results.curves) {
     /** @type {(offset: number) => number[] | undefined} */
     const share = (offset) => curve.load_shares.find((each) => each.pair_offset === offset)?.share;
-    curve.mesh_position.forEach((_, i) => {
-      lines.push([
-        curve.output_torque_n_m,
+    /** @type {[number, unknown[]][]} */
+    const placed = curve.mesh_position.map((at, i) => [
+      at,
+      [
         ...columns.map((name) => within(curve, name)?.[i]),
         ...stressed.map((name) => within(curve, name)?.[i]),
         ...offsets.map((offset) => share(offset)?.[i] ?? 0),
+      ],
+    ]);
+    for (const [at, known] of placesBetween(curve))
+      placed.push([
+        at,
+        [
+          ...columns.map((name) => (name === "mesh_position" ? at : known[name])),
+          ...[...stressed, ...offsets].map(() => undefined),
+        ],
       ]);
-    });
+    placed.sort(([one], [other]) => one - other);
+    for (const [, cells] of placed) lines.push([curve.output_torque_n_m, ...cells]);
   }
   return csvOf(lines);
 }

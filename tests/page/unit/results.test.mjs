@@ -6,7 +6,16 @@ import { cellsOf, cured, faceOf, rampAt, wordsOfCure } from "../../../web/draw/f
 import { forceAt } from "../../../web/state/motion.js";
 import { wordsOf } from "../../../web/state/orders.js";
 import { calledOf, inRow, inUnit, inWords, quantityOf, shown, worstInRow } from "../../../web/state/quantities.js";
-import { linesOf, namesOf, ordersOf, PANELS, partialSpectrum, placedNames, spanOf } from "../../../web/state/series.js";
+import {
+  linesOf,
+  namesOf,
+  ordersOf,
+  PANELS,
+  partialSpectrum,
+  placedNames,
+  spanOf,
+  wordsOf as panelWords,
+} from "../../../web/state/series.js";
 import { snippets } from "../../../web/state/snippets.js";
 import { csv, csvOf, fileOfDesign, ordersCsv, withCommas } from "../../../web/state/tables.js";
 import { measured, tableOf } from "../../../web/views/deviations.js";
@@ -45,6 +54,22 @@ test("curves and orders come as tables with a line for each position and order",
   assert.match(lines[2], /^115,0\.25,/);
   assert.match(ordersCsv(results), /\r\n115,50,1,,,,H_Z2\r\n$/);
   assert.equal(fileOfDesign("50/50, 10×r7.5@34", "curves.csv"), "meshwright-50-50-10xr7.5-34-curves.csv");
+});
+
+test("extremes between positions stand in lines and tables", () => {
+  const curve = curveOver(1, 4);
+  // The least lies between the second and the third position, the largest at the first one.
+  curve.statistics.transmission_error_um = { smallest: 8.9, smallest_at: 0.4, largest: 11, largest_at: 0 };
+  const design = { results: { curves: [curve] }, name: "", look: 0 };
+  const [line] = linesOf(PANELS[0], [design]);
+  assert.deepEqual(line.x, [0, 0.25, 0.4, 0.5, 0.75]);
+  assert.deepEqual(line.values[2], 8.9);
+  assert.match(panelWords(PANELS[0], [design]), /from 8\.9 at position 0\.40 to 11 at 0\.00, peak-to-peak 2\.100 µm/);
+  const lines = csv({ curves: [curve] })
+    .trimEnd()
+    .split("\r\n");
+  assert.equal(lines.length, 6);
+  assert.equal(lines[3], "115,0.4,8.9,,");
 });
 
 test("the lines of a panel span their periods, and crowded pairs of teeth are one line", () => {
