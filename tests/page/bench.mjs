@@ -1830,7 +1830,7 @@ export async function benchSteps(service) {
       assert.equal(words.length, 5);
       for (const [id, text] of words) assert.ok(text.length > 60, `${id}: ${text}`);
       const of = (id) => words.find(([each]) => each === `chart-${id}`)[1];
-      assert.match(of("ste"), /from 13\.\d+ at position \d\.\d+ to 14\.\d+ .*peak-to-peak 1\.75 µm/);
+      assert.match(of("ste"), /from 13\.\d+ at position \d\.\d+ to 14\.\d+ .*peak-to-peak 1\.78\d µm/);
       assert.match(of("spectrum"), /0\.341 µm at order 10/);
       const colors = await page.evaluate(() =>
         [1, 2, 3, 4, 5, 6, 7].map((i) =>

@@ -29,6 +29,7 @@ import {
   unfold,
   withOwnService,
 } from "./harness.mjs";
+import { daySteps } from "./days.mjs";
 import { hourSteps } from "./hour.mjs";
 import { projectSteps } from "./project.mjs";
 import { shownSteps } from "./shown.mjs";
@@ -610,6 +611,7 @@ await solidSteps(service);
 await shownSteps(service);
 await hourSteps(service);
 await projectSteps();
+await daySteps();
 
 await withOwnService({}, (locked, { step: onLocked }) => {
   const key = locked.key("visitor");
