@@ -1,6 +1,6 @@
 // @ts-check
-// What a design is sensitive to, as bars around its own value: torque, center distance and misalignment at their
-// limits, by one small study.
+// The sensitivity of a design as bars around its own value: torque, center distance and misalignment at their limits,
+// by one small study.
 
 import { asking, h, inLine, labelled, note, region, s, table, tableRow, unseen } from "../draw/dom.js";
 import { given, numeric, put } from "../draw/inputs.js";
@@ -22,7 +22,7 @@ import { barsOf, js7, studyOf } from "../state/sensitivity.js";
 
 /** Bars are fetched so often at most while the study runs, in milliseconds. */
 const PAUSE = 400;
-/** What is looked at first. */
+/** The quantity of the first bars. */
 const SHOWN = "transmission_error_um.peak_to_peak";
 /** The limits that are offered: of the torque in percent, of misalignment in um. */
 const [PERCENT, MISALIGNED] = [20, 10];

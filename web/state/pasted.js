@@ -5,7 +5,7 @@
 /** @import { Submission } from "./documents.js" */
 
 /**
- * What was read of a line: the field, and its values for the driving and for the driven gear, or one for the pair.
+ * The content of a line: the field, and its values for the driving and for the driven gear, or one for the pair.
  *
  * @typedef {{ field: string, title: string, values: (number | string)[], line: string }} Taken
  */

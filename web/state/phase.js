@@ -86,7 +86,7 @@ export function amplitudeAt({ over_turn: { turn_of_driving_deg: turns, amplitude
 }
 
 /**
- * What the best turn is and what it brings, in words; `turn` is how far the holes are turned since.
+ * The best turn and its gain, in words; `turn` is how far the holes are turned since.
  *
  * @type {(phase: HolePhase, turn: number) => string}
  */

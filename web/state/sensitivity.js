@@ -1,5 +1,5 @@
 // @ts-check
-// What a design is sensitive to: the designs of one small study, each with one thing changed to one of its limits, and
+// The sensitivity of a design: the designs of one small study, each with one thing changed to one of its limits, and
 // bars around the value of the design as it is.
 
 import { isSolid } from "./dimensions.js";
@@ -12,7 +12,7 @@ const TORQUE = "/output_torques_n_m";
 const DISTANCE = "/pair/center_distance_mm";
 
 /**
- * How far things may be off: the torque in percent, the center distance in mm, the misalignments in um.
+ * The limits: of the torque in percent, the center distance in mm, the misalignments in um.
  *
  * @typedef {{ torque: number, distance: number, misalignment: number }} Limits
  */
@@ -25,7 +25,7 @@ const DISTANCE = "/pair/center_distance_mm";
  */
 
 /**
- * What may change: the name, the pointer, its unit and the values at both limits.
+ * A thing that may change: its name, its pointer and the values at both limits.
  *
  * @typedef {{ name: string, pointer: string, values: [low: unknown, high: unknown] }} Influence
  */
@@ -34,7 +34,7 @@ const DISTANCE = "/pair/center_distance_mm";
 const round = (value) => Number(value.toPrecision(9));
 
 /**
- * What may change of a submission. Misalignment needs a method along the face.
+ * The things that may change of a submission. Misalignment needs a method along the face.
  *
  * @type {(base: Submission, limits: Limits) => Influence[]}
  */
@@ -75,7 +75,7 @@ export function studyOf(base, limits, name) {
 const changeOf = ({ changes }) => [Object.values(changes)[0]].flat().find((value) => typeof value === "number");
 
 /**
- * How far the two limits are apart, in words.
+ * Half of the distance between the two limits, in words.
  *
  * @type {(name: string, low: TableRow, high: TableRow) => string}
  */

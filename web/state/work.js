@@ -7,7 +7,7 @@
 /** @typedef {"job" | "sweep" | "sensitivity" | "study" | "search" | "population"} Kind */
 
 /**
- * What tells the kind of a study.
+ * The parts of a study that tell its kind.
  *
  * @typedef {{ name?: string | null, population?: unknown, search?: unknown, designs?: { label: string }[] | null,
  *   axes?: { path: string, values: unknown[] }[] | null }} Asked
@@ -29,7 +29,7 @@
  */
 
 /**
- * What the page does with work of its own: `tell` says what is new of it, `end` that it is over, and how.
+ * The handle of work that the page does: `tell` says what is new of it, `end` that it is over, and how.
  *
  * @typedef {{ tell: (news: Partial<Running>) => void, end: (status?: string) => void }} Handle
  */
@@ -100,7 +100,7 @@ export function begin(name, stop, known = {}) {
 }
 
 /**
- * What hears the events of a job, and tells them as how far the work is.
+ * A listener to the events of a job that tells them as the progress of the work.
  *
  * @type {(work: Handle) => (event: string, data: Partial<Job>) => void}
  */

@@ -96,7 +96,7 @@ export class Dial {
     this.#point();
   }
 
-  /** How far the holes are turned from where the results have them, within a hole pitch. */
+  /** The turn of the holes from where the results have them, within a hole pitch. */
   get #turn() {
     const now = phaseOf(this.design.submission.pair?.driving?.blank);
     return this.#phase && now !== null ? within(now - this.#origin, pitchOf(this.#phase)) : 0;

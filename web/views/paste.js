@@ -13,7 +13,7 @@ import { newPair } from "./start.js";
 /** @import { Pasted } from "../state/pasted.js" */
 
 const REST = 150;
-/** So many lines that are not understood are shown. */
+/** The number of lines that are shown of those that are not understood. */
 const LINES = 40;
 /** The bore of a new pair whose text gives none, as a part of the reference radius. */
 const BORE = 0.5;

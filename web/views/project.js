@@ -109,7 +109,7 @@ export class Project {
     };
   }
 
-  /** What the title block of a report says of the project. */
+  /** The words of the title block of a report. */
   get title() {
     return {
       name: this.#known?.name ?? this.#name.value,

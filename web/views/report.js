@@ -31,7 +31,7 @@ import { inLight, sheetOf } from "./sheet.js";
  */
 
 /**
- * What a report is made of: the live design and those beside it, their drawing and charts, the form, which knows the
+ * The sources of a report: the live design and those beside it, their drawing and charts, the form, which knows the
  * fields, what a field is where a submission does not give it, and the answers on the page.
  *
  * @typedef {{ title: Title, live: NamedDesign, designs: NamedDesign[], drawing: SVGSVGElement, charts: Charts,
@@ -39,7 +39,7 @@ import { inLight, sheetOf } from "./sheet.js";
  *   answers: Answer[] }} Parts
  */
 
-/** What a data sheet says of a material, whether it is given or not. */
+/** The fields of a material in the data sheet, whether they are given or not. */
 const OF_MATERIAL = ["name", "youngs_modulus_gpa", "poisson_ratio", "density_kg_m3"].map((name) => `material/${name}`);
 /** Curves on the page of them; the face and the spectrum stand alone in a row. */
 const [CURVE, WIDE] = [
@@ -252,7 +252,7 @@ function runUpOf(designs) {
 }
 
 /**
- * What was asked about the robustness, as far as it has been answered.
+ * The answers about the robustness, as far as they are there.
  *
  * @param {Answer[]} answers
  */

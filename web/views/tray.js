@@ -11,9 +11,12 @@ import { onWork, running } from "../state/work.js";
 
 /** Work that takes less, in milliseconds, is not listed. */
 const MOMENT = 600;
-/** What runs in the service without this page is asked for so often, in milliseconds. */
+/**
+ * The time between two requests for what runs in the service without this page, in milliseconds: of an open list, and
+ * of a closed one.
+ */
 const [OPEN, CLOSED] = [2000, 10_000];
-/** How the submitted work of a tab ended, over a reload. */
+/** The name of the statuses of submitted work that has ended, kept over a reload. */
 const ENDED = "meshwright-ended";
 /** The state of what the service does not keep any more. */
 const GONE = "removed by the service";
@@ -25,7 +28,8 @@ const GONE = "removed by the service";
  */
 
 /**
- * What the list needs of the page: the submitted work of the project, what shows one of it, and what forgets one.
+ * The parts of the page that the list calls: the submitted work of the project, what shows one of it, and what forgets
+ * one.
  *
  * @typedef {{ kept: () => Submitted[], onShow: (work: Submitted) => unknown, onForget: (id: string) => void }} Around
  */
@@ -62,6 +66,8 @@ export class Tray {
   #keys = new WeakMap();
   #count = 0;
   #drawnKept = "";
+  /** @type {number | undefined} */
+  #drawing;
   /** @type {number | undefined} */
   #later;
   /** @type {number | undefined} */
@@ -122,8 +128,10 @@ export class Tray {
 
   /** Draws once what has just changed has done so. */
   #soon() {
-    clearTimeout(this.#later);
-    this.#later = setTimeout(() => this.#draw(), 50);
+    this.#drawing ??= setTimeout(() => {
+      this.#drawing = undefined;
+      this.#draw();
+    }, 50);
   }
 
   #draw() {
@@ -135,6 +143,7 @@ export class Tray {
     );
     const all = [...own, ...others];
     const listed = all.filter(({ since }) => performance.now() - since >= MOMENT);
+    clearTimeout(this.#later);
     if (listed.length < all.length) this.#later = setTimeout(() => this.#draw(), MOMENT);
     this.#button.textContent = listed.length ? `Work: ${listed.length}` : "Work";
     if (this.#place.hidden) return;
