@@ -51,7 +51,10 @@ function joined(own, points, order) {
   }
   if (typeof own !== "object" || own === null) return own;
   return Object.fromEntries(
-    Object.entries(own).map(([name, value]) => [name, points?.[name] === undefined ? value : joined(value, points[name], order)]),
+    Object.entries(own).map(([name, value]) => [
+      name,
+      points?.[name] === undefined ? value : joined(value, points[name], order),
+    ]),
   );
 }
 

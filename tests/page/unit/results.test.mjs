@@ -46,7 +46,12 @@ test("charts and tables have the points between positions, an event twice", () =
   assert.equal(Math.max(...line.values) - Math.min(...line.values), 4);
   assert.equal(new Set(line.x).size, 7);
   assert.equal(line.span, 1);
-  assert.equal(csv({ curves: [curve] }).trimEnd().split("\r\n").length, 8);
+  assert.equal(
+    csv({ curves: [curve] })
+      .trimEnd()
+      .split("\r\n").length,
+    8,
+  );
   const earlier = curveOver(1);
   assert.equal(withPoints(earlier), earlier);
 });

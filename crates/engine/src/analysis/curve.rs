@@ -1,5 +1,6 @@
 //! Results: curves over mesh position.
 
+pub use super::curve_point::{CurvePoint, EventSide};
 pub use super::load_share::LoadShare;
 use super::mesh_wave::MeshWave;
 use super::pressures::CurvePressures;
@@ -110,28 +111,6 @@ pub struct FaceLoad {
     pub load_centroid: Vec<f64>,
 }
 
-/// Sides of a mesh position at which a pair takes up or leaves the load.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum EventSide {
-    /// Just before it.
-    Before,
-    /// Just behind it.
-    Behind,
-}
-
-/// A point of a curve between its positions, in SI units.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CurvePoint {
-    /// The mesh position η.
-    pub mesh_position: f64,
-    /// δ.
-    pub transmission_error: f64,
-    /// k.
-    pub mesh_stiffness_tangent: f64,
-    /// The side that it is of, at an event.
-    pub event: Option<EventSide>,
-}
-
 /// The curves at one output torque. All lists run over the same positions, in SI units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
@@ -159,6 +138,8 @@ pub struct Curve {
     pub load_shares: Vec<LoadShare>,
     /// Points between the positions, rising: the events, twice each, the extremes, and further positions at which the contact was solved.
     pub points: Vec<CurvePoint>,
+    /// The largest contact pressure in Pa at further mesh positions; `None` as in `peak_contact_pressure`.
+    pub peak_pressures_between: Vec<(f64, Option<f64>)>,
     /// Of δ.
     pub transmission_error_statistics: Statistics,
     /// The parts of δ that single-flank testing distinguishes.

@@ -8,7 +8,7 @@ use super::mesh_wave::MeshWave;
 use super::pressures::CurvePressures;
 use super::single_flank::SingleFlank;
 use super::spectrum::Spectrum;
-use super::stress::{GearStresses, StressedPlace};
+use super::stress::GearStresses;
 use crate::contact::MeshContact;
 
 /// Results of a method at each position of one torque.
@@ -21,6 +21,8 @@ pub(super) struct CurveParts {
     pub(super) driving_load: Vec<f64>,
     pub(super) pairs_in_contact: Vec<u32>,
     pub(super) peak_contact_pressure: Vec<Option<f64>>,
+    /// The largest pressure at further positions.
+    pub(super) peak_pressures_between: Vec<(f64, Option<f64>)>,
     pub(super) pressures: CurvePressures,
     pub(super) load_shares: Vec<LoadShare>,
     pub(super) decomposition: Option<DecompositionParts>,
@@ -47,12 +49,15 @@ impl CurveParts {
             mesh_stiffness_tangent_statistics,
         ] = sections.statistics();
         let mesh_position = case.mesh_positions();
-        let points = sections.points(&mesh_position, &self.places_of_largest(&mesh_position));
+        let further = self.peak_pressures_between.iter();
+        let further: Vec<f64> = further.map(|(eta, _)| *eta).collect();
+        let points = sections.points(&mesh_position, &further);
         Curve {
             output_torque,
             load,
             mesh_position,
             points,
+            peak_pressures_between: self.peak_pressures_between,
             mesh_stiffness_secant: self
                 .transmission_error
                 .iter()
@@ -84,18 +89,6 @@ impl CurveParts {
 }
 
 impl CurveParts {
-    /// Where the largest pressure and the largest stresses of a curve over `positions` stand.
-    fn places_of_largest(&self, positions: &[f64]) -> Vec<f64> {
-        let pressure = self.pressures.largest.iter();
-        let pressure = pressure.map(|largest| largest.mesh_position);
-        let gears = self.stresses.iter().flatten();
-        let stresses = gears.flat_map(|gear| {
-            let of = |place| Some(gear.largest(place, positions)?.0);
-            StressedPlace::ALL.into_iter().filter_map(of)
-        });
-        pressure.chain(stresses).collect()
-    }
-
     /// Parts of a curve from the results `found` under `load` at the first positions of `case`, after which it repeats, and `between` them; its curve is that
     /// of `sections`.
     pub(super) fn of<K>(
@@ -110,6 +103,8 @@ impl CurveParts {
         let further = between.positions.iter().zip(&between.contacts);
         let all = positions.iter().zip(contacts).chain(further);
         let all = all.map(|(eta, contact)| (*eta, contact));
+        let solved = between.positions.iter().zip(&between.contacts);
+        let solved = solved.map(|(eta, contact)| (*eta, contact.peak_pressure));
         let repeats_after = positions.len() as u32 / case.resolution.positions_per_mesh_period;
         let shares = load_shares(&positions, contacts).into_iter();
         let each = contacts.iter();
@@ -120,6 +115,7 @@ impl CurveParts {
             driving_load: case.repeated(each.clone().map(|contact| contact.driving_load)),
             pairs_in_contact: case.repeated(each.clone().map(MeshContact::loaded_pairs)),
             peak_contact_pressure: case.repeated(each.map(|contact| contact.peak_pressure)),
+            peak_pressures_between: solved.collect(),
             pressures: CurvePressures::of((case, load), all, repeats_after),
             load_shares: shares
                 .map(|LoadShare { pair_offset, share }| LoadShare {

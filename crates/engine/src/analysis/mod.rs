@@ -8,7 +8,7 @@
 //!   along faces) and `checks` (comparison of it with exact solutions), [`hole_phase`] and `hole_turns` (best turn of the holes of both gears), `light` (torque
 //!   0, the same for all), [`running`] and `spun_pair` (pairs that turn, are warm, and are pressed onto shafts);
 //! - [`stress`] (at roots and holes; along faces `face_stress`), [`fields`] (everywhere; along faces [`face_fields`]), [`contact_pattern`] (over the flanks);
-//! - `between` (a curve between its positions), `curve_parts` and [`curve`] with [`load_share`] and its `statistics`, [`largest_where`] (places of its largest
+//! - `between` (a curve between its positions), `curve_parts` and [`curve`] with [`load_share`], `curve_point` and its `statistics`, [`largest_where`] (places of its largest
 //!   values), [`pressures`] (their summary), [`spectrum`] and [`single_flank`] with the `long_wave`; `windows` (stretches of a true period that is too long),
 //!   [`mesh_wave`] and `pair_springs` (their estimate of the mesh orders);
 //! - [`evidence`], [`warning`], [`error`] and `answer` (results); [`forces`] (tables of force), [`at_speed`] (motion), [`rotors`] (gear bodies in torsion),
@@ -24,6 +24,7 @@ mod checks;
 pub mod contact_pattern;
 pub mod curve;
 mod curve_parts;
+mod curve_point;
 mod decomposition;
 pub mod error;
 mod estimate;

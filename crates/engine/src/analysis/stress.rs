@@ -273,14 +273,6 @@ impl Kept for PositionPeaks {
 }
 
 impl StressedPlace {
-    /// All.
-    pub const ALL: [Self; 4] = [
-        Self::Root,
-        Self::RootTension,
-        Self::RootCompression,
-        Self::Hole,
-    ];
-
     /// The largest of `peaks` there.
     pub fn of(self, peaks: &GearPeaks) -> Option<PeakStress> {
         match self {

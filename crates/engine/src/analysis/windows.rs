@@ -141,6 +141,7 @@ fn curve_of(windows: Vec<Curve>) -> Option<Curve> {
         peak_contact_pressure: each(&windows, |curve| &curve.peak_contact_pressure),
         pressures: pressures(&windows),
         points: each(&windows, |curve| &curve.points),
+        peak_pressures_between: each(&windows, |curve| &curve.peak_pressures_between),
         load_shares: load_shares(&windows),
         transmission_error_statistics: statistics(&windows, |curve| {
             &curve.transmission_error_statistics

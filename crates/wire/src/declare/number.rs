@@ -266,7 +266,8 @@ pub fn meant_by(text: &str, unit: &str) -> Option<f64> {
     let is_whole = |group: &&str| group.len() == 3 && group.parse::<u32>().is_ok();
     let (first, others) = groups.split_first()?;
     let is_first = (1..=3).contains(&first.trim_start_matches('-').len());
-    if !others.is_empty() && !(is_first && others.iter().all(is_whole)) {
+    let is_well_parted = others.is_empty() || is_first && others.iter().all(is_whole);
+    if !is_well_parted {
         return None;
     }
     let text = groups.concat() + &part.replace(',', ".");

@@ -17,10 +17,10 @@ const NEXT: f64 = 1.5;
 const SAME: f64 = 1e-9;
 
 document! {
-    /// A curve between its positions: at the events, at which a pair takes up or leaves the load, at the extremes of transmission error and stiffness, at those of
-    /// pressure and stresses, and at further positions at which the contact was solved. Its lists have the names of those of the curve. An event stands
-    /// twice, with the stiffness just before and just behind it. Transmission error, both stiffnesses and the largest values are those of the statistics; the
-    /// other lists are on straight lines between the positions.
+    /// A curve between its positions: at the events, at which a pair takes up or leaves the load, at the extremes of transmission error and stiffness, and at
+    /// further positions at which the contact was solved, where pressure and stresses are largest among them. Its lists have the names of those of the curve.
+    /// An event stands twice, with the stiffness just before and just behind it. Transmission error and stiffness are the curves of the statistics; pressure
+    /// and stresses are solved where the contact was; the other values are on straight lines between the positions.
     pub struct BetweenDocument as Between, "Curve between its positions"
     answer of (case: &Case, curve: &Curve) with {
         let between = Between::of(case, curve);
@@ -48,7 +48,7 @@ document! {
         driving_torque_n_m: Vec<f64> = between.lines(&curve.driving_torque),
         /// The number of tooth pairs that carry load: that of the nearer position on the same side of the event.
         pairs_in_contact: Vec<u32> = between.nearer(&curve.pairs_in_contact),
-        /// The largest contact pressure, in MPa; null beside a position at which a sharp corner carries.
+        /// The largest contact pressure, in MPa; null where a sharp corner carries, or may.
         #[serde(serialize_with = "or_null")]
         peak_contact_pressure_mpa: Vec<Option<f64>> =
             all(&between.pressures(), |pressure| pressure.map(to_mpa)),
@@ -86,6 +86,8 @@ document! {
 struct Between<'a> {
     curve: &'a Curve,
     spots: Vec<Spot>,
+    /// The further mesh positions, rising, each with its place among them.
+    solved: Vec<(f64, usize)>,
 }
 
 /// A point between two positions of a curve.
@@ -115,9 +117,15 @@ impl<'a> Between<'a> {
             let (to, end) = match (next, closing) {
                 (Some(next), _) => (from + 1, next),
                 (None, Some(span)) => (0, positions[0] + span),
-                (None, None) => (from, positions[from] + step),
+                // Behind the last of a part of a period all is as there.
+                (None, None) => (from, positions[from]),
             };
-            let part = (point.mesh_position - positions[from]) / (end - positions[from]);
+            let length = end - positions[from];
+            let part = if length > 0.0 {
+                (point.mesh_position - positions[from]) / length
+            } else {
+                0.0
+            };
             Spot {
                 beside: [from, to],
                 positions: [positions[from], end],
@@ -141,7 +149,22 @@ impl<'a> Between<'a> {
                 }
             }
         }
-        Self { curve, spots }
+        let solved = curve.peak_pressures_between.iter().enumerate();
+        let mut solved: Vec<(f64, usize)> = solved.map(|(i, (eta, _))| (*eta, i)).collect();
+        solved.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Self {
+            curve,
+            spots,
+            solved,
+        }
+    }
+
+    /// The further position at which `point` stands, if the contact was solved there.
+    fn solved_at(&self, point: &CurvePoint) -> Option<usize> {
+        let near = point.mesh_position - SAME;
+        let i = self.solved.partition_point(|(eta, _)| *eta < near);
+        let (eta, place) = self.solved.get(i)?;
+        (eta - point.mesh_position <= SAME).then_some(*place)
     }
 
     /// The `values` of the nearer positions.
@@ -170,19 +193,16 @@ impl<'a> Between<'a> {
         all(&self.spots, row)
     }
 
-    /// The largest pressures: `None` beside a position at which it has no limit.
+    /// The largest pressures: where the contact was solved, those; else on lines between the positions, `None` beside one at which it has no limit.
     fn pressures(&self) -> Vec<Option<f64>> {
         let values = &self.curve.peak_contact_pressure;
-        let largest = self.curve.pressures.largest;
         let points = self.curve.points.iter();
-        let pressure = |(point, spot): (&CurvePoint, &Spot)| {
-            let stands = largest
-                .filter(|largest| (largest.mesh_position - point.mesh_position).abs() < SAME);
-            let [from, to] = spot.beside.map(|i| values[i]);
-            stands.map_or_else(
-                || Some(spot.line([from?, to?])),
-                |largest| Some(largest.pressure),
-            )
+        let pressure = |(point, spot): (&CurvePoint, &Spot)| match self.solved_at(point) {
+            Some(place) => self.curve.peak_pressures_between[place].1,
+            None => {
+                let [from, to] = spot.beside.map(|i| values[i]);
+                Some(spot.line([from?, to?]))
+            }
         };
         points.zip(&self.spots).map(pressure).collect()
     }
@@ -227,9 +247,8 @@ impl<'a> Between<'a> {
             }
             let points = self.curve.points.iter().zip(&self.spots);
             let peak = |(point, spot): (&CurvePoint, &Spot)| {
-                let mut solved = gear.between.iter();
-                let solved = solved.find(|(eta, _)| (eta - point.mesh_position).abs() < SAME);
-                let solved = solved.and_then(|(_, peaks)| place.of(peaks));
+                let solved = self.solved_at(point);
+                let solved = solved.and_then(|solved| place.of(&gear.between.get(solved)?.1));
                 solved.unwrap_or_else(|| PeakStress {
                     stress: spot.line(spot.beside.map(|i| known[i].stress)),
                     ..known[spot.nearer]

@@ -71,6 +71,7 @@ fn analysis(case: &Case) -> Analysis {
             output_torque: torque,
             load,
             points: Vec::new(),
+            peak_pressures_between: Vec::new(),
             mesh_stiffness_secant: delta.iter().map(|delta| load / delta).collect(),
             driving_torque: wave(torque, 0.01 * torque),
             pairs_in_contact: vec![2; positions],
@@ -494,6 +495,34 @@ fn points_between_positions_make_the_lists_reach_the_extremes_of_the_statistics(
         (k[i] > 1.02 * k[i - 1] && pairs[i] > pairs[i - 1])
             || (k[i] < k[i - 1] / 1.02 && pairs[i] < pairs[i - 1])
     }));
+    // A part of a period ends in a point, at which the pairs have other offsets than at the last position.
+    let few = json!({ "positions_per_mesh_period": 8, "span_mesh_periods": 1 });
+    let part = json!({ "method": "load_distribution", "resolution": few });
+    let part = parse(&and(example("test-case-2"), &part)).expect("valid");
+    let results = solve(&part, &Library::default(), &Run::unattended()).expect("results");
+    let curve = results
+        .with_points()
+        .expect("of this version")
+        .curves
+        .remove(0);
+    let places = curve.mesh_position.iter();
+    let last = places
+        .clone()
+        .position(|eta| *eta == 0.875)
+        .expect("solved");
+    let end = places.clone().position(|eta| *eta == 1.0).expect("the end");
+    let share = |offset: i32, i: usize| {
+        let mut shares = curve.load_shares.iter();
+        let share = shares.find(|share| share.pair_offset == offset);
+        share.map_or(0.0, |share| share.share[i])
+    };
+    assert!(share(1, last) > 0.0);
+    for offset in -1..=1 {
+        assert!(
+            (share(offset, end) - share(offset + 1, last)).abs() < 1e-9,
+            "{offset}"
+        );
+    }
     // Results of earlier versions kept none.
     let earlier = Results::read(STUB).expect("a results document");
     assert!(earlier.with_points().is_none());

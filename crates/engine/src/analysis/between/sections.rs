@@ -6,7 +6,7 @@ use super::cubic::Cubic;
 use super::events::events;
 use super::{Sample, Span};
 use crate::analysis::Case;
-use crate::analysis::curve::{CurvePoint, EventSide};
+use crate::analysis::curve_point::{CurvePoint, EventSide};
 use crate::analysis::long_wave::LongWave;
 use crate::analysis::statistics::{SamplingError, Statistics};
 use crate::quadrature::gauss_legendre_panels;
