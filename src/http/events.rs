@@ -15,10 +15,7 @@ use utoipa::ToSchema;
 use uuid::Uuid;
 
 use super::app::App;
-use super::client::{Client, Pass};
-use super::parameters::JobId;
-use super::problem::Refusal;
-use super::resource;
+use super::client::Pass;
 use super::view::JobView;
 use crate::jobs::{Job, News, Progress, Resource as _, Status};
 
@@ -68,25 +65,6 @@ impl From<WatchEvent> for Event {
         };
         Self::default().id(id).event(name).data(data)
     }
-}
-
-/// Watch a job
-///
-/// A stream of server-sent events: `status` with the job as data, at the start and whenever its state changes, and
-/// `progress` with the positions solved. It ends when the job has ended. A client that comes back (`Last-Event-ID`)
-/// gets the present state first, so nothing is missed.
-#[utoipa::path(
-    get, path = "/v1/jobs/{id}/events", tag = "Jobs", operation_id = "watch_job",
-    params(
-        ("Last-Event-ID" = Option<String>, Header, description = "Sent by a client that comes back; every stream starts with the present state."),
-    ),
-    responses(
-        (status = 200, description = "Events: `status` with a Job as data, and `progress` with a Progress.", body = WatchEvent, content_type = "text/event-stream"),
-        (status = 429, description = "As many streams are open as one client may have."),
-    ),
-)]
-pub(super) async fn events(client: Client, JobId(id): JobId) -> Result<Response, Refusal> {
-    resource::watch::<Job>(client, id).await
 }
 
 /// An event: its name, and its data as JSON.

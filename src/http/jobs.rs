@@ -14,7 +14,7 @@ use super::answer::tag_of_parts;
 use super::app::App;
 use super::client::Client;
 use super::edge::Edge;
-use super::events::Watch;
+use super::events::{Watch, WatchEvent};
 use super::page::{self, LARGEST_LIMIT, Page, USUAL_LIMIT};
 use super::parameters::{IfNoneMatch, JobId, Parameters, invalid};
 use super::prefer::Wait;
@@ -217,6 +217,25 @@ pub(super) async fn cancel(client: Client, JobId(id): JobId) -> Result<Response,
 )]
 pub(super) async fn delete(client: Client, JobId(id): JobId) -> Result<StatusCode, Refusal> {
     resource::delete::<Job>(client, id).await
+}
+
+/// Watch a job
+///
+/// A stream of server-sent events: `status` with the job as data, at the start and whenever its state changes, and
+/// `progress` with the positions solved. It ends when the job has ended. A client that comes back (`Last-Event-ID`)
+/// gets the present state first, so nothing is missed.
+#[utoipa::path(
+    get, path = "/v1/jobs/{id}/events", tag = "Jobs", operation_id = "watch_job",
+    params(
+        ("Last-Event-ID" = Option<String>, Header, description = "Sent by a client that comes back; every stream starts with the present state."),
+    ),
+    responses(
+        (status = 200, description = "Events: `status` with a Job as data, and `progress` with a Progress.", body = WatchEvent, content_type = "text/event-stream"),
+        (status = 429, description = "As many streams are open as one client may have."),
+    ),
+)]
+pub(super) async fn events(client: Client, JobId(id): JobId) -> Result<Response, Refusal> {
+    resource::watch::<Job>(client, id).await
 }
 
 impl Shown for Job {

@@ -28,9 +28,9 @@ use super::app::App;
 use super::headers::Trace;
 use super::problem::Refusal;
 use super::{
-    access, batch, contact_pattern, docs, draw, events, fields, guides, headers, health, jobs,
-    memory, metrics, outline, packing, previews, problem, problem_pages, projects, reference,
-    results, rexs, shares, studies, submit, tables, usage, web, webhooks,
+    access, batch, contact_pattern, docs, draw, fields, guides, headers, health, jobs, memory,
+    metrics, outline, packing, previews, problem, problem_pages, projects, reference, results,
+    rexs, shares, studies, submit, tables, usage, web, webhooks,
 };
 use crate::jobs::without_secrets;
 
@@ -128,7 +128,7 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(shares::end))
         .routes(routes!(shares::results))
         .routes(routes!(shares::table))
-        .routes(routes!(events::events))
+        .routes(routes!(jobs::events))
         .routes(routes!(previews::preview))
         .routes(routes!(studies::list))
         .routes(routes!(studies::show, studies::delete))

@@ -6,11 +6,10 @@ use jiff::Timestamp;
 use meshwright_store::{Damaged, DocumentLine, Kept, NewJob, NewRow, Status, StoredRow};
 use meshwright_studies::{Design, RowState, Study};
 use meshwright_wire::{memory_above, too_much_memory};
-use tokio::task::JoinError;
 use tokio_util::sync::CancellationToken;
 use uuid::Uuid;
 
-use super::error::JobError;
+use super::error::{JobError, not_done};
 use super::queue::{Jobs, new_job, rough_cost};
 use super::shown::{kept_by, shown_status};
 
@@ -177,19 +176,6 @@ pub(super) async fn blocking<T: Send + 'static>(
     work: impl FnOnce() -> T + Send + 'static,
 ) -> Result<T, JobError> {
     tokio::task::spawn_blocking(work).await.map_err(not_done)
-}
-
-/// Why work beside the requests came to nothing.
-///
-/// # Panics
-///
-/// Where the work did.
-pub(super) fn not_done(error: JoinError) -> JobError {
-    match error.try_into_panic() {
-        Ok(panic) => std::panic::resume_unwind(panic),
-        // Only a runtime that ends drops such work.
-        Err(_) => JobError::ShuttingDown,
-    }
 }
 
 /// True if a design differs from the base only by the deviations of its teeth and has gears drawn alike.

@@ -2,6 +2,7 @@
 
 use meshwright_store::{Damaged, Status, StoreError};
 use meshwright_wire::{Code, Problem};
+use tokio::task::JoinError;
 use tracing::error;
 use uuid::Uuid;
 
@@ -94,4 +95,17 @@ pub fn damage_problem(error: &Damaged) -> Problem {
     error!(%error, "the database is damaged");
     let detail = "A document that is needed was changed since it was stored, by a fault of the disk or by other means. The failure has been logged.";
     Problem::new(Code::DocumentDamaged, detail)
+}
+
+/// The error of work beside the requests that was not done.
+///
+/// # Panics
+///
+/// Where the work did.
+pub(super) fn not_done(error: JoinError) -> JobError {
+    match error.try_into_panic() {
+        Ok(panic) => std::panic::resume_unwind(panic),
+        // Only a runtime that ends drops such work.
+        Err(_) => JobError::ShuttingDown,
+    }
 }

@@ -1,7 +1,7 @@
 //! A job's life: from the queue to its results.
 //!
 //! In reading order: the two [`Clock`]s; the records of the store in the words of documents (`shown`, `study`); the state of running jobs in memory (`live`);
-//! the [`Jobs`] that handlers use (`queue`, `studies`, and in `resource` the common part of both); the [`Workers`] that compute; and the keeper that removes
+//! the [`Jobs`] that handlers use (`queue`, `job`, `studies`, and in `resource` and `listed` the common part of both); the [`Workers`] that compute; and the keeper that removes
 //! old results. The states of jobs and studies are kept, and change, in [`meshwright_store`].
 
 #![warn(clippy::disallowed_methods)]
@@ -10,8 +10,10 @@ mod attempt;
 mod clock;
 mod designs;
 mod error;
+mod job;
 mod keeper;
 mod links;
+mod listed;
 mod live;
 mod others;
 mod projects;
@@ -35,11 +37,12 @@ pub use clock::Clock;
 pub use error::{JobError, damage_problem};
 pub use keeper::{Keep, Keeper};
 pub use links::{LONGEST_LINK_DAYS, LinkError, LinkSecret, MOST_LINKS, without_secrets};
+pub use listed::{Listed, Submitted};
 pub use live::{Changes, News};
 pub use projects::{MOST_PROJECT_BYTES, MOST_PROJECTS, ProjectContent, ProjectError};
 pub(crate) use queue::KEY_LIFETIME;
 pub use queue::{Jobs, Member, Rules};
-pub use resource::{Listed, Resource, Submitted};
+pub use resource::Resource;
 pub use shown::{shown_kept, shown_status};
 pub use study::{gear_of, search_state, why_failed};
 pub use worker::{StartError, Workers};

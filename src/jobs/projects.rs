@@ -7,8 +7,8 @@ use uuid::Uuid;
 
 use super::Cursor;
 use super::error::JobError;
+use super::listed::Listed;
 use super::queue::{Jobs, KEY_LIFETIME, Member};
-use super::resource::Listed;
 
 /// The number of projects that a client may have.
 pub const MOST_PROJECTS: i64 = 200;

@@ -2,10 +2,11 @@
 
 use std::time::Duration;
 
-use meshwright_store::{By, Cursor, Status};
+use meshwright_store::{By, Status};
 use uuid::Uuid;
 
 use super::error::JobError;
+use super::listed::Listed;
 use super::queue::Jobs;
 
 /// A job or a study of a client.
@@ -71,33 +72,4 @@ pub trait Resource: Sized + Send + Sync {
 
     /// Where it stands.
     fn status(&self) -> Status;
-}
-
-/// A job or a study that answers a submission.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Submitted<T> {
-    /// As it stands now.
-    pub record: T,
-    /// True if an earlier request with the same key made it.
-    pub repeated: bool,
-}
-
-/// Some jobs or studies of a list.
-#[derive(Debug)]
-pub struct Listed<T> {
-    /// They, newest first.
-    pub items: Vec<T>,
-    /// Where the list goes on.
-    pub next: Option<Cursor>,
-}
-
-impl<T> Listed<T> {
-    /// The first `limit` of `found`, which holds one more than asked for if the list goes on.
-    pub(super) fn first(mut found: Vec<T>, limit: u32, sequence: impl Fn(&T) -> i64) -> Self {
-        let goes_on = found.len() > limit as usize;
-        found.truncate(limit as usize);
-        let last = found.last().filter(|_| goes_on);
-        let next = last.map(|item| Cursor(sequence(item)));
-        Self { items: found, next }
-    }
 }

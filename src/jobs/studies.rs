@@ -15,10 +15,11 @@ use meshwright_wire::hash::sha256_hex;
 use tracing::{error, info};
 use uuid::Uuid;
 
-use super::designs::{Owner, blocking, chunk, expand, not_done};
-use super::error::JobError;
+use super::designs::{Owner, blocking, chunk, expand};
+use super::error::{JobError, not_done};
+use super::listed::{Listed, Submitted};
 use super::queue::{Jobs, Member};
-use super::resource::{Listed, Resource, Submitted};
+use super::resource::Resource;
 use super::searches;
 
 impl Jobs {

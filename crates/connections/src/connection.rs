@@ -1,4 +1,4 @@
-//! A connection, and the requests on it that are being answered.
+//! A connection: its client, whether it is idle, and the requests on it that are being answered.
 
 use std::net::{IpAddr, Ipv6Addr};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -9,8 +9,6 @@ use tokio::sync::OwnedSemaphorePermit;
 use tokio::time::Instant;
 use tokio_util::sync::CancellationToken;
 
-use super::budget::Part;
-use super::limit::{Connections, Overloaded};
 use super::stalled_reads::Reads;
 use super::stalled_writes::Writes;
 
@@ -77,13 +75,12 @@ pub struct Connection {
     pub(super) writes: Arc<Writes>,
     /// Comes when its place is needed.
     pub(super) evict: CancellationToken,
-    pub(super) limit: Arc<Connections>,
     /// Its place among the regular connections, or in the reserve.
     pub(super) place: Mutex<Option<OwnedSemaphorePermit>>,
 }
 
 impl Connection {
-    pub(super) fn new(address: Address, limit: &Arc<Connections>) -> Self {
+    pub(super) fn new(address: Address) -> Self {
         Self {
             address,
             identity: Mutex::new(Identity::New(Instant::now())),
@@ -91,9 +88,23 @@ impl Connection {
             reads: Arc::default(),
             writes: Arc::default(),
             evict: CancellationToken::new(),
-            limit: Arc::clone(limit),
             place: Mutex::default(),
         }
+    }
+
+    /// A request on it begins, whose client is not known yet.
+    pub(super) fn request_begins(&self) {
+        self.active.fetch_add(1, Ordering::Relaxed);
+        let mut identity = self.identity();
+        if let Identity::New(_) = *identity {
+            *identity = Identity::Unauthenticated;
+        }
+    }
+
+    /// The answer to a request on it is complete; some of it may wait to be written.
+    pub(super) fn request_ends(&self) {
+        self.writes.answer_is_complete();
+        self.active.fetch_sub(1, Ordering::Relaxed);
     }
 
     /// A request on it had a key of this client.
@@ -145,77 +156,5 @@ impl Connection {
 
     fn identity(&self) -> MutexGuard<'_, Identity> {
         self.identity.lock().expect("nothing panics with this lock")
-    }
-}
-
-/// A request that is being answered, until the last byte of its answer was handed over to be written.
-#[derive(Debug)]
-pub struct ActiveRequest {
-    pub(super) connection: Arc<Connection>,
-    /// Its part of the active connections of its client or of its address.
-    part: Mutex<Option<Part>>,
-}
-
-impl ActiveRequest {
-    pub(super) fn begin(connection: &Arc<Connection>) -> Self {
-        connection.active.fetch_add(1, Ordering::Relaxed);
-        let mut identity = connection.identity();
-        if let Identity::New(_) = *identity {
-            *identity = Identity::Unauthenticated;
-        }
-        drop(identity);
-        Self {
-            connection: Arc::clone(connection),
-            part: Mutex::default(),
-        }
-    }
-
-    /// Waits for a regular place, where its connection has none.
-    ///
-    /// # Errors
-    ///
-    /// [`Overloaded::Connections`], after a while.
-    pub async fn leave_reserve(&self) -> Result<(), Overloaded> {
-        self.connection.leave_reserve().await
-    }
-
-    /// Counts it for its address, unless it is counted already.
-    ///
-    /// # Errors
-    ///
-    /// [`Overloaded::Client`], where as many are active as may be.
-    pub fn count_for_address(&self) -> Result<(), Overloaded> {
-        if self.part().is_some() {
-            return Ok(());
-        }
-        self.count_for(&Owner::Address(self.connection.address))
-    }
-
-    /// Counts the connection for this client, whose key it has, from now on.
-    ///
-    /// # Errors
-    ///
-    /// [`Overloaded::Client`], where as many of it are active as may be.
-    pub fn authenticated(&self, client: &Arc<str>) -> Result<(), Overloaded> {
-        self.connection.authenticated(client);
-        self.count_for(&Owner::Client(Arc::clone(client)))
-    }
-
-    fn count_for(&self, owner: &Owner) -> Result<(), Overloaded> {
-        *self.part() = None;
-        *self.part() = Some(self.connection.limit.count_active(&owner.name())?);
-        Ok(())
-    }
-
-    fn part(&self) -> MutexGuard<'_, Option<Part>> {
-        self.part.lock().expect("nothing panics with this lock")
-    }
-}
-
-impl Drop for ActiveRequest {
-    fn drop(&mut self) {
-        // The answer is complete; some of it may wait to be written.
-        self.connection.writes.answer_is_complete();
-        self.connection.active.fetch_sub(1, Ordering::Relaxed);
     }
 }

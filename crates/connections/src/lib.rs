@@ -6,6 +6,7 @@
 //! packing, and entity [tags](Tag).
 
 mod accepts;
+mod active_request;
 mod blocking;
 mod budget;
 mod connection;
@@ -20,9 +21,10 @@ mod tasks;
 mod unauthenticated;
 
 pub use accepts::takes_gzip;
+pub use active_request::ActiveRequest;
 pub use blocking::blocking;
 pub use budget::{Budget, Part};
-pub use connection::{ActiveRequest, Address, Connection};
+pub use connection::{Address, Connection};
 pub use limit::Overloaded;
 pub use packing::{gains_by_packing, packed, packed_stream, packed_whole, say_packed};
 pub use rates::Rates;

@@ -136,7 +136,7 @@ impl Connections {
         while place.is_none() {
             place = self.after_eviction(&self.reserve).await;
         }
-        let connection = Connection::new(address, self);
+        let connection = Connection::new(address);
         *connection
             .place
             .lock()
@@ -148,7 +148,11 @@ impl Connections {
         present.connections.insert(number, Arc::clone(&connection));
         drop(present);
         metrics::gauge!("meshwright_connections").increment(1.0);
-        Admitted { number, connection }
+        Admitted {
+            number,
+            connection,
+            limit: Arc::clone(self),
+        }
     }
 
     /// A place that is free after an idle connection was evicted; none where all were busy.
@@ -185,6 +189,21 @@ impl Connections {
         }
     }
 
+    /// Waits for a regular place, where `connection` has none.
+    ///
+    /// # Errors
+    ///
+    /// [`Overloaded::Connections`], after a while.
+    pub(super) async fn leave_reserve(&self, connection: &Connection) -> Result<(), Overloaded> {
+        if !connection.is_on(&self.reserve) {
+            return Ok(());
+        }
+        let address = Owner::Address(connection.address).name();
+        let place = self.regular_place(&address).await;
+        *connection.place() = Some(place.ok_or(Overloaded::Connections)?);
+        Ok(())
+    }
+
     /// Counts a request of `owner` as active.
     pub(super) fn count_active(&self, owner: &str) -> Result<Part, Overloaded> {
         let part = self.active.try_take(owner, 1);
@@ -197,21 +216,6 @@ impl Connections {
 }
 
 impl Connection {
-    /// Waits for a regular place, where this connection has none.
-    ///
-    /// # Errors
-    ///
-    /// [`Overloaded::Connections`], after a while.
-    pub(super) async fn leave_reserve(&self) -> Result<(), Overloaded> {
-        if !self.is_on(&self.limit.reserve) {
-            return Ok(());
-        }
-        let address = Owner::Address(self.address).name();
-        let place = self.limit.regular_place(&address).await;
-        *self.place() = Some(place.ok_or(Overloaded::Connections)?);
-        Ok(())
-    }
-
     fn is_on(&self, places: &Places) -> bool {
         let place = self.place();
         place
@@ -228,15 +232,12 @@ impl Connection {
 pub(super) struct Admitted {
     number: u64,
     pub(super) connection: Arc<Connection>,
+    pub(super) limit: Arc<Connections>,
 }
 
 impl Drop for Admitted {
     fn drop(&mut self) {
-        self.connection
-            .limit
-            .present()
-            .connections
-            .remove(&self.number);
+        self.limit.present().connections.remove(&self.number);
         *self.connection.place() = None;
         metrics::gauge!("meshwright_connections").decrement(1.0);
     }
@@ -253,7 +254,8 @@ mod tests {
     use futures_util::poll;
     use http_body::{Body, Frame};
 
-    use super::super::connection::{ActiveRequest, STALLED};
+    use super::super::active_request::ActiveRequest;
+    use super::super::connection::STALLED;
     use super::super::stalled_reads::WatchedBody;
     use super::*;
 
@@ -301,7 +303,7 @@ mod tests {
             places.push(enter(&limit, last).await);
         }
         places[0].connection.authenticated(&"portal".into());
-        let _at_work = ActiveRequest::begin(&places[3].connection);
+        let _at_work = ActiveRequest::begin(&places[3].connection, &limit);
         // Two of the third address idle, then single ones by age; who has a key goes last, who is at work not at all.
         let order = order(&limit, &places, Instant::now() + NEW);
         assert_eq!(order, [4, 5, 1, 2, 0]);
@@ -360,7 +362,7 @@ mod tests {
         let limit = Connections::new(1);
         let place = enter(&limit, 1).await;
         place.connection.authenticated(&"hog".into());
-        let _at_work = ActiveRequest::begin(&place.connection);
+        let _at_work = ActiveRequest::begin(&place.connection, &limit);
         let mut body = WatchedBody::new(Nothing, Arc::clone(&place.connection.reads));
         let start = Instant::now();
         let is_idle = |at| place.connection.is_idle(at);
@@ -395,7 +397,7 @@ mod tests {
         }
         let requests: Vec<_> = all
             .iter()
-            .map(|at| ActiveRequest::begin(&at.connection))
+            .map(|at| ActiveRequest::begin(&at.connection, &limit))
             .collect();
         let of_address = requests
             .iter()
@@ -412,7 +414,7 @@ mod tests {
         assert_eq!(of("portal"), 4);
         assert!(requests[15].count_for_address().is_ok());
         drop(requests);
-        let request = ActiveRequest::begin(&all[0].connection);
+        let request = ActiveRequest::begin(&all[0].connection, &limit);
         assert!(request.authenticated(&"portal".into()).is_ok());
     }
 
@@ -426,17 +428,17 @@ mod tests {
         }
         let mut busy: Vec<_> = all
             .iter()
-            .map(|at| ActiveRequest::begin(&at.connection))
+            .map(|at| ActiveRequest::begin(&at.connection, &limit))
             .collect();
         let late = enter(&limit, 9).await;
         let start = Instant::now();
         assert_eq!(
-            late.connection.leave_reserve().await,
+            limit.leave_reserve(&late.connection).await,
             Err(Overloaded::Connections)
         );
         assert!(start.elapsed() >= LONGEST_WAIT);
         // One that ends makes room.
-        let leaving = late.connection.leave_reserve();
+        let leaving = limit.leave_reserve(&late.connection);
         busy.pop();
         drop(all.pop());
         assert!(leaving.await.is_ok());

@@ -29,7 +29,8 @@ use tokio_util::task::TaskTracker;
 use tower::{BoxError, Service, ServiceExt};
 use tracing::{debug, warn};
 
-use super::connection::{ActiveRequest, Connection};
+use super::active_request::ActiveRequest;
+use super::connection::Connection;
 use super::limit::{Admitted, Connections};
 use super::stalled_reads::WatchedBody;
 use super::stalled_writes::WatchedStream;
@@ -166,7 +167,7 @@ impl<S> Accepting<S> {
                     stream,
                     service,
                     bounds,
-                    &admitted.connection,
+                    (&admitted.connection, &admitted.limit),
                     &stop,
                 );
                 tokio::select! {
@@ -232,7 +233,7 @@ async fn serve_connection<T, S, B>(
     stream: T,
     service: S,
     bounds: Bounds,
-    connection: &Arc<Connection>,
+    (connection, limit): (&Arc<Connection>, &Arc<Connections>),
     stop: &CancellationToken,
 ) where
     T: AsyncRead + AsyncWrite + Unpin,
@@ -242,7 +243,7 @@ async fn serve_connection<T, S, B>(
     let stream = WatchedStream::new(stream, Arc::clone(&connection.writes), bounds.stall);
     let answer = service_fn(move |mut request: Request<Incoming>| {
         let (service, connection) = (service.clone(), Arc::clone(connection));
-        let active = Arc::new(ActiveRequest::begin(&connection));
+        let active = Arc::new(ActiveRequest::begin(&connection, limit));
         async move {
             connection.writes.flushed().await;
             let reads = Arc::clone(&connection.reads);
@@ -340,12 +341,12 @@ mod tests {
         let (ours, theirs) = duplex(room);
         let serve = async move {
             let address = IpAddr::from([127, 0, 0, 1]).into();
-            let connection = Arc::new(Connection::new(address, &Connections::new(1)));
+            let (connection, limit) = (Arc::new(Connection::new(address)), Connections::new(1));
             serve_connection(
                 ours,
                 service,
                 bounds,
-                &connection,
+                (&connection, &limit),
                 &CancellationToken::new(),
             )
             .await;

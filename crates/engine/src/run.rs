@@ -43,7 +43,7 @@ impl Run {
         Self::new(Arc::default(), |_, _| {})
     }
 
-    /// A handle for work beside this one, which nobody watches: it stops with this one and counts for nothing.
+    /// A child handle without progress: it stops with this one.
     pub fn unwatched(&self) -> Self {
         Self::new(Arc::clone(&self.stop), |_, _| {})
     }

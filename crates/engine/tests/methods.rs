@@ -612,6 +612,14 @@ fn along_its_faces_in_turn(hole_circle: Option<f64>) -> Case {
 }
 
 #[test]
+fn a_case_of_another_pair_than_its_faces_is_refused() {
+    let mut case = along_its_faces_in_turn(None);
+    case.pair = pair(gear(23, 8e-3), gear(31, 10e-3), 54.4e-3);
+    let refused = analyze(&case, &Library::default(), &Run::unattended());
+    assert!(matches!(refused, Err(AnalysisError::SectionDiffers)));
+}
+
+#[test]
 #[ignore = "./test all"]
 fn along_faces_the_projection_is_the_whole_solution_without_holes_and_near_it_with_them() {
     for holes in [None, Some(28e-3)] {

@@ -4,66 +4,11 @@ use std::collections::HashMap;
 
 use meshwright_engine::grid::ElementKind;
 
-use super::vtu::Piece;
+pub use super::piece::Divided;
+use super::piece::{Cell, HEXAHEDRON, MOST_CORNERS, Piece, QUAD, TRIANGLE, Values, WEDGE};
 
 /// Linear cells along each side of an element in its section: a parabola is off a line over a quarter of it by a sixteenth of what it is off one over the whole.
 const ALONG: u32 = 4;
-
-/// Layers of linear cells across an element of a volume, over whose height fields vary slowly.
-const ACROSS: u32 = 2;
-
-/// Shapes of cells by their numbers in `vtkCellType.h`.
-const TRIANGLE: u8 = 5;
-const QUAD: u8 = 9;
-const HEXAHEDRON: u8 = 12;
-const WEDGE: u8 = 13;
-
-/// The most corners of a cell.
-const MOST_CORNERS: usize = 8;
-
-/// What goes on at a point, in the units of the file.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Values {
-    pub(crate) place: [f64; 3],
-    pub(crate) displacement: [f64; 3],
-    pub(crate) stress: [f64; 9],
-    pub(crate) von_mises: f64,
-}
-
-/// A linear cell: its shape, its points, and the thickness of a plate.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Cell {
-    pub(crate) shape: u8,
-    corners: [u32; MOST_CORNERS],
-    pub(crate) thickness: Option<f64>,
-}
-
-impl Cell {
-    /// The shape of its section.
-    pub(crate) fn section(&self) -> ElementKind {
-        match self.shape {
-            TRIANGLE | WEDGE => ElementKind::Triangle,
-            _ => ElementKind::Quadrilateral,
-        }
-    }
-
-    pub(crate) fn corners(&self) -> &[u32] {
-        let count = match self.shape {
-            TRIANGLE => 3,
-            QUAD => 4,
-            WEDGE => 6,
-            _ => MOST_CORNERS,
-        };
-        &self.corners[..count]
-    }
-}
-
-/// A gear on linear cells. Neighbors share the points between them.
-#[derive(Debug, Clone, Default)]
-pub struct Divided {
-    pub(crate) points: Vec<Values>,
-    pub(crate) cells: Vec<Cell>,
-}
 
 /// A point by the corners of its element and their shares, so that neighbors find it alike: in whole numbers, by rising corner.
 type Shares = [(u32, u32); MOST_CORNERS];
@@ -119,28 +64,6 @@ impl Divided {
             }
         }
         divided
-    }
-
-    /// The bytes that it takes.
-    pub fn bytes(&self) -> u64 {
-        (size_of_val(&*self.points) + size_of_val(&*self.cells)) as u64
-    }
-
-    /// Layers of cells across an element of a volume.
-    pub(crate) const LAYERS: u32 = ACROSS;
-}
-
-impl Values {
-    fn add(&mut self, other: &Self, share: f64) {
-        let add = |own: &mut [f64], of: &[f64]| {
-            own.iter_mut()
-                .zip(of)
-                .for_each(|(own, of)| *own += share * of);
-        };
-        add(&mut self.place, &other.place);
-        add(&mut self.displacement, &other.displacement);
-        add(&mut self.stress, &other.stress);
-        self.von_mises += share * other.von_mises;
     }
 }
 
@@ -340,12 +263,12 @@ mod tests {
                 assert!((point.displacement[0] - quadratic(&place)).abs() < 1e-12);
             }
             let of_section = (ALONG * ALONG) as usize;
-            assert_eq!(divided.cells.len(), of_section * ACROSS as usize);
+            assert_eq!(divided.cells.len(), of_section * Divided::LAYERS as usize);
             let points = match kind {
                 ElementKind::Quadrilateral => (ALONG + 1) * (ALONG + 1),
                 ElementKind::Triangle => (ALONG + 1) * (ALONG + 2) / 2,
             };
-            assert_eq!(divided.points.len() as u32, points * (ACROSS + 1));
+            assert_eq!(divided.points.len() as u32, points * (Divided::LAYERS + 1));
         }
     }
 }

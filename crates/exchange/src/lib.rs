@@ -10,6 +10,7 @@ pub mod dxf;
 pub mod fmu;
 pub mod force_table;
 pub mod look_up;
+mod piece;
 pub mod rexs;
 pub mod vtu;
 

@@ -3,125 +3,9 @@
 use std::io::{self, BufWriter, Write};
 use std::iter;
 
+pub use super::piece::Piece;
 use base64::engine::general_purpose::STANDARD;
 use base64::write::EncoderWriter;
-use meshwright_engine::analysis::fields::GearField;
-use meshwright_engine::analysis::fields::{Volume, von_mises};
-use meshwright_engine::grid::ElementKind;
-
-use super::divided::{Divided, Values};
-
-/// A gear, as a plate or as a volume.
-#[derive(Clone, Copy)]
-pub enum Piece<'a> {
-    /// As plane methods see it.
-    Plate(&'a GearField),
-    /// As those see it that see the faces.
-    Volume(&'a Volume),
-    /// Either on linear cells.
-    Linear(&'a Divided),
-}
-
-impl<'a> Piece<'a> {
-    fn points(self) -> usize {
-        match self {
-            Self::Plate(gear) => gear.nodes.len(),
-            Self::Volume(gear) => gear.nodes.len(),
-            Self::Linear(gear) => gear.points.len(),
-        }
-    }
-
-    pub(crate) fn cells(self) -> usize {
-        match self {
-            Self::Plate(gear) => gear.elements.len(),
-            Self::Volume(gear) => gear.elements.len(),
-            Self::Linear(gear) => gear.cells.len(),
-        }
-    }
-
-    /// What goes on at a point: where it lies in mm, how it moves in µm, and its stresses in MPa.
-    pub(crate) fn values(self, number: usize) -> Values {
-        let (place, displacement, stress, von_mises) = match self {
-            Self::Plate(gear) => {
-                let (at, u) = (gear.nodes[number], gear.displacements[number]);
-                let [xx, yy, xy] = gear.stresses[number];
-                (
-                    [at.x, at.y, 0.0],
-                    [u.x, u.y, 0.0],
-                    [xx, xy, 0.0, xy, yy, 0.0, 0.0, 0.0, 0.0],
-                    gear.von_mises[number],
-                )
-            }
-            Self::Volume(gear) => {
-                // Symmetric, so that rows are columns.
-                let stress = gear.stresses[number].as_slice();
-                (
-                    gear.nodes[number].into(),
-                    gear.displacements[number].into(),
-                    std::array::from_fn(|place| stress[place]),
-                    von_mises(&gear.stresses[number]),
-                )
-            }
-            Self::Linear(gear) => return gear.points[number],
-        };
-        Values {
-            place: place.map(|x| 1e3 * x),
-            displacement: displacement.map(|u| 1e6 * u),
-            stress: stress.map(|stress| stress / 1e6),
-            von_mises: von_mises / 1e6,
-        }
-    }
-
-    /// The shape of the section of an element, and the layers of linear cells across it: none of a plate, or where its cells are linear.
-    pub(crate) fn element(self, number: usize) -> (ElementKind, u32) {
-        match self {
-            Self::Plate(gear) => (gear.elements[number].kind(), 0),
-            Self::Volume(gear) => (gear.elements[number].kind, Divided::LAYERS),
-            Self::Linear(gear) => (gear.cells[number].section(), 0),
-        }
-    }
-
-    /// VTK's number of the shape of a cell, and its points.
-    pub(crate) fn cell(self, number: usize) -> (u8, &'a [u32]) {
-        match self {
-            Self::Plate(gear) => {
-                let element = &gear.elements[number];
-                let shape = match element.kind() {
-                    ElementKind::Quadrilateral => QUADRATIC_QUAD,
-                    ElementKind::Triangle => QUADRATIC_TRIANGLE,
-                };
-                (shape, element.nodes())
-            }
-            Self::Volume(gear) => {
-                let element = &gear.elements[number];
-                let shape = match element.kind {
-                    ElementKind::Quadrilateral => QUADRATIC_HEXAHEDRON,
-                    ElementKind::Triangle => QUADRATIC_WEDGE,
-                };
-                (shape, &element.nodes)
-            }
-            Self::Linear(gear) => {
-                let cell = &gear.cells[number];
-                (cell.shape, cell.corners())
-            }
-        }
-    }
-
-    /// The thickness of a cell in mm; none of a volume, which shows it.
-    pub(crate) fn thickness(self, number: usize) -> Option<f64> {
-        match self {
-            Self::Plate(gear) => Some(1e3 * gear.thicknesses[number]),
-            Self::Volume(_) => None,
-            Self::Linear(gear) => gear.cells[number].thickness,
-        }
-    }
-}
-
-/// Shapes of cells by their numbers in `vtkCellType.h`.
-const QUADRATIC_TRIANGLE: u8 = 22;
-const QUADRATIC_QUAD: u8 = 23;
-const QUADRATIC_HEXAHEDRON: u8 = 25;
-const QUADRATIC_WEDGE: u8 = 26;
 
 /// Writes the driving and the driven gear as one grid, in binary XML. It is written number by number, so that no more of it is in memory than the gears.
 ///
@@ -249,6 +133,7 @@ mod tests {
     use vtkio::model::{Attribute, DataSet, IOBuffer, Piece as Inline, Vtk};
 
     use super::*;
+    use meshwright_engine::analysis::fields::GearField;
 
     /// A plate of one square, whose numbers are told apart by `sign`.
     fn square(sign: f64) -> GearField {

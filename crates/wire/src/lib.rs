@@ -23,6 +23,7 @@ pub mod status;
 
 pub mod forces;
 pub mod gear;
+mod gear_name;
 mod interface;
 pub mod materials;
 pub mod modes;

@@ -209,6 +209,7 @@ fn problem_of(error: &AnalysisError) -> Problem {
                 ),
             )
         }
+        AnalysisError::SectionDiffers => Problem::new(Code::InternalError, error.to_string()),
         AnalysisError::RowFalls(row) => of_field(
             "/force_table",
             Code::NotConverged,

@@ -10,6 +10,7 @@ use meshwright_engine::gear::Member;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+pub use super::gear_name::GearName;
 use super::results::{CrossingDocument, ModeDocument};
 use super::units::{Side, plain, rounded_to_unit, significant, to_mm, to_mpa, to_n_per_mm, to_um};
 
@@ -90,43 +91,6 @@ pub enum WarningCode {
     ProjectionDoubtful,
     /// The decomposition leaves out too much of how the holed blanks turn.
     DecompositionDoubtful,
-}
-
-/// One of the two gears.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-#[schema(title = "Gear name")]
-pub enum GearName {
-    /// Gear 1, which drives.
-    Driving,
-    /// Gear 2, which is driven.
-    Driven,
-}
-
-impl GearName {
-    /// Its word on the wire.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Driving => "driving",
-            Self::Driven => "driven",
-        }
-    }
-
-    /// The gear that a word names.
-    pub fn of_word(word: &str) -> Option<Self> {
-        [Self::Driving, Self::Driven]
-            .into_iter()
-            .find(|gear| gear.word() == word)
-    }
-}
-
-impl From<Member> for GearName {
-    fn from(member: Member) -> Self {
-        match member {
-            Member::Driving => Self::Driving,
-            Member::Driven => Self::Driven,
-        }
-    }
 }
 
 impl WarningDocument {

@@ -1,6 +1,7 @@
 //! Studies: many variants of a submission at once, and the table that they come to.
 
 mod events;
+mod outlines;
 mod population;
 mod table;
 mod view;
@@ -32,8 +33,8 @@ use crate::jobs::{JobError, Jobs, Resource as _, StudyFilter, StudyRecord};
 use view::StudyView;
 
 pub(super) use events::*;
+pub use outlines::Outlines;
 pub(super) use population::*;
-pub use table::Outlines;
 pub(super) use table::*;
 
 /// A study may have so many MiB: a hundred thousand designs, each listed with two changes, have a dozen.

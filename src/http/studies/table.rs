@@ -1,8 +1,7 @@
 //! The table of a study, and the results behind it. Both are sent in pieces as they are read, each of which holds its memory until it has
 //! left.
 
-use std::collections::HashMap;
-use std::sync::{Arc, Mutex, Weak};
+use std::sync::Arc;
 
 use axum::body::{Body, Bytes};
 use axum::extract::Path;
@@ -12,7 +11,7 @@ use axum::response::{IntoResponse, Response};
 use futures_util::stream;
 use meshwright_connections::Keep;
 use meshwright_engine::run::Run;
-use meshwright_studies::table::{CsvTable, KnownQuantities, Outline, TableRow};
+use meshwright_studies::table::{CsvTable, Outline, TableRow};
 use meshwright_studies::{RowState, StudyResults};
 use meshwright_wire::{Code, Problem, Results};
 use serde::de::IntoDeserializer;
@@ -23,6 +22,7 @@ use tokio::sync::OnceCell;
 use utoipa::ToSchema;
 use uuid::Uuid;
 
+use super::outlines::Front;
 use super::tag_of;
 use super::view::why_failed;
 use crate::http::answer::{self, tell_when_to_return};
@@ -230,49 +230,25 @@ const MOST_ROWS: u32 = 500;
 /// Maximum number of documents read at a time.
 const MOST_DOCUMENTS: u32 = 8;
 
-/// Values of all rows that the first one needs.
-struct Front {
-    pointers: Vec<String>,
-    quantities: KnownQuantities,
-    /// True for each row that no other row beats.
-    best: Vec<bool>,
-}
-
-/// The outlines of tables that are being read, by study and version: each is made once for all who read it.
-#[derive(Clone, Default)]
-pub struct Outlines(Arc<Mutex<HashMap<StudyVersion, Weak<OnceCell<Front>>>>>);
-
-type StudyVersion = (Uuid, i64);
-
-impl Outlines {
-    /// The outline of the table of `study`, kept as long as somebody has it.
-    async fn of(
-        &self,
-        app: &App,
-        client: &str,
-        study: &StudyRecord,
-    ) -> Result<Arc<OnceCell<Front>>, Problem> {
-        let cell = {
-            let mut known = self.0.lock().expect("nothing panics with this lock");
-            known.retain(|_, front| front.strong_count() > 0);
-            let place = known.entry((study.id, study.version)).or_default();
-            let cell = place.upgrade().unwrap_or_default();
-            *place = Arc::downgrade(&cell);
-            cell
+/// The outline of the table of `study`, kept as long as somebody has it.
+async fn outline_of(
+    app: &App,
+    client: &str,
+    study: &StudyRecord,
+) -> Result<Arc<OnceCell<Front>>, Problem> {
+    let cell = app.outlines.of((study.id, study.version));
+    let make = async || {
+        let add = |outline: &mut Outline, _, state: &RowState| outline.add(state);
+        let outline = over_rows(app, client, study.id, Outline::default(), add).await?;
+        let front = move |_: &Run| Front {
+            pointers: outline.pointers().to_vec(),
+            quantities: outline.quantities(),
+            best: outline.front(),
         };
-        let make = async || {
-            let add = |outline: &mut Outline, _, state: &RowState| outline.add(state);
-            let outline = over_rows(app, client, study.id, Outline::default(), add).await?;
-            let front = move |_: &Run| Front {
-                pointers: outline.pointers().to_vec(),
-                quantities: outline.quantities(),
-                best: outline.front(),
-            };
-            blocking(client, front).await
-        };
-        cell.get_or_try_init(make).await?;
-        Ok(cell)
-    }
+        blocking(client, front).await
+    };
+    cell.get_or_try_init(make).await?;
+    Ok(cell)
 }
 
 /// The table, read twice: first for the values that the first row needs, then row by row.
@@ -282,7 +258,7 @@ async fn table(
     study: &StudyRecord,
     form: StudyFile,
 ) -> Result<Body, Problem> {
-    let outline = app.outlines.of(&app, &client, study).await?;
+    let outline = outline_of(&app, &client, study).await?;
     let front = outline.get().ok_or_else(crate::http::problem::internal)?;
     let (head, foot, layout) = match form {
         StudyFile::Csv => {

@@ -41,6 +41,10 @@ pub(super) fn answered(
     parts: &dyn Parts,
     run: &Run,
 ) -> Result<Analysis, AnalysisError> {
+    let faces = plan.case.faces();
+    if faces.is_some_and(|faces| *faces.pair.section() != plan.case.pair) {
+        return Err(AnalysisError::SectionDiffers);
+    }
     let mut analysis = carried_out(plan, parts, run)?;
     tell_apart_from_rest(&mut analysis, plan, parts, run)?;
     if let Some(drawn) = plan.case.holes_alone() {

@@ -175,7 +175,7 @@ impl Model {
 
 /// A place in a curve, and its contact.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct PositionInCurve {
     /// The mesh position.
     pub(super) position: f64,
     /// Which contact it is.
@@ -202,7 +202,7 @@ impl Faces {
 /// A pair under load, and how to compute it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Case {
-    /// The pair: a plane one, or the transverse section.
+    /// The pair: a plane one, or the transverse section of that of its faces ([`AnalysisError::SectionDiffers`](super::AnalysisError::SectionDiffers)).
     pub pair: GearPair,
     /// How it is modeled.
     pub model: Model,
@@ -221,6 +221,40 @@ pub struct Case {
 }
 
 impl Case {
+    /// A plane `pair` of elastic gears over the whole span, with the effect of holes by `holes`, under `output_torques` in newton meters. It is at rest, and
+    /// without stresses.
+    pub fn in_section(
+        pair: GearPair,
+        holes: SectionHoles,
+        output_torques: Vec<f64>,
+        resolution: Resolution,
+    ) -> Self {
+        Self {
+            pair,
+            model: Model::Section(holes),
+            output_torques,
+            resolution,
+            windows: Vec::new(),
+            stress: false,
+            driving_speed: None,
+            running: None,
+        }
+    }
+
+    /// The same of a pair along its `faces`, whose transverse section is the plane pair of the case.
+    pub fn along_faces(
+        faces: Faces,
+        holes: FaceHoles,
+        output_torques: Vec<f64>,
+        resolution: Resolution,
+    ) -> Self {
+        let section = faces.pair.section().clone();
+        Self {
+            model: Model::Faces(Box::new(faces), holes),
+            ..Self::in_section(section, SectionHoles::Whole, output_torques, resolution)
+        }
+    }
+
     /// The method by which it is computed.
     pub fn method(&self) -> Method {
         self.model.method()
@@ -344,10 +378,10 @@ impl Case {
 
     /// The places in a curve at which the contacts at the mesh positions `at` stand, which repeat `after` so many mesh periods: these positions, and as
     /// many mesh periods later as the span has.
-    pub(super) fn places(&self, at: &[f64], after: u32) -> Vec<Place> {
+    pub(super) fn places(&self, at: &[f64], after: u32) -> Vec<PositionInCurve> {
         let of_period = |later: i64| {
             let at = at.iter().enumerate();
-            at.map(move |(contact, position)| Place {
+            at.map(move |(contact, position)| PositionInCurve {
                 position: position + later as f64,
                 contact,
                 later,

@@ -11,6 +11,9 @@ use crate::run::Stopped;
 /// Why a case could not be computed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum AnalysisError {
+    /// The case is of another pair than its faces.
+    #[error("the plane pair of the case is not the transverse section of the pair along its faces")]
+    SectionDiffers,
     /// The contact solver gave up at a position.
     #[error(
         "the contact did not converge at mesh position {mesh_position}: residual gap {residual:.1e} m after {iterations} iterations"

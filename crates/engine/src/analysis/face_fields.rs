@@ -9,7 +9,7 @@ use super::{AnalysisError, Case};
 use crate::assembly::face_inside::MovedParts;
 use crate::assembly::{FaceInside, FaceYield, FaceYieldSpec, Parts};
 use crate::contact::face::FaceContact;
-use crate::fem::volume::{Place, Volume, von_mises};
+use crate::fem::volume::{Frame, Volume, von_mises};
 use crate::gear::{Member, Vector};
 use crate::run::Run;
 use crate::touch::placement::{Pose, Section};
@@ -30,7 +30,7 @@ pub fn volumes(
     parts: &dyn Parts,
     run: &Run,
 ) -> Result<Option<Fields<Volume>>, AnalysisError> {
-    let field_of = |moved: &[MovedParts], _: &Faces, _: Member, place: Place| {
+    let field_of = |moved: &[MovedParts], _: &Faces, _: Member, place: Frame| {
         let mut volume = Volume::default();
         moved.iter().for_each(|of| of.add_to(&mut volume, place));
         volume
@@ -51,7 +51,7 @@ pub fn section(
     parts: &dyn Parts,
     run: &Run,
 ) -> Result<Option<Fields>, AnalysisError> {
-    let field_of = |moved: &[MovedParts], faces: &Faces, member: Member, place: Place| {
+    let field_of = |moved: &[MovedParts], faces: &Faces, member: Member, place: Frame| {
         let mut field = GearField::default();
         let z = faces.pair.own_height(member, 0.0);
         moved.iter().for_each(|of| field.cut(of, z, place));
@@ -66,7 +66,7 @@ fn of_gears<T: Send>(
     (output_torque, eta): (f64, f64),
     parts: &dyn Parts,
     run: &Run,
-    field_of: impl Fn(&[MovedParts], &Faces, Member, Place) -> T + Sync,
+    field_of: impl Fn(&[MovedParts], &Faces, Member, Frame) -> T + Sync,
 ) -> Result<Option<Fields<T>>, AnalysisError> {
     faer::set_global_parallelism(faer::Par::Seq);
     let Some(faces) = &case.faces().map(|faces| faces.at(case.resolution.grid)) else {
@@ -89,7 +89,7 @@ fn of_gears<T: Send>(
         let (axis, angle) = pose.frame(member);
         // The gear's own middle stands beside that of the common face.
         let own = faces.pair.own_height(member, 0.0);
-        let place = Place {
+        let place = Frame {
             axis,
             angle: angle - faces.pair.gear(member).twist() * own,
             height: -own,
@@ -125,7 +125,7 @@ fn moved(
 
 impl GearField {
     /// Adds the sections of `parts` at the height `z`, of a gear that stands at `place`.
-    fn cut(&mut self, parts: &MovedParts, z: f64, place: Place) {
+    fn cut(&mut self, parts: &MovedParts, z: f64, place: Frame) {
         let edges = free_edges(parts.grid(), parts.joints());
         for section in parts.sections(z, place) {
             let first = self.nodes.len() as u32;

@@ -8,7 +8,7 @@
 //! H_0 is the mean of H over the teeth, p the contact forces on it and q = dp/dF. The term of δ is exact at first order, whatever the contact law;
 //! that of 1/k is where the law is linear.
 
-use super::case::{Case, Place};
+use super::case::{Case, PositionInCurve};
 use super::found::Found;
 use super::plan::Sweep;
 use crate::contact::MeshContact;
@@ -20,11 +20,11 @@ pub(super) fn with_holes<K>(
     (contacts, stiffness): (Vec<MeshContact>, &[f64]),
     kept: Vec<K>,
     round: impl Fn(&K) -> [f64; 2],
-    whole: impl Fn(&K, &Place) -> [f64; 2],
+    whole: impl Fn(&K, &PositionInCurve) -> [f64; 2],
 ) -> Found<K> {
     let round: Vec<[f64; 2]> = kept.iter().map(round).collect();
     let places = sweep.places(case);
-    let at = |place: &Place| {
+    let at = |place: &PositionInCurve| {
         let i = place.contact;
         let after = whole(&kept[i], place);
         let [delta, compliance] = [0, 1].map(|k| after[k] - round[i][k]);

@@ -3,7 +3,7 @@
 
 use super::AnalysisError;
 use super::between::{MOST_FOR_PEAKS, Refinement, Sample, Sections, most_further};
-use super::case::{Case, Method, Place, StiffnessRule};
+use super::case::{Case, Method, PositionInCurve, StiffnessRule};
 use super::case::{FaceHoles, Model, SectionHoles};
 use super::checks::Checks;
 use super::hole_phase::PhasePlan;
@@ -256,7 +256,7 @@ impl Sweep {
     }
 
     /// The places in the curve of `case` at which its contacts stand.
-    pub(super) fn places(&self, case: &Case) -> Vec<Place> {
+    pub(super) fn places(&self, case: &Case) -> Vec<PositionInCurve> {
         case.places(&self.positions, self.repeats_after)
     }
 

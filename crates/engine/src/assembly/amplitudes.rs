@@ -94,7 +94,7 @@ impl RoundForm {
         product
     }
 
-    /// The number of entries, for the books of a cache.
+    /// The number of entries, for the size limit of the cache.
     pub(super) fn entries(&self) -> usize {
         self.classes.iter().map(|(_, form)| entries(form)).sum()
     }

@@ -66,7 +66,7 @@ impl FaceHoles {
         }
     }
 
-    /// The number of entries, for the books of a cache.
+    /// The number of entries, for the size limit of the cache.
     pub fn entries(&self) -> usize {
         let rows = self
             .classes

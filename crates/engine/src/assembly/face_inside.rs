@@ -20,7 +20,7 @@ use crate::fem::FemError;
 use crate::fem::axial::AxialBasis;
 use crate::fem::prescribed::Load;
 use crate::fem::prism::Prism;
-use crate::fem::volume::{Level, Place, Volume};
+use crate::fem::volume::{Frame, Level, Volume};
 use crate::gear::Material;
 use crate::grid::{Grid, GridLevel, ToothGrid};
 use crate::ring::solid::gear::forced;
@@ -385,23 +385,23 @@ impl MovedParts {
     }
 
     /// Their sections at the height `z`, or where they end before it, of a gear that stands at `place`.
-    pub fn sections(&self, z: f64, place: Place) -> Vec<Level> {
+    pub fn sections(&self, z: f64, place: Frame) -> Vec<Level> {
         let [low, high] = self.axial.heights();
         let heights = [z.clamp(low, high)];
         let parts = self.parts.iter();
         let section = |(angle, unknowns): &(f64, Vec<f64>)| {
             let angle = place.angle + angle;
-            let place = Place { angle, ..place };
+            let place = Frame { angle, ..place };
             self.prism().levels(unknowns, &heights, place)
         };
         parts.flat_map(section).collect()
     }
 
     /// Adds them to `volume`, of a gear that stands at `place`.
-    pub fn add_to(&self, volume: &mut Volume, place: Place) {
+    pub fn add_to(&self, volume: &mut Volume, place: Frame) {
         for (angle, unknowns) in &self.parts {
             let angle = place.angle + angle;
-            volume.add(&self.prism(), unknowns, Place { angle, ..place });
+            volume.add(&self.prism(), unknowns, Frame { angle, ..place });
         }
     }
 }
@@ -458,7 +458,7 @@ mod tests {
         web_harmonics: 10,
         sections: crate::grid::GridLevel::Standard,
     };
-    const HERE: Place = Place {
+    const HERE: Frame = Frame {
         axis: nalgebra::Vector2::new(0.0, 0.0),
         angle: 0.0,
         height: 0.0,

@@ -197,7 +197,7 @@ impl FaceRoots {
         self.tooth_count
     }
 
-    /// The number of entries, for the books of a cache.
+    /// The number of entries, for the size limit of the cache.
     pub fn entries(&self) -> usize {
         let others: usize = self.others.iter().map(entries).sum();
         entries(&self.own) + others + self.by_web.as_ref().map_or(0, entries)

@@ -167,7 +167,7 @@ impl PlainFace {
         })
     }
 
-    /// The number of entries, for the books of a cache.
+    /// The number of entries, for the size limit of the cache.
     pub fn entries(&self) -> usize {
         let blocks: usize = self.blocks.iter().map(entries).sum();
         let stiffness_below: usize = self
@@ -329,7 +329,7 @@ impl FaceYield {
         self.plain.degrees_of_freedom
     }
 
-    /// The number of entries, for the books of a cache: it keeps the plain face even where that has gone.
+    /// The number of entries, for the size limit of the cache: it keeps the plain face even where that has gone.
     pub fn entries(&self) -> usize {
         self.plain.entries() + self.holes.as_ref().map_or(0, HoledChange::entries)
     }

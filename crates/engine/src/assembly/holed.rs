@@ -171,7 +171,7 @@ impl SeenWeb {
         rows_on_real(&answers, largest, size)
     }
 
-    /// The number of entries, for the books of a cache.
+    /// The number of entries, for the size limit of the cache.
     pub(crate) fn entries(&self) -> usize {
         let plain: usize = self
             .plain
@@ -314,7 +314,7 @@ impl HoledChange {
         self.turned(&forces, back).col_as_slice(0).to_vec()
     }
 
-    /// The number of entries, for the books of a cache.
+    /// The number of entries, for the size limit of the cache.
     pub(crate) fn entries(&self) -> usize {
         self.answers.nrows() * self.answers.ncols() * (1 + self.changes.len())
     }

@@ -1,10 +1,10 @@
 //! From the drawings of two gears to a pair that is ready for contact.
 //!
-//! In reading order: [`interface`] (the circle on which teeth and blank meet), [`teeth`] (all teeth of a gear down to it), [`blank`] (their support), [`gear`]
-//! (both joined), [`pair_spec`] and `pair` (two gears and the rules of their contact); along faces [`face_yield`] (the parts under the teeth, and the effect of
-//! holes: `stack`, `holed`, in the real amplitudes of a circle: `amplitudes`; fit of polynomials: `flank_fit`), [`face_roots`] and [`face_holes`] (stresses at
-//! its roots and at its holes), [`face_inside`] (motion of all of it); beside them [`cut`] (a gear parted at that circle again), [`inside`] (the inside of a
-//! gear whose flanks are loaded) and [`spun`] (of one that rotates).
+//! In reading order: `interface` (the circle on which teeth and blank meet), `teeth` (all teeth of a gear down to it), `blank` (their support), `gear`
+//! (both joined), `pair_spec` and `pair` (two gears and the rules of their contact); along faces `face_yield` (the parts under the teeth, and the effect of
+//! holes: `stack`, `holed`, in the real amplitudes of a circle: `amplitudes`; fit of polynomials: `flank_fit`), `face_roots` and `face_holes` (stresses at
+//! its roots and at its holes), `face_inside` (motion of all of it); beside them `cut` (a gear parted at that circle again), `inside` (the inside of a
+//! gear whose flanks are loaded) and `spun` (of one that rotates).
 //!
 //! Each part is a pure function of its *spec*, a value that says all that the part depends on. Equal specs are equal parts;
 //! who makes them, and whether anyone keeps them, is asked of [`Parts`].

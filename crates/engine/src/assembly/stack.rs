@@ -23,10 +23,10 @@ const DECAY: f64 = 4.5;
 const MOST_ORDERS_PER_TOOTH: usize = 8;
 /// A web whose face is nearer to that of the rim, as a part of its width, is flush with it.
 const FLUSH: f64 = 0.02;
-/// Faces of two parts that differ by a smaller part of the width are typed alike.
+/// Faces of two parts that differ by a smaller part of the width are treated as equal.
 const SAME: f64 = 1e-6;
-/// How much of the way from holes that stand in the rim itself to the interface circle belongs to the holed part.
-const HOLED_PART: f64 = 0.75;
+/// Part of the way from holes that stand in the rim itself to the interface circle that belongs to the teeth; the rest belongs to the holed part.
+const TOOTHED_PART: f64 = 0.25;
 /// Fields that fall by less from order to order, as a logarithm, are near ones: they make the stress at holes.
 const NEAR: f64 = 0.08;
 /// The most unknowns that holes couple: with them a gear takes some 1.2 GB and half a minute of a core.
@@ -203,7 +203,7 @@ impl Joints {
         let reach = holes.iter().map(Hole::outer_reach).reduce(f64::max);
         if let Some(reach) = reach.filter(|reach| *reach > rim.inner_radius) {
             let interface_radius = interface_above(reach);
-            let edge = reach + HOLED_PART * (interface_radius - reach);
+            let edge = reach + (1.0 - TOOTHED_PART) * (interface_radius - reach);
             return Self {
                 interface_radius,
                 holed: [rim.inner_radius, edge],

@@ -6,10 +6,10 @@ use std::sync::Arc;
 use faer::Mat;
 
 use super::checked::Penetration;
-use super::compliances::Known;
-use super::coupled::{Touching, add_coupled, mirror};
+use super::compliances::CachedCompliance;
+use super::coupled::{LoadedPair, add_coupled, mirror};
 use super::drawn::DrawnPair;
-use super::facings::Near;
+use super::facings::PairGap;
 use super::factor::{add, dot};
 use super::mesh_contact::{FlankLoad, MeshCells, MeshContact, PairContact, PairLoads, Spot};
 use super::model::{
@@ -33,17 +33,17 @@ const OWN: f64 = 0.1;
 /// Updates of the multipliers after which the augmented Lagrangian gives up.
 const MULTIPLIER_UPDATES: u32 = 2000;
 
-/// Cells are halved so often at most, and where there are no more than so many: those of a jagged profile are narrow already.
+/// At most 3 refinements, and only of patches with at most 128 cells: measured profiles start with narrow cells.
 const MOST_HALVED: u32 = 3;
 const MOST_TO_HALVE: usize = 128;
 
-/// Deficits of the cells of a pair.
+/// Change of the cells of a pair before they are solved again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Lack {
+pub(super) enum Refinement {
     /// More cells; or the same, moved so far ([`Extent::moved`]) that a contact narrower than they reach lies among them.
-    Room { moved: i32 },
+    Widen { moved: i32 },
     /// Half the width.
-    Halves,
+    Halve,
 }
 
 /// The contact cells of all pairs in reach of each other, with the teeth that stand there in one mesh period.
@@ -76,7 +76,7 @@ pub(super) struct PlacedCells {
 impl PlacedCells {
     /// `cells` on the pair `near` in this `pose`, with a driven gear that lags by `lag`; `None` where there are none.
     pub(super) fn new(
-        near: &Near,
+        near: &PairGap,
         extent: Extent,
         cells: Arc<Option<PairCells>>,
         pose: &Pose<'_>,
@@ -194,7 +194,10 @@ impl<'a> ContactCells<'a> {
     }
 
     /// The problem on these cells, whose compliance is `known`.
-    pub(super) fn problem(&self, known: &Known) -> Result<ContactProblem, PositionError> {
+    pub(super) fn problem(
+        &self,
+        known: &CachedCompliance,
+    ) -> Result<ContactProblem, PositionError> {
         let each = self.placed.iter();
         let gaps = each
             .clone()
@@ -251,12 +254,12 @@ impl<'a> ContactCells<'a> {
                 .copy_from(&placed.cells().held);
         }
         for member in Member::BOTH {
-            let pairs = self.ranges().map(|(placed, range)| Touching {
+            let pairs = self.ranges().map(|(placed, range)| LoadedPair {
                 pair: placed.pair,
                 start: range.start,
                 shapes: placed.cells().shapes[member.index()].as_ref(),
             });
-            let pairs: Vec<Touching<'_>> = pairs.collect();
+            let pairs: Vec<LoadedPair<'_>> = pairs.collect();
             add_coupled(&mut h, &pairs, |a, b| {
                 model.coupling(member, self.at.period, [a, b])
             });
@@ -438,23 +441,23 @@ impl<'a> ContactCells<'a> {
         Some(touching.collect())
     }
 
-    /// Deficits of the cells of pairs. They lack room if the contact reaches beyond them or flanks penetrate beside them, and there is room for more. If no
-    /// pair lacks room, cells between which flanks penetrate deeper than `deep` lack half their width.
-    pub(super) fn lacks(
+    /// Refinements of the cells of pairs. Cells are widened if the contact reaches beyond them or flanks penetrate beside them, and there is room for more. If no
+    /// pair is, cells between which flanks penetrate deeper than `deep` are halved.
+    pub(super) fn refinements(
         &self,
         solution: &ContactSolution,
         penetration: &Penetration,
         deep: f64,
-    ) -> Vec<(i64, Lack)> {
+    ) -> Vec<(i64, Refinement)> {
         let room = self.ranges().filter_map(|(placed, range)| {
             let patch = &placed.cells().patch;
             let active = &solution.active[range];
             let beside = penetration.beside.contains(&placed.pair);
-            let lacks = patch.can_widen() && (beside || patch.overflows(active));
+            let is_widened = patch.can_widen() && (beside || patch.overflows(active));
             let moved = patch.off_middle(active);
-            lacks.then_some((placed.pair, Lack::Room { moved }))
+            is_widened.then_some((placed.pair, Refinement::Widen { moved }))
         });
-        let room: Vec<(i64, Lack)> = room.collect();
+        let room: Vec<(i64, Refinement)> = room.collect();
         if !room.is_empty() {
             return room;
         }
@@ -470,7 +473,9 @@ impl<'a> ContactCells<'a> {
                 && placed.cells().patch.cells.len() <= MOST_TO_HALVE
                 && deepest(placed) > deep
         });
-        halves.map(|placed| (placed.pair, Lack::Halves)).collect()
+        halves
+            .map(|placed| (placed.pair, Refinement::Halve))
+            .collect()
     }
 
     /// Displacement in the middle of the next pair by a force in the middle of one, in the mean.

@@ -31,7 +31,7 @@ pub(super) struct Penetration {
 
 /// Where a stretch lies, which says how its gap is found.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Place {
+pub(super) enum CheckedKind {
     /// Across the end of the cell `at` and the beginning of the next, perhaps at a kink: the gap is between theirs.
     Across { at: usize, kink: bool },
     /// Within a cell, about a kink.
@@ -42,7 +42,7 @@ pub(super) enum Place {
     Fillet(Member),
 }
 
-impl Place {
+impl CheckedKind {
     /// The gear from whose flank its gap is found in a pair with cells on `seat`; `None` where that is known from cells.
     pub(super) fn seen_from(self, seat: Member) -> Option<Member> {
         match self {
@@ -56,7 +56,7 @@ impl Place {
 /// A stretch that may penetrate.
 #[derive(Debug)]
 pub(super) struct CheckedStretch {
-    pub(super) place: Place,
+    pub(super) place: CheckedKind,
     /// Its mean gap less that at its `place` or its flank_point.
     pub(super) more: f64,
 }
@@ -121,7 +121,7 @@ impl CheckedStretches {
             if !carries && !kink {
                 continue;
             }
-            let place = Place::Across { at: i, kink };
+            let place = CheckedKind::Across { at: i, kink };
             let [from, at, to] = [0, 1, 2].map(|end| patch.ends_along[pair[0].stretch + end][0]);
             let across = between(f64::midpoint(from, at), f64::midpoint(at, to));
             let [one, other] = [pair[0], pair[1]];
@@ -146,10 +146,10 @@ impl CheckedStretches {
             let point = view.point(*arc);
             point.is_some_and(|point| point.gap.gap <= reach)
         };
-        let places = kinks.map(|kink| (*kink, Place::Kink)).chain(
+        let places = kinks.map(|kink| (*kink, CheckedKind::Kink)).chain(
             beside
                 .filter(|arc| !patch.covers(*arc) && near(arc))
-                .map(|arc| (arc, Place::Beside)),
+                .map(|arc| (arc, CheckedKind::Beside)),
         );
         for (arc, place) in places {
             checked.extend(about(arc).filter(within).map(|stretch| {
@@ -165,7 +165,7 @@ impl CheckedStretches {
         for (view, range) in [(*view, Some(*range)), (mate, mates)] {
             let tip = range.and_then(|range| tip_in_fillet(&view, &range, patch, half));
             checked.extend(tip.filter(|(_, gap)| *gap <= reach).map(|(stretch, gap)| {
-                let place = Place::Fillet(view.seat.other());
+                let place = CheckedKind::Fillet(view.seat.other());
                 let more = gap - (stretch.cell.gap - stretch.more);
                 (stretch, CheckedStretch { place, more })
             }));

@@ -1,4 +1,4 @@
-//! Compliances of cells that were stated before, and their factors, kept: pairs made to one drawing have them alike.
+//! A cache of the compliances of sets of cells and of their factors: equal for all pairs made to one drawing.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -28,7 +28,7 @@ pub(super) struct StatedCells {
 /// The compliances of one model and the factors of cores; shared between threads.
 #[derive(Debug)]
 pub struct Compliances {
-    stated: Memo<StatedCells, Numbered>,
+    stated: Memo<StatedCells, NumberedCompliance>,
     cores: Arc<Cores>,
     count: AtomicU64,
 }
@@ -37,14 +37,14 @@ pub struct Compliances {
 type Cores = Memo<(u64, Vec<usize>), Option<Core>>;
 
 #[derive(Debug)]
-struct Numbered {
+struct NumberedCompliance {
     number: u64,
     compliance: Arc<Mat<f64>>,
 }
 
 /// A compliance whose factors are kept.
 #[derive(Debug, Clone)]
-pub(super) struct Known {
+pub(super) struct CachedCompliance {
     pub(super) compliance: Arc<Mat<f64>>,
     number: u64,
     cores: Arc<Cores>,
@@ -54,7 +54,7 @@ impl Default for Compliances {
     fn default() -> Self {
         Self {
             stated: Memo::new(MOST_BYTES, |known| {
-                size_of::<Numbered>() + size_of::<f64>() * entries(&known.compliance)
+                size_of::<NumberedCompliance>() + size_of::<f64>() * entries(&known.compliance)
             }),
             cores: Arc::new(Memo::new(MOST_CORE_BYTES, |core| {
                 size_of::<Core>() + core.as_ref().map_or(0, Core::bytes)
@@ -71,12 +71,16 @@ impl Compliances {
     }
 
     /// The compliance of `cells`, made if it is not there.
-    pub(super) fn get(&self, cells: StatedCells, make: impl FnOnce() -> Mat<f64>) -> Known {
-        let numbered = self.stated.get(cells, |_| Numbered {
+    pub(super) fn get(
+        &self,
+        cells: StatedCells,
+        make: impl FnOnce() -> Mat<f64>,
+    ) -> CachedCompliance {
+        let numbered = self.stated.get(cells, |_| NumberedCompliance {
             number: self.count.fetch_add(1, Ordering::Relaxed),
             compliance: Arc::new(make()),
         });
-        Known {
+        CachedCompliance {
             compliance: Arc::clone(&numbered.compliance),
             number: numbered.number,
             cores: Arc::clone(&self.cores),
@@ -84,7 +88,7 @@ impl Compliances {
     }
 }
 
-impl Known {
+impl CachedCompliance {
     /// The factor of its part at the rising points of `set`; `None` where that is not positive definite.
     pub(super) fn factor(&self, set: &[usize]) -> Option<Factor> {
         let blocks = core_of(set);

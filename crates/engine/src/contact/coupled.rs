@@ -8,7 +8,7 @@ use faer::{Accum, Mat, MatRef, Par};
 use super::mesh_contact::PairLoads;
 
 /// The touching part of one pair.
-pub(super) struct Touching<'a> {
+pub(super) struct LoadedPair<'a> {
     /// The pair n.
     pub(super) pair: i64,
     /// The row of H at which it begins.
@@ -20,7 +20,7 @@ pub(super) struct Touching<'a> {
 /// Adds S_i X_ij S_jᵀ to the blocks of `h` on the diagonal and below it. `coupling` is X_ij between two pairs.
 pub(super) fn add_coupled<'x>(
     h: &mut Mat<f64>,
-    pairs: &[Touching<'_>],
+    pairs: &[LoadedPair<'_>],
     coupling: impl Fn(i64, i64) -> MatRef<'x, f64>,
 ) {
     for (j, loaded) in pairs.iter().enumerate() {

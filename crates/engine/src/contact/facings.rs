@@ -22,7 +22,7 @@ const DISPLACED: f64 = 0.25;
 
 /// The pairs whose flanks face each other at one fraction of the mesh period; numbered from the reference pair of the
 /// period. They are found outward from the path of contact, as far as is asked.
-pub(super) struct Facings<'a> {
+pub(super) struct PairsInReach<'a> {
     deviating: DeviatingPair<'a>,
     fraction: f64,
     /// True if nothing deviates.
@@ -31,13 +31,13 @@ pub(super) struct Facings<'a> {
     runout: f64,
     /// Every pair found, and the δ at which it touches as drawn.
     found: Vec<(i64, f64)>,
-    frontier: [Frontier; 2],
+    frontier: [NextPair; 2],
     /// The mesh period asked about last, and the pairs known there.
-    known: (i64, Vec<Near>),
+    known: (i64, Vec<PairGap>),
 }
 
 /// The next pair on one side, and the touch of the last one found there.
-struct Frontier {
+struct NextPair {
     next: i64,
     step: i64,
     last: f64,
@@ -45,7 +45,7 @@ struct Frontier {
 
 /// A pair that comes near.
 #[derive(Debug, Clone)]
-pub(super) struct Near {
+pub(super) struct PairGap {
     /// From the reference pair of the mesh period.
     pub(super) pair: i64,
     /// The pair as drawn at its phase.
@@ -58,7 +58,7 @@ pub(super) struct Near {
     touches: Vec<f64>,
 }
 
-impl Near {
+impl PairGap {
     /// The δ at which it touches first.
     pub(super) fn touch(&self) -> f64 {
         self.touches.iter().copied().fold(f64::INFINITY, f64::min)
@@ -138,7 +138,7 @@ impl Near {
     }
 }
 
-impl<'a> Facings<'a> {
+impl<'a> PairsInReach<'a> {
     /// The pairs on the path of contact and those beside it; `None` if no flanks face each other at all.
     pub(super) fn new(deviating: DeviatingPair<'a>, fraction: f64) -> Option<Self> {
         let gears = &deviating.model.pair;
@@ -147,7 +147,7 @@ impl<'a> Facings<'a> {
         let periods = |s: f64| (s - gears.roll_length_of(0.0)) / gears.base_pitch();
         let first = (fraction - periods(s_e)).floor() as i64;
         let last = (fraction - periods(s_a)).ceil() as i64;
-        let frontier = |next, step| Frontier {
+        let frontier = |next, step| NextPair {
             next,
             step,
             last: f64::NEG_INFINITY,
@@ -225,7 +225,7 @@ impl<'a> Facings<'a> {
     }
 
     /// The pairs that touch in mesh period `period` before δ is `reach`; at least the one that touches first.
-    pub(super) fn within(&mut self, period: i64, reach: f64) -> Vec<Near> {
+    pub(super) fn within(&mut self, period: i64, reach: f64) -> Vec<PairGap> {
         let as_drawn = reach + self.nearer() + ROUNDING;
         self.find_within(as_drawn);
         if self.known.0 != period {
@@ -236,7 +236,7 @@ impl<'a> Facings<'a> {
                 self.known.1.extend(self.near(n, period));
             }
         }
-        let mut near: Vec<Near> = self.known.1.clone();
+        let mut near: Vec<PairGap> = self.known.1.clone();
         near.sort_by(|a, b| a.touch().total_cmp(&b.touch()));
         let count = near.partition_point(|near| near.touch() <= reach);
         near.truncate(count.max(1));
@@ -244,14 +244,14 @@ impl<'a> Facings<'a> {
     }
 
     /// Pair `n` of mesh period `period`.
-    fn near(&self, n: i64, period: i64) -> Option<Near> {
+    fn near(&self, n: i64, period: i64) -> Option<PairGap> {
         let model = self.deviating.model;
         let phase = self.fraction - n as f64;
         if self.as_drawn {
             let drawn = model.drawn_pair(phase);
             let minima = &drawn.facing()?.minima;
             let touches = minima.iter().map(|minimum| minimum.touch).collect();
-            return Some(Near {
+            return Some(PairGap {
                 pair: n,
                 ahead: 0.0,
                 away: None,
@@ -270,7 +270,7 @@ impl<'a> Facings<'a> {
             let seat = nearer_tip(&model.pair, phase + drawn);
             (seat, shifts.on_flanks[0], drawn)
         };
-        let mut near = Near {
+        let mut near = PairGap {
             pair: n,
             ahead: shift - drawn,
             away: None,
@@ -285,7 +285,7 @@ impl<'a> Facings<'a> {
     }
 
     /// Finds when the minima of `near` touch in mesh period `period`.
-    fn find_touches(&self, near: &mut Near, period: i64) -> Option<()> {
+    fn find_touches(&self, near: &mut PairGap, period: i64) -> Option<()> {
         let at = |lag: f64| near.pose(self.deviating, self.at(period), lag);
         let as_drawn = at(0.0)?;
         let further = |pose: &Pose<'_>, minimum: &GapMinimum| {
@@ -309,13 +309,13 @@ impl<'a> Facings<'a> {
     }
 
     /// Finds where and when the displaced flanks of `near` touch first in mesh period `period`.
-    fn find_on_displaced(&self, near: &mut Near, period: i64) -> Option<()> {
+    fn find_on_displaced(&self, near: &mut PairGap, period: i64) -> Option<()> {
         let mut real = self.real(near, period)?;
         if real.facing.is_at_mate_tip() {
             // On its own flank a gear's tip is where cells end, however the gears stand.
             let model = self.deviating.model;
             let seat = near.drawn.seat.other();
-            let mut on_other = Near {
+            let mut on_other = PairGap {
                 drawn: model.drawn_pair_on(near.drawn.phase, seat),
                 ..near.clone()
             };
@@ -340,7 +340,7 @@ impl<'a> Facings<'a> {
     }
 
     /// The flanks of `near` where they touch first in mesh period `period`.
-    fn real(&self, near: &Near, period: i64) -> Option<Touching<'a>> {
+    fn real(&self, near: &PairGap, period: i64) -> Option<Touching<'a>> {
         let pair = (&self.deviating.model.pair, self.deviating.deviations);
         let section = Section::straight(self.at(period).eta(), period + near.pair);
         Touching::of(pair, section, near.drawn.seat, 0.0, ROUNDING)
@@ -351,9 +351,9 @@ impl<'a> Facings<'a> {
         // Beyond the path of contact gaps grow from pair to pair.
         for side in 0..2 {
             while self.frontier[side].last <= reach {
-                let Frontier { next, step, .. } = self.frontier[side];
+                let NextPair { next, step, .. } = self.frontier[side];
                 let last = self.add(next);
-                self.frontier[side] = Frontier {
+                self.frontier[side] = NextPair {
                     next: next + step,
                     step,
                     last,

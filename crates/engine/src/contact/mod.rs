@@ -1,21 +1,21 @@
 //! Frictionless contact between the flanks of two gears.
 //!
 //! In reading order:
-//! - [`patch`]: cells about the places where flanks are nearest ([`crate::touch`] finds them),
-//! - [`pair_cells`]: the cells of one pair, as drawn, and their compliance ([`crate::flank`]),
-//! - [`drawn`] and `memo`: stored data of flanks as drawn, for any support of the teeth,
+//! - `patch`: cells about the places where flanks are nearest (`touch` finds them),
+//! - `pair_cells`: the cells of one pair, as drawn, and their compliance (`flank`),
+//! - `drawn` and `memo`: stored data of flanks as drawn, for any support of the teeth,
 //! - `coupled`: common compliance of teeth, on cells and on slices,
-//! - [`compliances`] and `factor`: stored data of pairs made to one drawing, for any deviations of their teeth,
-//! - `facings` and [`cells`]: the pairs that come near with the deviations of the teeth that stand there, and the cells of all of them; H on them, and the
+//! - `compliances` and `factor`: stored data of pairs made to one drawing, for any deviations of their teeth,
+//! - `facings` and `cells`: the pairs that come near with the deviations of the teeth that stand there, and the cells of all of them; H on them, and the
 //!   summary of their solution,
-//! - [`stage`]: one fraction of the mesh period, from placing the cells to a solution that nothing penetrates,
+//! - `stage`: one fraction of the mesh period, from placing the cells to a solution that nothing penetrates,
 //! - `light`: its limit as the load vanishes,
-//! - `pressures`: the contact of each pair in plane strain, and `peak`: the place of the largest pressure; [`mesh_contact`]: the summary of a solved contact,
+//! - `pressures`: the contact of each pair in plane strain, and `peak`: the place of the largest pressure; `mesh_contact`: the summary of a solved contact,
 //! - `checked` and `penetration`: the check of the whole flanks that proves that nothing penetrates; `contradiction`: the checks of a solution against its own
 //!   evidence,
 //! - [`positions`]: many positions of one load, in parallel,
 //! - [`face`]: the same along faces of helical, misaligned or uneven gears, slice by slice,
-//! - [`model`]: the model of a pair on which all of this works,
+//! - `model`: the model of a pair on which all of this works,
 //! - [`ContactProblem`]: compliance, gaps and arms; and [`ContactSolution`]: forces, delta, stiffness, residuals,
 //! - [`solve_active_set`]: the exact solver, for every position of a mesh,
 //! - [`solve_augmented_lagrangian`]: the method of the paper (eq. 7), for comparison.

@@ -30,8 +30,8 @@ const MOST_REFINED: usize = 4;
 /// which is not covered as densely then.
 const MOST_ON_CORES: f64 = 2048.0;
 
-/// By how much each cell beside the core is wider than the one before.
-const GROWTH: f64 = 1.3;
+/// By how much each cell beside the core is wider than the one before, as a part of it.
+const WIDER: f64 = 0.3;
 
 /// Cells that are added on each open side at a time.
 const FRINGE: usize = 8;
@@ -737,7 +737,7 @@ fn fringe((end, limit): (f64, f64), kinks: &[f64], width: f64, times: usize) -> 
         if left <= 1e-9 * width {
             break;
         }
-        step *= GROWTH;
+        step *= 1.0 + WIDER;
         // No sliver is left at the limit.
         let next = if left < 1.5 * step {
             limit

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::ContactSolution;
 use super::cells::{ContactCells, PlacedCells};
-use super::checked::{CheckedStretch, CheckedStretches, Penetration, Place};
+use super::checked::{CheckedKind, CheckedStretch, CheckedStretches, Penetration};
 use super::factor::dot;
 use super::model::{DeviatingPair, MeshPosition};
 use crate::touch::meeting::GapAndArms;
@@ -51,7 +51,7 @@ impl PlacedStretches {
         let patch = &placed.cells().patch;
         let mut met = self.met.each_ref().map(|met| met.iter());
         let gap = move |checked: &CheckedStretch| match checked.place {
-            Place::Across { at: i, kink } => {
+            CheckedKind::Across { at: i, kink } => {
                 let closes = active[i] || active[i + 1] || kink;
                 let [one, other] = [i, i + 1].map(|i| patch.cells[i].width);
                 let between = |one_gap: f64, other_gap: f64| {
@@ -109,12 +109,12 @@ pub(super) fn penetration(
             }
             found.largest = found.largest.max(depth);
             match stretch.place {
-                Place::Fillet(member) => found.fillets.push((placed.pair, member)),
-                Place::Beside if !found.beside.contains(&placed.pair) => {
+                CheckedKind::Fillet(member) => found.fillets.push((placed.pair, member)),
+                CheckedKind::Beside if !found.beside.contains(&placed.pair) => {
                     found.beside.push(placed.pair)
                 }
-                Place::Beside => {}
-                Place::Across { .. } | Place::Kink => {
+                CheckedKind::Beside => {}
+                CheckedKind::Across { .. } | CheckedKind::Kink => {
                     let deepest = found.between.entry(placed.pair).or_default();
                     *deepest = depth.max(*deepest);
                 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use faer::{Mat, MatRef};
 
-use super::compliances::Known;
+use super::compliances::CachedCompliance;
 use super::factor::{Core, Factor, core_of};
 use crate::run::Stopped;
 use crate::wide::{Loops, wide};
@@ -23,7 +23,7 @@ const SYMMETRY_TOLERANCE: f64 = 1e-6;
 pub struct ContactProblem {
     compliance: Arc<Mat<f64>>,
     /// The same, if its factors are kept.
-    known: Option<Known>,
+    known: Option<CachedCompliance>,
     gaps: Vec<f64>,
     arms: Vec<f64>,
 }
@@ -73,7 +73,7 @@ impl ContactProblem {
 
     /// As [`ContactProblem::new`], with an H that is `known`.
     pub(super) fn of_known(
-        known: &Known,
+        known: &CachedCompliance,
         gaps: Vec<f64>,
         arms: Vec<f64>,
     ) -> Result<Self, ContactError> {

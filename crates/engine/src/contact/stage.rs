@@ -6,27 +6,27 @@
 
 use std::collections::BTreeMap;
 
-use super::cells::{ContactCells, Lack, PlacedCells};
+use super::cells::{ContactCells, PlacedCells, Refinement};
 use super::checked::Penetration;
 use super::compliances::StatedCells;
-use super::facings::{Facings, Near};
+use super::facings::{PairGap, PairsInReach};
 use super::mesh_contact::{MeshCells, MeshContact};
 use super::model::{DeviatingPair, PositionError, WarmStart};
 use super::patch::Extent;
 use super::penetration::{PlacedStretches, penetration};
 use super::{ContactProblem, ContactSolution};
 
-/// Pairs are solved together whose gap is within this multiple of the approach by the load: a little more than touch.
-const REACH: f64 = 1.1;
-
-/// Margin of a guess of the reach for the motion of the solution.
-const GUESS: f64 = 1.2;
+/// Part of the approach by the load, beyond it, within which pairs are solved together: a little more than touch. A guess of their reach has it twice, so that
+/// the solution may move on and the search for pairs in reach ends.
+const MARGIN: f64 = 0.1;
+const REACH: f64 = 1.0 + MARGIN;
+const GUESS: f64 = 1.0 + 2.0 * MARGIN;
 
 /// The mesh at one fraction of its period, under one load.
 pub struct Stage<'a> {
     deviating: DeviatingPair<'a>,
     load: f64,
-    facings: Facings<'a>,
+    facings: PairsInReach<'a>,
     /// The cells placed last, if every mesh period has the same.
     placed: Vec<PlacedCells>,
 }
@@ -84,7 +84,7 @@ impl<'a> Stage<'a> {
     ///
     /// [`PositionError::NoContact`] if no flanks face each other.
     pub fn new(deviating: DeviatingPair<'a>, eta: f64, load: f64) -> Result<Self, PositionError> {
-        let facings = Facings::new(deviating, eta - eta.floor());
+        let facings = PairsInReach::new(deviating, eta - eta.floor());
         Ok(Self {
             deviating,
             load,
@@ -163,8 +163,8 @@ impl<'a> Stage<'a> {
                 continue;
             }
             let penetration = self.penetration(&cells, &solution);
-            let lacks = cells.lacks(&solution, &penetration, DEEP * (delta - touch));
-            if lacks.is_empty() {
+            let refinements = cells.refinements(&solution, &penetration, DEEP * (delta - touch));
+            if refinements.is_empty() {
                 *warm = cells.warm_start(&problem, &solution, self.load, warm);
                 let contact = MeshContact {
                     touch,
@@ -174,14 +174,14 @@ impl<'a> Stage<'a> {
                 contact.check(module)?;
                 return Ok(answer(&cells, problem, solution, contact));
             }
-            for (pair, lack) in lacks {
+            for (pair, refinement) in refinements {
                 let is_first = !extents.contains_key(&pair);
                 let extent = extents.entry(pair).or_default();
-                match lack {
+                match refinement {
                     // If the contact fits, its cells are moved before they are widened.
-                    Lack::Room { moved } if is_first && moved != 0 => extent.moved = moved,
-                    Lack::Room { .. } => extent.widened += 1,
-                    Lack::Halves => extent.halved += 1,
+                    Refinement::Widen { moved } if is_first && moved != 0 => extent.moved = moved,
+                    Refinement::Widen { .. } => extent.widened += 1,
+                    Refinement::Halve => extent.halved += 1,
                 }
             }
         }
@@ -190,7 +190,7 @@ impl<'a> Stage<'a> {
     /// Cells on the pairs `near`, with the gaps of flanks that just touch.
     fn place_all(
         &mut self,
-        near: &[Near],
+        near: &[PairGap],
         extents: &Extents,
         reach: Reach,
     ) -> Result<ContactCells<'a>, PositionError> {
@@ -212,7 +212,7 @@ impl<'a> Stage<'a> {
         ContactCells::new(self.deviating, self.facings.at(reach.period), pairs)
     }
 
-    fn place(&mut self, near: &Near, extent: Extent, reach: Reach) -> Option<PlacedCells> {
+    fn place(&mut self, near: &PairGap, extent: Extent, reach: Reach) -> Option<PlacedCells> {
         let model = self.deviating.model;
         let at = self.facings.at(reach.period);
         let pose = near.pose(self.deviating, at, reach.touch)?;
@@ -227,7 +227,7 @@ impl<'a> Stage<'a> {
     }
 
     /// True if a δ of `needed` reaches pairs or minima beyond those `near` within `reach`.
-    fn reaches_more(&mut self, near: &[Near], reach: Reach, needed: f64) -> bool {
+    fn reaches_more(&mut self, near: &[PairGap], reach: Reach, needed: f64) -> bool {
         let more = self.facings.within(reach.period, needed);
         more.len() > near.len()
             || more.iter().any(|more| {

@@ -111,7 +111,7 @@ impl Cholesky<f64> {
     }
 }
 
-/// The number of entries of `a`, for the books of a cache.
+/// The number of entries of `a`, for the size limit of the cache.
 pub(crate) fn entries(a: &Mat<f64>) -> usize {
     a.nrows() * a.ncols()
 }

@@ -1,4 +1,4 @@
-//! The displacements of every node of a grid some of whose nodes are moved as told.
+//! Displacements of all nodes of a grid, with prescribed displacements of some.
 
 use faer::Mat;
 

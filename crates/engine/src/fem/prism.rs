@@ -123,7 +123,7 @@ impl Prism<'_> {
         } = *interface;
         let numbering = Numbering::with_followers(self.grid.nodes.len(), kept, followers, fixed);
         let kept = self.unknowns_of_node() * (numbering.count - numbering.interior);
-        let (asked, told_rows) = (
+        let (asked, recovered_rows) = (
             points.len() * self.axial.len(),
             recovered.len() * self.unknowns_of_node(),
         );
@@ -133,8 +133,8 @@ impl Prism<'_> {
             held: Mat::zeros(asked, asked),
         };
         let mut rows = NodeRows {
-            by_kept: Mat::zeros(told_rows, kept),
-            by_points: Mat::zeros(told_rows, asked),
+            by_kept: Mat::zeros(recovered_rows, kept),
+            by_points: Mat::zeros(recovered_rows, asked),
         };
         for unknowns in self.independent() {
             let alone = Independent {

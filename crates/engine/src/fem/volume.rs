@@ -35,7 +35,7 @@ pub struct VolumeElement {
 
 /// Where a prism stands: its axis, the angle of its x axis at its own height 0, and that height.
 #[derive(Debug, Clone, Copy)]
-pub struct Place {
+pub struct Frame {
     /// Where its axis is.
     pub axis: Vector,
     /// The angle of its x axis.
@@ -60,7 +60,7 @@ pub struct Level {
 
 impl Volume {
     /// Adds `prism` at `place`, whose nodes move by `unknowns`: node by node, in polar components, for each function along the axis.
-    pub fn add(&mut self, prism: &Prism<'_>, unknowns: &[f64], place: Place) {
+    pub fn add(&mut self, prism: &Prism<'_>, unknowns: &[f64], place: Frame) {
         let grid = prism.grid;
         let mut is_corner = vec![false; grid.nodes.len()];
         for element in &grid.elements {
@@ -113,7 +113,7 @@ pub fn von_mises(stress: &Matrix3<f64>) -> f64 {
 
 impl Prism<'_> {
     /// Its sections at `heights`, at `place`, where its nodes move by `unknowns`, as for [`Volume::add`].
-    pub fn levels(&self, unknowns: &[f64], heights: &[f64], place: Place) -> Vec<Level> {
+    pub fn levels(&self, unknowns: &[f64], heights: &[f64], place: Frame) -> Vec<Level> {
         let elements = self.grid.elements.iter();
         let gradients: Vec<_> = elements.map(|of| self.at_nodes_of(of)).collect();
         let level = |&z: &f64| {

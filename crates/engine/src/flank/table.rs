@@ -92,7 +92,7 @@ impl FlankTable {
         }
     }
 
-    /// The number of table entries, for the books of a cache.
+    /// The number of table entries, for the size limit of the cache.
     pub fn entries(&self) -> usize {
         entries(&self.smooth) + entries(&self.modes)
     }

@@ -363,11 +363,11 @@ impl SolidPair {
     /// of the teeth.
     pub fn lead_gap(&self, deviations: &PairDeviations, teeth: [usize; 2], z: f64) -> f64 {
         let removed = self.removed_by_leads(deviations, teeth, z);
-        self.askew(z) + removed[0] + removed[1]
+        self.misalignment_gap(z) + removed[0] + removed[1]
     }
 
-    /// How far the flanks are apart at `z` by how the axes stand, along the base tangent.
-    pub(crate) fn askew(&self, z: f64) -> f64 {
+    /// The gap of the flanks at `z` by the misalignment of the axes, along the base tangent.
+    pub(crate) fn misalignment_gap(&self, z: f64) -> f64 {
         let along = z / self.common_face_width() + 0.5;
         let alpha = self.section.working_pressure_angle();
         let Alignment {

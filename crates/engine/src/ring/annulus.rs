@@ -1,4 +1,4 @@
-//! A blank by itself: an annulus whose outer circle is moved as told, and whose hub is free to turn (eqs. 11 and 12).
+//! A blank by itself: an annulus with prescribed displacements of its outer circle, whose hub is free to turn (eqs. 11 and 12).
 
 use faer::Mat;
 

@@ -158,7 +158,7 @@ impl Coupling {
         }
     }
 
-    /// The number of entries of all blocks, for the books of a cache.
+    /// The number of entries of all blocks, for the size limit of the cache.
     pub fn entries(&self) -> usize {
         self.blocks.iter().map(entries).sum()
     }

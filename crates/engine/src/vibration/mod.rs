@@ -3,7 +3,7 @@
 //! K x = ω² M x with consistent masses. The blank from the bore to a circle below the roots is divided in its plane (`section`) and carries
 //! quadratic functions along the axis that all parts share ([`heights`]), so that rim, web and hub move alike where they meet. The teeth stand on
 //! that circle, order by order (`teeth`). In class k of S equal sectors all turns by e^{i2πk/S} from one to the next; each class is one sparse
-//! Hermitian problem (`system`) for Lanczos's method ([`crate::fem::eigen`]). Classes between 0 and S/2 stand for two modes, a cosine and a sine.
+//! Hermitian problem (`system`) for Lanczos's method (`fem::eigen`). Classes between 0 and S/2 stand for two modes, a cosine and a sine.
 //!
 //! Helical teeth stand as straight ones of the same transverse section. A gear of one piece with its shaft is held where the shaft begins. Nothing
 //! rotates: frequencies are those at rest in the frame of the gear ([`campbell`] says where they are met at speed).

@@ -8,9 +8,9 @@ use serde_json::{Value, json};
 
 use super::center::{Closed, Seen, reach, seen};
 use super::chain::{Loop, Open, Piece, Within};
+use super::outline::{Choices, MOST_FAULTS, Outline, Refused, SHORTEST_MM};
 use super::pieces::Source;
 use super::shape::Made;
-use super::{Choices, MOST_FAULTS, Outline, Refused, SHORTEST_MM};
 use crate::significant;
 
 /// A loop of fitted curves that is a circle to within this is taken for one, in mm.

@@ -7,8 +7,8 @@ use meshwright_engine::gear::{Side, Vector};
 use super::chain::Piece;
 use super::file::{Entity, File, MOST_ENTITIES, code};
 use super::insert::{Motion, Places};
+use super::outline::{MOST_FAULTS, MOST_SIDES, Refused, SHORTEST_MM};
 use super::shape::{self, Kind, Made};
-use super::{MOST_FAULTS, MOST_SIDES, Refused, SHORTEST_MM};
 
 /// The most that a coordinate of a submission may be, in mm.
 const FARTHEST_MM: f64 = 25_000.0;

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::file::Component;
+use super::content::Component;
 use super::gear::{DIGITS, Gear, SAME, needed};
 use super::own;
 use super::unit::{MM, um_of_mm};

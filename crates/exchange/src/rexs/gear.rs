@@ -4,7 +4,7 @@ use meshwright_engine::gear::data::LEAST_RIM;
 use meshwright_engine::gear::{Rack, ToolDepth};
 use serde_json::{Map, Value, json};
 
-use super::file::Component;
+use super::content::Component;
 use super::own;
 use super::reading::{LoadedFlank, Reading};
 use super::unit::{DEG, KG_PER_DM3, MM, MPA, NONE, Unit, um_of_mm};

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::file::Component;
+use super::content::Component;
 use super::gear::{DIGITS, Gear, SAME};
 use super::own;
 use super::unit::{DEG, MM_OR_NONE, NONE, um_of_mm};

@@ -6,8 +6,9 @@ use std::ops::ControlFlow;
 
 use serde_json::{Value, json};
 
+use super::content::Component;
 use super::fault::{Faults, Refused};
-use super::file::{Component, Model};
+use super::file::Model;
 use super::gear::Gear;
 use super::own;
 use super::reading::{Choices, MOST_REMARKS, Reading};

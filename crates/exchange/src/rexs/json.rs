@@ -5,8 +5,8 @@ use std::fmt;
 use serde::Deserialize;
 use serde::de::{Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
 
+use super::content::{Attribute, Component, Content, Relation};
 use super::fault::Faults;
-use super::file::{Attribute, Component, Content, Relation};
 
 /// The file.
 #[derive(Deserialize)]

@@ -2,7 +2,7 @@
 
 use std::cell::LazyCell;
 
-use super::file::{Component, LoadCase};
+use super::content::{Component, LoadCase};
 use super::gear::DIGITS;
 use super::import::Stage;
 use super::reading::Reading;

@@ -1,12 +1,13 @@
 //! REXS, the gearbox exchange format of the FVA: a pair of cylindrical gears out of a model, and a pair with its curves as a model.
 //!
 //! A model is a list of components with attributes, relations between components, and load cases. Read in this order: `container` (XML, JSON or an archive),
-//! `file` with `json` and `markup` (content), `unit` (units of its numbers), `fault` (faults of a model), `reading`, `import` with `gear`, `hob`, `flank`,
+//! `content`, `file` with `json` and `markup`, `unit` (units of its numbers), `fault` (faults of a model), `reading`, `import` with `gear`, `hob`, `flank`,
 //! `shaft` and `load`, and `export`.
 //!
 //! Names are those of versions 1.0 to 2.0. Fields without a name in the format stand in attributes `custom_meshwright_...`.
 
 mod container;
+mod content;
 mod export;
 mod fault;
 mod file;

@@ -4,8 +4,9 @@ use std::cell::RefCell;
 
 use serde_json::Value;
 
+use super::content::Component;
 use super::fault::{Faults, cut};
-use super::file::{Component, Model};
+use super::file::Model;
 use super::unit::Unit;
 
 /// The most remarks on a pair of one kind, and the most characters of each.

@@ -2,7 +2,8 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::file::{Component, LoadCase, Model};
+use super::content::{Component, LoadCase};
+use super::file::Model;
 use super::import::Stage;
 use super::reading::Reading;
 use super::unit::{MM, N_M, NONE};

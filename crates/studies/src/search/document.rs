@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use meshwright_wire::declare::{
     EACH, Errors, Kind, Location, Node, Number, Text, absent, document, list, nested, number,
-    or_else, text, word, words,
+    or_else, text, word,
 };
 use meshwright_wire::draw::SEED;
 use meshwright_wire::pointer::{NumberKind, Pointer, Schema};
@@ -12,6 +12,7 @@ use meshwright_wire::problem::Code;
 use meshwright_wire::submission::MOST_TORQUES;
 use meshwright_wire::units::plain;
 
+use super::torques::Torques;
 use super::{Condition, Goal, MOST_EVALUATIONS, Measure, OF_POPULATION, Search, Variable};
 use crate::MOST_DESIGNS;
 use crate::optimum::space::Axis;
@@ -23,17 +24,6 @@ const MOST: usize = 50;
 
 /// A field of the submission, or of the population.
 const PATH: Text = text("Path", 300);
-
-words! {
-    /// Choice among several torques.
-    pub(crate) enum Torques {
-        Largest = "largest":
-            "of the torque at which it is worst: the largest value, in at_least the smallest",
-        Mean = "mean": "the mean over the torques",
-        Rms = "rms":
-            "the root mean square over the torques; with a percent, that of each member",
-    }
-}
 
 document! {
     /// A search for the design with the least value of a goal. It asks for designs generation by generation, each chosen by the outcomes of earlier ones.

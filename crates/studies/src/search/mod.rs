@@ -7,6 +7,7 @@ mod document;
 pub(crate) mod measure;
 #[cfg(test)]
 mod tests;
+mod torques;
 
 use meshwright_wire::declare::{Errors, Location, Node};
 use meshwright_wire::pointer::Pointer;
@@ -21,7 +22,7 @@ use crate::population::Population;
 use crate::sample::REPLICATES;
 use crate::sample::points::{Points, Sampling};
 use crate::table::Quantity;
-use document::Torques;
+use torques::Torques;
 
 pub(crate) use document::SearchDocument;
 

@@ -3,13 +3,10 @@
 use meshwright_engine::gear::{Eccentricity, ToothDeviations};
 
 use super::GearDocument;
-use super::traces::{LeadTracesDocument, ProfileTracesDocument};
+use super::traces::{LARGEST, LeadTracesDocument, ProfileTracesDocument};
 use crate::declare::{List, Number, absent, document, list, nested, number};
 use crate::problem::{Code, FieldError};
 use crate::units::{from_um, plain, to_um};
-
-/// The most that a flank deviates, in modules: a search among neighboring flanks means nothing beyond.
-pub(super) const LARGEST: f64 = 0.25;
 
 /// How far the sum of all single pitch deviations may be from zero, in um.
 const CLOSURE: f64 = 0.01;

@@ -6,6 +6,7 @@
 
 mod blank;
 mod blank_faults;
+mod blank_openings;
 mod deviation;
 mod faults;
 mod field;

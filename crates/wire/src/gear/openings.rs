@@ -1,39 +1,26 @@
 //! The openings of a blank that are no pattern of holes: those between spokes, and those of an outline.
 
-use meshwright_engine::gear::printed::last_unit;
 use meshwright_engine::gear::{
     Contour, ContourFault, Drawn, Hole, Side, Spokes, SpokesFault, Vector,
 };
 use serde::Serializer;
 use serde_json::{Value, json};
 
-use super::GearDocument;
-use super::blank::BlankDocument;
 use super::faults::Fault;
 use super::field::Field;
 use super::holes::MOST_HOLES;
-use super::proportions::check_between;
 use crate::declare::{
     Declared, EACH, Kind, List, Location, Nested, Node, Number, document, list, number, or_else,
     unless,
 };
-use crate::problem::{Code, FieldError};
+use crate::problem::Code;
 use crate::units::{Side as Bound, from_mm, plain, to_mm};
 
 /// The most sides of a loop.
 const MOST_SIDES: usize = 200;
 
 /// The most loops of an outline: the openings, the bore and the circle around.
-const MOST_LOOPS: usize = MOST_HOLES + 2;
-
-/// The most sides of all loops together: each place of a grid is looked at from many of them.
-const MOST_SIDES_IN_ALL: usize = 1000;
-
-/// The coarsest last decimal of coordinates, in mm, to within which openings are meant as equal: coordinates with fewer decimals are round numbers.
-const COARSEST_DECIMAL: f64 = 1e-3;
-
-/// How far the bore of an outline may be from the bore radius, as a part of it: the digits of a drawing.
-const DIGITS: f64 = 1e-6;
+pub(super) const MOST_LOOPS: usize = MOST_HOLES + 2;
 
 document! {
     /// Straight spokes of constant width, evenly spaced, that run along the radius from the hub ring to the rim. The openings between them are bounded by the
@@ -117,6 +104,12 @@ impl Point {
 }
 
 impl SideDocument {
+    /// The coordinates of the points that it names, in mm.
+    pub(super) fn coordinates(&self) -> impl Iterator<Item = f64> {
+        let points = [self.line_to, self.arc_to, self.through];
+        points.into_iter().flatten().flat_map(|point| point.0)
+    }
+
     fn end(&self) -> Vector {
         let end = self.line_to.or(self.arc_to);
         end.map_or_else(Vector::zeros, Point::vector)
@@ -143,11 +136,11 @@ impl SpokesDocument {
         }
     }
 
-    fn field(declared: Declared<Number>) -> Field {
+    pub(super) fn field(declared: Declared<Number>) -> Field {
         Field::of("blank/spokes/", declared)
     }
 
-    fn openings(&self) -> Result<Vec<Hole>, Fault> {
+    pub(super) fn openings(&self) -> Result<Vec<Hole>, Fault> {
         self.data().openings().map_err(|fault| match fault {
             SpokesFault::TooFew => Fault::new(
                 Self::field(Self::count),
@@ -198,201 +191,8 @@ impl SpokesDocument {
     }
 }
 
-/// The openings of an outline, each with the place of its loop.
-type Openings = Vec<(usize, Hole)>;
-
-impl BlankDocument {
-    /// The openings of the spokes, then those of the outline.
-    ///
-    /// # Errors
-    ///
-    /// The openings of the engine, or the fault of one.
-    pub(super) fn openings(&self) -> Result<Vec<Hole>, Fault> {
-        let mut openings = match &self.spokes {
-            Some(spokes) => spokes.openings()?,
-            None => Vec::new(),
-        };
-        openings.extend(self.outlined()?.into_iter().map(|(_, hole)| hole));
-        Ok(openings)
-    }
-
-    /// The last decimal of the coordinates of the outline, in meters: that of the coordinate that has most decimals.
-    pub(super) fn last_decimal(&self) -> f64 {
-        let sides = self.outline.iter().flatten().flatten();
-        let points = sides.flat_map(|side| [side.line_to, side.arc_to, side.through]);
-        let coordinates = points.flatten().flat_map(|point| point.0);
-        from_mm(coordinates.map(last_unit).fold(COARSEST_DECIMAL, f64::min))
-    }
-
-    /// The openings of the outline.
-    fn outlined(&self) -> Result<Openings, Fault> {
-        let mut openings = Openings::new();
-        let (mut bore, mut around) = (None, None);
-        for (i, sides) in self.outline.iter().flatten().enumerate() {
-            let drawn = drawn(i, sides)?;
-            let known = match drawn {
-                Drawn::Opening(hole) => {
-                    openings.push((i, hole));
-                    continue;
-                }
-                Drawn::Circle { radius, is_inside } => {
-                    let known = if is_inside { &mut around } else { &mut bore };
-                    known.replace((i, radius))
-                }
-            };
-            if let Some((first, _)) = known {
-                let detail = format!(
-                    "Loop {i} is a circle about the axis, as loop {first} is; there is one bore, and one circle around."
-                );
-                return Err(unsound(loop_at(i), detail));
-            }
-        }
-        if let Some((i, radius)) = bore {
-            let (_, core) = self.core_field();
-            let said = match self.shaft {
-                Some(_) => Some("the gear is cut on its shaft, and has no bore".to_owned()),
-                None if (to_mm(radius) - core).abs() > DIGITS * core => {
-                    Some(format!("blank/bore_radius_mm is {}", plain(core)))
-                }
-                None => None,
-            };
-            if let Some(said) = said {
-                let detail = format!(
-                    "Loop {i} is a bore with the radius {} mm, but {said}.",
-                    plain(to_mm(radius))
-                );
-                return Err(unsound(loop_at(i), detail));
-            }
-        }
-        if let Some((i, radius)) = around
-            && let Some((k, _)) = openings
-                .iter()
-                .find(|(_, hole)| hole.outer_reach() >= radius)
-        {
-            let detail =
-                format!("Loop {i} is the circle around the blank, and loop {k} reaches beyond it.");
-            return Err(unsound(loop_at(i), detail));
-        }
-        Ok(openings)
-    }
-
-    /// The number of spokes, which is that of the openings between them.
-    fn spoke_count(&self) -> usize {
-        let spokes = self.spokes.as_ref();
-        spokes.map_or(0, |spokes| spokes.count as usize)
-    }
-
-    /// That there are more holes and openings than a blank may have, or more sides of these.
-    pub(super) fn too_many(&self, pointer: &str) -> Option<FieldError> {
-        let sides: usize = self.outline.iter().flatten().map(Vec::len).sum();
-        if sides > MOST_SIDES_IN_ALL {
-            let pointer = format!("{pointer}/blank/outline");
-            let detail = format!(
-                "{pointer} has {sides} sides; its loops have at most {MOST_SIDES_IN_ALL} together. An arc stands for many lines."
-            );
-            return Some(FieldError::new(pointer, Code::TooLarge, detail));
-        }
-        let loops = self.outline.as_ref().map_or(0, Vec::len);
-        let count =
-            self.holes.count() + self.spoke_count() + loops.saturating_sub(MOST_LOOPS - MOST_HOLES);
-        if count <= MOST_HOLES {
-            return None;
-        }
-        let pointer = match self.holes.count() {
-            0 => format!("{pointer}/blank"),
-            _ => format!("{pointer}/blank/holes"),
-        };
-        let detail = format!("{pointer} has {count} holes; a blank has at most {MOST_HOLES}.");
-        Some(FieldError::new(pointer, Code::TooLarge, detail))
-    }
-
-    /// The source of the opening that the engine knows as `hole`; `None` if that is one of a pattern.
-    pub(super) fn drawn_by(&self, hole: usize) -> Option<DrawnBy> {
-        let index = hole.checked_sub(self.holes.count())?;
-        let Some(index) = index.checked_sub(self.spoke_count()) else {
-            return Some(DrawnBy::Spokes);
-        };
-        let outlined = self.outlined().ok()?;
-        outlined.get(index).map(|(i, _)| DrawnBy::Loop(*i))
-    }
-}
-
-/// Source of an opening.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum DrawnBy {
-    Spokes,
-    Loop(usize),
-}
-
-impl GearDocument {
-    /// Spokes and outlines whose openings exist and are no mere points.
-    pub(super) fn check_openings(&self) -> Result<(), Fault> {
-        let blank = &self.blank;
-        let openings = blank.openings()?;
-        if let Some(spokes) = &blank.spokes {
-            check_between(
-                SpokesDocument::field(SpokesDocument::fillet_radius_mm),
-                spokes.fillet_radius_mm,
-                0.2 * self.least_hole_mm(),
-                f64::INFINITY,
-                "0.2 % of the root radius and more",
-            )?;
-        }
-        let holes = blank.holes.count();
-        let small = |hole: &Hole| to_mm(hole.half_width()) < self.least_hole_mm();
-        match openings.iter().position(small) {
-            None => Ok(()),
-            Some(i) => {
-                let field = blank
-                    .drawn_by(holes + i)
-                    .map_or_else(|| loop_at(0), DrawnBy::field);
-                let detail = "An opening is smaller than 1 % of the root radius to each side.";
-                Err(unsound(field, detail.to_owned()))
-            }
-        }
-    }
-
-    /// An opening of spokes or of an outline leaves too little between it and another one, the rim or the bore.
-    pub(super) fn opening_fault(
-        &self,
-        by: DrawnBy,
-        code: Code,
-        missing: f64,
-        detail: String,
-    ) -> Fault {
-        let (DrawnBy::Spokes, Some(spokes)) = (by, &self.blank.spokes) else {
-            return Fault::new(by.field(), code, detail, None);
-        };
-        let (declared, bound) = match code {
-            Code::HolesBreachRim => (
-                SpokesDocument::outer_radius_mm,
-                (spokes.outer_radius_mm - missing, Bound::AtMost),
-            ),
-            Code::HolesBreachBore => (
-                SpokesDocument::inner_radius_mm,
-                (spokes.inner_radius_mm + missing, Bound::AtLeast),
-            ),
-            _ => (
-                SpokesDocument::width_mm,
-                (spokes.width_mm + missing, Bound::AtLeast),
-            ),
-        };
-        Fault::new(SpokesDocument::field(declared), code, detail, Some(bound))
-    }
-}
-
-impl DrawnBy {
-    /// Where it stands.
-    pub(super) fn field(self) -> Field {
-        match self {
-            Self::Spokes => Field::whole("blank/spokes".to_owned()),
-            Self::Loop(i) => loop_at(i),
-        }
-    }
-}
-
 /// The opening bounded by loop `i` of the outline.
-fn drawn(i: usize, sides: &[SideDocument]) -> Result<Drawn, Fault> {
+pub(super) fn drawn(i: usize, sides: &[SideDocument]) -> Result<Drawn, Fault> {
     let mut from = sides.last().map_or_else(Vector::zeros, SideDocument::end);
     let mut found = Vec::new();
     let at = |k: usize| Field::whole(format!("blank/outline/{i}/{k}"));
@@ -431,10 +231,10 @@ fn drawn(i: usize, sides: &[SideDocument]) -> Result<Drawn, Fault> {
     })
 }
 
-fn loop_at(i: usize) -> Field {
+pub(super) fn loop_at(i: usize) -> Field {
     Field::whole(format!("blank/outline/{i}"))
 }
 
-fn unsound(field: Field, detail: String) -> Fault {
+pub(super) fn unsound(field: Field, detail: String) -> Fault {
     Fault::new(field, Code::OutlineUnsound, detail, None)
 }

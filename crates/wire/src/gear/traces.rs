@@ -8,6 +8,9 @@ use crate::declare::{List, Number, document, list, number, or_else};
 use crate::problem::{Code, FieldError};
 use crate::units::{from_mm, from_um, plain};
 
+/// The most that a flank deviates, in modules: a search among neighboring flanks means nothing beyond.
+pub(super) const LARGEST: f64 = 0.25;
+
 document! {
     /// A measured trace of the profile of each loaded flank. It adds to the modifications of the gear.
     pub struct ProfileTracesDocument as "ProfileTraces", "Profile traces" {
@@ -179,7 +182,7 @@ impl Traces<'_> {
                 &what,
             );
         }
-        let most = 1e3 * super::deviation::LARGEST * module;
+        let most = 1e3 * LARGEST * module;
         let each = rows.iter().enumerate().flat_map(|(i, row)| {
             let row = row.iter().enumerate();
             row.map(move |(j, value)| ((i, j), *value))

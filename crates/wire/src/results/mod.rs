@@ -9,6 +9,7 @@ mod exchanged;
 mod forces;
 mod hole_phase;
 mod largest_where;
+mod list;
 mod modes;
 mod spectrum;
 mod stress;
@@ -44,6 +45,8 @@ pub use spectrum::{NamedOrderDocument, OrderKindName, SpectrumDocument};
 pub use stress::{
     GearPeakStress, GearStressDocument, GearStressWhere, PeakStressDocument, StressDocument,
 };
+
+use list::{all, each};
 
 use super::declare::document;
 use super::geometry::{Frequencies, PairGeometry};
@@ -136,12 +139,4 @@ impl Results {
     pub fn to_json(&self) -> Result<String, Problem> {
         rounded_json(self).map_err(|error| Problem::new(Code::InternalError, error.to_string()))
     }
-}
-
-fn each(values: &[f64], convert: impl Fn(f64) -> f64) -> Vec<f64> {
-    values.iter().copied().map(convert).collect()
-}
-
-fn all<'a, F, T>(found: &'a [F], tell: impl Fn(&'a F) -> T) -> Vec<T> {
-    found.iter().map(tell).collect()
 }

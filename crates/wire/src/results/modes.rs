@@ -7,10 +7,10 @@ use meshwright_engine::vibration::campbell::Wave;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use super::all;
+use super::list::all;
 use crate::declare::document;
+use crate::gear_name::GearName;
 use crate::units::significant;
-use crate::warning::GearName;
 
 document! {
     /// The natural modes of each gear at rest, the lowest first. Two modes of one frequency, a cosine and a sine, stand once.

@@ -5,8 +5,7 @@ use meshwright_engine::assembly::NearHoles;
 use meshwright_engine::gear::{GearPair, Member, SpurGear};
 use meshwright_engine::vibration::most_modes;
 
-use super::Purpose;
-use super::document::{OUTPUT_TORQUE, SubmissionDocument};
+use super::document::{OUTPUT_TORQUE, Purpose, SubmissionDocument};
 use crate::declare::{Choice as _, Errors};
 use crate::forces::{DynamicsQuestion, ForceTableQuestion, SpeedRange, Speeds};
 use crate::modes::ModesQuestion;

@@ -18,6 +18,18 @@ pub const MOST_TORQUES: usize = 60;
 /// The most tags of a job or a study, and the most characters of one.
 pub(crate) const MOST_TAGS: (usize, usize) = (16, 64);
 
+/// Use of a submission, which decides its limits of size.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Purpose {
+    /// A job, which is queued.
+    Job,
+    /// A preview, for which a request waits.
+    Preview {
+        /// The most positions times torques.
+        most_positions: u64,
+    },
+}
+
 words! {
     /// The rows in which the load along the face is told.
     pub(crate) enum FaceRows {

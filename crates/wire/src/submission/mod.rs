@@ -20,7 +20,7 @@ pub use document::{MOST_TORQUES, TAGS};
 
 use checks::bearable_torque;
 use document::FaceRows;
-pub(super) use document::SubmissionDocument;
+pub(super) use document::{Purpose, SubmissionDocument};
 
 use super::declare::{
     Choice, EACH, Errors, Kind, Location, Node, Object as _, ObjectReader, utoipa_schema, word,
@@ -79,18 +79,6 @@ pub fn method_schema() -> utoipa::openapi::RefOr<utoipa::openapi::Schema> {
         "How the curves are computed.",
         &word("Method"),
     ))
-}
-
-/// Use of a submission, which decides its limits of size.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Purpose {
-    /// A job, which is queued.
-    Job,
-    /// A preview, for which a request waits.
-    Preview {
-        /// The most positions times torques.
-        most_positions: u64,
-    },
 }
 
 /// Windows of a true period that are chosen by the teeth of the pair.

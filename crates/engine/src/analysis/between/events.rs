@@ -10,14 +10,14 @@ const FARTHEST: f64 = 0.6;
 
 /// Evidence of an event's place from the samples on both sides.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct EventPlace {
     pub(super) at: f64,
     /// True if it was followed to there; otherwise it may be anywhere between its neighbors.
     pub(super) is_known: bool,
 }
 
 /// The places between the samples `at` and `at + 1` of `samples` at which a pair takes up or leaves the load, rising.
-pub(super) fn events(samples: &[Sample], at: usize) -> Vec<Place> {
+pub(super) fn events(samples: &[Sample], at: usize) -> Vec<EventPlace> {
     let (before, after) = (&samples[at], &samples[at + 1]);
     let (from, to) = (before.position, after.position);
     let pairs = before.pairs.iter().chain(&after.pairs);
@@ -28,13 +28,13 @@ pub(super) fn events(samples: &[Sample], at: usize) -> Vec<Place> {
     changing.sort_unstable();
     changing.dedup();
     let margin = TOGETHER * (to - from);
-    let within = |place: Option<f64>| Place {
+    let within = |place: Option<f64>| EventPlace {
         at: place.map_or(f64::midpoint(from, to), |place| {
             place.clamp(from + margin, to - margin)
         }),
         is_known: place.is_some(),
     };
-    let mut found: Vec<Place> = changing
+    let mut found: Vec<EventPlace> = changing
         .iter()
         .map(|&n| within(event(samples, at, n)))
         .collect();

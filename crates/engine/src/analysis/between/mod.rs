@@ -12,7 +12,7 @@ mod refinement;
 mod sections;
 
 use super::Case;
-use super::case::Place;
+use super::case::PositionInCurve;
 use crate::contact::MeshContact;
 
 pub(super) use peaks::{MOST_FOR_PEAKS, PeakSearch, Watched};
@@ -45,7 +45,7 @@ pub(super) struct PairState {
 impl Sample {
     /// Samples at `places` of a curve, with the `contacts`, δ and k there.
     pub(super) fn of(
-        places: &[Place],
+        places: &[PositionInCurve],
         contacts: &[MeshContact],
         transmission_error: &[f64],
         stiffness: &[f64],

@@ -4,7 +4,7 @@ use faer::Mat;
 
 use super::FaceModel;
 use super::slice::Slice;
-use crate::contact::coupled::{Touching, add_coupled, mirror};
+use crate::contact::coupled::{LoadedPair, add_coupled, mirror};
 use crate::gear::Member;
 
 /// The part of H between slices that all mesh periods have in common, and the data of its smooth part.
@@ -44,13 +44,13 @@ impl SliceCompliance {
             let lines = self.lines.iter().map(|&(pair, count)| {
                 let from = start;
                 start += count;
-                Touching {
+                LoadedPair {
                     pair: pair + period,
                     start: from,
                     shapes: basis.as_ref().subcols(from, count).transpose(),
                 }
             });
-            let lines: Vec<Touching<'_>> = lines.collect();
+            let lines: Vec<LoadedPair<'_>> = lines.collect();
             add_coupled(&mut h, &lines, |a, b| smooth.block(a, b));
         }
         mirror(&mut h);

@@ -95,7 +95,7 @@ impl FaceFlanks {
             last.set(Some((section, touch)));
             let touch = touch?;
             Some(FirstTouch {
-                delta: touch.delta + self.pair.askew(z),
+                delta: touch.delta + self.pair.misalignment_gap(z),
                 ..touch
             })
         };

@@ -1,7 +1,7 @@
 //! Contact along faces: lines that cross the flanks, cut into slices.
 //!
 //! Every transverse section of the pair is a plane pair at another phase: the plane's code says where its flanks touch first, how far they are apart, and
-//! in which direction they push ([`crate::touch::facing`]). Along a slice stand nonlinear springs between
+//! in which direction they push (`touch::facing`). Along a slice stand nonlinear springs between
 //! the flanks ([`spring`]): Hertz's, or the plane's patches of cells where a tip edge, a fillet or a kink is near. The line load is
 //! integrated over the loaded part of the slice, so that it is continuous where the contact ends.
 //! The rest of the compliance is linear: the smooth yield of both gears ([`FlankYield`]), and the half space between

@@ -246,7 +246,7 @@ impl<'a> Slicer<'a> {
 
     /// `place`, at `z`, with the opening by the axes.
     fn standing(&self, mut place: Place, z: f64) -> Place {
-        place.gap += place.weights[1] * self.model.pair().askew(z);
+        place.gap += place.weights[1] * self.model.pair().misalignment_gap(z);
         place
     }
 

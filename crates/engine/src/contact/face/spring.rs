@@ -26,7 +26,7 @@ const SPREAD: f64 = 1.0;
 /// The line loads at which cells are solved: that for which they are made times powers of this, from `LIGHTEST` such steps below it on.
 const STEP: f64 = 4.0;
 const LIGHTEST: i32 = 5;
-const SOLVED: usize = 8;
+const SOLVED: usize = LIGHTEST as usize + 3;
 
 /// The piece of a contact line that a spring stands for.
 #[derive(Debug, Clone, Copy)]
