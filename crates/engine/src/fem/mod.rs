@@ -2,13 +2,15 @@
 //!
 //! Read in this order: [`law`] (stress from strain), [`element`] (one element), `sparse` (the matrix of a grid) and `factor`, [`condensation`] (a grid's
 //! stiffness on the kept unknowns), [`recovery`] (displacements and stresses of the others), [`prescribed`] (at every node) and [`centrifugal`] (forces of
-//! rotation); of bodies with an extent along an axis [`axial`], [`prism`], [`surface`] and [`volume`]. Beside them: [`dense`]. It knows grids and materials,
+//! rotation); of bodies with an extent along an axis [`axial`], [`prism`], [`divided`], [`surface`]
+//! and [`volume`]. Beside them: [`dense`]. It knows grids and materials,
 //! and nothing of gears.
 
 pub mod axial;
 pub mod centrifugal;
 pub mod condensation;
 pub mod dense;
+pub mod divided;
 pub mod eigen;
 pub mod element;
 mod factor;
