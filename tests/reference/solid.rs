@@ -319,7 +319,8 @@ fn web_errors(case: &WebCase) -> Vec<f64> {
             axial: &across,
         };
         let largest = HOLE_ORDERS as usize;
-        let ring = HoledRing::new(&grid, &prism, None, (largest, &[])).expect("definite");
+        let ring = HoledRing::new(&grid, &prism, None, (largest, &[]), &Run::unattended())
+            .expect("definite");
         let web = ring.on_outer(0.0, &Run::unattended());
         let classes = web.expect("definite");
         // Orders of different classes do not meet.

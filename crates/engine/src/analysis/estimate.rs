@@ -172,11 +172,6 @@ const EVENING: u64 = 2;
 /// Bytes of one gear with nine functions across the face while it is made, and of its web besides.
 const FACE_MEMORY: [f64; 2] = [110e6, 60e6];
 
-/// Seconds of one core for the cube of the unknowns to which a web with holes is condensed, and bytes for their square. Measured as
-/// [`SECONDS`].
-const HOLED_SECONDS: f64 = 1.2e-11;
-const HOLED_MEMORY: f64 = 24.0;
-
 /// Nodes of a tooth and its rim in a section, about.
 const SECTION_NODES: f64 = 330.0;
 
@@ -205,13 +200,21 @@ fn add_faces(estimate: &mut Estimate, plan: &Plan, faces: &Faces) {
                 mirrored * per_gear * growth.powf(2.5) * nodes * f64::sqrt(nodes) + webs * per_web;
             let bytes =
                 FACE_MEMORY[0] * growth.powi(2) * nodes * f64::sqrt(nodes) + webs * FACE_MEMORY[1];
-            let condensed = spec.condensed_unknowns() as f64;
-            estimate.seconds += turned * HOLED_SECONDS * condensed.powi(3);
+            let mut of_holes = spec.cost_of_holes(false);
+            if pass.stress {
+                // They are condensed once more, with the rows of their edges.
+                let edges = spec.cost_of_holes(true);
+                of_holes.operations += edges.operations;
+                of_holes.memory = of_holes.memory.max(edges.memory);
+            }
+            estimate.seconds += turned * SECONDS[4] * of_holes.operations;
             let coupled = spec.coupled_unknowns().map(|count| count as f64);
             let flank = spec.basis_len() as f64 * repeated_teeth(gear);
             estimate.seconds += turned * SECONDS[4] * coupling(coupled, flank);
-            let coupling = 8.0 * (3.0 * coupled[0].powi(2) + 2.0 * coupled[1] * flank);
-            estimate.memory += (bytes + HOLED_MEMORY * condensed.powi(2) + coupling) as u64;
+            // The form of all, and of each set its matrix, the factors and what they are made of.
+            let coupling = 8.0 * (6.0 * coupled[0] * coupled[1] + coupled[1] * flank);
+            let kept = 8.0 * coupled[1] * flank;
+            estimate.memory += (bytes + of_holes.memory.max(coupling) + kept) as u64;
             if number == 0 {
                 let teeth = f64::from(gear.tooth_count());
                 estimate.degrees_of_freedom +=

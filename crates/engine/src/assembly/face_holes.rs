@@ -47,7 +47,7 @@ impl FaceHoles {
         let edges: Vec<&[u32]> = holed.grid.hole_edges.iter().map(Vec::as_slice).collect();
         let edges = Surface::new(&holed.prism(), &edges, true);
         Ok(Self {
-            classes: holed.ring(&edges.nodes())?.inside(run)?,
+            classes: holed.ring(&edges.nodes(), run)?.inside(run)?,
             sector_count: holed.grid.sector_count as usize,
             phase: holed.phase,
             edges,
@@ -163,8 +163,14 @@ pub(super) mod tests {
             };
             let edges: Vec<&[u32]> = grid.hole_edges.iter().map(Vec::as_slice).collect();
             let edges = Surface::new(&prism, &edges, true);
-            let ring =
-                HoledRing::new(&grid, &prism, None, (largest, &edges.nodes())).expect("sound");
+            let ring = HoledRing::new(
+                &grid,
+                &prism,
+                None,
+                (largest, &edges.nodes()),
+                &Run::unattended(),
+            )
+            .expect("sound");
             let holes = FaceHoles {
                 classes: ring.inside(&Run::unattended()).expect("sound"),
                 sector_count: 5,

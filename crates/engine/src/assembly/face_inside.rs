@@ -314,7 +314,7 @@ impl FaceInside {
     ) -> Result<Vec<Mat<c64>>, PartError> {
         let largest = self.stack.hole_orders.unwrap_or(0);
         let holed = HoledSection::new(&self.stack, self.spec.gear().section(), largest)?;
-        let ring = holed.ring(&[])?.moved(holed.phase, outer, run)?;
+        let ring = holed.ring(&[], run)?.moved(holed.phase, outer, run)?;
         run.check()?;
         let (grid, prism) = (&holed.grid, holed.prism());
         let (right, left) = &grid.side_nodes;

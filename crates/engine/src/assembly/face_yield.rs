@@ -5,11 +5,12 @@ use std::sync::Arc;
 use faer::{Mat, c64};
 
 use super::flank_fit::{FlankFit, smoothed, smoothed_rows};
-use super::holed::{HoledChange, SeenWeb, condensed_unknowns, coupled_unknowns};
+use super::holed::{HoledChange, SeenWeb, cost_of_holes, coupled_unknowns};
 use super::stack::{Stack, StackStiffness};
 use super::{FaceResolution, PartError};
 use crate::fem::axial::AxialBasis;
 use crate::fem::dense::{entries, symmetrize};
+use crate::fem::prism::CondensationCost;
 use crate::flank::ends::FlankEnds;
 use crate::flank::polynomials::{OWN_DEGREE, up_the_flank};
 use crate::gear::SolidGear;
@@ -85,9 +86,9 @@ impl FaceYieldSpec {
         self.stack().face.len()
     }
 
-    /// The unknowns to which a sector of the web is condensed that has its holes; 0 without holes.
-    pub fn condensed_unknowns(&self) -> usize {
-        condensed_unknowns(&self.stack(), self.gear.section())
+    /// Cost of the web with its holes, with how their `edges` move or without; nothing without holes.
+    pub fn cost_of_holes(&self, edges: bool) -> CondensationCost {
+        cost_of_holes(&self.stack(), self.gear.section(), edges)
     }
 
     /// The number of functions on a flank.

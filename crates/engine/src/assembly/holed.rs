@@ -16,13 +16,13 @@ use super::stack::{Stack, WebPorts, repeats_of, unknowns_of_holes};
 use crate::fem::FemError;
 use crate::fem::axial::AxialBasis;
 use crate::fem::dense::entries;
-use crate::fem::prism::{COMPONENTS, Prism};
+use crate::fem::prism::{COMPONENTS, CondensationCost, Prism};
 use crate::gear::{BlankRegion, Core, Hole, Ligament, Material, SpurGear};
 use crate::grid::{BlankGrid, GridLevel};
 use crate::ring::cyclic::Harmonics;
 use crate::ring::solid::gear::ClassAnswers;
 use crate::ring::solid::revolution::add_block;
-use crate::ring::solid::web::{HoledRing, condensed_blocks, conjugate_below_zero, of_order};
+use crate::ring::solid::web::{HoledRing, conjugate_below_zero, of_order};
 use crate::run::Run;
 
 /// Elements around the web for each order in which holes are taken into account; high orders need two for a wavelength.
@@ -203,7 +203,7 @@ impl HoledChange {
             ..
         } = web;
         let holed = HoledSection::new(stack, section, largest)?;
-        let mut change = holed.ring(&[])?.on_outer(holed.phase, run)?;
+        let mut change = holed.ring(&[], run)?.on_outer(holed.phase, run)?;
         for class in &mut change {
             for (k, order) in class.orders.iter().enumerate() {
                 let plain = -of_order(&web.plain, *order);
@@ -365,9 +365,9 @@ impl HoledSection {
     }
 
     /// The ring of it, which can be asked how the nodes `recovered` move.
-    pub(super) fn ring(&self, recovered: &[u32]) -> Result<HoledRing<'_>, FemError> {
+    pub(super) fn ring(&self, recovered: &[u32], run: &Run) -> Result<HoledRing<'_>, FemError> {
         let asked = (self.largest, recovered);
-        HoledRing::new(&self.grid, &self.prism(), self.hub.as_deref(), asked)
+        HoledRing::new(&self.grid, &self.prism(), self.hub.as_deref(), asked, run)
     }
 }
 
@@ -423,16 +423,26 @@ pub(crate) fn coupled_unknowns(stack: &Stack, section: &SpurGear) -> [usize; 2] 
     ]
 }
 
-/// The unknowns to which a sector of the web of `section` is condensed, whose gear is otherwise that of `stack`; 0 without holes.
-pub(crate) fn condensed_unknowns(stack: &Stack, section: &SpurGear) -> usize {
+/// Cost of the web of `section` with its holes, whose gear is otherwise that of `stack`, with how the `edges` of holes move or without; nothing without holes.
+pub(crate) fn cost_of_holes(stack: &Stack, section: &SpurGear, edges: bool) -> CondensationCost {
     let Some(largest) = stack.hole_orders else {
-        return 0;
+        return CondensationCost::default();
     };
     let Ok((grid, _)) = holed_grid(stack, section, largest) else {
-        return 0;
+        return CondensationCost::default();
+    };
+    let prism = Prism {
+        grid: &grid.grid,
+        material: section.material(),
+        twist: 0.0,
+        axial: &stack.across[1],
+    };
+    let recovered = match edges {
+        true => grid.hole_edges.iter().map(Vec::len).sum(),
+        false => 0,
     };
     let carried = stack.layers.len() > 2;
-    COMPONENTS * stack.across[1].len() * condensed_blocks(&grid, carried, largest)
+    HoledRing::cost(&grid, &prism, carried, (largest, recovered))
 }
 
 /// Amplitudes of the orders −`largest` … `largest` as a_0, a_1, b_1, …

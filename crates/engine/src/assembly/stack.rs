@@ -29,7 +29,7 @@ const SAME: f64 = 1e-6;
 const TOOTHED_PART: f64 = 0.25;
 /// Fields that fall by less from order to order, as a logarithm, are near ones: they make the stress at holes.
 const NEAR: f64 = 0.08;
-/// The most unknowns that holes couple: with them a gear takes some 1.2 GB and half a minute of a core.
+/// The most unknowns that holes couple: with them a gear takes 1 to 2 GB and half a minute of a core.
 const MOST_UNKNOWNS: usize = 6000;
 /// How much more an unknown counts where all of a part is condensed at once.
 const CONDENSED: f64 = 1.5;

@@ -14,6 +14,7 @@ use super::FemError;
 use super::element::COMPONENTS;
 use super::recovery::Functional;
 use super::sparse::{BlockMatrix, Failure, Numbering};
+use crate::grid::Element;
 
 /// The supernodal Cholesky factor of a sparse matrix, the unknowns from `interior` on last.
 pub(super) struct Factor {
@@ -29,6 +30,64 @@ pub(super) struct Halved {
     pub(super) inside: Mat<f64>,
     /// The part on those that are kept.
     pub(super) on_kept: Mat<f64>,
+}
+
+/// Size of a factorization before it is done, counted in blocks of the unknowns of a node.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct FactorSize {
+    /// Blocks of the matrix.
+    pub(super) matrix: f64,
+    /// Blocks of the factor.
+    pub(super) factor: f64,
+    /// Bytes that are needed beside both, of one unknown a node.
+    pub(super) scratch: f64,
+    /// Multiplications and additions, of one unknown a node.
+    pub(super) operations: f64,
+}
+
+impl FactorSize {
+    /// That of the matrix of `elements`; `None` if it cannot be ordered.
+    pub(super) fn of(elements: &[Element], numbering: &Numbering) -> Option<Self> {
+        let matrix = BlockMatrix::new(1, elements, numbering);
+        let order = matrix.fill_reducing_order(numbering.interior).ok()?;
+        let matrix = matrix.into_unknowns(numbering);
+        let symbolic = symbolic(&matrix, &order).ok()?;
+        let SymbolicCholeskyRaw::Supernodal(supernodes) = symbolic.raw() else {
+            return None;
+        };
+        let starts = supernodes.supernode_begin().iter();
+        let widths = starts.zip(supernodes.supernode_end());
+        let each = widths.enumerate().map(|(number, (start, end))| {
+            let below = supernodes.supernode(number).pattern().len() as f64;
+            let width = f64::from(end - start);
+            width * (0.5 * below * (below + width) + width * width / 6.0)
+        });
+        let scratch = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
+        Some(Self {
+            matrix: matrix.compute_nnz() as f64,
+            factor: symbolic.len_val() as f64,
+            scratch: scratch.unaligned_bytes_required() as f64,
+            operations: each.sum(),
+        })
+    }
+}
+
+/// The structure of the factor of the symmetric matrix whose lower triangle is `a`.
+fn symbolic(
+    a: &SparseColMat<u32, f64>,
+    order: &Perm<u32>,
+) -> Result<SymbolicCholesky<u32>, Failure> {
+    let params = CholeskySymbolicParams {
+        supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+        ..Default::default()
+    };
+    factorize_symbolic_cholesky(
+        a.symbolic(),
+        Side::Lower,
+        SymmetricOrdering::Custom(order.as_ref()),
+        params,
+    )
+    .map_err(|_| Failure::Size)
 }
 
 impl Factor {
@@ -62,17 +121,7 @@ impl Factor {
         order: Perm<u32>,
         interior: usize,
     ) -> Result<Self, Failure> {
-        let params = CholeskySymbolicParams {
-            supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
-            ..Default::default()
-        };
-        let symbolic = factorize_symbolic_cholesky(
-            a.symbolic(),
-            Side::Lower,
-            SymmetricOrdering::Custom(order.as_ref()),
-            params,
-        )
-        .map_err(|_| Failure::Size)?;
+        let symbolic = symbolic(a, &order)?;
         let mut values = vec![0.0; symbolic.len_val()];
         let mut memory = MemBuffer::new(
             symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default()),

@@ -2,13 +2,15 @@
 //!
 //! Read in this order: [`law`] (stress from strain), [`element`] (one element), `sparse` (the matrix of a grid) and `factor`, [`condensation`] (a grid's
 //! stiffness on the kept unknowns), [`recovery`] (displacements and stresses of the others), [`prescribed`] (at every node) and [`centrifugal`] (forces of
-//! rotation); of bodies with an extent along an axis [`axial`], [`prism`], [`surface`] and [`volume`]. Beside them: [`dense`]. It knows grids and materials,
+//! rotation); of bodies with an extent along an axis [`axial`], [`prism`], [`divided`], [`surface`]
+//! and [`volume`]. Beside them: [`dense`]. It knows grids and materials,
 //! and nothing of gears.
 
 pub(crate) mod axial;
 pub(crate) mod centrifugal;
 pub(crate) mod condensation;
 pub(crate) mod dense;
+pub(crate) mod divided;
 pub(crate) mod eigen;
 pub(crate) mod element;
 mod factor;

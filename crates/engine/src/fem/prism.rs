@@ -21,7 +21,7 @@ use super::FemError;
 use super::axial::{AxialBasis, AxialMatrices};
 use super::condensation::squared;
 use super::element::gradients;
-use super::factor::Factor;
+use super::factor::{Factor, FactorSize};
 use super::sparse::{BlockMatrix, Followers, Numbering};
 use crate::gear::{Material, Vector};
 use crate::grid::element::MOST_NODES;
@@ -81,6 +81,15 @@ pub struct NodeRows {
     pub by_kept: Mat<f64>,
     /// By forces on the requested points, with the kept unknowns held, in m/N.
     pub by_points: Mat<f64>,
+}
+
+/// Cost of a condensation before it is done.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct CondensationCost {
+    /// The most memory that it takes, with its result, in bytes.
+    pub memory: f64,
+    /// Multiplications and additions.
+    pub operations: f64,
 }
 
 /// Takes an element and its stiffness by its unknowns.
@@ -147,9 +156,40 @@ impl Prism<'_> {
         Ok((condensed, rows))
     }
 
+    /// Cost of [`Prism::condense`] to `interface`, with so many `recovered` nodes and no points.
+    pub fn cost(&self, interface: &Interface<'_>, recovered: usize) -> CondensationCost {
+        let Interface {
+            kept,
+            followers,
+            fixed,
+        } = *interface;
+        let numbering = Numbering::with_followers(self.grid.nodes.len(), kept, followers, fixed);
+        let kept = (numbering.count - numbering.interior) as f64;
+        let [unknowns, rows] =
+            [kept, recovered as f64].map(|count| count * self.unknowns_of_node() as f64);
+        let mut cost = CondensationCost::default();
+        let Some(of_nodes) = FactorSize::of(&self.grid.elements, &numbering) else {
+            return cost;
+        };
+        for set in self.independent() {
+            let size = set.len() as f64;
+            let square = size * size;
+            let values = 8.0 * square * of_nodes.factor;
+            // A value and its row for each entry of the matrix; the trailing part of the factor, and its square.
+            let factorized = square * (12.0 * of_nodes.matrix + of_nodes.scratch) + values;
+            let squared = values + 16.0 * square * kept * kept;
+            cost.memory = cost.memory.max(factorized).max(squared);
+            let solved = size * recovered as f64 * square * of_nodes.factor;
+            cost.operations +=
+                square * size * of_nodes.operations + (size * kept).powi(3) / 6.0 + solved;
+        }
+        cost.memory += 8.0 * unknowns * (unknowns + rows);
+        cost
+    }
+
     /// The unknowns of a node, in sets that do not stiffen each other. A straight body is its own image in its middle: motions even in the plane and odd along
     /// the axis do not couple with the opposite.
-    fn independent(&self) -> Vec<Vec<usize>> {
+    pub(super) fn independent(&self) -> Vec<Vec<usize>> {
         let functions = self.axial.len();
         let all = 0..self.unknowns_of_node();
         if self.twist != 0.0 || !self.axial.alternates() {

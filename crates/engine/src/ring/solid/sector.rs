@@ -106,34 +106,35 @@ impl SolidSector {
         self.size * (self.side_nodes + self.arcs.len() * orders.len())
     }
 
-    /// `rows` on the interface as rows on the unknowns of the class: sides, then arc by arc, order by order.
-    pub(crate) fn on_class(&self, rows: &Mat<f64>, class: usize, orders: &[i64]) -> Mat<c64> {
+    /// How each unknown of the class, sides, then arc by arc, order by order, moves the interface: the unknowns there, and how far.
+    fn motions(&self, class: usize, orders: &[i64]) -> Vec<Vec<(usize, c64)>> {
         let (size, sides) = (self.size, self.size * self.side_nodes);
         let angle = std::f64::consts::TAU * (class % self.count) as f64 / self.count as f64;
         let across = Self::turn(1, angle);
-        let mut on_class = Mat::<c64>::zeros(rows.nrows(), self.unknowns(orders));
-        for j in 0..sides {
-            let (right, left) = (rows.col_as_slice(j), rows.col_as_slice(sides + j));
-            let column = on_class.col_as_slice_mut(j);
-            for ((to, r), l) in column.iter_mut().zip(right).zip(left) {
-                *to = across * *l + c64::new(*r, 0.0);
-            }
-        }
-        let (mut from, mut first) = (2 * sides, sides);
+        let of_side = |j: usize| vec![(j, c64::new(1.0, 0.0)), (sides + j, across)];
+        let mut motions: Vec<_> = (0..sides).map(of_side).collect();
+        let mut from = 2 * sides;
         for arc in &self.arcs {
             for &order in orders {
-                for (block, turn) in arc.trace(order) {
-                    for c in 0..size {
-                        let from = rows.col_as_slice(from + block * size + c);
-                        let column = on_class.col_as_slice_mut(first + c);
-                        for (to, from) in column.iter_mut().zip(from) {
-                            *to += turn * *from;
-                        }
-                    }
+                let trace = arc.trace(order);
+                for c in 0..size {
+                    let moved = trace
+                        .iter()
+                        .map(|(block, turn)| (from + block * size + c, *turn));
+                    motions.push(moved.collect());
                 }
-                first += size;
             }
             from += arc.blocks() * size;
+        }
+        motions
+    }
+
+    /// `rows` on the interface as rows on the unknowns of the class: sides, then arc by arc, order by order.
+    pub fn on_class(&self, rows: &Mat<f64>, class: usize, orders: &[i64]) -> Mat<c64> {
+        let motions = self.motions(class, orders);
+        let mut on_class = Mat::<c64>::zeros(rows.nrows(), motions.len());
+        for (j, moved) in motions.iter().enumerate() {
+            add_columns(on_class.col_as_slice_mut(j), rows, moved);
         }
         on_class
     }
@@ -184,17 +185,28 @@ impl SolidSector {
 
     /// The Hermitian stiffness of one sector on the unknowns of the class.
     pub(crate) fn class_stiffness(&self, class: usize, orders: &[i64]) -> Mat<c64> {
-        let half = self.on_class(&self.stiffness, class, orders);
-        // Pᴴ (K P): the same on the rows of K P, which are the conjugates of the columns of its adjoint.
-        let adjoint = half.adjoint().to_owned();
-        let parts = [
-            Mat::from_fn(adjoint.nrows(), adjoint.ncols(), |i, j| adjoint[(i, j)].re),
-            Mat::from_fn(adjoint.nrows(), adjoint.ncols(), |i, j| adjoint[(i, j)].im),
-        ];
-        let [real, imaginary] = parts.map(|part| self.on_class(&part, class, orders));
-        let n = real.nrows();
-        Mat::from_fn(n, n, |i, j| {
-            real[(i, j)] + c64::new(0.0, 1.0) * imaginary[(i, j)]
-        })
+        let motions = self.motions(class, orders);
+        let count = motions.len();
+        let mut stiffness = Mat::<c64>::zeros(count, count);
+        let mut forces = vec![c64::new(0.0, 0.0); self.stiffness.nrows()];
+        for (j, moved) in motions.iter().enumerate() {
+            forces.fill(c64::new(0.0, 0.0));
+            add_columns(&mut forces, &self.stiffness, moved);
+            let column = stiffness.col_as_slice_mut(j);
+            for (to, motion) in column.iter_mut().zip(&motions) {
+                let each = motion.iter().map(|(at, turn)| turn.conj() * forces[*at]);
+                *to = each.sum();
+            }
+        }
+        stiffness
+    }
+}
+
+/// Adds the columns of `rows` that have a part in a motion, times that part.
+fn add_columns(sum: &mut [c64], rows: &Mat<f64>, moved: &[(usize, c64)]) {
+    for (from, turn) in moved {
+        for (to, value) in sum.iter_mut().zip(rows.col_as_slice(*from)) {
+            *to += *turn * *value;
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! A web with holes: a plane grid times functions across it, on the orders of its outer circle.
 
-use faer::{Mat, c64};
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, Par, c64};
 use rayon::prelude::*;
 
 use super::revolution::{add_block, last_of};
@@ -8,9 +9,13 @@ use super::sector::{Arc, SolidSector};
 use crate::fem::FemError;
 use crate::fem::Followers;
 use crate::fem::dense::Cholesky;
-use crate::fem::prism::{Interface, Prism};
+use crate::fem::divided::DividedPrism;
+use crate::fem::prism::{CondensationCost, Interface, Prism};
 use crate::grid::BlankGrid;
 use crate::run::Run;
+
+/// The most threads that a computation has.
+const MOST_THREADS: f64 = 8.0;
 
 /// A ring of sectors with holes, each condensed to its interface.
 ///
@@ -27,6 +32,17 @@ pub struct HoledRing<'a> {
     largest: usize,
     /// Stiffness under the inner circle, one of each order 0 …; without it that circle is held.
     hub: Option<&'a [Mat<c64>]>,
+}
+
+/// The unknowns to which a sector is condensed: its sides node by node, then its circles, the outer one last.
+struct SectorInterface<'a> {
+    kept: Vec<u32>,
+    followers: Vec<Followers<'a>>,
+    held: &'a [u32],
+    /// The nodes of each circle that is not held, and their angles.
+    circles: Vec<(&'a [u32], Vec<f64>)>,
+    /// True if one sector is all of the ring.
+    is_whole: bool,
 }
 
 /// The stiffness of a ring on its outer circle, in one class.
@@ -58,21 +74,8 @@ pub struct MovedRing {
     pub hub: Option<Vec<Mat<c64>>>,
 }
 
-impl<'a> HoledRing<'a> {
-    /// The ring of sectors `grid`; `prism` is its section with the functions across it, and the displacements of the nodes `recovered` can be asked for. It is asked
-    /// for the orders up to `largest`.
-    ///
-    /// `hub` is the stiffness under the inner circle, one of each of these orders; without it that circle is held.
-    ///
-    /// # Errors
-    ///
-    /// [`FemError`].
-    pub fn new(
-        grid: &BlankGrid,
-        prism: &Prism<'_>,
-        hub: Option<&'a [Mat<c64>]>,
-        (largest, recovered): (usize, &[u32]),
-    ) -> Result<Self, FemError> {
+impl<'a> SectorInterface<'a> {
+    fn new(grid: &'a BlankGrid, carried: bool, largest: usize) -> Self {
         let (right, left) = &grid.side_nodes;
         let angle = |node: &u32| {
             let place = grid.grid.nodes[*node as usize];
@@ -80,7 +83,7 @@ impl<'a> HoledRing<'a> {
         };
         let mut circles = vec![(grid.arc_nodes.as_slice(), grid.arc_angles.clone())];
         let mut held = grid.bore_nodes.as_slice();
-        if hub.is_some() {
+        if carried {
             circles.insert(0, (held, held.iter().map(angle).collect()));
             held = &[];
         }
@@ -95,14 +98,53 @@ impl<'a> HoledRing<'a> {
                 kept.extend_from_slice(nodes);
             }
         }
-        let interface = Interface {
-            kept: &kept,
-            followers: &followers,
-            fixed: held,
-        };
-        let (condensed, rows) = prism.condense("the web", &interface, &[], recovered)?;
-        let angles: Vec<_> = circles.into_iter().map(|(_, angles)| angles).collect();
-        let arcs = angles.iter().map(|angles| match is_whole {
+        Self {
+            kept,
+            followers,
+            held,
+            circles,
+            is_whole,
+        }
+    }
+
+    fn of_prism(&self) -> Interface<'_> {
+        Interface {
+            kept: &self.kept,
+            followers: &self.followers,
+            fixed: self.held,
+        }
+    }
+
+    /// The number of its blocks of unknowns, one a node or an amplitude.
+    fn blocks(&self) -> usize {
+        let followed = self.followers.iter().map(|of| of.weights.ncols());
+        self.kept.len() + followed.sum::<usize>()
+    }
+}
+
+impl<'a> HoledRing<'a> {
+    /// The ring of sectors `grid`; `prism` is its section with the functions across it, and the displacements of the nodes `recovered` can be asked for. It is asked
+    /// for the orders up to `largest`.
+    ///
+    /// `hub` is the stiffness under the inner circle, one of each of these orders; without it that circle is held.
+    ///
+    /// # Errors
+    ///
+    /// [`FemError`].
+    pub fn new(
+        grid: &BlankGrid,
+        prism: &Prism<'_>,
+        hub: Option<&'a [Mat<c64>]>,
+        (largest, recovered): (usize, &[u32]),
+        run: &Run,
+    ) -> Result<Self, FemError> {
+        let sides = SectorInterface::new(grid, hub.is_some(), largest);
+        let interface = sides.of_prism();
+        let divided = DividedPrism::new(prism, &interface);
+        let (stiffness, rows) = divided.condense("the web", recovered, run)?;
+        let angles = sides.circles.into_iter().map(|(_, angles)| angles);
+        let angles: Vec<_> = angles.collect();
+        let arcs = angles.iter().map(|angles| match sides.is_whole {
             true => Arc::Harmonics(largest),
             false => Arc::Nodes(angles.clone()),
         });
@@ -110,15 +152,49 @@ impl<'a> HoledRing<'a> {
             sector: SolidSector {
                 count: grid.sector_count as usize,
                 size: prism.unknowns_of_node(),
-                stiffness: condensed.stiffness,
-                side_nodes: right.len(),
+                stiffness,
+                side_nodes: grid.side_nodes.0.len(),
                 arcs: arcs.collect(),
             },
             angles,
-            rows: rows.by_kept,
+            rows,
             largest,
             hub,
         })
+    }
+
+    /// Cost of making a ring of sectors `grid` on a bore that is `carried` or held, and of its stiffness on the outer circle, for the orders up to `largest` and
+    /// so many `recovered` nodes.
+    pub fn cost(
+        grid: &BlankGrid,
+        prism: &Prism<'_>,
+        carried: bool,
+        (largest, recovered): (usize, usize),
+    ) -> CondensationCost {
+        let sides = SectorInterface::new(grid, carried, largest);
+        let interface = sides.of_prism();
+        let made = DividedPrism::new(prism, &interface).cost(recovered);
+        let size = prism.unknowns_of_node() as f64;
+        let count = grid.sector_count as usize;
+        let classes = (count / 2 + 1) as f64;
+        let outer = size * (2 * largest + 1).div_ceil(count) as f64;
+        let inner =
+            size * grid.side_nodes.0.len() as f64 + outer * (sides.circles.len() - 1) as f64;
+        let rows = size * recovered as f64;
+        // What is left of each class is kept. Meanwhile there are its stiffness, the factor of what is eliminated, a product, and its rows.
+        let left = outer * (outer + rows);
+        let meanwhile = match inner > 0.0 {
+            true => (inner + outer) * (2.0 * inner + outer + rows) + outer * outer,
+            false => outer * outer,
+        };
+        let of_classes = 16.0 * (classes.min(MOST_THREADS) * meanwhile + classes * left);
+        let kept = size * sides.blocks() as f64;
+        CondensationCost {
+            memory: made.memory.max(8.0 * kept * (kept + rows) + of_classes),
+            // Complex numbers take four of each.
+            operations: made.operations
+                + 4.0 * classes * inner * (inner * inner / 6.0 + (inner + outer) * (outer + rows)),
+        }
     }
 
     /// Its stiffness on the orders of the outer circle, class by class. Hole 0 of a pattern stands at the angle
@@ -130,7 +206,12 @@ impl<'a> HoledRing<'a> {
     pub fn on_outer(&self, phase: f64, run: &Run) -> Result<Vec<ClassStiffness>, FemError> {
         let size = self.sector.size;
         self.each_class(run, |_, orders, stiffness| {
-            let mut outer = last_of(&stiffness, orders.len() * size)?;
+            let kept = orders.len() * size;
+            // Nothing is to be eliminated of a whole ring on its bore.
+            let mut outer = match stiffness.nrows() == kept {
+                true => stiffness,
+                false => last_of(&stiffness, kept)?,
+            };
             for j in 0..outer.ncols() {
                 for i in 0..outer.nrows() {
                     outer[(i, j)] *= SolidSector::turn(orders[j / size] - orders[i / size], phase);
@@ -151,13 +232,25 @@ impl<'a> HoledRing<'a> {
     pub fn inside(&self, run: &Run) -> Result<Vec<ClassRows>, FemError> {
         let sector = &self.sector;
         self.each_class(run, |class, orders, stiffness| {
-            let follows = following(&stiffness, orders.len() * sector.size)?;
-            let rows = sector.on_class(&self.rows, class, &orders);
-            let (inner, outer) = (follows.nrows(), follows.ncols());
-            let by_inner = rows.subcols(0, inner) * follows;
+            let outer = orders.len() * sector.size;
+            let mut rows = sector.on_class(&self.rows, class, &orders);
+            // Nothing else moves of a whole ring on its bore.
+            if stiffness.nrows() > outer {
+                let follows = following(&stiffness, outer)?;
+                let (by_inner, mut by_outer) = rows.as_mut().split_at_col_mut(follows.nrows());
+                matmul(
+                    by_outer.as_mut(),
+                    Accum::Add,
+                    by_inner.as_ref(),
+                    &follows,
+                    c64::new(1.0, 0.0),
+                    Par::Seq,
+                );
+                rows = by_outer.to_owned();
+            }
             Ok(ClassRows {
                 class,
-                rows: rows.subcols(inner, outer) + by_inner,
+                rows,
                 orders,
             })
         })
@@ -237,17 +330,6 @@ impl<'a> HoledRing<'a> {
         let made: Vec<Option<T>> = made.collect::<Result<_, FemError>>()?;
         Ok(made.into_iter().flatten().collect())
     }
-}
-
-/// The blocks of unknowns, one a node or an amplitude, that [`HoledRing::new`] keeps of a sector `grid` whose bore is `carried` or held.
-pub(crate) fn condensed_blocks(grid: &BlankGrid, carried: bool, largest: usize) -> usize {
-    let (right, left) = &grid.side_nodes;
-    let on = |nodes: &[u32]| match right.is_empty() {
-        true => 2 * largest + 1,
-        false => nodes.len(),
-    };
-    let bore = if carried { on(&grid.bore_nodes) } else { 0 };
-    right.len() + left.len() + bore + on(&grid.arc_nodes)
 }
 
 /// How all other unknowns follow the last `outer` of those of a class.
@@ -343,7 +425,7 @@ mod tests {
                     twist: 0.0,
                     axial: &axial,
                 };
-                HoledRing::new(grid, &prism, hub, (largest, &[])).expect("sound")
+                HoledRing::new(grid, &prism, hub, (largest, &[]), &run).expect("sound")
             });
             let [sectors, as_one] = rings.each_ref().map(|ring| ring.on_outer(phase, &run));
             let [sectors, as_one] =
