@@ -12,6 +12,8 @@
 
 use std::f64::consts::TAU;
 
+use faer::c64;
+
 use super::AnalysisError;
 use super::case::Case;
 use super::curve::Curve;
@@ -59,13 +61,14 @@ impl PhasePlan {
             },
         )?
         .best();
+        let amplitude = terms.amplitudes();
         let over_turn = (0..=TURNS).map(|i| {
             let place = f64::from(i) / f64::from(TURNS);
             let curve = terms.curve(place);
             let [low, high] = [f64::min, f64::max].map(|pick| curve.iter().copied().reduce(pick));
             AtTurn {
                 turn: place * hole_pitch,
-                amplitude: terms.amplitude(place),
+                amplitude: amplitude(place),
                 peak_to_peak: high.unwrap_or(0.0) - low.unwrap_or(0.0),
             }
         });
@@ -113,7 +116,7 @@ impl PhasePlan {
             .map(|(exact, known)| exact.transmission_error - known)
             .collect();
         let [a, b] = [&curve, &beyond].map(|values| line(values, self.ratio[0]));
-        Ok((a[0] + b[0]).hypot(a[1] + b[1]))
+        Ok((a + b).norm())
     }
 }
 
@@ -131,8 +134,8 @@ struct Terms {
     ratio: [u32; 2],
     /// Values with the driven blank as it stands, and the mean addition of the driving one: period after period.
     still: Vec<f64>,
-    /// Harmonics of T_1 over a hole pitch at each fraction of the mesh period: amplitudes and phases.
-    driving: Vec<Vec<(f64, f64)>>,
+    /// Harmonics of T_1 over a hole pitch at each fraction of the mesh period: c_k from k = 1 on, T_1 = Re Σ c_k e^(2πi k u).
+    driving: Vec<Vec<c64>>,
 }
 
 impl Terms {
@@ -199,9 +202,10 @@ impl Terms {
             driving: driving
                 .iter()
                 .map(|values| {
-                    let mut lines = harmonics(values);
-                    lines.truncate(HARMONICS);
+                    let lines = harmonics(values).into_iter().take(HARMONICS);
                     lines
+                        .map(|(amplitude, phase)| c64::from_polar(amplitude, phase))
+                        .collect()
                 })
                 .collect(),
         })
@@ -211,28 +215,55 @@ impl Terms {
     fn curve(&self, place: f64) -> Vec<f64> {
         let [p, q] = self.ratio.map(f64::from);
         let per_period = self.driving.len();
-        let at = |(i, still): (usize, &f64)| {
-            let n = (i / per_period) as f64;
-            let u = place + n * p / q;
-            let lines = self.driving[i % per_period].iter().zip(1_u32..);
-            let moved = lines
-                .map(|((amplitude, phase), k)| amplitude * (TAU * f64::from(k) * u + phase).cos());
-            still + moved.sum::<f64>()
-        };
-        self.still.iter().enumerate().map(at).collect()
+        let periods = self.still.chunks(per_period).zip(0_u32..);
+        let moved = periods.flat_map(|(still, n)| {
+            let around = c64::from_polar(1.0, TAU * (place + f64::from(n) * p / q));
+            let each = still.iter().zip(&self.driving);
+            each.map(move |(still, lines)| {
+                let next = |sum: c64, line: &c64| (sum + line) * around;
+                still + lines.iter().rev().fold(c64::ZERO, next).re
+            })
+        });
+        moved.collect()
     }
 
-    /// The amplitude of this curve at the order of the holes.
-    fn amplitude(&self, place: f64) -> f64 {
-        let [cosine, sine] = line(&self.curve(place), self.ratio[0]);
-        cosine.hypot(sine)
+    /// The amplitude of this curve at the order of the holes, place by place.
+    ///
+    /// The line of a curve at this order is Σ δ e^(−2πi p x/q) over its positions x = n + f. Over n the part of c_k adds up only where k ± 1 is a multiple of q.
+    fn amplitudes(&self) -> impl Fn(f64) -> f64 {
+        let [p, q] = self.ratio;
+        let per_period = self.driving.len();
+        let step = TAU * f64::from(p) / (f64::from(q) * per_period as f64);
+        let still = line(&self.still, p);
+        let most = self.driving.iter().map(Vec::len).max().unwrap_or(0);
+        let parts = (1..=most as u32).map(|k| {
+            let [forwards, backwards] =
+                [k.abs_diff(1), k + 1].map(|beside| f64::from(beside.is_multiple_of(q)));
+            let each = self.driving.iter().enumerate();
+            let [one, other] = each.fold([c64::ZERO; 2], |[one, other], (i, lines)| {
+                let c = lines.get(k as usize - 1).copied().unwrap_or(c64::ZERO);
+                let weight = c64::from_polar(1.0 / per_period as f64, -step * i as f64);
+                [one + c * weight, other + c.conj() * weight]
+            });
+            [one * forwards, other * backwards]
+        });
+        let parts: Vec<[c64; 2]> = parts.collect();
+        move |place| {
+            let around = c64::from_polar(1.0, TAU * place);
+            let sum = |around: c64, of: usize| {
+                let parts = parts.iter().rev();
+                parts.fold(c64::ZERO, |sum, part| (sum + part[of]) * around)
+            };
+            (still + sum(around, 0) + sum(around.conj(), 1)).norm()
+        }
     }
 
     /// The place of a hole pitch, from 0 to 1, at which the amplitude is least.
     fn best(&self) -> f64 {
         let step = 1.0 / f64::from(TURNS);
+        let amplitude = self.amplitudes();
         let places = (0..TURNS).map(|i| f64::from(i) * step);
-        let known = places.map(|place| (place, self.amplitude(place)));
+        let known = places.map(|place| (place, amplitude(place)));
         let (middle, _) = known
             .min_by(|a, b| a.1.total_cmp(&b.1))
             .unwrap_or((0.0, 0.0));
@@ -240,7 +271,7 @@ impl Terms {
         let [mut low, mut high] = [middle - step, middle + step];
         for _ in 0..STEPS {
             let part = golden * (high - low);
-            if self.amplitude(high - part) < self.amplitude(low + part) {
+            if amplitude(high - part) < amplitude(low + part) {
                 high = low + part;
             } else {
                 low = high - part;
@@ -250,14 +281,11 @@ impl Terms {
     }
 }
 
-/// Cosine and sine of `values`, at equal steps over a period, that repeat `times` in it.
-fn line(values: &[f64], times: u32) -> [f64; 2] {
-    let turn = TAU * f64::from(times) / values.len() as f64;
+/// The line of `values`, at equal steps over a period, that repeats `times` in it: its amplitude and phase.
+fn line(values: &[f64], times: u32) -> c64 {
+    let turn = -TAU * f64::from(times) / values.len() as f64;
     let share = 2.0 / values.len() as f64;
-    let part = |of: fn(f64) -> f64| -> f64 {
-        let each = values.iter().enumerate();
-        each.map(|(i, value)| share * value * of(turn * i as f64))
-            .sum()
-    };
-    [part(f64::cos), part(f64::sin)]
+    let each = values.iter().enumerate();
+    each.map(|(i, value)| c64::from_polar(share * value, turn * i as f64))
+        .sum()
 }
