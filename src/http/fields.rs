@@ -308,6 +308,7 @@ impl Done {
             degrees_of_freedom,
             memory,
             seconds,
+            ..
         } = estimated.await?;
         let [made, sent] = field_bytes(&case, degrees_of_freedom, grids);
         let memory = (memory + made).div_ceil(1_000_000);

@@ -6,6 +6,7 @@ use axum::Json;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
+use meshwright_engine::analysis::{Estimate, PartCost};
 use meshwright_engine::run::Run;
 use meshwright_studies::table::{QuantityEntry, quantities as all_quantities};
 use meshwright_studies::{MOST_DESIGNS, Study};
@@ -58,8 +59,8 @@ pub(super) struct StudyValidation {
 pub(super) struct StudyEstimate {
     /// One design: of those that were looked at, the one that takes longest.
     design: EstimateDocument,
-    /// Time of all designs on one core, in seconds: their number times the mean of those that were looked at. Designs that are equal, cannot be
-    /// built or have parts in common take less.
+    /// Time of all designs on one core, in seconds, by those that were looked at: a part that these share, as the gears of the members of a population, is made
+    /// once. Designs that are equal or cannot be built take less.
     seconds: f64,
     /// Positions times torques of all designs.
     positions: u64,
@@ -82,20 +83,42 @@ impl StudyEstimate {
         let mut estimates = Vec::with_capacity(samples.len());
         for sample in &samples {
             run.check().map_err(|_| stopped())?;
-            estimates.push(EstimateDocument::of(sample));
+            estimates.push(sample.estimate());
         }
         let scale = study.total() as f64 / estimates.len().max(1) as f64;
-        let seconds: f64 = estimates.iter().map(|each| each.seconds).sum();
-        let positions: u64 = estimates.iter().map(|each| each.positions).sum();
-        let longest = estimates
-            .into_iter()
-            .max_by(|a, b| a.seconds.total_cmp(&b.seconds));
-        Ok(longest.map(|design| Self {
-            design,
-            seconds: scale * seconds,
+        let positions: u64 = samples.iter().map(Submission::positions_total).sum();
+        let longest = samples
+            .iter()
+            .zip(&estimates)
+            .max_by(|(_, a), (_, b)| a.seconds.total_cmp(&b.seconds));
+        Ok(longest.map(|(sample, _)| Self {
+            design: EstimateDocument::of(sample),
+            seconds: seconds_of_all(&estimates, [study.total(), study.unlike_designs()]),
             positions: (scale * positions as f64) as u64,
         }))
     }
+}
+
+/// Seconds of one core for so many designs of which `samples` are some, and of which so many may have unlike gears: a part that samples share is made once for all,
+/// and one that only one of them has is made as often as there are unlike gears.
+fn seconds_of_all(samples: &[Estimate], [total, unlike]: [usize; 2]) -> f64 {
+    let mut known: Vec<&PartCost> = Vec::new();
+    let [mut first, mut later, mut own] = [0.0; 3];
+    for (number, sample) in samples.iter().enumerate() {
+        own += sample.seconds;
+        for part in &sample.parts {
+            own -= part.seconds;
+            if known.iter().any(|known| known.is_same(part)) {
+                continue;
+            }
+            known.push(part);
+            *(if number == 0 { &mut first } else { &mut later }) += part.seconds;
+        }
+    }
+    let count = samples.len();
+    let each_later = later / count.saturating_sub(1).max(1) as f64;
+    let own = own / count.max(1) as f64;
+    first + each_later * unlike.saturating_sub(1) as f64 + own * total as f64
 }
 
 /// Number of designs of a study that are estimated. Each estimate divides two gears into elements.
@@ -307,4 +330,51 @@ document! {
 )]
 pub(super) async fn limits(State(app): State<App>) -> Json<ServiceLimits> {
     Json(ServiceLimits::of(&app))
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    /// The estimate of a study of this `plan` on the pair of case 2, over one mesh period.
+    fn estimated(plan: (&str, Value)) -> StudyEstimate {
+        let base = include_str!("../../api/examples/test-case-2.json");
+        let mut base: Value = serde_json::from_str(base).expect("an example");
+        base["resolution"] = json!({ "positions_per_mesh_period": 8, "span_mesh_periods": 1 });
+        let study = json!({ "base": base, plan.0: plan.1 });
+        let run = Run::unattended();
+        let study = Study::parse(study.to_string().as_bytes(), &run).expect("a study");
+        let estimate = StudyEstimate::of(&study, &run).expect("not stopped");
+        estimate.expect("designs that can be built")
+    }
+
+    #[test]
+    fn the_gears_of_a_population_are_estimated_once_and_those_of_unlike_designs_each_time() {
+        let of_members = |size: u32| {
+            let accuracy = json!({ "driving": { "iso_1328_class": 6 } });
+            estimated(("population", json!({ "size": size, "accuracy": accuracy })))
+        };
+        let [two, many] = [2, 202].map(of_members);
+        // The one design has its gears and its contacts, and each further member contacts alone.
+        let member = (many.seconds - two.seconds) / 200.0;
+        let gears = two.seconds - 2.0 * member;
+        assert!(member > 0.0 && gears > 2.0 * member, "{member} {gears}");
+        assert!((two.design.seconds / (gears + member) - 1.0).abs() < 1e-9);
+
+        // Holes that move leave the teeth and the other gear as they are.
+        let of_circles = |count: u32| {
+            let radii: Vec<f64> = (0..count).map(|i| 33.0 + 0.01 * f64::from(i)).collect();
+            let path = "/pair/driven/blank/holes/circle_radius_mm";
+            estimated(("axes", json!([{ "path": path, "values": radii }])))
+        };
+        let [two, many] = [2, 12].map(of_circles);
+        let each = (many.seconds - two.seconds) / 10.0;
+        assert!(
+            each > 1.1 * member && each < 0.8 * two.design.seconds,
+            "{each} of {}",
+            two.design.seconds
+        );
+    }
 }

@@ -137,9 +137,9 @@ pub fn blank_modes_estimate(case: &Case) -> Estimate {
         both[1] = [0.0; 2];
     }
     Estimate {
-        degrees_of_freedom: 0,
         // One gear after the other.
         memory: both.iter().map(|[_, bytes]| *bytes).fold(0.0, f64::max) as u64,
         seconds: both.iter().map(|[seconds, _]| seconds).sum(),
+        ..Estimate::default()
     }
 }

@@ -4,31 +4,37 @@ use super::at_speed::{run_up_cost, usual_stiffness};
 use super::case::Model;
 use super::case::{Case, Faces};
 use super::forces::{ForcesRequest, TablePlan};
-use super::hole_phase::PhasePlan;
 use super::plan::{Pass, Plan};
 use super::running::Running;
-use crate::assembly::FaceYieldSpec;
 use crate::assembly::blank::blank_grid;
 use crate::assembly::interface::{harmonics, interface_radius, orders_of_blank};
 use crate::assembly::pair_spec::cells_per_patch;
+use crate::assembly::{FaceYieldSpec, GearSpec, TeethSpec};
 use crate::contact::{ContactSolver, default_penalty};
 use crate::gear::{Member, SpurGear, gcd};
-use crate::grid::{GridLevel, ToothGrid};
+use crate::grid::{BlankGrid, GridLevel, ToothGrid};
 use crate::ring::shaft::orders_of_edge;
 use crate::touch::facing::Facing;
 use crate::vibration::rotation;
 
 /// Seconds of one core for the first contact solution at a fraction of the mesh period, for each further one there, and for a linear
-/// system of the augmented Lagrangian, all with the cells of [`CELLS`]; for a node of a factorized grid; and for a multiplication and
-/// addition of dense linear algebra. Measured on a 2.6 GHz server core, good to a factor of two.
-const SECONDS: [f64; 5] = [0.2e-3, 0.05e-3, 0.02e-3, 6e-6, 0.05e-9];
+/// system of the augmented Lagrangian, all with the cells of [`CELLS`]; and for a multiplication and addition of dense linear algebra. Measured on a 2.6 GHz server
+/// core.
+const SECONDS: [f64; 4] = [0.27e-3, 0.035e-3, 0.02e-3, 0.065e-9];
 
-/// Two patches at the standard level; solutions take the third power of the cells.
+/// Seconds of one core for a node of a tooth and of a blank. Measured as [`SECONDS`].
+const NODE_SECONDS: [f64; 2] = [13e-6, 6.5e-6];
+
+/// Seconds of one core for any case, and for the effect of holes at a position to the first order. Measured as [`SECONDS`].
+const BASE_SECONDS: f64 = 0.01;
+const FIRST_ORDER_SECONDS: f64 = 0.03e-3;
+
+/// Two patches at the standard level. The time of a solution grows as the cells, and as their third power where load brings more pairs together than three.
 const CELLS: f64 = 80.0;
 
-/// How much longer a first solution takes where load brings more pairs together than the contact ratio: tips dig in, and patches are placed
-/// again, wider.
-const DIGGING: f64 = 6.0;
+/// Pairs beyond which tips dig in, and patches are placed again, wider; and how much longer a first solution takes then.
+const FEW_PAIRS: usize = 3;
+const DIGGING: f64 = 3.0;
 
 /// How far from the pitch point pairs are looked for.
 const FARTHEST_PAIR: i64 = 16;
@@ -46,7 +52,7 @@ const PATTERNS: f64 = 18.0;
 const BASE_MEMORY: f64 = 56e6;
 
 /// Cost of a case.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Estimate {
     /// Unknowns of both gears before condensation.
     pub degrees_of_freedom: u64,
@@ -54,6 +60,41 @@ pub struct Estimate {
     pub memory: u64,
     /// Time on one core in seconds, nothing cached.
     pub seconds: f64,
+    /// The parts that are made in this time, and that other designs may have too.
+    pub parts: Vec<PartCost>,
+}
+
+/// A part of a case, and the time that it takes to make it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PartCost {
+    spec: PartSpec,
+    /// Time on one core in seconds.
+    pub seconds: f64,
+}
+
+/// What a part depends on.
+#[derive(Debug, Clone, PartialEq)]
+enum PartSpec {
+    Teeth(TeethSpec),
+    Gear(GearSpec),
+    Face(FaceYieldSpec),
+}
+
+impl PartCost {
+    /// True if it is the same part as `other`, which a library makes once for both.
+    pub fn is_same(&self, other: &Self) -> bool {
+        self.spec == other.spec
+    }
+}
+
+impl Estimate {
+    /// Adds the cost of a part. One that both gears have is made once.
+    fn add_part(&mut self, spec: PartSpec, seconds: f64) {
+        if self.parts.iter().all(|part| part.spec != spec) {
+            self.seconds += seconds;
+            self.parts.push(PartCost { spec, seconds });
+        }
+    }
 }
 
 /// Estimates the cost of `case` with its `forces`; the grids are divided, nothing is solved. A gear whose grid fails costs nothing.
@@ -61,6 +102,7 @@ pub fn estimate(case: &Case, forces: Option<&ForcesRequest>) -> Estimate {
     let plan = Plan::of(case);
     let mut estimate = Estimate {
         memory: BASE_MEMORY as u64,
+        seconds: BASE_SECONDS,
         ..Estimate::default()
     };
     match &case.model {
@@ -98,8 +140,11 @@ fn add_contacts(estimate: &mut Estimate, plan: &Plan) {
         Model::Formulas(_) => SECONDS[0] / 10.0 * plan.solutions() as f64,
         Model::Faces(faces, _) => {
             estimate.memory += 8 * (positions * faces.slices as u64);
-            let phase = plan.hole_phase.as_ref().map_or(0, PhasePlan::solutions);
-            along_faces(plan, faces) + of_slices(faces, case.resolution.grid, phase)
+            let of_phase = plan.hole_phase.as_ref().map_or(0.0, |phase| {
+                let solutions = [phase.solutions(), phase.first_solutions()];
+                of_slices(case, faces, case.resolution.grid, solutions)
+            });
+            along_faces(plan, faces) + of_phase
         }
         Model::Section(_) => {
             let of_passes = case.output_torques.iter().flat_map(|torque| {
@@ -113,7 +158,12 @@ fn add_contacts(estimate: &mut Estimate, plan: &Plan) {
                 let solutions = [phase.solutions(), phase.first_solutions()];
                 in_plane(case, phase.output_torque(), case.resolution.grid, solutions)
             });
-            of_passes.sum::<f64>() + of_phase
+            let by_holes = if case.method().is_projected() {
+                FIRST_ORDER_SECONDS * positions as f64
+            } else {
+                0.0
+            };
+            of_passes.sum::<f64>() + of_phase + by_holes
         }
     };
 }
@@ -124,24 +174,29 @@ fn add_gears(estimate: &mut Estimate, plan: &Plan) {
         for member in Member::BOTH {
             let again = plan.hole_phase.as_ref().filter(|_| number == 0);
             let again = again.map_or(0, |phase| phase.joined(member));
-            let gear = of_gear(&plan.case, member, pass, again);
-            estimate.seconds += gear.seconds;
+            let Some(gear) = GearCost::of(&plan.case, member, pass, again) else {
+                continue;
+            };
             estimate.memory += gear.memory;
             if number == 0 {
                 estimate.degrees_of_freedom += gear.degrees_of_freedom;
             }
+            let mut times = 1_u64;
             if number == 0 && plan.case.runs().is_some() {
                 // It is made once more, with the rows of its rotation.
-                estimate.seconds += gear.seconds;
-                estimate.memory += gear.memory / 4;
+                times += 1;
             }
             if pass.stress {
                 // It is made once more, with the rows of its inside.
-                estimate.seconds += gear.seconds;
-                estimate.memory += gear.memory / 4;
+                times += 1;
                 let teeth = f64::from(plan.case.pair.gear(member).tooth_count());
                 estimate.seconds += PER_ANSWER * teeth * answers(plan, pass);
             }
+            estimate.memory += gear.memory / 4 * (times - 1);
+            let times = times as f64;
+            let teeth = PartSpec::Teeth(gear.spec.teeth.clone());
+            estimate.add_part(teeth, times * gear.teeth_seconds);
+            estimate.add_part(PartSpec::Gear(gear.spec), times * gear.joined_seconds);
         }
     }
 }
@@ -151,9 +206,13 @@ fn answers(plan: &Plan, pass: &Pass) -> f64 {
     (pass.curve.solved_positions() * plan.case.loaded_torques().count()) as f64
 }
 
-/// Seconds of one core for the yield of one gear with nine functions across the face, for its web besides, and for the contact of a slice at a
-/// position. Measured as [`SECONDS`].
-const FACE_SECONDS: [f64; 3] = [0.55, 0.2, 70e-6];
+/// Seconds of one core for the yield of one gear with nine functions across the face, and the power of these by which it grows. Measured as [`SECONDS`].
+const FACE_SECONDS: f64 = 0.5;
+const FACE_GROWTH: f64 = 3.4;
+
+/// Seconds of one core for the contact of a slice: the first at its fraction of the mesh period, a further one there, and one where teeth deviate. Measured as
+/// [`SECONDS`].
+const SLICE_SECONDS: [f64; 3] = [80e-6, 40e-6, 120e-6];
 
 /// Seconds of one core for the rows that lead to the edges of the holes of one gear. Measured as [`SECONDS`].
 const EDGE_SECONDS: f64 = 1.0;
@@ -172,13 +231,15 @@ const EVENING: u64 = 2;
 /// Bytes of one gear with nine functions across the face while it is made, and of its web besides.
 const FACE_MEMORY: [f64; 2] = [110e6, 60e6];
 
+/// Seconds of one core for a multiplication and addition in which a web with holes is condensed, or holes answer to flanks. Measured as [`SECONDS`].
+const COUPLING_SECONDS: f64 = 0.05e-9;
+
 /// Nodes of a tooth and its rim in a section, about.
 const SECTION_NODES: f64 = 330.0;
 
 /// Adds the cost of the gears of `plan` along their `faces`, and of their answers to contacts.
 fn add_faces(estimate: &mut Estimate, plan: &Plan, faces: &Faces) {
     let case = &plan.case;
-    let [per_gear, per_web, _] = FACE_SECONDS;
     for (number, pass) in plan.passes.iter().enumerate() {
         let resolution = faces.at(pass.level).resolution;
         let nodes = match pass.level {
@@ -196,8 +257,8 @@ fn add_faces(estimate: &mut Estimate, plan: &Plan, faces: &Faces) {
             let webs = mirrored * f64::from(gear.data().blank.web_in(gear.face_width()).is_some());
             let functions = spec.functions_across() as f64;
             let growth = functions / 9.0;
-            estimate.seconds +=
-                mirrored * per_gear * growth.powf(2.5) * nodes * f64::sqrt(nodes) + webs * per_web;
+            let mut seconds =
+                mirrored * FACE_SECONDS * growth.powf(FACE_GROWTH) * nodes * f64::sqrt(nodes);
             let bytes =
                 FACE_MEMORY[0] * growth.powi(2) * nodes * f64::sqrt(nodes) + webs * FACE_MEMORY[1];
             let mut of_holes = spec.cost_of_holes(false);
@@ -207,10 +268,10 @@ fn add_faces(estimate: &mut Estimate, plan: &Plan, faces: &Faces) {
                 of_holes.operations += edges.operations;
                 of_holes.memory = of_holes.memory.max(edges.memory);
             }
-            estimate.seconds += turned * SECONDS[4] * of_holes.operations;
+            seconds += turned * COUPLING_SECONDS * of_holes.operations;
             let coupled = spec.coupled_unknowns().map(|count| count as f64);
             let flank = spec.basis_len() as f64 * repeated_teeth(gear);
-            estimate.seconds += turned * SECONDS[4] * coupling(coupled, flank);
+            seconds += turned * COUPLING_SECONDS * coupling(coupled, flank);
             // The form of all, and of each set its matrix, the factors and what they are made of.
             let coupling = 8.0 * (6.0 * coupled[0] * coupled[1] + coupled[1] * flank);
             let kept = 8.0 * coupled[1] * flank;
@@ -220,6 +281,7 @@ fn add_faces(estimate: &mut Estimate, plan: &Plan, faces: &Faces) {
                 estimate.degrees_of_freedom +=
                     (3.0 * functions * nodes * SECTION_NODES * teeth) as u64;
             }
+            estimate.add_part(PartSpec::Face(spec), seconds);
         }
         let turns = |running: &Running| running.driving_speed.0 != 0.0;
         if number == 0 && case.runs().is_some_and(turns) {
@@ -256,20 +318,29 @@ fn coupling([set, all]: [f64; 2], functions: f64) -> f64 {
 
 /// Seconds that the contacts of `plan` take along the faces.
 fn along_faces(plan: &Plan, faces: &Faces) -> f64 {
-    let torques = plan.case.loaded_torques().count() as u64;
+    let torques = plan.case.loaded_torques().count() as f64;
     let of_pass = |pass: &Pass| {
-        let solutions = pass.solutions() + EVENING * pass.evened.len() as u64;
-        of_slices(faces, pass.level, torques * solutions)
+        let firsts = pass.first_solutions();
+        let evened = EVENING * pass.evened.len() as u64;
+        let solutions = [pass.solutions() + evened, firsts + evened];
+        torques * of_slices(&plan.case, faces, pass.level, solutions)
     };
     plan.passes.iter().map(of_pass).sum()
 }
 
-/// Seconds that so many contacts along `faces` take at a grid `level`.
-fn of_slices(faces: &Faces, level: GridLevel, solutions: u64) -> f64 {
-    let [.., per_slice] = FACE_SECONDS;
+/// Seconds that so many contacts of `case` along `faces` take at a grid `level`, of which so many are the first at their fraction of the mesh period.
+fn of_slices(case: &Case, faces: &Faces, level: GridLevel, [solutions, firsts]: [u64; 2]) -> f64 {
+    let [per_first, as_drawn, deviating] = SLICE_SECONDS;
+    let per_further = if case.pair.is_as_drawn() {
+        as_drawn
+    } else {
+        deviating
+    };
     // Two pairs or more carry along all of the face.
     let lines = 1.0 + faces.pair.total_contact_ratio();
-    per_slice * faces.at(level).slices as f64 * lines * solutions as f64
+    let further = (solutions - firsts) as f64;
+    let each = per_first * firsts as f64 + per_further * further;
+    faces.at(level).slices as f64 * lines * each
 }
 
 /// Seconds that so many contacts of `case` under a torque take in the plane, of which so many are the first at their fraction of the mesh period.
@@ -279,26 +350,28 @@ fn in_plane(
     level: GridLevel,
     [solutions, firsts]: [u64; 2],
 ) -> f64 {
-    let [per_first, per_further, per_system, ..] = SECONDS;
+    let [per_first, per_further, per_system, _] = SECONDS;
     let further = (solutions - firsts) as f64;
     let [solutions, firsts] = [solutions, firsts].map(|count| count as f64);
-    let (pairs, digging) = pairs_together(case, output_torque);
-    let cells = (pairs * cells_per_patch(level)) as f64;
-    let first = per_first * if digging { DIGGING } else { 1.0 };
+    let pairs = pairs_together(case, output_torque);
+    let cells = (pairs * cells_per_patch(level)) as f64 / CELLS;
+    let [first, times] = match pairs > FEW_PAIRS {
+        true => [DIGGING * per_first, cells.powi(3)],
+        false => [per_first, cells],
+    };
     let solved = first * firsts + per_further * further;
-    (cells / CELLS).powi(3) * (solved + per_system * systems(case) * solutions)
+    times * (solved + per_system * systems(case) * solutions)
 }
 
-/// The tooth pairs that come together under a torque, about, and whether they are more than without load.
-fn pairs_together(case: &Case, output_torque: f64) -> (usize, bool) {
+/// The tooth pairs that come together under a torque, about.
+fn pairs_together(case: &Case, output_torque: f64) -> usize {
     let pair = &case.pair;
     let delta = pair.load(output_torque) / usual_stiffness(pair);
     let within = |n: &i64| {
         Facing::drawn(pair, 0.5 - *n as f64).is_some_and(|facing| facing.touch() <= delta)
     };
     let near = (-FARTHEST_PAIR..=FARTHEST_PAIR).filter(within).count();
-    let rolling = pair.contact_ratio().ceil() as usize;
-    (near.max(rolling), near > rolling)
+    near.max(pair.contact_ratio().ceil() as usize)
 }
 
 /// Linear systems that the augmented Lagrangian solves at a position, about: none for the active set.
@@ -319,48 +392,76 @@ fn systems(case: &Case) -> f64 {
     5.0 + updates.min(2000.0)
 }
 
-/// Cost of making one gear, in all models that `pass` needs of it, and of joining it with its blank `again` times.
-fn of_gear(case: &Case, member: Member, pass: &Pass, again: u32) -> Estimate {
-    let mut estimate = Estimate::default();
-    let level = pass.level;
-    let [.., per_node, per_operation] = SECONDS;
-    let gear = case.pair.gear(member);
-    let radius = interface_radius(gear, case.resolution.interface_radii[member.index()]);
-    let (Ok(tooth), Ok(blank)) = (
-        ToothGrid::new(gear, radius, level),
-        blank_grid(gear, radius, level),
-    ) else {
-        return estimate;
-    };
-    let (teeth, sectors) = (u64::from(gear.tooth_count()), u64::from(blank.sector_count));
-    let tooth_nodes = (tooth.grid.nodes.len() - tooth.side_nodes.0.len() - 1) as u64;
-    let blank_nodes = blank.own_nodes() as u64;
-    estimate.degrees_of_freedom = 2 * (teeth * tooth_nodes + sectors * blank_nodes);
+/// Cost of making one gear, in all models that a pass needs of it.
+struct GearCost {
+    spec: GearSpec,
+    degrees_of_freedom: u64,
+    memory: u64,
+    /// Time on one core in seconds, of its teeth, and of its blank and of joining them.
+    teeth_seconds: f64,
+    joined_seconds: f64,
+}
 
-    let orders = orders_of_blank(gear, radius, level);
-    let (all, met) = (
-        harmonics(gear, radius, level).unknowns() as f64,
-        orders.unknowns() as f64,
-    );
-    // The gear repeats itself so many times, and keeps the rows of the teeth of one period.
-    let repeats = f64::from(gcd(gear.tooth_count(), blank.sector_count));
-    let rows = teeth as f64 / repeats;
-    // One model has this blank flexible; in another that stands beside it all teeth are coupled alike.
-    let joined = f64::from(1 + again);
-    let couplings = joined * rows + if pass.has_rigid_blanks() { 17.0 } else { 0.0 };
-    // At most two matrices of all orders at once: the ring of teeth, and the matrix that is factorized.
-    estimate.memory = (8.0
-        * (2.0 * all * all
-            + 2.0 * met * rows.min(32.0) * PATTERNS
-            + 5.0 * couplings * (2.0 * PATTERNS).powi(2))
-        + 3e3 * (tooth_nodes + blank_nodes) as f64) as u64;
-    if gear.data().blank.shaft().is_some() {
-        let edge = orders_of_edge(&blank).unknowns() as f64;
-        estimate.memory += (8.0 * 2.0 * edge * (edge + met)) as u64;
+impl GearCost {
+    /// The cost of a gear for `pass`, joined with its blank `again` times; `None` where its grid fails.
+    fn of(case: &Case, member: Member, pass: &Pass, again: u32) -> Option<Self> {
+        let level = pass.level;
+        let [.., per_operation] = SECONDS;
+        let [per_tooth_node, per_blank_node] = NODE_SECONDS;
+        let gear = case.pair.gear(member);
+        let radius = interface_radius(gear, case.resolution.interface_radii[member.index()]);
+        let tooth = ToothGrid::new(gear, radius, level).ok()?;
+        let blank = blank_grid(gear, radius, level).ok()?;
+        let (teeth, sectors) = (u64::from(gear.tooth_count()), u64::from(blank.sector_count));
+        let tooth_nodes = (tooth.grid.nodes.len() - tooth.side_nodes.0.len() - 1) as u64;
+        let blank_nodes = blank.own_nodes() as u64;
+
+        let orders = orders_of_blank(gear, radius, level);
+        let (all, met) = (
+            harmonics(gear, radius, level).unknowns() as f64,
+            orders.unknowns() as f64,
+        );
+        // The gear repeats itself so many times, and keeps the rows of the teeth of one period.
+        let repeats = f64::from(gcd(gear.tooth_count(), blank.sector_count));
+        let rows = teeth as f64 / repeats;
+        // One model has this blank flexible; in another that stands beside it all teeth are coupled alike.
+        let joined = f64::from(1 + again);
+        let couplings = joined * rows + if pass.has_rigid_blanks() { 17.0 } else { 0.0 };
+        // At most two matrices of all orders at once: the ring of teeth, and the matrix that is factorized.
+        let mut memory = (8.0
+            * (2.0 * all * all
+                + 2.0 * met * rows.min(32.0) * PATTERNS
+                + 5.0 * couplings * (2.0 * PATTERNS).powi(2))
+            + 3e3 * (tooth_nodes + blank_nodes) as f64) as u64;
+        if gear.data().blank.shaft().is_some() {
+            let edge = orders_of_edge(&blank).unknowns() as f64;
+            memory += (8.0 * 2.0 * edge * (edge + met)) as u64;
+        }
+        let factorization = met * met * met / (6.0 * repeats * repeats);
+        let answers = rows * PATTERNS * met * (met / (2.0 * repeats) + 5.0 * PATTERNS);
+        let operations = condensed(&blank, met) + joined * (factorization + answers);
+        Some(Self {
+            spec: GearSpec::on_own_blank(gear, radius, level, 0),
+            degrees_of_freedom: 2 * (teeth * tooth_nodes + sectors * blank_nodes),
+            memory,
+            teeth_seconds: per_tooth_node * tooth_nodes as f64,
+            joined_seconds: per_blank_node * blank_nodes as f64 + per_operation * operations,
+        })
     }
-    let factorization = met * met * met / (6.0 * repeats * repeats);
-    let answers = rows * PATTERNS * met * (met / (2.0 * repeats) + 5.0 * PATTERNS);
-    estimate.seconds = per_node * (tooth_nodes + blank_nodes) as f64
-        + per_operation * joined * (factorization + answers);
-    estimate
+}
+
+/// Multiplications and additions in which `blank` is condensed to the nodes of its circle and its sides, and these to so many unknowns on the circle.
+fn condensed(blank: &BlankGrid, met: f64) -> f64 {
+    let sectors = f64::from(blank.sector_count);
+    let [arc, side] =
+        [blank.arc_nodes.len(), blank.side_nodes.0.len()].map(|nodes| 2.0 * nodes as f64);
+    let kept = arc + 2.0 * side;
+    // Sectors are joined class by class in complex numbers, each class with its own orders and half of all classes.
+    let (times, each) = if side > 0.0 {
+        (2.0, met / sectors)
+    } else {
+        (1.0, met)
+    };
+    let on_sides = side * side * (side / 6.0 + each);
+    kept.powi(3) / 3.0 + times * sectors * (arc * each * (arc + each) + on_sides)
 }

@@ -6,9 +6,12 @@ use crate::gear::{GearPair, Member};
 /// Places of a hole pitch, at least, at which the term of the driving holes is known: as many as show five harmonics of the hole order.
 const LEAST_PLACES: u32 = 12;
 
-/// Positions in a mesh period at which the first order is known, and turns are solved in full: at most, and at least where they divide those of the
-/// curve. The effect of holes changes slowly over a mesh period.
-const POSITIONS: [[u32; 2]; 2] = [[20, 10], [10, 5]];
+/// Positions in a mesh period at which the first order is known: at most, and at least where they divide those of the curve. The effect of holes changes slowly
+/// over a mesh period.
+const FIRST_ORDER: [u32; 2] = [20, 10];
+
+/// Positions in a mesh period at which turns are solved in full, likewise: their difference to the first order, which is solved for, has no kinks of the mesh.
+const FULL: [u32; 2] = [9, 4];
 
 /// A turn of the driving blank, and its amplitudes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,12 +67,11 @@ impl PhasePlan {
         let [Some(driving), Some(driven)] = ratios else {
             return None;
         };
-        let [first_order, full] = POSITIONS;
-        let first_order = divisor(case.resolution.positions_per_mesh_period, first_order);
+        let first_order = divisor(case.resolution.positions_per_mesh_period, FIRST_ORDER);
         (driving == driven).then(|| Self {
             output_torque,
             ratio: driving,
-            per_period: [first_order, divisor(first_order, full)],
+            per_period: [first_order, divisor(first_order, FULL)],
         })
     }
 

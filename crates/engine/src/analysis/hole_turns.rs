@@ -13,6 +13,8 @@
 
 use std::f64::consts::TAU;
 
+use faer::c64;
+
 use super::AnalysisError;
 use super::case::Case;
 use super::curve::Curve;
@@ -45,31 +47,33 @@ impl PhasePlan {
         };
         let hole_pitch = TAU / f64::from(case.pair.driving().hole_repeats());
         let terms = Terms::of(self, setup)?.corrected(self, setup)?;
-        let best = terms.best();
+        let amplitude = terms.amplitudes();
+        let turn = best(&amplitude);
         let mirrored = case.mirror_image_of_gears();
         let mirrored = Setup {
             case: &mirrored,
             ..setup
         };
-        let other = Terms::of(self, mirrored)?.corrected(self, mirrored)?.best();
+        let other = Terms::of(self, mirrored)?.corrected(self, mirrored)?;
+        let other_turn = best(other.amplitudes());
         let over_turn = (0..=TURNS).map(|i| {
             let place = f64::from(i) / f64::from(TURNS);
             let curve = terms.first_order.curve(place);
             let [low, high] = [f64::min, f64::max].map(|pick| curve.iter().copied().reduce(pick));
             AtTurn {
                 turn: place * hole_pitch,
-                amplitude: terms.amplitude(place),
+                amplitude: amplitude(place),
                 peak_to_peak: high.unwrap_or(0.0) - low.unwrap_or(0.0),
             }
         });
         Ok(Some(HolePhase {
             output_torque: self.output_torque,
             order: case.pair.driven().hole_repeats(),
-            turn_of_driving: best * hole_pitch,
-            amplitude: terms.amplitude(best),
+            turn_of_driving: turn * hole_pitch,
+            amplitude: amplitude(turn),
             amplitude_now,
             // The mirror shows a turn the other way round.
-            other_flanks_turn: (1.0 - other).fract() * hole_pitch,
+            other_flanks_turn: (1.0 - other_turn).fract() * hole_pitch,
             over_turn: over_turn.collect(),
         }))
     }
@@ -85,12 +89,7 @@ impl PhasePlan {
 
     /// By how much the line at the order of the holes is beyond the first order of `terms` with the driving blank turned by `place` hole pitches, by a full
     /// solution: the difference has no kinks of the mesh, so that few positions are enough.
-    fn beyond(
-        &self,
-        terms: &Terms,
-        place: f64,
-        setup: Setup<'_>,
-    ) -> Result<[f64; 2], AnalysisError> {
+    fn beyond(&self, terms: &Terms, place: f64, setup: Setup<'_>) -> Result<c64, AnalysisError> {
         let case = turned(setup.case, place);
         let pair = TurnedPair::new(Setup {
             case: &case,
@@ -124,8 +123,8 @@ struct Terms {
     ratio: [u32; 2],
     /// Values with the driven blank as it stands, and the mean addition of the driving one: period after period.
     still: Vec<f64>,
-    /// Harmonics of T_1 over a hole pitch at each fraction of the mesh period: amplitudes and phases.
-    driving: Vec<Vec<(f64, f64)>>,
+    /// Harmonics of T_1 over a hole pitch at each fraction of the mesh period: c_k from k = 1 on, T_1 = Re Σ c_k e^(2πi k u).
+    driving: Vec<Vec<c64>>,
 }
 
 impl Terms {
@@ -183,9 +182,10 @@ impl Terms {
             driving: driving
                 .iter()
                 .map(|values| {
-                    let mut lines = harmonics(values);
-                    lines.truncate(HARMONICS);
+                    let lines = harmonics(values).into_iter().take(HARMONICS);
                     lines
+                        .map(|(amplitude, phase)| c64::from_polar(amplitude, phase))
+                        .collect()
                 })
                 .collect(),
         })
@@ -195,31 +195,59 @@ impl Terms {
     fn curve(&self, place: f64) -> Vec<f64> {
         let [p, q] = self.ratio.map(f64::from);
         let per_period = self.driving.len();
-        let at = |(i, still): (usize, &f64)| {
-            let n = (i / per_period) as f64;
-            let u = place + n * p / q;
-            let lines = self.driving[i % per_period].iter().zip(1_u32..);
-            let moved = lines
-                .map(|((amplitude, phase), k)| amplitude * (TAU * f64::from(k) * u + phase).cos());
-            still + moved.sum::<f64>()
-        };
-        self.still.iter().enumerate().map(at).collect()
+        let periods = self.still.chunks(per_period).zip(0_u32..);
+        let moved = periods.flat_map(|(still, n)| {
+            let around = c64::from_polar(1.0, TAU * (place + f64::from(n) * p / q));
+            let each = still.iter().zip(&self.driving);
+            each.map(move |(still, lines)| {
+                let next = |sum: c64, line: &c64| (sum + line) * around;
+                still + lines.iter().rev().fold(c64::ZERO, next).re
+            })
+        });
+        moved.collect()
     }
 
-    /// Cosine and sine of this curve at the order of the holes.
-    fn line(&self, place: f64) -> [f64; 2] {
-        line(&self.curve(place), self.ratio[0])
+    /// The line of this curve at the order of the holes, place by place.
+    ///
+    /// It is Σ δ e^(−2πi p x/q) over its positions x = n + f. Over n the part of c_k adds up only where k ± 1 is a multiple of q.
+    fn lines(&self) -> impl Fn(f64) -> c64 + use<> {
+        let [p, q] = self.ratio;
+        let per_period = self.driving.len();
+        let step = TAU * f64::from(p) / (f64::from(q) * per_period as f64);
+        let still = line(&self.still, p);
+        let most = self.driving.iter().map(Vec::len).max().unwrap_or(0);
+        let parts = (1..=most as u32).map(|k| {
+            let [forwards, backwards] =
+                [k.abs_diff(1), k + 1].map(|beside| f64::from(beside.is_multiple_of(q)));
+            let each = self.driving.iter().enumerate();
+            let [one, other] = each.fold([c64::ZERO; 2], |[one, other], (i, lines)| {
+                let c = lines.get(k as usize - 1).copied().unwrap_or(c64::ZERO);
+                let weight = c64::from_polar(1.0 / per_period as f64, -step * i as f64);
+                [one + c * weight, other + c.conj() * weight]
+            });
+            [one * forwards, other * backwards]
+        });
+        let parts: Vec<[c64; 2]> = parts.collect();
+        move |place| {
+            let around = c64::from_polar(1.0, TAU * place);
+            let sum = |around: c64, of: usize| {
+                let parts = parts.iter().rev();
+                parts.fold(c64::ZERO, |sum, part| (sum + part[of]) * around)
+            };
+            still + sum(around, 0) + sum(around.conj(), 1)
+        }
     }
 
     /// These with what full solutions say of both parts, under the torque of `plan`.
     fn corrected(self, plan: &PhasePlan, setup: Setup<'_>) -> Result<Corrected, AnalysisError> {
-        let at = best(|place| size(self.line(place)));
+        let lines = self.lines();
+        let at = best(|place| lines(place).norm());
         let here = plan.beyond(&self, at, setup)?;
         let opposite = plan.beyond(&self, (at + 0.5).fract(), setup)?;
         Ok(Corrected {
             at,
-            still: [0, 1].map(|i| f64::midpoint(here[i], opposite[i])),
-            moving: [0, 1].map(|i| (here[i] - opposite[i]) / 2.0),
+            still: (here + opposite) / 2.0,
+            moving: (here - opposite) / 2.0,
             first_order: self,
         })
     }
@@ -228,28 +256,20 @@ impl Terms {
 /// Terms of first order, with what is beyond it at the order of the holes: a part that stands still, and one that turns with the driving blank.
 struct Corrected {
     first_order: Terms,
-    still: [f64; 2],
+    still: c64,
     /// Where the driving blank is turned by `at` hole pitches.
-    moving: [f64; 2],
+    moving: c64,
     at: f64,
 }
 
 impl Corrected {
-    /// The amplitude at the order of the holes with the driving blank turned by `place` hole pitches.
-    fn amplitude(&self, place: f64) -> f64 {
-        let [x, y] = self.first_order.line(place);
-        // cos(θ + φ) of a further turn φ has the cosine cos φ and the sine −sin φ.
-        let (sin, cos) = (TAU * (place - self.at)).sin_cos();
-        let [a, b] = self.moving;
-        size([
-            x + self.still[0] + a * cos + b * sin,
-            y + self.still[1] + b * cos - a * sin,
-        ])
-    }
-
-    /// The place of a hole pitch, from 0 to 1, at which the amplitude is least.
-    fn best(&self) -> f64 {
-        best(|place| self.amplitude(place))
+    /// The amplitude at the order of the holes, by the hole pitches by which the driving blank is turned.
+    fn amplitudes(&self) -> impl Fn(f64) -> f64 {
+        let lines = self.first_order.lines();
+        move |place| {
+            let moved = self.moving * c64::from_polar(1.0, TAU * (place - self.at));
+            (lines(place) + self.still + moved).norm()
+        }
     }
 }
 
@@ -274,19 +294,11 @@ fn best(amplitude: impl Fn(f64) -> f64) -> f64 {
     ((low + high) / 2.0).rem_euclid(1.0)
 }
 
-/// The amplitude of a line by its cosine and sine.
-fn size([cosine, sine]: [f64; 2]) -> f64 {
-    cosine.hypot(sine)
-}
-
-/// Cosine and sine of `values`, at equal steps over a period, that repeat `times` in it.
-fn line(values: &[f64], times: u32) -> [f64; 2] {
-    let turn = TAU * f64::from(times) / values.len() as f64;
+/// The line of `values`, at equal steps over a period, that repeats `times` in it: its amplitude and phase.
+fn line(values: &[f64], times: u32) -> c64 {
+    let turn = -TAU * f64::from(times) / values.len() as f64;
     let share = 2.0 / values.len() as f64;
-    let part = |of: fn(f64) -> f64| -> f64 {
-        let each = values.iter().enumerate();
-        each.map(|(i, value)| share * value * of(turn * i as f64))
-            .sum()
-    };
-    [part(f64::cos), part(f64::sin)]
+    let each = values.iter().enumerate();
+    each.map(|(i, value)| c64::from_polar(share * value, turn * i as f64))
+        .sum()
 }

@@ -69,7 +69,7 @@ pub use answer::Analysis;
 pub use case::{Case, FaceHoles, Faces, Method, Model, Resolution, SectionHoles, StiffnessRule};
 pub use curve::{Curve, FaceLoad};
 pub use error::AnalysisError;
-pub use estimate::{Estimate, estimate};
+pub use estimate::{Estimate, PartCost, estimate};
 pub use evidence::{ErrorEstimate, Evidence};
 pub use orders::{OrderCause, OrderKind, mesh_label};
 pub use running::RotationSpeed;

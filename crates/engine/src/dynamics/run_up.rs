@@ -11,7 +11,7 @@ use super::table::ForceTable;
 use crate::run::{Run, Stopped};
 
 /// Seconds of one core that a look takes.
-const SECONDS_A_LOOK: f64 = 60e-9;
+const SECONDS_A_LOOK: f64 = 22e-9;
 
 /// Seconds of a look with common modes of bodies over those without, divided by the square of their number.
 const A_MODE: f64 = 0.6;

@@ -137,7 +137,7 @@ impl Search {
     }
 
     /// A design and its members.
-    fn rows_of_design(&self) -> usize {
+    pub(crate) fn rows_of_design(&self) -> usize {
         1 + if self.looks_at_members() {
             self.members()
         } else {

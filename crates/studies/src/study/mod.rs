@@ -164,6 +164,14 @@ impl Study {
         }
     }
 
+    /// Number of its designs whose gears may be unlike: the members of a design of a search have its gears.
+    pub fn unlike_designs(&self) -> usize {
+        match &self.plan {
+            Plan::Search(search) => search.most_rows().div_ceil(search.rows_of_design()),
+            Plan::Axes(_) | Plan::Designs(_) | Plan::Population(_) => self.total(),
+        }
+    }
+
     /// The population that its designs are, if they are one.
     pub(crate) fn population(&self) -> Option<&Population> {
         match &self.plan {

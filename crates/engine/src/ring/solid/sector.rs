@@ -101,11 +101,6 @@ impl SolidSector {
         Self::turn(1, std::f64::consts::TAU * place / count as f64) * share
     }
 
-    /// The unknowns of a class: those of one side, and on each arc those of each of `orders`.
-    pub(crate) fn unknowns(&self, orders: &[i64]) -> usize {
-        self.size * (self.side_nodes + self.arcs.len() * orders.len())
-    }
-
     /// How each unknown of the class, sides, then arc by arc, order by order, moves the interface: the unknowns there, and how far.
     fn motions(&self, class: usize, orders: &[i64]) -> Vec<Vec<(usize, c64)>> {
         let (size, sides) = (self.size, self.size * self.side_nodes);
@@ -130,7 +125,7 @@ impl SolidSector {
     }
 
     /// `rows` on the interface as rows on the unknowns of the class: sides, then arc by arc, order by order.
-    pub fn on_class(&self, rows: &Mat<f64>, class: usize, orders: &[i64]) -> Mat<c64> {
+    pub(crate) fn on_class(&self, rows: &Mat<f64>, class: usize, orders: &[i64]) -> Mat<c64> {
         let motions = self.motions(class, orders);
         let mut on_class = Mat::<c64>::zeros(rows.nrows(), motions.len());
         for (j, moved) in motions.iter().enumerate() {

@@ -1,6 +1,7 @@
 //! Reading of a submission, its defaults, and its refusals.
 
 mod chance;
+mod cost;
 mod refusals;
 mod running;
 mod schema;
