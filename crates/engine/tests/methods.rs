@@ -10,7 +10,7 @@ use cases::{
     test_case,
 };
 use meshwright_engine::analysis::{
-    Analysis, Case, ContactSolver, Curve, Method, Warning, analyze, pair_model,
+    Analysis, AnalysisError, Case, ContactSolver, Curve, Method, Warning, analyze, pair_model,
 };
 use meshwright_engine::assembly::{Blanks, FaceResolution, MakeAll, Modeling, PairSpec};
 use meshwright_engine::contact::positions::{contacts, contacts_keeping};
