@@ -116,7 +116,7 @@ fn the_largest_root_stress_stands_in_the_fillet_of_a_tooth_in_mesh() {
     let stresses = curve.stresses.as_ref().expect("asked for");
     for member in Member::BOTH {
         let of = &stresses[member.index()];
-        let largest = of.largest(StressedPlace::Root, &case);
+        let largest = of.largest(StressedPlace::Root, &curve.mesh_position);
         let (eta, peak) = largest.expect("stressed");
         let stands = peak.stands((&case, member), eta, true);
         let gear = case.pair.gear(member);
@@ -131,7 +131,7 @@ fn the_largest_root_stress_stands_in_the_fillet_of_a_tooth_in_mesh() {
         let heaviest = shares.max_by(|a, b| a.share[place].total_cmp(&b.share[place]));
         let heaviest = heaviest.map(|share| share.pair_offset);
         assert_eq!(stands.pair_offset, heaviest, "{member}");
-        assert_eq!(of.largest(StressedPlace::Hole, &case), None);
+        assert_eq!(of.largest(StressedPlace::Hole, &curve.mesh_position), None);
     }
 }
 
