@@ -32,8 +32,8 @@ pub trait FlankYield: Send + Sync {
     fn at_ends(&self, point: (f64, f64), loaded: (f64, f64), along: f64) -> f64;
 }
 
-/// Limit of matrices of smooth compliance in bytes: two hundred and fifty of three teeth.
-const MOST_BYTES: usize = 36 << 20;
+/// Limit of matrices of smooth compliance in bytes: those of a holed gear of 120 teeth, each with four.
+const MOST_BYTES: usize = 48 << 20;
 
 /// A profile that turns by less at a place has no kink there.
 const LEAST_TURN: f64 = 1e-6;
@@ -46,7 +46,7 @@ pub struct FaceModel {
     pub(super) coupled: usize,
     /// The kinks of both profiles at which flanks press harder than beside them.
     pub(super) kinks: Vec<Kink>,
-    smooth: Memo<Teeth, Mat<f64>>,
+    smooth: Memo<TwoTeeth, Mat<f64>>,
     /// [`FaceModel::first_reach`] of the last few loads, by their bits.
     pub(super) reaches: Memo<u64, Result<FirstReach, PositionError>>,
 }
@@ -101,12 +101,12 @@ impl Kink {
     }
 }
 
-/// A number of teeth of a gear in the order of their pairs, from `first` on.
+/// Two teeth of a gear: one by its number, and how many pairs later the other one meets the mate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-struct Teeth {
+struct TwoTeeth {
     gear: usize,
-    first: usize,
-    count: usize,
+    tooth: usize,
+    later: usize,
 }
 
 impl FaceModel {
@@ -147,24 +147,32 @@ impl FaceModel {
         &self.flanks
     }
 
-    /// The smooth compliance of the teeth of `member` in the pairs from `first` on.
+    /// The smooth compliance of the teeth of `member` in the pairs from `first` on. That of two teeth is made once: over a long period the teeth of a holed gear
+    /// come back at each fraction of the mesh period.
     pub(super) fn smooth(&self, member: Member, first: i64, count: usize) -> Smooth {
-        let z = self.pair().section().gear(member).tooth_count() as usize;
-        let alike = self.yields[member.index()].repeats_after();
-        let key = Teeth {
-            gear: member.index(),
-            first: self.pair().section().tooth(member, first) % alike,
-            count,
+        let section = self.pair().section();
+        let z = section.gear(member).tooth_count() as usize;
+        let (yields, step) = (&self.yields[member.index()], section.tooth(member, 1));
+        let of_two = |a: usize, b: usize| {
+            let key = TwoTeeth {
+                gear: member.index(),
+                tooth: section.tooth(member, first + a as i64) % yields.repeats_after(),
+                later: b - a,
+            };
+            self.smooth.get(key, |key| {
+                let other = (key.tooth + key.later * step) % z;
+                if key.later == 0 {
+                    return yields.smooth(&[key.tooth]);
+                }
+                let size = yields.basis_len();
+                let both = yields.smooth(&[key.tooth, other]);
+                both.submatrix(0, size, size, size).to_owned()
+            })
         };
-        let compliance = self.smooth.get(key, |key| {
-            let step = self.pair().section().tooth(member, 1);
-            let teeth: Vec<usize> = (0..count).map(|i| (key.first + i * step) % z).collect();
-            self.yields[member.index()].smooth(&teeth)
-        });
+        let of_tooth = |a: usize| (a..count).map(|b| of_two(a, b)).collect();
         Smooth {
-            size: self.yields[member.index()].basis_len(),
             first,
-            compliance,
+            later: (0..count).map(of_tooth).collect(),
         }
     }
 }
@@ -172,16 +180,19 @@ impl FaceModel {
 /// The smooth compliance between the teeth of one gear in successive pairs.
 pub(super) struct Smooth {
     first: i64,
-    /// The functions over a flank.
-    size: usize,
-    compliance: Arc<Mat<f64>>,
+    /// That between the tooth of each pair and itself, and those of all later pairs.
+    later: Vec<Vec<Arc<Mat<f64>>>>,
 }
 
 impl Smooth {
     /// That between the teeth in two pairs.
     pub(super) fn block(&self, a: i64, b: i64) -> MatRef<'_, f64> {
-        let [row, column] = [a, b].map(|pair| (pair - self.first) as usize * self.size);
-        let compliance = Mat::as_ref(&self.compliance);
-        compliance.submatrix(row, column, self.size, self.size)
+        let [a, b] = [a, b].map(|pair| (pair - self.first) as usize);
+        let block = |a: usize, b: usize| Mat::as_ref(&self.later[a][b - a]);
+        if a <= b {
+            block(a, b)
+        } else {
+            block(b, a).transpose()
+        }
     }
 }
