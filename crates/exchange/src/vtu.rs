@@ -1,4 +1,4 @@
-//! Displacements and stresses of both gears as a VTK unstructured grid, which ParaView, PyVista and meshio read.
+//! Displacements and stresses of both gears, and natural modes of one, as VTK unstructured grids, which ParaView, PyVista and meshio read.
 
 use std::io::{self, BufWriter, Write};
 use std::iter;
@@ -6,10 +6,19 @@ use std::iter;
 use base64::engine::general_purpose::STANDARD;
 use base64::write::EncoderWriter;
 use meshwright_engine::analysis::fields::GearField;
-use meshwright_engine::fem::volume::{Volume, von_mises};
+use meshwright_engine::fem::volume::{Volume, VolumeElement, von_mises};
 use meshwright_engine::grid::ElementKind;
+use meshwright_engine::vibration::ModeShape;
 
 use super::divided::{Divided, Values};
+
+/// A mode of a gear as displacements: its cosine or its sine, so large that `scale` kg^(−1/2) are 1 µm.
+#[derive(Clone, Copy)]
+pub struct Wave<'a> {
+    shape: &'a ModeShape,
+    part: usize,
+    scale: f64,
+}
 
 /// A gear, as a plate or as a volume.
 #[derive(Clone, Copy)]
@@ -18,7 +27,9 @@ pub enum Piece<'a> {
     Plate(&'a GearField),
     /// As those see it that see the faces.
     Volume(&'a Volume),
-    /// Either on linear cells.
+    /// A natural mode, without stresses.
+    Wave(Wave<'a>),
+    /// Any of them on linear cells.
     Linear(&'a Divided),
 }
 
@@ -27,6 +38,7 @@ impl<'a> Piece<'a> {
         match self {
             Self::Plate(gear) => gear.nodes.len(),
             Self::Volume(gear) => gear.nodes.len(),
+            Self::Wave(wave) => wave.shape.nodes.len(),
             Self::Linear(gear) => gear.points.len(),
         }
     }
@@ -35,6 +47,7 @@ impl<'a> Piece<'a> {
         match self {
             Self::Plate(gear) => gear.elements.len(),
             Self::Volume(gear) => gear.elements.len(),
+            Self::Wave(wave) => wave.shape.elements.len(),
             Self::Linear(gear) => gear.cells.len(),
         }
     }
@@ -62,6 +75,10 @@ impl<'a> Piece<'a> {
                     von_mises(&gear.stresses[number]),
                 )
             }
+            Self::Wave(Wave { shape, part, scale }) => {
+                let u = 1e-6 / scale * shape.displacements[number][part];
+                (shape.nodes[number].into(), u.into(), [0.0; 9], 0.0)
+            }
             Self::Linear(gear) => return gear.points[number],
         };
         Values {
@@ -77,6 +94,7 @@ impl<'a> Piece<'a> {
         match self {
             Self::Plate(gear) => (gear.elements[number].kind(), 0),
             Self::Volume(gear) => (gear.elements[number].kind, Divided::LAYERS),
+            Self::Wave(wave) => (wave.shape.elements[number].kind, Divided::LAYERS),
             Self::Linear(gear) => (gear.cells[number].section(), 0),
         }
     }
@@ -92,14 +110,8 @@ impl<'a> Piece<'a> {
                 };
                 (shape, element.nodes())
             }
-            Self::Volume(gear) => {
-                let element = &gear.elements[number];
-                let shape = match element.kind {
-                    ElementKind::Quadrilateral => QUADRATIC_HEXAHEDRON,
-                    ElementKind::Triangle => QUADRATIC_WEDGE,
-                };
-                (shape, &element.nodes)
-            }
+            Self::Volume(gear) => solid(&gear.elements[number]),
+            Self::Wave(wave) => solid(&wave.shape.elements[number]),
             Self::Linear(gear) => {
                 let cell = &gear.cells[number];
                 (cell.shape, cell.corners())
@@ -111,10 +123,19 @@ impl<'a> Piece<'a> {
     pub(crate) fn thickness(self, number: usize) -> Option<f64> {
         match self {
             Self::Plate(gear) => Some(1e3 * gear.thicknesses[number]),
-            Self::Volume(_) => None,
+            Self::Volume(_) | Self::Wave(_) => None,
             Self::Linear(gear) => gear.cells[number].thickness,
         }
     }
+}
+
+/// VTK's number of the shape of an element in space, and its points.
+fn solid(element: &VolumeElement) -> (u8, &[u32]) {
+    let shape = match element.kind {
+        ElementKind::Quadrilateral => QUADRATIC_HEXAHEDRON,
+        ElementKind::Triangle => QUADRATIC_WEDGE,
+    };
+    (shape, &element.nodes)
 }
 
 /// Shapes of cells by their numbers in `vtkCellType.h`.
@@ -132,91 +153,159 @@ const QUADRATIC_WEDGE: u8 = 26;
 ///
 /// Errors of `out`.
 pub fn write(gears: [Piece<'_>; 2], out: impl Write) -> io::Result<()> {
-    let [driving, driven] = gears;
-    let of_points = || {
-        gears
-            .into_iter()
-            .flat_map(|gear| (0..gear.points()).map(move |i| (gear, i)))
-    };
-    let of_cells = || {
-        gears
-            .into_iter()
-            .flat_map(|gear| (0..gear.cells()).map(move |i| (gear, i)))
-    };
-    let points = driving.points() + driven.points();
-    let cells = driving.cells() + driven.cells();
-    let corners: usize = of_cells().map(|(gear, i)| gear.cell(i).1.len()).sum();
-    let single = |number: f64| (number as f32).to_le_bytes();
-
+    let points = || points_of(&gears);
+    let count = points().count();
+    let cells = || cells_of(&gears);
     let mut file = File(BufWriter::new(out));
-    write!(
-        file.0,
-        r#"<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64"><UnstructuredGrid><Piece NumberOfPoints="{points}" NumberOfCells="{cells}"><PointData>"#
-    )?;
-    let displacements = of_points().flat_map(|(gear, i)| gear.values(i).displacement);
-    file.array(
-        "displacement_um",
-        ("Float32", 3),
-        3 * points,
-        displacements.map(single),
-    )?;
-    let stresses = of_points().flat_map(|(gear, i)| gear.values(i).stress);
+    file.begin(&gears, &[])?;
+    let displacements = points().flat_map(|(gear, i)| gear.values(i).displacement);
+    file.vectors("displacement_um", count, displacements)?;
+    let stresses = points().flat_map(|(gear, i)| gear.values(i).stress);
     file.array(
         "stress_mpa",
         ("Float32", 9),
-        9 * points,
+        9 * count,
         stresses.map(single),
     )?;
-    let von_mises = of_points().map(|(gear, i)| gear.values(i).von_mises);
+    let von_mises = points().map(|(gear, i)| gear.values(i).von_mises);
     file.array(
         "von_mises_mpa",
         ("Float32", 1),
-        points,
+        count,
         von_mises.map(single),
     )?;
     file.0.write_all(b"</PointData><CellData>")?;
     let members = (0_u8..)
         .zip(gears)
         .flat_map(|(member, gear)| iter::repeat_n([member], gear.cells()));
-    file.array("gear", ("UInt8", 1), cells, members)?;
-    if of_cells()
+    file.array("gear", ("UInt8", 1), cells().count(), members)?;
+    if cells()
         .next()
         .is_some_and(|(gear, i)| gear.thickness(i).is_some())
     {
-        let thicknesses = of_cells().filter_map(|(gear, i)| gear.thickness(i));
+        let thicknesses = cells().filter_map(|(gear, i)| gear.thickness(i));
         file.array(
             "thickness_mm",
             ("Float32", 1),
-            cells,
+            cells().count(),
             thicknesses.map(single),
         )?;
     }
-    file.0.write_all(b"</CellData><Points>")?;
-    let at = of_points().flat_map(|(gear, i)| gear.values(i).place);
-    file.array("Points", ("Float32", 3), 3 * points, at.map(single))?;
-    file.0.write_all(b"</Points><Cells>")?;
-    let first = [0, driving.points() as u64];
-    let connectivity = first.into_iter().zip(gears).flat_map(|(first, gear)| {
-        let nodes = (0..gear.cells()).flat_map(move |i| gear.cell(i).1);
-        nodes.map(move |node| (first + u64::from(*node)).to_le_bytes())
-    });
-    file.array("connectivity", ("UInt64", 1), corners, connectivity)?;
-    let ends = of_cells().scan(0_u64, |end, (gear, i)| {
-        *end += gear.cell(i).1.len() as u64;
-        Some(end.to_le_bytes())
-    });
-    file.array("offsets", ("UInt64", 1), cells, ends)?;
-    let shapes = of_cells().map(|(gear, i)| [gear.cell(i).0]);
-    file.array("types", ("UInt8", 1), cells, shapes)?;
-    file.0
-        .write_all(b"</Cells></Piece></UnstructuredGrid></VTKFile>")?;
-    file.0.flush()
+    file.0.write_all(b"</CellData>")?;
+    file.end(&gears)
+}
+
+/// Writes a natural mode as a grid: its cosine, and its sine if it has one. The largest displacement of either is 1 µm.
+///
+/// At points: `displacement_um`, and `displacement_sine_um` of a double mode. In the field: `frequency_hz`, and `modal_mass_kg` for these displacements over
+/// 1 µm.
+///
+/// # Errors
+///
+/// Errors of `out`.
+pub fn write_mode(shape: &ModeShape, out: impl Write) -> io::Result<()> {
+    let scale = shape.largest();
+    let wave = |part| Piece::Wave(Wave { shape, part, scale });
+    let waves = [wave(0), wave(1)];
+    let cosine = &waves[..1];
+    let shown = if shape.mode.is_double { 2 } else { 1 };
+    let numbers = [
+        ("frequency_hz", shape.mode.frequency),
+        ("modal_mass_kg", scale.powi(-2)),
+    ];
+    let mut file = File(BufWriter::new(out));
+    file.begin(cosine, &numbers)?;
+    let names = ["displacement_um", "displacement_sine_um"];
+    for (name, wave) in names.into_iter().zip(waves).take(shown) {
+        let displacements = (0..wave.points()).flat_map(|i| wave.values(i).displacement);
+        file.vectors(name, wave.points(), displacements)?;
+    }
+    file.0.write_all(b"</PointData>")?;
+    file.end(cosine)
+}
+
+/// All points, each with its piece.
+fn points_of<'a>(pieces: &[Piece<'a>]) -> impl Iterator<Item = (Piece<'a>, usize)> {
+    let pieces = pieces.iter().copied();
+    pieces.flat_map(|piece| (0..piece.points()).map(move |i| (piece, i)))
+}
+
+/// All cells, each with its piece.
+fn cells_of<'a>(pieces: &[Piece<'a>]) -> impl Iterator<Item = (Piece<'a>, usize)> {
+    let pieces = pieces.iter().copied();
+    pieces.flat_map(|piece| (0..piece.cells()).map(move |i| (piece, i)))
+}
+
+fn single(number: f64) -> [u8; 4] {
+    (number as f32).to_le_bytes()
 }
 
 /// A file that is written array by array.
 struct File<W: Write>(BufWriter<W>);
 
 impl<W: Write> File<W> {
+    /// Begins a grid of these pieces, with single numbers beside it, up to the arrays of its points.
+    fn begin(&mut self, pieces: &[Piece<'_>], numbers: &[(&str, f64)]) -> io::Result<()> {
+        self.0.write_all(
+            br#"<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64"><UnstructuredGrid>"#,
+        )?;
+        if !numbers.is_empty() {
+            self.0.write_all(b"<FieldData>")?;
+            for (name, number) in numbers {
+                let value = iter::once(number.to_le_bytes());
+                self.array(name, ("Float64", 1), 1, value)?;
+            }
+            self.0.write_all(b"</FieldData>")?;
+        }
+        let (points, cells) = (points_of(pieces).count(), cells_of(pieces).count());
+        write!(
+            self.0,
+            r#"<Piece NumberOfPoints="{points}" NumberOfCells="{cells}"><PointData>"#
+        )
+    }
+
+    /// Writes an array of vectors at points.
+    fn vectors(
+        &mut self,
+        name: &str,
+        count: usize,
+        numbers: impl Iterator<Item = f64>,
+    ) -> io::Result<()> {
+        self.array(name, ("Float32", 3), 3 * count, numbers.map(single))
+    }
+
+    /// Ends the grid of these pieces with its points and cells.
+    fn end(mut self, pieces: &[Piece<'_>]) -> io::Result<()> {
+        let (points, cells) = (points_of(pieces).count(), cells_of(pieces).count());
+        self.0.write_all(b"<Points>")?;
+        let at = points_of(pieces).flat_map(|(piece, i)| piece.values(i).place);
+        self.vectors("Points", points, at)?;
+        self.0.write_all(b"</Points><Cells>")?;
+        let corners = cells_of(pieces)
+            .map(|(piece, i)| piece.cell(i).1.len())
+            .sum();
+        let firsts = pieces.iter().scan(0, |next, piece| {
+            let first = *next;
+            *next += piece.points() as u64;
+            Some((first, *piece))
+        });
+        let connectivity = firsts.flat_map(|(first, piece)| {
+            let nodes = (0..piece.cells()).flat_map(move |i| piece.cell(i).1);
+            nodes.map(move |node| (first + u64::from(*node)).to_le_bytes())
+        });
+        self.array("connectivity", ("UInt64", 1), corners, connectivity)?;
+        let ends = cells_of(pieces).scan(0_u64, |end, (piece, i)| {
+            *end += piece.cell(i).1.len() as u64;
+            Some(end.to_le_bytes())
+        });
+        self.array("offsets", ("UInt64", 1), cells, ends)?;
+        let shapes = cells_of(pieces).map(|(piece, i)| [piece.cell(i).0]);
+        self.array("types", ("UInt8", 1), cells, shapes)?;
+        self.0
+            .write_all(b"</Cells></Piece></UnstructuredGrid></VTKFile>")?;
+        self.0.flush()
+    }
+
     /// Writes `count` numbers of a type of VTK, so many of which belong together.
     fn array<const BYTES: usize>(
         &mut self,
@@ -227,6 +316,10 @@ impl<W: Write> File<W> {
     ) -> io::Result<()> {
         write!(self.0, r#"<DataArray type="{kind}" Name="{name}""#)?;
         // meshio makes a table of one column of numbers of which it is told that each stands alone.
+        if kind == "Float64" {
+            // A number beside the grid.
+            write!(self.0, r#" NumberOfTuples="{count}""#)?;
+        }
         if components > 1 {
             write!(self.0, r#" NumberOfComponents="{components}""#)?;
         }

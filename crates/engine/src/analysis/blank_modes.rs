@@ -7,7 +7,7 @@ use super::running::RotationSpeed;
 use crate::gear::{Helix, Member, SolidGear, SolidGearError};
 use crate::run::Run;
 use crate::vibration::campbell::Crossing;
-use crate::vibration::{self, Mode, ModesAsked, ModesError};
+use crate::vibration::{self, Mode, ModeShape, ModesAsked, ModesError, ShapeSize};
 
 /// Multiples of the mesh order that are looked at.
 pub const MULTIPLES: u32 = 5;
@@ -66,23 +66,46 @@ pub fn blank_modes(
     request: &ModesRequest,
     run: &Run,
 ) -> Result<[Vec<MetMode>; 2], AnalysisError> {
-    let of = |member: Member| {
-        let failed = |reason: String| AnalysisError::Discretization { member, reason };
-        let gear = case
-            .solid_gear(member)
-            .map_err(|error| failed(error.to_string()))?;
-        match vibration::modes(&gear, request.asked, run) {
-            Ok(modes) => Ok(modes
-                .into_iter()
-                .map(|mode| met(mode, case, member, request))
-                .collect()),
-            Err(ModesError::Fem(crate::fem::FemError::Stopped(stopped))) => {
-                Err(AnalysisError::Stopped(stopped))
-            }
-            Err(error) => Err(failed(error.to_string())),
-        }
+    let of = |member: Member| -> Result<Vec<MetMode>, AnalysisError> {
+        let modes = of_gear(case, member, |gear| {
+            vibration::modes(gear, request.asked, run)
+        })?;
+        let modes = modes.into_iter();
+        Ok(modes.map(|mode| met(mode, case, member, request)).collect())
     };
     Ok([of(Member::Driving)?, of(Member::Driven)?])
+}
+
+/// The shape of a mode of a gear of `case`, by its place among the [`blank_modes`], from 0; `None` beyond the last of them.
+///
+/// # Errors
+///
+/// As for [`blank_modes`].
+pub fn mode_shape(
+    case: &Case,
+    request: &ModesRequest,
+    (member, place): (Member, usize),
+    run: &Run,
+) -> Result<Option<ModeShape>, AnalysisError> {
+    of_gear(case, member, |gear| {
+        vibration::mode_shape(gear, request.asked, place, run)
+    })
+}
+
+/// The answer of `work` on a gear of `case`.
+fn of_gear<T>(
+    case: &Case,
+    member: Member,
+    work: impl FnOnce(&SolidGear) -> Result<T, ModesError>,
+) -> Result<T, AnalysisError> {
+    let failed = |reason: String| AnalysisError::Discretization { member, reason };
+    let gear = case
+        .solid_gear(member)
+        .map_err(|error| failed(error.to_string()))?;
+    work(&gear).map_err(|error| match error {
+        ModesError::Fem(crate::fem::FemError::Stopped(stopped)) => AnalysisError::Stopped(stopped),
+        error => failed(error.to_string()),
+    })
 }
 
 /// `mode` of a gear of `case` with the speeds of `request` at which the mesh meets it.
@@ -121,4 +144,25 @@ pub fn blank_modes_estimate(case: &Case) -> Estimate {
         memory: both.iter().map(|[_, bytes]| *bytes).fold(0.0, f64::max) as u64,
         seconds: both.iter().map(|[seconds, _]| seconds).sum(),
     }
+}
+
+/// Cost of [`mode_shape`] of a gear of `case` until it is written, and the size of the shape.
+///
+/// # Errors
+///
+/// [`AnalysisError::Discretization`].
+pub fn mode_shape_estimate(
+    case: &Case,
+    member: Member,
+) -> Result<(Estimate, ShapeSize), AnalysisError> {
+    of_gear(case, member, |gear| {
+        let size = vibration::shape_size(gear)?;
+        let [seconds, bytes] = vibration::estimate(gear);
+        let estimate = Estimate {
+            degrees_of_freedom: 3 * size.nodes as u64,
+            memory: bytes as u64 + size.bytes() as u64,
+            seconds,
+        };
+        Ok((estimate, size))
+    })
 }

@@ -29,7 +29,7 @@ pub(super) struct TeethOrder {
     /// The mass.
     pub(super) mass: Mat<c64>,
     /// The unknowns of the cell by those of the order.
-    pub(super) follows: Mat<c64>,
+    follows: Mat<c64>,
     /// The unknowns of the cell.
     pub(super) numbering: Numbering,
 }
@@ -112,6 +112,11 @@ impl TeethOrder {
             follows,
             numbering,
         })
+    }
+
+    /// The unknowns of the cell where the circle moves by this `amplitude` of the order.
+    pub(super) fn moved(&self, amplitude: Mat<c64>) -> Mat<c64> {
+        &self.follows * amplitude
     }
 
     /// The same on the opposite order.
