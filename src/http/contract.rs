@@ -7,6 +7,7 @@ use super::tables;
 /// Completes the document.
 pub(super) fn finish(document: &mut Value) {
     list_tables(document);
+    name_shapes(document);
     take_studies(document);
     let paths = document.get_mut("paths").and_then(Value::as_object_mut);
     for item in paths.into_iter().flat_map(Map::values_mut) {
@@ -38,6 +39,20 @@ fn list_tables(document: &mut Value) {
         }
     }
     *paths = listed;
+}
+
+/// The number of a mode is a part of the name of its file.
+fn name_shapes(document: &mut Value) {
+    let Some(paths) = document.get_mut("paths").and_then(Value::as_object_mut) else {
+        return;
+    };
+    let named = std::mem::take(paths).into_iter();
+    *paths = named
+        .map(|(path, item)| match path.ends_with("/modes/{n}") {
+            true => (format!("{path}.vtu"), item),
+            false => (path, item),
+        })
+        .collect();
 }
 
 /// The checked document is a submission or a study.

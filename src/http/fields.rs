@@ -84,7 +84,7 @@ pub(super) struct GridParameters {
 /// The cells of a grid.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
-enum Cells {
+pub(super) enum Cells {
     #[default]
     Quadratic,
     Linear,
@@ -202,7 +202,7 @@ pub(super) enum NoLook {
 pub(super) struct File {
     pub(super) name: &'static str,
     pub(super) media_type: &'static str,
-    /// The cells of both gears whole, if it has them. The file is large: it is packed while it is made, and a browser saves it.
+    /// Its cells, if it has grids. The file is large: it is packed while it is made, and a browser saves it.
     grids: Option<Cells>,
 }
 
@@ -216,8 +216,8 @@ impl File {
         }
     }
 
-    /// The grids of both gears.
-    fn grids(name: &'static str, media_type: &'static str, cells: Cells) -> Self {
+    /// Grids.
+    pub(super) fn grids(name: &'static str, media_type: &'static str, cells: Cells) -> Self {
         Self {
             grids: Some(cells),
             ..Self::shown(name, media_type)
@@ -246,6 +246,17 @@ async fn answer(
         work(submission, (torque, position), library, run)
     };
     done.look(client, (file, &form), request, look).await
+}
+
+/// What it takes to compute a job once more for a file.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Cost {
+    /// Bytes until the file is written.
+    pub(super) memory: u64,
+    /// Seconds of one core.
+    pub(super) seconds: f64,
+    /// Bytes of the packed file, at most, if it has grids.
+    pub(super) sent: u64,
 }
 
 /// A job with results whose submission is computed again for fields that the results do not hold.
@@ -280,20 +291,8 @@ impl Done {
         request: &HeaderMap,
         work: impl FnOnce(&Submission, &Library, &Run) -> Result<Vec<u8>, Problem> + Send + 'static,
     ) -> Result<Response, Refusal> {
-        let Self {
-            job,
-            hash,
-            submission,
-        } = self;
-        let app = &client.app;
-        app.jobs.check_memory(client.name(), &submission).await?;
-        let File {
-            name,
-            media_type,
-            grids,
-        } = file;
-        let has_grids = grids.is_some();
-        let case = submission.case().clone();
+        let grids = file.grids;
+        let case = self.submission.case().clone();
         // The full method of the plane or of faces solves it, whichever the job had.
         let whole = Case {
             model: match &case.model {
@@ -311,7 +310,43 @@ impl Done {
             ..
         } = estimated.await?;
         let [made, sent] = field_bytes(&case, degrees_of_freedom, grids);
-        let memory = (memory + made).div_ceil(1_000_000);
+        let cost = Cost {
+            memory: memory + made,
+            seconds,
+            sent,
+        };
+        self.look_for(cost, client, (file, form), request, work)
+            .await
+    }
+
+    /// The same at a `cost` that is known.
+    pub(super) async fn look_for(
+        self,
+        cost: Cost,
+        client: &Client,
+        (file, form): (File, &str),
+        request: &HeaderMap,
+        work: impl FnOnce(&Submission, &Library, &Run) -> Result<Vec<u8>, Problem> + Send + 'static,
+    ) -> Result<Response, Refusal> {
+        let Self {
+            job,
+            hash,
+            submission,
+        } = self;
+        let app = &client.app;
+        app.jobs.check_memory(client.name(), &submission).await?;
+        let File {
+            name,
+            media_type,
+            grids,
+        } = file;
+        let has_grids = grids.is_some();
+        let Cost {
+            memory,
+            seconds,
+            sent,
+        } = cost;
+        let memory = memory.div_ceil(1_000_000);
         let limit = app.jobs.rules().memory_mb;
         if memory > limit {
             return Err(too_much_memory(memory, limit).into());

@@ -27,6 +27,7 @@ mod health;
 mod jobs;
 mod memory;
 mod metrics;
+mod mode_shapes;
 mod outline;
 mod packing;
 mod page;

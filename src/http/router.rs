@@ -29,8 +29,8 @@ use super::headers::Trace;
 use super::problem::Refusal;
 use super::{
     access, batch, contact_pattern, docs, draw, fields, guides, headers, health, jobs, memory,
-    metrics, outline, packing, previews, problem, problem_pages, projects, reference, results,
-    rexs, shares, studies, submit, tables, usage, web, webhooks,
+    metrics, mode_shapes, outline, packing, previews, problem, problem_pages, projects, reference,
+    results, rexs, shares, studies, submit, tables, usage, web, webhooks,
 };
 use crate::jobs::without_secrets;
 
@@ -160,6 +160,7 @@ fn routes() -> OpenApiRouter<App> {
         .routes(routes!(rexs::write))
         .routes(routes!(fields::vtu))
         .routes(routes!(fields::edges))
+        .routes(routes!(mode_shapes::vtu))
         .routes(routes!(contact_pattern::json))
         .routes(routes!(contact_pattern::svg))
         .routes(routes!(tables::table))

@@ -12,6 +12,7 @@ use meshwright_wire::csv::CsvWriter;
 use meshwright_wire::results::{
     CurveDocument, CurveDynamicsDocument, FaceDocument, NamedOrderDocument, ResonanceDocument,
 };
+use meshwright_wire::solve::no_modes;
 use meshwright_wire::{Code, Problem, Results};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -382,11 +383,6 @@ fn look_up_table(
         look_up::Form::Text => "text/plain; charset=utf-8",
     };
     Ok(file(media_type, name, table))
-}
-
-fn no_modes() -> Problem {
-    let detail = "These results have no natural modes: the submission asks for none.";
-    Problem::new(Code::NotFound, detail)
 }
 
 fn no_forces() -> Problem {

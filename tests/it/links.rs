@@ -89,6 +89,7 @@ async fn somebody_without_a_key_reads_shared_results_and_nothing_else() {
         "events",
         "shares",
         "results/fields.vtu",
+        "results/modes/1.vtu",
         "results/edges.json",
         "results/contact-pattern.svg",
     ] {

@@ -199,6 +199,63 @@ async fn fields_come_as_a_grid_at_any_position_and_torque_of_the_job() {
     problem(get("?position=1").await, 400, "invalid_parameter").await;
 }
 
+fn with_modes() -> Value {
+    let mut submission = submission(115.0);
+    submission["modes"] = serde_json::json!({ "count": 2 });
+    submission
+}
+
+#[tokio::test]
+async fn a_mode_that_no_list_has_is_not_found_before_anything_is_computed() {
+    let bench = Bench::quick().await;
+    let path = bench.submit(&with_modes()).await;
+    bench.ended(&path).await;
+    let get = async |file: &str| {
+        bench
+            .get(&format!("{path}/results/modes/{file}"))
+            .answer()
+            .await
+    };
+    for file in ["0.vtu", "3.vtu?gear=driven", "one.vtu", "1.csv", "1"] {
+        problem(get(file).await, 404, "not_found").await;
+    }
+    for query in ["gear=both", "mode=1", "cells=linear"] {
+        let answer = get(&format!("1.vtu?{query}")).await;
+        problem(answer, 400, "invalid_parameter").await;
+    }
+    let bare = bench.submit(&submission(115.0)).await;
+    bench.ended(&bare).await;
+    let answer = bench
+        .get(&format!("{bare}/results/modes/1.vtu"))
+        .answer()
+        .await;
+    problem(answer, 404, "not_found").await;
+}
+
+#[tokio::test]
+#[ignore = "./test all"]
+async fn the_shape_of_a_mode_comes_as_a_grid_of_its_gear() {
+    let bench = Bench::quick().await;
+    let path = bench.submit(&with_modes()).await;
+    bench.ended(&path).await;
+    let get = async |file: &str| {
+        bench
+            .get(&format!("{path}/results/modes/{file}"))
+            .answer()
+            .await
+    };
+    for query in ["", "?gear=driving", "?gear=driven"] {
+        let answer = get(&format!("2.vtu{query}")).await;
+        assert_eq!(answer.status(), StatusCode::OK, "{query}");
+        assert_eq!(answer.headers()["content-type"], "text/xml");
+        let text = answer.whole_text().await;
+        for name in ["displacement_um", "frequency_hz", "modal_mass_kg"] {
+            assert!(text.contains(&format!("Name=\"{name}\"")), "{name}");
+        }
+        assert!(!text.contains("stress_mpa"));
+    }
+}
+
 fn helical() -> Value {
     let mut submission: Value =
         serde_json::from_str(include_str!("../../api/examples/helical-pair.json")).unwrap();

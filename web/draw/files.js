@@ -16,6 +16,8 @@ const isInThree = ({ method }) => isSolid(method);
 const runsUp = ({ dynamics }) => dynamics;
 /** @type {(submission: Submission) => unknown} */
 const hasForces = ({ dynamics, force_table: table }) => dynamics || table;
+/** @type {(submission: Submission) => unknown} */
+const hasModes = ({ modes }) => modes;
 
 /**
  * The name of each file, what it is called on the page, and what its submission asks for, if not every job has it.
@@ -34,6 +36,9 @@ const FILES = [
   ["face-load.svg", "Load along the face, SVG", isInThree],
   ["run-up.csv", "Run-up, CSV", runsUp],
   ["run-up.svg", "Run-up, SVG", runsUp],
+  ["campbell.csv", "Natural modes and speeds, CSV", hasModes],
+  ["campbell.svg", "Campbell diagram, SVG", hasModes],
+  ["modes/1.vtu", "Lowest mode of the driving gear, VTU", hasModes],
   ...[
     ["csv", "CSV"],
     ["txt", "CombiTable2D"],
@@ -62,6 +67,7 @@ export const filesOf = (submission) =>
 export async function saveFile(id, name, prefix, query = "", signal = undefined) {
   const place = name === "submission.rexs" ? name : `results${name === "results.json" ? "" : `/${name}`}`;
   const file = await request(`v1/jobs/${id}/${place}${query}`, { signal });
-  if (name.endsWith(".csv")) saveTable(`${prefix}${name}`, await file.text());
-  else save(`${prefix}${name}`, "", await file.blob());
+  const saved = `${prefix}${name.replace("/", "-")}`;
+  if (name.endsWith(".csv")) saveTable(saved, await file.text());
+  else save(saved, "", await file.blob());
 }

@@ -260,6 +260,7 @@ fn forces(criterion: &mut Criterion) {
         inertias: [None; 2],
         blank_modes: None,
         blank_damping_ratio: 0.02,
+        mounts: Default::default(),
         sweeps: [true, true],
     };
     let mut group = group(criterion, "forces", 3);

@@ -5,10 +5,11 @@ use std::f64::consts::PI;
 use meshwright_engine::dynamics::orbit::{Repeating, Scale, multiplier};
 use meshwright_engine::dynamics::oscillator::Step;
 use meshwright_engine::dynamics::{
-    Body, BodyMode, Coupled, Damping, Excitation, FlankRows, ForceTable, Ladder, Laws, Orbit,
-    Order, Oscillator, RunUp, RunUpData, State,
+    Body, BodyMode, Coupled, Damping, Excitation, FlankRows, ForceTable, Ladder, Laws, Mount,
+    Orbit, Order, Oscillator, RunUp, RunUpData, State, Support,
 };
 use meshwright_engine::run::Run;
+use nalgebra::{Cholesky, DMatrix, DVector, Matrix6, SMatrix};
 
 const AT_REST: Orbit = Orbit::REST;
 
@@ -212,6 +213,7 @@ fn data(speeds: Vec<f64>, load: f64, orders: &[f64]) -> RunUpData {
             inertia: 2.0,
             base_radius: 1.0,
             modes: Vec::new(),
+            mount: Mount::NONE,
         }),
         damping_ratio: 0.05,
         body_damping_ratio: 0.02,
@@ -501,6 +503,7 @@ fn hub_and_rim(hub: f64, rim: f64, web: f64) -> Body {
             at_mesh: 1.0 / rim.sqrt(),
             turn: rim.sqrt(),
         }],
+        mount: Mount::NONE,
     }
 }
 
@@ -645,4 +648,246 @@ fn a_slow_mesh_of_gears_on_webs_follows_its_static_curve() {
             assert!((slow / still - 1.0).abs() < 1e-6, "{slow} {still}");
         }
     }
+}
+
+/// The natural frequencies of K v = ω² M v in rad/s, rising, without those of free motions.
+fn natural(mass: &DMatrix<f64>, stiffness: &DMatrix<f64>) -> Vec<f64> {
+    let factor = Cholesky::new(mass.clone()).expect("masses").l();
+    let inverse = factor.try_inverse().expect("a triangle");
+    let values = (&inverse * stiffness * inverse.transpose()).symmetric_eigenvalues();
+    let mut found: Vec<f64> = values.iter().map(|value| value.max(0.0).sqrt()).collect();
+    found.retain(|omega| *omega > 1e-6 * values.max().sqrt());
+    found.sort_by(f64::total_cmp);
+    found
+}
+
+fn assert_frequencies(found: &[f64], expected: &[f64]) {
+    assert_eq!(found.len(), expected.len(), "{found:?} {expected:?}");
+    for (found, expected) in found.iter().zip(expected) {
+        assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}");
+    }
+}
+
+const UNDAMPED: Damping = Damping {
+    mesh: 0.0,
+    bodies: 0.0,
+};
+
+/// A spring between the coordinates in `along`, added to `stiffness`.
+fn spring(stiffness: &mut DMatrix<f64>, k: f64, along: &[(usize, f64)]) {
+    let mut vector = DVector::zeros(stiffness.nrows());
+    for (place, share) in along {
+        vector[*place] += share;
+    }
+    *stiffness += k * &vector * vector.transpose();
+}
+
+#[test]
+fn gears_on_their_shafts_vibrate_as_inertias_in_a_row() {
+    let (inertias, radii, shafts, teeth) = ([3e-3, 8e-3], [0.04, 0.06], [2e4, 7e4], 3e8);
+    let gear = |i: usize, shaft: f64| Body {
+        inertia: inertias[i],
+        base_radius: radii[i],
+        modes: Vec::new(),
+        mount: Mount {
+            shaft,
+            support: None,
+        },
+    };
+    // Two gears between ends that turn evenly: λ² − λ (a/J₁ + b/J₂) + (a b − c²)/(J₁ J₂) = 0, a = k₁ + k r₁², b = k₂ + k r₂², c = k r₁ r₂.
+    let coupled = Coupled::new(&[gear(0, shafts[0]), gear(1, shafts[1])], teeth, UNDAMPED);
+    let (a, b) = (
+        shafts[0] + teeth * radii[0] * radii[0],
+        shafts[1] + teeth * radii[1] * radii[1],
+    );
+    let c = teeth * radii[0] * radii[1];
+    let half = 0.5 * (a / inertias[0] + b / inertias[1]);
+    let product = (a * b - c * c) / (inertias[0] * inertias[1]);
+    let root = (half * half - product).sqrt();
+    let expected = [(half - root).sqrt(), (half + root).sqrt()];
+    assert_frequencies(&coupled.expect("bodies").frequencies, &expected);
+    // One shaft: the gears turn as one on it, and nothing turns freely.
+    let coupled = Coupled::new(&[gear(0, shafts[0]), gear(1, 0.0)], teeth, UNDAMPED);
+    assert_eq!(coupled.expect("bodies").count(), 2);
+    // Hub, rim, rim and hub in a row, hubs on their shafts.
+    let rims = [1e-3, 2e-3];
+    let webs = [4e5, 9e5];
+    let bodies = [0, 1].map(|i: usize| {
+        let mode = BodyMode {
+            frequency: f64::sqrt(webs[i] / rims[i]),
+            at_mesh: radii[i] / f64::sqrt(rims[i]),
+            turn: f64::sqrt(rims[i]),
+        };
+        Body {
+            modes: vec![mode],
+            ..gear(i, shafts[i])
+        }
+    });
+    let coupled = Coupled::new(&bodies, teeth, UNDAMPED).expect("bodies");
+    let hubs = [0, 1].map(|i| inertias[i] - rims[i]);
+    let mass = DMatrix::from_diagonal(&vec![hubs[0], rims[0], rims[1], hubs[1]].into());
+    let mut stiffness = DMatrix::zeros(4, 4);
+    spring(&mut stiffness, shafts[0], &[(0, 1.0)]);
+    spring(&mut stiffness, webs[0], &[(0, 1.0), (1, -1.0)]);
+    spring(&mut stiffness, teeth, &[(1, radii[0]), (2, -radii[1])]);
+    spring(&mut stiffness, webs[1], &[(2, 1.0), (3, -1.0)]);
+    spring(&mut stiffness, shafts[1], &[(3, 1.0)]);
+    assert_frequencies(&coupled.frequencies, &natural(&mass, &stiffness));
+}
+
+/// Stiffness of an isotropic support, mass, polar inertia and shaft of both gears with a base radius of 1; the force on the driven gear stands at 25° to y.
+const ON_SUPPORTS: [[f64; 4]; 2] = [[6.0, 2.0, 2.0, 0.4], [9.0, 3.0, 2.0, 0.3]];
+const LINE: [f64; 2] = [0.42261826174069944, 0.90630778703664994];
+
+fn on_supports() -> [Body; 2] {
+    ON_SUPPORTS.map(|[support, m, inertia, shaft]| {
+        let mut mass = SMatrix::<f64, 5, 5>::identity() * m;
+        (mass[(3, 3)], mass[(4, 4)]) = (1.0, 1.0);
+        let mut stiffness = Matrix6::zeros();
+        (stiffness[(0, 0)], stiffness[(1, 1)]) = (support, support);
+        Body {
+            inertia,
+            base_radius: 1.0,
+            modes: Vec::new(),
+            mount: Mount {
+                shaft,
+                support: Some(Support {
+                    stiffness,
+                    mass,
+                    at_mesh: [LINE[0], LINE[1], 0.0, 0.0, 0.0],
+                }),
+            },
+        }
+    })
+}
+
+#[test]
+fn gears_on_supports_vibrate_along_their_line_of_action_and_beside_it() {
+    // In one frame for both: x₁, y₁, θ₁, x₂, y₂, θ₂ with the teeth between them. Beside the line of action each moves at √(k/m).
+    let mut mass = DMatrix::zeros(6, 6);
+    let mut stiffness = DMatrix::zeros(6, 6);
+    for (gear, [support, m, inertia, shaft]) in ON_SUPPORTS.into_iter().enumerate() {
+        for (i, m) in [m, m, inertia].into_iter().enumerate() {
+            mass[(3 * gear + i, 3 * gear + i)] = m;
+        }
+        for (i, k) in [support, support, shaft].into_iter().enumerate() {
+            spring(&mut stiffness, k, &[(3 * gear + i, 1.0)]);
+        }
+    }
+    let [s, c] = LINE;
+    let along = [(0, s), (1, c), (2, 1.0), (3, -s), (4, -c), (5, -1.0)];
+    spring(&mut stiffness, 1.7, &along);
+    let expected = natural(&mass, &stiffness);
+    let coupled = Coupled::new(&on_supports(), 1.7, UNDAMPED).expect("bodies");
+    let found = coupled.natural_frequencies();
+    let found: Vec<f64> = found.iter().map(|hertz| 2.0 * PI * hertz).collect();
+    assert_frequencies(&found, &expected);
+    // The motions beside the line of action, and that of both gears along it at their common frequency, are told and not carried.
+    assert_eq!(coupled.count(), expected.len() - 3);
+    for [support, m, _, _] in ON_SUPPORTS {
+        let beside = f64::sqrt(support / m);
+        let is_there = |omega: &&f64| (**omega / beside - 1.0).abs() < 1e-6;
+        assert!(expected.iter().any(|omega| is_there(&omega)), "{beside}");
+    }
+}
+
+#[test]
+fn gears_on_shafts_and_supports_move_as_a_plain_integrator_moves_them() {
+    // The classical Runge-Kutta method on both gears in one frame: displacements from the place of rest under the load.
+    let wave = |eta: f64| 0.9 * (2.0 * PI * eta).cos() + 0.2 * (4.0 * PI * eta + 0.4).cos();
+    let table = table(256, 4.0, wave, |eta| 1.0 + 0.2 * (2.0 * PI * eta).cos());
+    let rest = table.transmission_error(1.0);
+    let rest = rest.iter().sum::<f64>() / rest.len() as f64;
+    let omegas = [0.35, 0.8, 1.4, 3.0];
+    let asked = RunUpData {
+        bodies: on_supports(),
+        body_damping_ratio: 0.1,
+        ..data(omegas.map(|w| w / (2.0 * PI)).to_vec(), 1.0, &[1.0])
+    };
+    let found = run_up(&asked, &table).up.expect("asked");
+    let lost = &found.contact_lost;
+    assert!(lost.contains(&true) && lost.contains(&false), "{lost:?}");
+    for (place, omega) in omegas.into_iter().enumerate() {
+        let steps = 256;
+        let h = 2.0 * PI / omega / f64::from(steps);
+        let approach = |q: &[f64]| LINE[0] * (q[0] - q[3]) + LINE[1] * (q[1] - q[4]) + q[2] - q[5];
+        let rate = |t: f64, state: [f64; 12]| -> [f64; 12] {
+            let (q, v) = state.split_at(6);
+            let eta = omega * t / (2.0 * PI);
+            let force = table.load(eta, rest + approach(q)) + 0.1 * approach(v) - 1.0;
+            let mut rates = [0.0; 12];
+            rates[..6].copy_from_slice(v);
+            for (gear, sign) in [(0, -1.0), (1, 1.0)] {
+                let [support, m, inertia, shaft] = ON_SUPPORTS[gear];
+                let of = [
+                    (support, m, LINE[0]),
+                    (support, m, LINE[1]),
+                    (shaft, inertia, 1.0),
+                ];
+                for (i, (k, m, along)) in of.into_iter().enumerate() {
+                    let place = 3 * gear + i;
+                    let damper = 2.0 * 0.1 * (k * m).sqrt();
+                    rates[6 + place] =
+                        (sign * along * force - k * q[place] - damper * v[place]) / m;
+                }
+            }
+            rates
+        };
+        let mut state = [0.0; 12];
+        let (mut n, mut sum, mut squares) = (0.0, 0.0, 0.0);
+        let (mut least, mut most, mut largest) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
+        let (periods, watched) = (160, 40);
+        for i in 0..periods * steps {
+            let t = f64::from(i) * h;
+            let on = |by: f64, k: [f64; 12]| std::array::from_fn(|j| state[j] + by * h * k[j]);
+            let k1 = rate(t, state);
+            let k2 = rate(t + h / 2.0, on(0.5, k1));
+            let k3 = rate(t + h / 2.0, on(0.5, k2));
+            let k4 = rate(t + h, on(1.0, k3));
+            for j in 0..12 {
+                state[j] += h / 6.0 * (k1[j] + 2.0 * k2[j] + 2.0 * k3[j] + k4[j]);
+            }
+            if i >= (periods - watched) * steps {
+                let x = state[2] - state[5];
+                n += 1.0;
+                sum += x;
+                squares += x * x;
+                (least, most) = (least.min(x), most.max(x));
+                let eta = omega * (t + h) / (2.0 * PI);
+                largest = largest.max(table.load(eta, rest + approach(&state[..6])));
+            }
+        }
+        let mean: f64 = sum / n;
+        let rms = (squares / n - mean * mean).sqrt();
+        for (told, expected) in [
+            (found.rms[place], rms),
+            (found.peak_to_peak[place], most - least),
+            (found.load_factor[place], largest),
+        ] {
+            let repeats = found.repeats[place];
+            assert!(
+                (told / expected - 1.0).abs() < 0.01,
+                "{omega}: {told} {expected} {repeats:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_shaft_on_one_side_leaves_the_load_of_a_slow_mesh_and_two_shafts_share_its_error() {
+    // Slowly: with one far end that turns evenly the load stays, and the hubs follow the static curve. With two, spring k in a row with both shafts, the
+    // hubs follow it by c/(c + 1/k), c = Σ r²/k_s.
+    let curve = |eta: f64| 0.02 * (2.0 * PI * eta).cos();
+    let table = table(256, 2.0, curve, |_| 1.0);
+    let of = |shafts: [f64; 2]| {
+        let mut asked = data(vec![1e-5], 1.0, &[1.0]);
+        for (body, shaft) in asked.bodies.iter_mut().zip(shafts) {
+            body.mount.shaft = shaft;
+        }
+        let found = run_up(&asked, &table);
+        at(&found, Order::new(1, 1))[0]
+    };
+    assert!((of([0.5, 0.0]) / 0.02 - 1.0).abs() < 1e-4);
+    let c = 1.0 / 0.5 + 1.0 / 0.8;
+    assert!((of([0.5, 0.8]) / (0.02 * c / (c + 1.0)) - 1.0).abs() < 1e-4);
 }

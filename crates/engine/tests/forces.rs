@@ -10,12 +10,12 @@ use cases::{
     test_case,
 };
 use meshwright_engine::analysis::at_speed::{
-    CurveDynamics, DynamicsRequest, dynamics, equivalent_mass,
+    CurveDynamics, DynamicsRequest, MountRequest, dynamics, equivalent_mass,
 };
 use meshwright_engine::analysis::forces::{
     ForceTableRequest, ForcesRequest, analyze_with_forces, force_table,
 };
-use meshwright_engine::analysis::rotors::{Twists, twists};
+use meshwright_engine::analysis::rotors::{Twists, support, twists};
 use meshwright_engine::analysis::{
     Analysis, Case, Faces, Method, StiffnessRule, Warning, analyze, pair_model,
 };
@@ -29,6 +29,7 @@ use meshwright_engine::gear::{
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
+use nalgebra::{Cholesky, DMatrix, DVector, Vector3};
 
 const TWELVE: ForceTableRequest = ForceTableRequest {
     loads: 12,
@@ -527,6 +528,7 @@ fn run_up(case: &Case, to: f64, count: u32) -> CurveDynamics {
         inertias: [None; 2],
         blank_modes: None,
         blank_damping_ratio: 0.02,
+        mounts: Default::default(),
         sweeps: [true, true],
     };
     dynamics(
@@ -653,6 +655,7 @@ fn told_at_speed(case: &Case, speeds: &[f64], largest: Option<f64>) -> (Analysis
             inertias: [None; 2],
             blank_modes: None,
             blank_damping_ratio: 0.02,
+            mounts: Default::default(),
             sweeps: [true, true],
         }),
     };
@@ -848,6 +851,7 @@ fn vibrating(case: &Case, speeds: &[f64], beside: f64, modes: Option<u32>) -> Cu
         inertias: Member::BOTH.map(inertia),
         blank_modes: modes,
         blank_damping_ratio: 0.02,
+        mounts: Default::default(),
         sweeps: [true, true],
     };
     let analysis = analyze(case, &*LIBRARY, &Run::unattended()).expect("curves");
@@ -881,6 +885,142 @@ fn rims_outside_their_webs_have_the_natural_frequencies_of_both_bodies_in_torsio
         let heavy = vibrating(&case, &[100.0], 1.0, Some(0));
         let of_rims = heavy.natural_frequency_of_rims.expect("an estimate");
         assert!((of_rims / heavy.run_up.natural_frequencies[0] - 1.0).abs() < 1e-3);
+    }
+}
+
+/// The stiffness of a support that holds a gear alike along all directions, and about x and y.
+fn isotropic(along: f64, about: f64) -> [[f64; 6]; 6] {
+    let diagonal = [along, along, along, about, about, 0.0];
+    std::array::from_fn(|i| std::array::from_fn(|j| if i == j { diagonal[i] } else { 0.0 }))
+}
+
+#[test]
+fn moving_both_gears_as_one_body_brings_their_teeth_no_nearer() {
+    for beta in [0.0, 0.3, -0.2] {
+        let case = along_faces(beta);
+        let faces = case.faces().expect("along faces");
+        let offset = faces.pair.alignment().axial_offset;
+        let [driving, driven] =
+            Member::BOTH.map(|member| support(&case, member, &isotropic(1e8, 1e5)).at_mesh);
+        for motion in 0..6 {
+            let mut of = [0.0; 6];
+            of[motion] = 1.0;
+            let along = Vector3::new(of[0], of[1], of[2]);
+            let about = Vector3::new(of[3], of[4], of[5]);
+            // The frame of the driven gear is turned by half a turn about z.
+            let place = Vector3::new(case.pair.center_distance(), 0.0, offset);
+            let moved = [along, along + about.cross(&place)];
+            let mut nearer = 0.0;
+            for (i, (at_mesh, sign)) in [(driving, 1.0), (driven, -1.0)].into_iter().enumerate() {
+                let own = [
+                    sign * moved[i].x,
+                    sign * moved[i].y,
+                    moved[i].z,
+                    sign * about.x,
+                    sign * about.y,
+                ];
+                let each = at_mesh.iter().zip(own);
+                nearer += each.map(|(share, moved)| share * moved).sum::<f64>();
+                let member = Member::BOTH[i];
+                nearer += case.pair.gear(member).base_radius() * about.z;
+            }
+            assert!(nearer.abs() < 1e-15, "{beta} {motion}: {nearer:e}");
+        }
+        // The driving gear's thrust: a right-handed one is pressed along z, and so comes nearer against it, by tan β_b.
+        let expected = -beta.signum() * faces.pair.base_helix_angle().tan();
+        assert!((driving[2] - expected).abs() < 1e-12 || beta == 0.0);
+    }
+}
+
+#[test]
+fn a_body_on_its_support_has_the_mass_of_its_drawing_about_the_middle_of_its_face() {
+    // A whole gear without the rings beside its web, each of which is a body of known height.
+    let case = along_faces(0.3);
+    let faces = case.faces().expect("along faces");
+    let gear = faces.pair.gear(Member::Driven);
+    let found = support(&case, Member::Driven, &isotropic(1e8, 1e5)).mass;
+    let web = gear.section().data().blank.web.expect("a web");
+    let density = gear.section().material().density;
+    let area = PI * (web.outer_radius.powi(2) - web.inner_radius.powi(2));
+    let half = gear.face_width() / 2.0;
+    let middle = gear.web_offset();
+    let [low, high] = [middle - web.thickness / 2.0, middle + web.thickness / 2.0];
+    let mass = gear.mass();
+    let whole = mass + density * area * (2.0 * half - web.thickness);
+    let beside = |power: i32| {
+        let ring = |from: f64, to: f64| (to.powi(power) - from.powi(power)) / f64::from(power);
+        density * area * (ring(-half, low) + ring(high, half))
+    };
+    let first = -beside(2);
+    let tilt = gear.polar_inertia() / 2.0 + whole * half * half / 3.0 - beside(3);
+    for (place, expected) in [
+        ((0, 0), mass),
+        ((2, 2), mass),
+        ((0, 4), first),
+        ((3, 1), -first),
+        ((3, 3), tilt),
+        ((4, 4), tilt),
+    ] {
+        let error = (found[place] - expected).abs();
+        assert!(
+            error < 1e-9 * expected.abs(),
+            "{place:?}: {} {expected}",
+            found[place]
+        );
+    }
+    assert!(middle < 0.0 && first < 0.0);
+}
+
+#[test]
+fn gears_on_isotropic_supports_vibrate_as_their_eigenproblem_has_them() {
+    // Rigid gears by formulas: x₁, y₁, θ₁, x₂, y₂, θ₂ in one frame, with the mean mesh stiffness along the line of action.
+    let mut case = case(standard_pair(false), &[100.0]);
+    case.model = model_by(Method::LoadDistribution, &case.model);
+    case.resolution.positions_per_mesh_period = 20;
+    let (along, shaft) = ([2e8, 5e8], [3e4, 0.0]);
+    let mounts = [0, 1].map(|i| MountRequest {
+        shaft: (shaft[i] > 0.0).then_some(shaft[i]),
+        support: Some(isotropic(along[i], 1e5)),
+    });
+    let request = DynamicsRequest {
+        speeds: vec![10.0],
+        damping_ratio: 0.05,
+        inertias: [None; 2],
+        blank_modes: None,
+        blank_damping_ratio: 0.02,
+        mounts,
+        sweeps: [true, false],
+    };
+    let run = Run::unattended();
+    let analysis = analyze(&case, &*LIBRARY, &run).expect("curves");
+    let curve = &analysis.curves[0];
+    let asked = (&request, twists_of(&case));
+    let told = dynamics(&case, curve, &table(&case), asked, &run).expect("nobody stops it");
+    let k = curve.mesh_stiffness_tangent_statistics.mean;
+    let (sin, cos) = case.pair.working_pressure_angle().sin_cos();
+    let gears = Member::BOTH.map(|member| case.pair.gear(member));
+    let [one, other] = gears.map(|gear| gear.base_radius());
+    let masses = gears.map(|gear| [gear.mass(), gear.mass(), gear.polar_inertia()]);
+    let mass = DMatrix::from_diagonal(&DVector::from_vec(masses.concat()));
+    let springs = [0, 1].map(|i| [along[i], along[i], shaft[i]]);
+    let mut stiffness = DMatrix::from_diagonal(&DVector::from_vec(springs.concat()));
+    let line = DVector::from_vec(vec![sin, cos, one, -sin, -cos, -other]);
+    stiffness += k * &line * line.transpose();
+    let inverse = Cholesky::new(mass).expect("masses").l();
+    let inverse = inverse.try_inverse().expect("a triangle");
+    let values = (&inverse * stiffness * inverse.transpose()).symmetric_eigenvalues();
+    let mut expected: Vec<f64> = values.iter().map(|v| v.sqrt() / (2.0 * PI)).collect();
+    // Along the axis and about x and y nothing presses: each gear by itself on its support.
+    for (i, gear) in gears.into_iter().enumerate() {
+        let tilt = gear.polar_inertia() / 2.0 + gear.mass() * gear.face_width().powi(2) / 12.0;
+        let alone = [along[i] / gear.mass(), 1e5 / tilt, 1e5 / tilt];
+        expected.extend(alone.map(|square| square.sqrt() / (2.0 * PI)));
+    }
+    expected.sort_by(f64::total_cmp);
+    let found = &told.run_up.natural_frequencies;
+    assert_eq!(found.len(), expected.len());
+    for (found, expected) in found.iter().zip(&expected) {
+        assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}");
     }
 }
 

@@ -10,7 +10,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use super::digits::significant;
-use super::force_table::MeshForces;
+use super::force_table::{LEFT_OUT, MeshForces};
 
 /// The program in C, which every FMU holds.
 const SOURCE: &str = include_str!("../../fmu/meshwright_mesh.c");
@@ -88,7 +88,7 @@ fn description(forces: &MeshForces, guid: &str) -> String {
     let sources = format!("<SourceFiles><File name=\"{NAME}.c\"/></SourceFiles>");
     format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>
-<fmiModelDescription fmiVersion=\"2.0\" modelName=\"Gear mesh {z_1}/{z_2}\" guid=\"{guid}\" description=\"The force between two gears over their angles: {z_1} and {z_2} teeth on base circles of {d_1} and {d_2} mm, by the method {method}. Output torques from {least} to {largest} N m; beyond them the force goes on straight. Angles in rad, torques in N m, transmission error in um. {compiled}\" generationTool=\"Meshwright\" variableNamingConvention=\"flat\" numberOfEventIndicators=\"0\">
+<fmiModelDescription fmiVersion=\"2.0\" modelName=\"Gear mesh {z_1}/{z_2}\" guid=\"{guid}\" description=\"The force between two gears over their angles: {z_1} and {z_2} teeth on base circles of {d_1} and {d_2} mm, by the method {method}. Output torques from {least} to {largest} N m; beyond them the force goes on straight. Angles in rad, torques in N m, transmission error in um. Left out: {LEFT_OUT}. {compiled}\" generationTool=\"Meshwright\" variableNamingConvention=\"flat\" numberOfEventIndicators=\"0\">
   <ModelExchange modelIdentifier=\"{NAME}\" completedIntegratorStepNotNeeded=\"true\">{sources}</ModelExchange>
   <CoSimulation modelIdentifier=\"{NAME}\" canHandleVariableCommunicationStepSize=\"true\">{sources}</CoSimulation>
   <UnitDefinitions>
@@ -163,6 +163,7 @@ mod tests {
             "20 and 25 teeth on base circles of 80 and 100 mm, by the method flexible",
             "Output torques from -50 to 50 N m",
             "Angles in rad, torques in N m, transmission error in um",
+            "Left out: inertia, shafts, supports and vibrations of the gear bodies",
         ] {
             assert!(text.contains(said), "{said}: {text}");
         }

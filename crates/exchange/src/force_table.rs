@@ -32,6 +32,9 @@ const MOST_COLUMNS: usize = 320;
 /// Columns in the backlash.
 const IN_BACKLASH: usize = 2;
 
+/// What no form of the table has, so that the program that reads it has to add it.
+pub(super) const LEFT_OUT: &str = "inertia, shafts, supports and vibrations of the gear bodies; their static compliance with bores held is in it";
+
 /// How the table is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
@@ -95,6 +98,7 @@ impl MeshForces {
             format!("driving_tooth_count: {}", self.tooth_count),
             format!("period_mesh_periods: {}", self.table.period()),
             "datum: at angle 0 of both gears a pair of teeth touches at the pitch point; each angle grows in the sense in which its gear turns".to_owned(),
+            format!("left_out: {LEFT_OUT}"),
             "approach: r_b1 theta_1 - r_b2 theta_2, positive where the driven gear lags; no force in the backlash, the other flank beyond it".to_owned(),
         ]
         .iter()

@@ -1,7 +1,16 @@
 //! A gear as elements with values at their points: as a plate, as a volume, or on linear cells.
 
-use meshwright_engine::analysis::fields::{GearField, Volume, von_mises};
+use meshwright_engine::analysis::fields::{GearField, Volume, VolumeElement, von_mises};
 use meshwright_engine::grid::ElementKind;
+use meshwright_engine::vibration::ModeShape;
+
+/// A mode of a gear as displacements: its cosine or its sine, so large that `scale` kg^(−1/2) are 1 µm.
+#[derive(Clone, Copy)]
+pub struct Wave<'a> {
+    pub(crate) shape: &'a ModeShape,
+    pub(crate) part: usize,
+    pub(crate) scale: f64,
+}
 
 /// A gear, as a plate or as a volume.
 #[derive(Clone, Copy)]
@@ -10,7 +19,9 @@ pub enum Piece<'a> {
     Plate(&'a GearField),
     /// As those see it that see the faces.
     Volume(&'a Volume),
-    /// Either on linear cells.
+    /// A natural mode, without stresses.
+    Wave(Wave<'a>),
+    /// Any of them on linear cells.
     Linear(&'a Divided),
 }
 
@@ -19,6 +30,7 @@ impl<'a> Piece<'a> {
         match self {
             Self::Plate(gear) => gear.nodes.len(),
             Self::Volume(gear) => gear.nodes.len(),
+            Self::Wave(wave) => wave.shape.nodes.len(),
             Self::Linear(gear) => gear.points.len(),
         }
     }
@@ -27,6 +39,7 @@ impl<'a> Piece<'a> {
         match self {
             Self::Plate(gear) => gear.elements.len(),
             Self::Volume(gear) => gear.elements.len(),
+            Self::Wave(wave) => wave.shape.elements.len(),
             Self::Linear(gear) => gear.cells.len(),
         }
     }
@@ -54,6 +67,10 @@ impl<'a> Piece<'a> {
                     von_mises(&gear.stresses[number]),
                 )
             }
+            Self::Wave(Wave { shape, part, scale }) => {
+                let u = 1e-6 / scale * shape.displacements[number][part];
+                (shape.nodes[number].into(), u.into(), [0.0; 9], 0.0)
+            }
             Self::Linear(gear) => return gear.points[number],
         };
         Values {
@@ -69,6 +86,7 @@ impl<'a> Piece<'a> {
         match self {
             Self::Plate(gear) => (gear.elements[number].kind(), 0),
             Self::Volume(gear) => (gear.elements[number].kind, Divided::LAYERS),
+            Self::Wave(wave) => (wave.shape.elements[number].kind, Divided::LAYERS),
             Self::Linear(gear) => (gear.cells[number].section(), 0),
         }
     }
@@ -84,14 +102,8 @@ impl<'a> Piece<'a> {
                 };
                 (shape, element.nodes())
             }
-            Self::Volume(gear) => {
-                let element = &gear.elements[number];
-                let shape = match element.kind {
-                    ElementKind::Quadrilateral => QUADRATIC_HEXAHEDRON,
-                    ElementKind::Triangle => QUADRATIC_WEDGE,
-                };
-                (shape, &element.nodes)
-            }
+            Self::Volume(gear) => solid(&gear.elements[number]),
+            Self::Wave(wave) => solid(&wave.shape.elements[number]),
             Self::Linear(gear) => {
                 let cell = &gear.cells[number];
                 (cell.shape, cell.corners())
@@ -103,10 +115,19 @@ impl<'a> Piece<'a> {
     pub(crate) fn thickness(self, number: usize) -> Option<f64> {
         match self {
             Self::Plate(gear) => Some(1e3 * gear.thicknesses[number]),
-            Self::Volume(_) => None,
+            Self::Volume(_) | Self::Wave(_) => None,
             Self::Linear(gear) => gear.cells[number].thickness,
         }
     }
+}
+
+/// VTK's number of the shape of an element in space, and its points.
+fn solid(element: &VolumeElement) -> (u8, &[u32]) {
+    let shape = match element.kind {
+        ElementKind::Quadrilateral => QUADRATIC_HEXAHEDRON,
+        ElementKind::Triangle => QUADRATIC_WEDGE,
+    };
+    (shape, &element.nodes)
 }
 
 /// Shapes of cells by their numbers in `vtkCellType.h`.

@@ -1,11 +1,12 @@
-//! Displacements and stresses of both gears as a VTK unstructured grid, which ParaView, PyVista and meshio read.
+//! Displacements and stresses of both gears, and natural modes of one, as VTK unstructured grids, which ParaView, PyVista and meshio read.
 
 use std::io::{self, BufWriter, Write};
 use std::iter;
 
-pub use super::piece::Piece;
+pub use super::piece::{Piece, Wave};
 use base64::engine::general_purpose::STANDARD;
 use base64::write::EncoderWriter;
+use meshwright_engine::vibration::ModeShape;
 
 /// Writes the driving and the driven gear as one grid, in binary XML. It is written number by number, so that no more of it is in memory than the gears.
 ///
@@ -16,91 +17,159 @@ use base64::write::EncoderWriter;
 ///
 /// Errors of `out`.
 pub fn write(gears: [Piece<'_>; 2], out: impl Write) -> io::Result<()> {
-    let [driving, driven] = gears;
-    let of_points = || {
-        gears
-            .into_iter()
-            .flat_map(|gear| (0..gear.points()).map(move |i| (gear, i)))
-    };
-    let of_cells = || {
-        gears
-            .into_iter()
-            .flat_map(|gear| (0..gear.cells()).map(move |i| (gear, i)))
-    };
-    let points = driving.points() + driven.points();
-    let cells = driving.cells() + driven.cells();
-    let corners: usize = of_cells().map(|(gear, i)| gear.cell(i).1.len()).sum();
-    let single = |number: f64| (number as f32).to_le_bytes();
-
+    let points = || points_of(&gears);
+    let count = points().count();
+    let cells = || cells_of(&gears);
     let mut file = File(BufWriter::new(out));
-    write!(
-        file.0,
-        r#"<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64"><UnstructuredGrid><Piece NumberOfPoints="{points}" NumberOfCells="{cells}"><PointData>"#
-    )?;
-    let displacements = of_points().flat_map(|(gear, i)| gear.values(i).displacement);
-    file.array(
-        "displacement_um",
-        ("Float32", 3),
-        3 * points,
-        displacements.map(single),
-    )?;
-    let stresses = of_points().flat_map(|(gear, i)| gear.values(i).stress);
+    file.begin(&gears, &[])?;
+    let displacements = points().flat_map(|(gear, i)| gear.values(i).displacement);
+    file.vectors("displacement_um", count, displacements)?;
+    let stresses = points().flat_map(|(gear, i)| gear.values(i).stress);
     file.array(
         "stress_mpa",
         ("Float32", 9),
-        9 * points,
+        9 * count,
         stresses.map(single),
     )?;
-    let von_mises = of_points().map(|(gear, i)| gear.values(i).von_mises);
+    let von_mises = points().map(|(gear, i)| gear.values(i).von_mises);
     file.array(
         "von_mises_mpa",
         ("Float32", 1),
-        points,
+        count,
         von_mises.map(single),
     )?;
     file.0.write_all(b"</PointData><CellData>")?;
     let members = (0_u8..)
         .zip(gears)
         .flat_map(|(member, gear)| iter::repeat_n([member], gear.cells()));
-    file.array("gear", ("UInt8", 1), cells, members)?;
-    if of_cells()
+    file.array("gear", ("UInt8", 1), cells().count(), members)?;
+    if cells()
         .next()
         .is_some_and(|(gear, i)| gear.thickness(i).is_some())
     {
-        let thicknesses = of_cells().filter_map(|(gear, i)| gear.thickness(i));
+        let thicknesses = cells().filter_map(|(gear, i)| gear.thickness(i));
         file.array(
             "thickness_mm",
             ("Float32", 1),
-            cells,
+            cells().count(),
             thicknesses.map(single),
         )?;
     }
-    file.0.write_all(b"</CellData><Points>")?;
-    let at = of_points().flat_map(|(gear, i)| gear.values(i).place);
-    file.array("Points", ("Float32", 3), 3 * points, at.map(single))?;
-    file.0.write_all(b"</Points><Cells>")?;
-    let first = [0, driving.points() as u64];
-    let connectivity = first.into_iter().zip(gears).flat_map(|(first, gear)| {
-        let nodes = (0..gear.cells()).flat_map(move |i| gear.cell(i).1);
-        nodes.map(move |node| (first + u64::from(*node)).to_le_bytes())
-    });
-    file.array("connectivity", ("UInt64", 1), corners, connectivity)?;
-    let ends = of_cells().scan(0_u64, |end, (gear, i)| {
-        *end += gear.cell(i).1.len() as u64;
-        Some(end.to_le_bytes())
-    });
-    file.array("offsets", ("UInt64", 1), cells, ends)?;
-    let shapes = of_cells().map(|(gear, i)| [gear.cell(i).0]);
-    file.array("types", ("UInt8", 1), cells, shapes)?;
-    file.0
-        .write_all(b"</Cells></Piece></UnstructuredGrid></VTKFile>")?;
-    file.0.flush()
+    file.0.write_all(b"</CellData>")?;
+    file.end(&gears)
+}
+
+/// Writes a natural mode as a grid: its cosine, and its sine if it has one. The largest displacement of either is 1 µm.
+///
+/// At points: `displacement_um`, and `displacement_sine_um` of a double mode. In the field: `frequency_hz`, and `modal_mass_kg` for these displacements over
+/// 1 µm.
+///
+/// # Errors
+///
+/// Errors of `out`.
+pub fn write_mode(shape: &ModeShape, out: impl Write) -> io::Result<()> {
+    let scale = shape.largest();
+    let wave = |part| Piece::Wave(Wave { shape, part, scale });
+    let waves = [wave(0), wave(1)];
+    let cosine = &waves[..1];
+    let shown = if shape.mode.is_double { 2 } else { 1 };
+    let numbers = [
+        ("frequency_hz", shape.mode.frequency),
+        ("modal_mass_kg", scale.powi(-2)),
+    ];
+    let mut file = File(BufWriter::new(out));
+    file.begin(cosine, &numbers)?;
+    let names = ["displacement_um", "displacement_sine_um"];
+    for (name, wave) in names.into_iter().zip(waves).take(shown) {
+        let displacements = (0..wave.points()).flat_map(|i| wave.values(i).displacement);
+        file.vectors(name, wave.points(), displacements)?;
+    }
+    file.0.write_all(b"</PointData>")?;
+    file.end(cosine)
+}
+
+/// All points, each with its piece.
+fn points_of<'a>(pieces: &[Piece<'a>]) -> impl Iterator<Item = (Piece<'a>, usize)> {
+    let pieces = pieces.iter().copied();
+    pieces.flat_map(|piece| (0..piece.points()).map(move |i| (piece, i)))
+}
+
+/// All cells, each with its piece.
+fn cells_of<'a>(pieces: &[Piece<'a>]) -> impl Iterator<Item = (Piece<'a>, usize)> {
+    let pieces = pieces.iter().copied();
+    pieces.flat_map(|piece| (0..piece.cells()).map(move |i| (piece, i)))
+}
+
+fn single(number: f64) -> [u8; 4] {
+    (number as f32).to_le_bytes()
 }
 
 /// A file that is written array by array.
 struct File<W: Write>(BufWriter<W>);
 
 impl<W: Write> File<W> {
+    /// Begins a grid of these pieces, with single numbers beside it, up to the arrays of its points.
+    fn begin(&mut self, pieces: &[Piece<'_>], numbers: &[(&str, f64)]) -> io::Result<()> {
+        self.0.write_all(
+            br#"<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64"><UnstructuredGrid>"#,
+        )?;
+        if !numbers.is_empty() {
+            self.0.write_all(b"<FieldData>")?;
+            for (name, number) in numbers {
+                let value = iter::once(number.to_le_bytes());
+                self.array(name, ("Float64", 1), 1, value)?;
+            }
+            self.0.write_all(b"</FieldData>")?;
+        }
+        let (points, cells) = (points_of(pieces).count(), cells_of(pieces).count());
+        write!(
+            self.0,
+            r#"<Piece NumberOfPoints="{points}" NumberOfCells="{cells}"><PointData>"#
+        )
+    }
+
+    /// Writes an array of vectors at points.
+    fn vectors(
+        &mut self,
+        name: &str,
+        count: usize,
+        numbers: impl Iterator<Item = f64>,
+    ) -> io::Result<()> {
+        self.array(name, ("Float32", 3), 3 * count, numbers.map(single))
+    }
+
+    /// Ends the grid of these pieces with its points and cells.
+    fn end(mut self, pieces: &[Piece<'_>]) -> io::Result<()> {
+        let (points, cells) = (points_of(pieces).count(), cells_of(pieces).count());
+        self.0.write_all(b"<Points>")?;
+        let at = points_of(pieces).flat_map(|(piece, i)| piece.values(i).place);
+        self.vectors("Points", points, at)?;
+        self.0.write_all(b"</Points><Cells>")?;
+        let corners = cells_of(pieces)
+            .map(|(piece, i)| piece.cell(i).1.len())
+            .sum();
+        let firsts = pieces.iter().scan(0, |next, piece| {
+            let first = *next;
+            *next += piece.points() as u64;
+            Some((first, *piece))
+        });
+        let connectivity = firsts.flat_map(|(first, piece)| {
+            let nodes = (0..piece.cells()).flat_map(move |i| piece.cell(i).1);
+            nodes.map(move |node| (first + u64::from(*node)).to_le_bytes())
+        });
+        self.array("connectivity", ("UInt64", 1), corners, connectivity)?;
+        let ends = cells_of(pieces).scan(0_u64, |end, (piece, i)| {
+            *end += piece.cell(i).1.len() as u64;
+            Some(end.to_le_bytes())
+        });
+        self.array("offsets", ("UInt64", 1), cells, ends)?;
+        let shapes = cells_of(pieces).map(|(piece, i)| [piece.cell(i).0]);
+        self.array("types", ("UInt8", 1), cells, shapes)?;
+        self.0
+            .write_all(b"</Cells></Piece></UnstructuredGrid></VTKFile>")?;
+        self.0.flush()
+    }
+
     /// Writes `count` numbers of a type of VTK, so many of which belong together.
     fn array<const BYTES: usize>(
         &mut self,
@@ -111,6 +180,10 @@ impl<W: Write> File<W> {
     ) -> io::Result<()> {
         write!(self.0, r#"<DataArray type="{kind}" Name="{name}""#)?;
         // meshio makes a table of one column of numbers of which it is told that each stands alone.
+        if kind == "Float64" {
+            // A number beside the grid.
+            write!(self.0, r#" NumberOfTuples="{count}""#)?;
+        }
         if components > 1 {
             write!(self.0, r#" NumberOfComponents="{components}""#)?;
         }

@@ -1,13 +1,15 @@
 //! Requests beside the curves: a table of force, and the motion over speed.
 
-use meshwright_engine::analysis::at_speed::{DynamicsRequest, MOST_MODES};
+use meshwright_engine::analysis::at_speed::{DynamicsRequest, MOST_MODES, MountRequest};
 use meshwright_engine::analysis::forces::ForceTableRequest;
+use meshwright_engine::gear::Member;
 
 use serde::Serializer;
 use serde_json::{Value, json};
 
 use super::declare::{
-    EACH, Kind, Location, Named, Node, Number, absent, document, number, word, words,
+    EACH, Kind, List, Location, Named, Node, Number, absent, document, list, nested, number, word,
+    words,
 };
 
 words! {
@@ -54,7 +56,8 @@ impl ForceTableQuestion {
 }
 
 document! {
-    /// The motion of the gears over speed: torsion on the line of action, with backlash, of gears whose bodies turn in themselves.
+    /// The motion of the gears over speed: torsion on the line of action, with backlash, of gears whose bodies turn in themselves; on shafts and supports where
+    /// these are given.
     pub struct DynamicsQuestion as "DynamicsRequest", "Dynamics request" {
         /// The speeds of the driving gear, or the only one.
         pub(super) driving_speed_rpm: Speeds = (),
@@ -76,10 +79,87 @@ document! {
             number("Blank modes", "1", 0.0, MOST_MODES as f64),
             "as many as lie below twice the highest mesh frequency, and at least one",
         ),
-        /// The damping of these modes over the critical one.
+        /// The damping of these modes over the critical one, and of each mode of a gear by itself on its shaft and its support.
         blank_damping_ratio: f64 = number("Blank damping ratio", "1", 0.0, 1.0).or(0.02),
+        /// Shafts between the hubs and the machines beside them. The far end of a shaft turns evenly, at the angle at which the shaft carries the torque at rest.
+        pub(super) shaft_stiffness_n_m_per_rad: Option<ShaftStiffnessDocument> = absent(
+            nested("ShaftStiffness"),
+            "the torques at the hubs do not change",
+        )
+        .left_out(),
+        /// What carries each gear as a rigid body, beside its turn: motions of the gear along and about its axes, which the mesh force excites.
+        pub(super) support_stiffness: Option<SupportStiffnessDocument> = absent(
+            nested("SupportStiffness"),
+            "the axes stand still",
+        )
+        .left_out(),
         /// Which way the speeds are run through.
         sweep: Sweep = word("Sweep").or(Sweep::Both),
+    }
+}
+
+document! {
+    /// The torsional stiffness of the shaft of each gear, between its hub and a far end that turns evenly.
+    pub struct ShaftStiffnessDocument as "ShaftStiffness", "Shaft stiffness" {
+        /// That of the shaft of the driving gear.
+        driving: Option<f64> = absent(
+            shaft("Shaft of the driving gear"),
+            "the torque at the driving hub does not change",
+        ),
+        /// That of the shaft of the driven gear.
+        driven: Option<f64> = absent(
+            shaft("Shaft of the driven gear"),
+            "the torque at the driven hub does not change",
+        ),
+    }
+}
+
+document! {
+    /// The stiffness of the support of each gear about the middle of its face: six rows of six numbers, force and torque along x, y and z over displacement
+    /// and turn along x, y and z, in N/m, N and N m. x points towards the mate, z along the axis to the side from which the driving gear is seen to turn
+    /// counter-clockwise. It stands still as the gear turns, is symmetric, has no negative eigenvalue and holds the gear against the mesh force.
+    pub struct SupportStiffnessDocument as "SupportStiffness", "Support stiffness" {
+        /// That of the driving gear.
+        driving: Option<Vec<Vec<f64>>> = absent(
+            support("Support of the driving gear"),
+            "the axis of the driving gear stands still",
+        ),
+        /// That of the driven gear.
+        driven: Option<Vec<Vec<f64>>> = absent(
+            support("Support of the driven gear"),
+            "the axis of the driven gear stands still",
+        ),
+    }
+}
+
+/// Rows and columns of the stiffness of a support.
+pub(super) const MOTIONS: usize = 6;
+
+const fn shaft(title: &'static str) -> Number {
+    number(title, "N m/rad", 1.0, 1e12)
+}
+
+const fn support(title: &'static str) -> List<List<Number>> {
+    let row = list("", number("", "N/m, N, N m", -1e15, 1e15), MOTIONS);
+    list(title, row, MOTIONS)
+}
+
+impl SupportStiffnessDocument {
+    /// The rows of the support of a gear.
+    pub(super) fn of(&self, member: Member) -> Option<&[Vec<f64>]> {
+        let rows = match member {
+            Member::Driving => &self.driving,
+            Member::Driven => &self.driven,
+        };
+        rows.as_deref()
+    }
+
+    /// The support of a gear, where it has six rows of six numbers: the mean of the stiffness and its transpose.
+    pub(super) fn matrix(&self, member: Member) -> Option<[[f64; MOTIONS]; MOTIONS]> {
+        let rows = self.of(member)?;
+        let is_whole = rows.len() == MOTIONS && rows.iter().all(|row| row.len() == MOTIONS);
+        let mean = |i: usize| std::array::from_fn(|j| f64::midpoint(rows[i][j], rows[j][i]));
+        is_whole.then(|| std::array::from_fn(mean))
     }
 }
 
@@ -167,6 +247,13 @@ impl Kind for Speeds {
 
 impl DynamicsQuestion {
     pub(super) fn data(&self) -> DynamicsRequest {
+        let shafts = self.shaft_stiffness_n_m_per_rad.as_ref();
+        let shafts = shafts.map_or([None; 2], |shafts| [shafts.driving, shafts.driven]);
+        let supports = self.support_stiffness.as_ref();
+        let mounts = Member::BOTH.map(|member| MountRequest {
+            shaft: shafts[member.index()],
+            support: supports.and_then(|supports| supports.matrix(member)),
+        });
         DynamicsRequest {
             speeds: self
                 .driving_speed_rpm
@@ -178,6 +265,7 @@ impl DynamicsQuestion {
             inertias: [self.driving_inertia_kg_m2, self.driven_inertia_kg_m2],
             blank_modes: self.blank_modes,
             blank_damping_ratio: self.blank_damping_ratio,
+            mounts,
             sweeps: [self.sweep != Sweep::Down, self.sweep != Sweep::Up],
         }
     }

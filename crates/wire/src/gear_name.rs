@@ -24,6 +24,14 @@ impl GearName {
         }
     }
 
+    /// The gear of a pair.
+    pub fn member(self) -> Member {
+        match self {
+            Self::Driving => Member::Driving,
+            Self::Driven => Member::Driven,
+        }
+    }
+
     /// The gear that a word names.
     pub fn of_word(word: &str) -> Option<Self> {
         [Self::Driving, Self::Driven]

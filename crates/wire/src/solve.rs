@@ -1,6 +1,7 @@
 //! From a submission to its results, or to its validation.
 
-use meshwright_engine::analysis::blank_modes::blank_modes;
+use meshwright_engine::analysis::Estimate;
+use meshwright_engine::analysis::blank_modes::{self, blank_modes};
 use meshwright_engine::analysis::contact_pattern::ContactPattern;
 use meshwright_engine::analysis::fields::Volume;
 use meshwright_engine::analysis::fields::{Fields, fields};
@@ -9,6 +10,7 @@ use meshwright_engine::contact::Contradiction;
 use meshwright_engine::gear::data::LEAST_LIGAMENT;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
+use meshwright_engine::vibration::{ModeShape, ShapeSize};
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -23,7 +25,7 @@ use super::submission::{
     MOST_POSITIONS, MOST_PROJECTED_POSITIONS, MOST_TAGS, MOST_TORQUES, SOLVER_VERSION, Submission,
 };
 use super::units::{Side, plain, rounded_inward, significant, to_mpa, to_um};
-use super::warning::WarningDocument;
+use super::warning::{GearName, WarningDocument};
 
 /// Computes `submission`.
 ///
@@ -46,6 +48,69 @@ pub fn solve(submission: &Submission, library: &Library, run: &Run) -> Result<Re
     let modes = blank_modes(submission.case(), request, run);
     let modes = modes.map_err(|error| problem_of(&error))?;
     Ok(results.with_modes(submission, &modes))
+}
+
+/// The shape of mode `number`, from 1, of a gear of `submission`.
+///
+/// # Errors
+///
+/// As for [`solve`], and `not_found` where the results list no such mode.
+pub fn mode_shape(
+    submission: &Submission,
+    (gear, number): (GearName, u32),
+    run: &Run,
+) -> Result<ModeShape, Problem> {
+    check_mode_number(submission, gear, number)?;
+    let request = submission.modes().ok_or_else(no_modes)?;
+    let place = (gear.member(), number as usize - 1);
+    let shape = blank_modes::mode_shape(submission.case(), request, place, run);
+    let shape = shape.map_err(|error| problem_of(&error))?;
+    shape.ok_or_else(|| no_such_mode(gear, number))
+}
+
+/// Refuses a number of a mode that no list of `submission` reaches.
+///
+/// # Errors
+///
+/// `not_found`.
+pub fn check_mode_number(
+    submission: &Submission,
+    gear: GearName,
+    number: u32,
+) -> Result<(), Problem> {
+    let request = submission.modes().ok_or_else(no_modes)?;
+    if (1..=request.asked.count).contains(&(number as usize)) {
+        return Ok(());
+    }
+    Err(no_such_mode(gear, number))
+}
+
+/// Cost of [`mode_shape`] until it is written, and the size of the shape.
+///
+/// # Errors
+///
+/// As for [`solve`].
+pub fn mode_shape_estimate(
+    submission: &Submission,
+    gear: GearName,
+) -> Result<(Estimate, ShapeSize), Problem> {
+    let estimate = blank_modes::mode_shape_estimate(submission.case(), gear.member());
+    estimate.map_err(|error| problem_of(&error))
+}
+
+/// The problem of results without natural modes.
+pub fn no_modes() -> Problem {
+    let detail = "These results have no natural modes: the submission asks for none.";
+    Problem::new(Code::NotFound, detail)
+}
+
+fn no_such_mode(gear: GearName, number: u32) -> Problem {
+    let detail = format!(
+        "The results list no mode {number} of the {} gear: /modes/{} has the modes from 1.",
+        gear.word(),
+        gear.word()
+    );
+    Problem::new(Code::NotFound, detail)
 }
 
 /// Displacements and stresses in both gears, as the method sees them.

@@ -6,7 +6,10 @@ use super::curve::Curve;
 use super::orders::Orders;
 use super::rotors::{self, Twists};
 use super::{AnalysisError, Case, OrderKind};
-use crate::dynamics::{Body, Coupled, Damping, ForceTable, Order, Resonance, RunUp, RunUpData};
+use crate::dynamics::mount::Rows;
+use crate::dynamics::{
+    Body, Coupled, Damping, ForceTable, Mount, Order, Resonance, RunUp, RunUpData,
+};
 use crate::gear::{GearPair, Member};
 use crate::run::Run;
 
@@ -31,10 +34,22 @@ pub struct DynamicsRequest {
     pub inertias: [Option<f64>; 2],
     /// The number of modes in which each gear body turns in itself; `None` for as many as lie below twice the highest mesh frequency, and at least one.
     pub blank_modes: Option<u32>,
-    /// ζ of these modes.
+    /// ζ of these modes, and of the gears on their shafts and supports.
     pub blank_damping_ratio: f64,
+    /// What carries the driving and the driven hub.
+    pub mounts: [MountRequest; 2],
     /// Directions: run-up, and run-down.
     pub sweeps: [bool; 2],
+}
+
+/// Shaft and support of a hub.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct MountRequest {
+    /// The torsional stiffness in N m/rad of the shaft between the hub and a far end that turns evenly; without it the torque at the hub does not change.
+    pub shaft: Option<f64>,
+    /// The stiffness of the support in N/m, N and N m to motions along x, y, z and about them, x towards the mate and z along the axis, about the middle of the
+    /// face; without it the axis stands still.
+    pub support: Option<Rows>,
 }
 
 /// Motion at speed under the torque of one curve.
@@ -90,7 +105,13 @@ fn bodies(
     };
     Member::BOTH.map(|member| {
         let inertia = request.inertias[member.index()];
-        rotors::body(case, member, inertia, twists[member.index()], limits)
+        let MountRequest { shaft, support } = request.mounts[member.index()];
+        let mount = Mount {
+            shaft: shaft.unwrap_or(0.0),
+            support: support.map(|rows| rotors::support(case, member, &rows)),
+        };
+        let twist = twists[member.index()];
+        rotors::body(case, member, inertia, twist, limits, mount)
     })
 }
 

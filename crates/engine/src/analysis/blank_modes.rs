@@ -8,7 +8,7 @@ use crate::fem::FemError;
 use crate::gear::{Helix, Member, SolidGear, SolidGearError};
 use crate::run::Run;
 use crate::vibration::campbell::Crossing;
-use crate::vibration::{self, Mode, ModesAsked, ModesError};
+use crate::vibration::{self, Mode, ModeShape, ModesAsked, ModesError, ShapeSize};
 
 /// Multiples of the mesh order that are looked at.
 pub const MULTIPLES: u32 = 5;
@@ -67,14 +67,7 @@ pub fn blank_modes(
     request: &ModesRequest,
     run: &Run,
 ) -> Result<[Vec<MetMode>; 2], AnalysisError> {
-    let gear = |member: Member| {
-        let gear = case.solid_gear(member);
-        gear.map_err(|error| AnalysisError::Discretization {
-            member,
-            reason: error.to_string(),
-        })
-    };
-    let gears = [gear(Member::Driving)?, gear(Member::Driven)?];
+    let gears = [solid(case, Member::Driving)?, solid(case, Member::Driven)?];
     let of = |member: Member| {
         let modes = vibration::modes(&gears[member.index()], request.asked, run);
         modes.map_err(|error| of_modes(error, member))
@@ -102,6 +95,31 @@ pub(super) fn of_modes(error: ModesError, member: Member) -> AnalysisError {
             reason: error.to_string(),
         },
     }
+}
+
+/// The shape of a mode of a gear of `case`, by its place among the [`blank_modes`], from 0; `None` beyond the last of them.
+///
+/// # Errors
+///
+/// As for [`blank_modes`].
+pub fn mode_shape(
+    case: &Case,
+    request: &ModesRequest,
+    (member, place): (Member, usize),
+    run: &Run,
+) -> Result<Option<ModeShape>, AnalysisError> {
+    let gear = solid(case, member)?;
+    let shape = vibration::mode_shape(&gear, request.asked, place, run);
+    shape.map_err(|error| of_modes(error, member))
+}
+
+/// A gear of `case` with its extent along the axis.
+fn solid(case: &Case, member: Member) -> Result<SolidGear, AnalysisError> {
+    let gear = case.solid_gear(member);
+    gear.map_err(|error| AnalysisError::Discretization {
+        member,
+        reason: error.to_string(),
+    })
 }
 
 /// `mode` of a gear of `case` with the speeds of `request` at which the mesh meets it.
@@ -142,4 +160,25 @@ pub fn blank_modes_estimate(case: &Case) -> Estimate {
         seconds: both.iter().map(|[seconds, _]| seconds).sum(),
         ..Estimate::default()
     }
+}
+
+/// Cost of [`mode_shape`] of a gear of `case` until it is written, and the size of the shape.
+///
+/// # Errors
+///
+/// [`AnalysisError::Discretization`].
+pub fn mode_shape_estimate(
+    case: &Case,
+    member: Member,
+) -> Result<(Estimate, ShapeSize), AnalysisError> {
+    let gear = solid(case, member)?;
+    let size = vibration::shape_size(&gear).map_err(|error| of_modes(error, member))?;
+    let [seconds, bytes] = vibration::estimate(&gear);
+    let estimate = Estimate {
+        degrees_of_freedom: 3 * size.nodes as u64,
+        memory: bytes as u64 + size.bytes() as u64,
+        seconds,
+        ..Estimate::default()
+    };
+    Ok((estimate, size))
 }

@@ -2,15 +2,18 @@
 
 use std::f64::consts::PI;
 
+use nalgebra::{Matrix6, SMatrix};
+
 use super::case::Model;
 use super::{AnalysisError, Case};
 use crate::assembly::interface::interface_radius;
 use crate::assembly::{BlankSpec, PartError, Parts};
-use crate::dynamics::Body;
+use crate::dynamics::mount::{self, MOTIONS, Rows};
 use crate::dynamics::torsion::{Ring, Rotor};
+use crate::dynamics::{Body, Mount, Support};
 use crate::fem::FemError;
 use crate::fem::dense::Cholesky;
-use crate::gear::{BlankRegion, Member};
+use crate::gear::{BlankRegion, Member, SolidGear, Web};
 use crate::ring::blank::BlankSubstructure;
 use crate::ring::cyclic::Component;
 use crate::run::Run;
@@ -75,13 +78,14 @@ fn twist(blank: &BlankSubstructure) -> Result<Twist, FemError> {
 }
 
 /// The body of a gear of `case` with this inertia or its own, which twists by `twist`, with its modes up to the circular frequency and the number of
-/// `limits`. A body that is to have less inertia than the gear as drawn has none, and neither have bodies whose compliance comes from formulas.
+/// `limits`, on its `mount`. A body that is to have less inertia than the gear as drawn has none, and neither have bodies whose compliance comes from formulas.
 pub(super) fn body(
     case: &Case,
     member: Member,
     inertia: Option<f64>,
     twist: Option<Twist>,
     (highest, most): (f64, usize),
+    mount: Mount,
 ) -> Body {
     let own = own_inertia(case, member);
     let inertia = inertia.unwrap_or(own);
@@ -96,6 +100,7 @@ pub(super) fn body(
         inertia,
         base_radius,
         modes,
+        mount,
     }
 }
 
@@ -107,15 +112,22 @@ pub(super) fn own_inertia(case: &Case, member: Member) -> f64 {
     }
 }
 
-/// Rings of a blank between bore and root circle, with the share of a ring that its holes leave, and the teeth on the last of them, of a gear with the polar
-/// inertia `own`.
-///
-/// Where holes are, shear goes around them: the rings there are so much softer that the whole twists by `twist`.
-fn rotor(case: &Case, member: Member, own: f64, twist: Option<Twist>) -> Rotor {
+/// A ring of a blank, with the share of it that holes take.
+#[derive(Debug, Clone, Copy)]
+struct Band {
+    radii: [f64; 2],
+    /// How wide it is along the axis, and where its middle stands from that of the face.
+    thickness: f64,
+    offset: f64,
+    open: f64,
+}
+
+/// Rings of a blank between bore and root circle.
+fn bands(case: &Case, member: Member) -> Vec<Band> {
     let gear = case.pair.gear(member);
-    let material = gear.material();
     let blank = &gear.data().blank;
-    let hub = case.faces().and_then(|of| of.pair.gear(member).hub());
+    let solid = case.faces().map(|of| of.pair.gear(member));
+    let hub = solid.and_then(SolidGear::hub);
     let (bore, root) = (blank.bore_radius, gear.root_radius());
     let mut edges = vec![bore, root];
     edges.extend(
@@ -140,22 +152,44 @@ fn rotor(case: &Case, member: Member, own: f64, twist: Option<Twist>) -> Rotor {
             .map(|hole| hole.moments_within(radius).area);
         areas.sum()
     };
-    let rings = edges.windows(2).map(|ends| {
+    let bands = edges.windows(2).map(|ends| {
         let [inner, outer] = [ends[0], ends[1]];
         let middle = f64::midpoint(inner, outer);
-        let thickness = match hub {
-            Some(hub) if middle < hub.outer_radius => hub.width,
-            _ => blank.thickness_at(middle, gear.face_width()),
+        let is_web = |web: &Web| (web.inner_radius..web.outer_radius).contains(&middle);
+        let (thickness, offset) = match hub {
+            Some(hub) if middle < hub.outer_radius => (hub.width, hub.offset),
+            _ => {
+                let offset = solid.map_or(0.0, SolidGear::web_offset);
+                let is_web = blank.web.as_ref().is_some_and(is_web);
+                let thickness = blank.thickness_at(middle, gear.face_width());
+                (thickness, if is_web { offset } else { 0.0 })
+            }
         };
-        let share = (open(outer) - open(inner)) / (PI * (outer * outer - inner * inner));
-        Ring {
+        Band {
             radii: [inner, outer],
-            thickness: thickness * (1.0 - share),
-            softer: 1.0,
+            thickness,
+            offset,
+            open: (open(outer) - open(inner)) / (PI * (outer * outer - inner * inner)),
         }
+    });
+    bands.collect()
+}
+
+/// Rings of a blank between bore and root circle, with the share of a ring that its holes leave, and the teeth on the last of them, of a gear with the polar
+/// inertia `own`.
+///
+/// Where holes are, shear goes around them: the rings there are so much softer that the whole twists by `twist`.
+fn rotor(case: &Case, member: Member, own: f64, twist: Option<Twist>) -> Rotor {
+    let gear = case.pair.gear(member);
+    let material = gear.material();
+    let rings = bands(case, member).into_iter().map(|band| Ring {
+        radii: band.radii,
+        thickness: band.thickness * (1.0 - band.open),
+        softer: 1.0,
     });
     let mut rings: Vec<Ring> = rings.collect();
     if let Some(Twist { radius, angle }) = twist {
+        let blank = &gear.data().blank;
         soften(&mut rings, blank, angle * material.shear_modulus(), radius);
     }
     let rotor = Rotor {
@@ -169,6 +203,80 @@ fn rotor(case: &Case, member: Member, own: f64, twist: Option<Twist>) -> Rotor {
         outer: teeth,
         ..rotor
     }
+}
+
+/// The support of a gear of `case` by a stiffness with these rows, in N/m, N and N m about the middle of its face.
+pub fn support(case: &Case, member: Member, rows: &Rows) -> Support {
+    Support {
+        stiffness: matrix(rows),
+        mass: rigid_mass(case, member),
+        at_mesh: at_mesh(case, member),
+    }
+}
+
+/// The part of the mesh force on a gear of `case` that a support with these `rows` leaves without a reaction.
+pub fn unheld(case: &Case, member: Member, rows: &Rows) -> f64 {
+    let radius = case.pair.gear(member).base_radius();
+    mount::unheld(&matrix(rows), &at_mesh(case, member), radius)
+}
+
+fn matrix(rows: &Rows) -> Matrix6<f64> {
+    Matrix6::from_fn(|i, j| rows[i][j])
+}
+
+/// Mass and inertia of a gear of `case` for motions along x, y and z and about x and y, about the middle of its face, in the mean over a turn.
+fn rigid_mass(case: &Case, member: Member) -> SMatrix<f64, MOTIONS, MOTIONS> {
+    let gear = case.pair.gear(member);
+    let solid = case.faces().map(|of| of.pair.gear(member));
+    let mass = solid.map_or_else(|| gear.mass(), SolidGear::mass);
+    let face = gear.face_width();
+    let density = gear.material().density;
+    let mut bands = bands(case, member);
+    if let Some(shaft) = solid.and_then(SolidGear::shaft) {
+        let [low, high] = shaft.heights;
+        bands.push(Band {
+            radii: [shaft.inner_radius, shaft.outer_radius],
+            thickness: high - low,
+            offset: f64::midpoint(low, high),
+            open: 0.0,
+        });
+    }
+    // What no band has stands along the face.
+    let (mut rest, mut first, mut second) = (mass, 0.0, 0.0);
+    for band in bands {
+        let [inner, outer] = band.radii;
+        let area = PI * (outer * outer - inner * inner) * (1.0 - band.open);
+        let own = density * area * band.thickness;
+        rest -= own;
+        first += own * band.offset;
+        second += own * (band.thickness.powi(2) / 12.0 + band.offset.powi(2));
+    }
+    second += rest * face * face / 12.0;
+    let tilt = own_inertia(case, member) / 2.0 + second;
+    let mut matrix = SMatrix::from_diagonal(&[mass, mass, mass, tilt, tilt].into());
+    (matrix[(0, 4)], matrix[(4, 0)]) = (first, first);
+    (matrix[(1, 3)], matrix[(3, 1)]) = (-first, -first);
+    matrix
+}
+
+/// By how much the teeth of a gear of `case` come nearer to its mate, along the transverse line of action, as it moves along x, y and z and turns about x
+/// and y, about the middle of its face; x points towards the mate. The force is taken at the pitch point in the middle of the common face.
+fn at_mesh(case: &Case, member: Member) -> [f64; MOTIONS] {
+    let (sin, cos) = case.pair.working_pressure_angle().sin_cos();
+    let radius = case.pair.gear(member).base_radius();
+    let (helix, height) = case.faces().map_or((0.0, 0.0), |faces| {
+        let twist = faces.pair.gear(member).twist();
+        (twist * radius, faces.pair.own_height(member, 0.0))
+    });
+    // A right-handed driving gear is pressed along z, and comes nearer against it.
+    let axial = -helix;
+    [
+        sin,
+        cos,
+        axial,
+        -height * cos,
+        height * sin - axial * radius / cos,
+    ]
 }
 
 /// Softens the rings where `blank` has holes so that `rings` up to `radius` twist by `twist` times the shear modulus, in 1/m³. Rings are no stiffer than by the

@@ -6,17 +6,23 @@
 //! J θ'' + Σ λ_i q_i'' = M,  λ_i θ'' + q_i'' + 2 ζ ω_i q_i' + ω_i² q_i = φ_i F,
 //!
 //! where the teeth move by r_b θ + Σ φ_i q_i. The table of force has Σ φ_i²/ω_i² in it, by which the modes yield to a force that stands still; the
-//! teeth alone yield by so much less.
+//! teeth alone yield by so much less. The table knows no shafts and no supports ([`Mount`]): they add springs, and motions of the whole body.
 
 use std::f64::consts::PI;
 
 use nalgebra::{Cholesky, Complex, DMatrix, DVector, SymmetricEigen};
 
-/// The part of the largest natural frequency squared below which a motion is that of both gears turning as one.
-const RIGID: f64 = 1e-9;
+use super::mount::Mount;
+
+/// The part of the largest natural frequency squared below which a motion is one without springs: both gears turning as one, or a body along its
+/// axis.
+const RIGID: f64 = 1e-12;
 
 /// The part of the largest displacement of the teeth in a mode below which they stand still in it.
 const FAINT: f64 = 1e-3;
+
+/// The part of the largest displacement of the teeth, or of a damping, below which it is rounding.
+const IDLE: f64 = 1e-9;
 
 /// A natural mode of a body whose bore is held, with a modal mass of 1 kg.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,6 +44,8 @@ pub struct Body {
     pub base_radius: f64,
     /// Its modes.
     pub modes: Vec<BodyMode>,
+    /// How its hub is carried.
+    pub mount: Mount,
 }
 
 impl Body {
@@ -54,12 +62,13 @@ impl Body {
 pub struct Damping {
     /// c of the mesh in N s/m, between the teeth.
     pub mesh: f64,
-    /// ζ of the modes of the bodies.
+    /// ζ of the modes of the bodies, and of the bodies on their shafts and supports.
     pub bodies: f64,
 }
 
 /// Two bodies on the spring of their mesh, by their common modes p_j with modal masses of 1: p'' + D p' + Ω² p = Z f, under a force f on the teeth
-/// beside that of the spring. The teeth come nearer by Z·p, the hubs by H·p. Turning as one is left out: no force between the gears excites it.
+/// beside that of the spring. The teeth come nearer by Z·p, the hubs by H·p, by their turns alone. Motions without springs are left out: no force between the
+/// gears excites them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Coupled {
     /// Ω in rad/s, rising.
@@ -72,6 +81,8 @@ pub struct Coupled {
     pub(super) hubs: Vec<f64>,
     /// The stiffness of the spring in N/m.
     pub(super) stiffness: f64,
+    /// Ω in rad/s of motions on supports that leave the teeth where they are and that damping does not reach: nothing excites them.
+    idle: Vec<f64>,
 }
 
 impl Coupled {
@@ -79,7 +90,8 @@ impl Coupled {
     ///
     /// Nothing where a body has less inertia than its modes move.
     pub fn new(bodies: &[Body; 2], stiffness: f64, damping: Damping) -> Option<Self> {
-        let count = 2 + bodies[0].modes.len() + bodies[1].modes.len();
+        let of_body = |body: &Body| 1 + body.modes.len() + body.mount.motions();
+        let count = of_body(&bodies[0]) + of_body(&bodies[1]);
         let mut mass = DMatrix::<f64>::identity(count, count);
         let mut spring = DMatrix::<f64>::zeros(count, count);
         let mut damper = DMatrix::<f64>::zeros(count, count);
@@ -98,6 +110,24 @@ impl Coupled {
                 teeth[place] = sign * mode.at_mesh;
                 place += 1;
             }
+            if body.mount.is_elastic() {
+                // The driven gear turns against z.
+                let own = body.mount.matrices(body.inertia, sign, damping.bodies);
+                let at = |i: usize| if i == 0 { turn } else { place + i - 1 };
+                for (sum, own) in [&mut mass, &mut spring, &mut damper].into_iter().zip(&own) {
+                    for i in 0..own.nrows() {
+                        for j in 0..own.ncols() {
+                            sum[(at(i), at(j))] = own[(i, j)];
+                        }
+                    }
+                }
+                if let Some(support) = &body.mount.support {
+                    for approach in support.at_mesh {
+                        teeth[place] = approach;
+                        place += 1;
+                    }
+                }
+            }
         }
         spring += stiffness * &teeth * teeth.transpose();
         damper += damping.mesh * &teeth * teeth.transpose();
@@ -114,6 +144,23 @@ impl Coupled {
             .filter(|&j| eigen.eigenvalues[j] > RIGID * largest)
             .collect();
         order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
+        let mut idle = Vec::new();
+        if bodies.iter().any(|body| body.mount.support.is_some()) {
+            let moved = (shapes.transpose() * &teeth).abs();
+            let most = moved.max();
+            let damped = shapes.transpose() * &damper * &shapes;
+            let is_alone = |j: usize| {
+                let beside = (0..count).filter(|i| *i != j).map(|i| damped[(i, j)].abs());
+                beside.fold(0.0, f64::max) <= IDLE * damped[(j, j)]
+            };
+            order.retain(|&j| {
+                let is_idle = moved[j] <= IDLE * most && is_alone(j);
+                if is_idle {
+                    idle.push(eigen.eigenvalues[j].sqrt());
+                }
+                !is_idle
+            });
+        }
         let shapes = shapes.select_columns(&order);
         let along = |vector: &DVector<f64>| (shapes.transpose() * vector).as_slice().to_vec();
         Some(Self {
@@ -122,6 +169,7 @@ impl Coupled {
             teeth: along(&teeth),
             hubs: along(&hubs),
             stiffness,
+            idle,
         })
     }
 
@@ -152,10 +200,12 @@ impl Coupled {
         displacements.chain(velocities).collect()
     }
 
-    /// True if the teeth move in mode `j`, so that the mesh excites it.
-    pub(super) fn is_excited(&self, j: usize) -> bool {
+    /// The natural frequencies in Hz that the mesh excites: those of modes in which the teeth move.
+    pub(super) fn excited_frequencies(&self) -> Vec<f64> {
         let most = self.teeth.iter().fold(0.0_f64, |most, z| most.max(z.abs()));
-        self.teeth[j].abs() > FAINT * most
+        let modes = self.frequencies.iter().zip(&self.teeth);
+        let excited = modes.filter(|(_, z)| z.abs() > FAINT * most);
+        excited.map(|(omega, _)| omega / (2.0 * PI)).collect()
     }
 
     /// The amplitude at the hubs over that of the static curve, at the circular frequency `omega`, of a mesh with a constant stiffness.
@@ -195,10 +245,10 @@ impl Coupled {
 
     /// The natural frequencies in Hz, rising.
     pub fn natural_frequencies(&self) -> Vec<f64> {
-        self.frequencies
-            .iter()
-            .map(|omega| omega / (2.0 * PI))
-            .collect()
+        let all = self.frequencies.iter().chain(&self.idle);
+        let mut all: Vec<f64> = all.map(|omega| omega / (2.0 * PI)).collect();
+        all.sort_by(f64::total_cmp);
+        all
     }
 }
 
@@ -222,6 +272,7 @@ mod tests {
                 at_mesh: radius / rim.sqrt(),
                 turn: rim.sqrt(),
             }],
+            mount: Mount::NONE,
         }
     }
 
@@ -254,6 +305,7 @@ mod tests {
             inertia: 1e12,
             base_radius: r,
             modes: Vec::new(),
+            mount: Mount::NONE,
         };
         let body = hub_and_rim(hub, rim, web, r);
         let coupled = Coupled::new(&[body, wall], teeth, NO_DAMPING).expect("bodies");

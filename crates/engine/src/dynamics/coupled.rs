@@ -203,6 +203,7 @@ impl<'a> CoupledMotion<'a> {
 #[cfg(test)]
 mod tests {
     use super::super::bodies::{Body, BodyMode, Damping};
+    use super::super::mount::Mount;
     use super::*;
 
     /// Two equal gears, each with one mode of this frequency, and a mesh of this stiffness.
@@ -216,6 +217,7 @@ mod tests {
             inertia: 2.0,
             base_radius: 1.0,
             modes: vec![mode],
+            mount: Mount::NONE,
         };
         Coupled::new(&[body.clone(), body], stiffness, damping).expect("bodies")
     }

@@ -43,11 +43,11 @@ pub struct RunUpData {
     pub load: f64,
     /// m_e in kg.
     pub mass: f64,
-    /// The driving and the driven gear: without any modes they are m_e.
+    /// The driving and the driven gear: without any modes, shafts and supports they are m_e.
     pub bodies: [Body; 2],
     /// ζ.
     pub damping_ratio: f64,
-    /// ζ of the modes of the bodies.
+    /// ζ of the modes of the bodies, and of the bodies on their shafts and supports.
     pub body_damping_ratio: f64,
     /// The mean mesh stiffness under F_0 in N/m.
     pub stiffness: f64,
@@ -76,14 +76,18 @@ impl RunUpData {
         known.map(|times| Order::new(times, 1))
     }
 
-    /// The bodies on their mesh, where they have modes: as many of the lowest as yield less than the mesh does, whose least compliance is `least`.
+    /// The bodies on their mesh, where they have modes, shafts or supports: with as many of the lowest modes as yield less than the mesh does, whose least
+    /// compliance is `least`.
     ///
     /// The mean stiffness of the mesh has the modes in it, that of the teeth has not.
     pub(super) fn coupled(&self, least: f64) -> Option<Coupled> {
         let mut bodies = self.bodies.clone();
         loop {
             let modes = || bodies.iter().flat_map(|body| &body.modes);
-            modes().next()?;
+            let is_one_mass = |body: &Body| body.modes.is_empty() && !body.mount.is_elastic();
+            if bodies.iter().all(is_one_mass) {
+                return None;
+            }
             let yields: f64 = bodies.iter().map(Body::compliance).sum();
             if yields < MOST_YIELD * least {
                 let damping = Damping {
@@ -123,7 +127,7 @@ pub(super) struct Mesh<'a> {
     deflection: Vec<f64>,
     /// The mean stiffness of the laws under F_0 in N/m.
     stiffness: f64,
-    /// The bodies, where they have modes. The laws are those of the teeth alone then.
+    /// The bodies, where they have modes, shafts or supports. The laws are those of the teeth alone then.
     coupled: Option<Cow<'a, Coupled>>,
 }
 
@@ -234,16 +238,12 @@ impl<'a> Mesh<'a> {
         }
     }
 
-    /// Frequencies that the mesh excites.
+    /// Frequencies in Hz that the mesh excites.
     pub(super) fn excited_frequencies(&self) -> Vec<f64> {
-        let all = self.natural_frequencies().into_iter().enumerate();
-        let is_excited = |j: usize| {
-            let coupled = self.coupled.as_ref();
-            coupled.is_none_or(|coupled| coupled.is_excited(j))
-        };
-        all.filter(|(j, _)| is_excited(*j))
-            .map(|(_, f)| f)
-            .collect()
+        match &self.coupled {
+            Some(coupled) => coupled.excited_frequencies(),
+            None => self.natural_frequencies(),
+        }
     }
 
     /// The amplitude over that of the static curve at a `frequency` in Hz, with the mean stiffness at every position and flanks that do not part.

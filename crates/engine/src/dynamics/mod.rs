@@ -15,7 +15,8 @@
 //! - `mesh`: a table at the steps of a run-up, and the motion in it at any speed,
 //! - [`resonance`]: where orders of the motion resonate, and what excites them,
 //! - [`run_up`]: both branches over speed, and their amplitudes,
-//! - [`torsion`]: bodies that turn in themselves, and their lowest natural frequency on the mesh.
+//! - [`torsion`]: bodies that turn in themselves, and their lowest natural frequency on the mesh,
+//! - [`bodies`], [`mount`]: bodies with modes on their mesh, their shafts and their supports.
 //!
 //! Time is divided into steps. In each the shape of F is that of the middle of the step, and the static deflection δ_s(θ) under F_0, about which it stands,
 //! moves on evenly: u = x − δ_s obeys m u'' + c u' + G(u) = F_0 − c δ_s' with a law G that is piecewise linear and constant in time. From step to step u' takes
@@ -25,6 +26,7 @@ pub mod bodies;
 pub mod coupled;
 pub mod law;
 mod mesh;
+pub mod mount;
 pub mod orbit;
 pub mod order;
 pub mod oscillator;
@@ -36,6 +38,7 @@ pub mod torsion;
 pub use bodies::{Body, BodyMode, Coupled, Damping};
 pub use law::Laws;
 pub use mesh::RunUpData;
+pub use mount::{Mount, Support};
 pub use orbit::Orbit;
 pub use order::Order;
 pub use oscillator::{Oscillator, State};

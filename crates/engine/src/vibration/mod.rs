@@ -5,6 +5,8 @@
 //! that circle, order by order (`teeth`). In class k of S equal sectors all turns by e^{i2πk/S} from one to the next; each class is one sparse
 //! Hermitian problem (`system`) for Lanczos's method (`fem::eigen`). Classes between 0 and S/2 stand for two modes, a cosine and a sine.
 //!
+//! [`shape`](ModeShape) has a mode on its grid.
+//!
 //! Helical teeth stand as straight ones of the same transverse section. A gear of one piece with its shaft is held where the shaft begins. Nothing
 //! rotates: frequencies are those at rest in the frame of the gear ([`campbell`] says where they are met at speed).
 
@@ -13,6 +15,7 @@ pub mod heights;
 mod mode;
 pub mod rotation;
 mod section;
+mod shape;
 mod system;
 mod teeth;
 #[cfg(test)]
@@ -32,6 +35,7 @@ use crate::grid::GridError;
 use crate::run::Run;
 
 pub use self::mode::{Direction, Mode, OrderShape};
+pub use self::shape::{ModeShape, ShapeSize};
 pub use self::system::BoreSupport;
 
 /// The largest order of the circle on which the teeth stand.
@@ -79,15 +83,47 @@ pub enum ModesError {
 ///
 /// [`ModesError`].
 pub fn modes(gear: &SolidGear, asked: ModesAsked, run: &Run) -> Result<Vec<Mode>, ModesError> {
+    let (modes, _) = of_gear(gear, |body| body.modes(asked, None, run))?;
+    Ok(modes)
+}
+
+/// The shape of the mode at this place, from 0, among the [`modes`] of `gear`; `None` beyond the last of them.
+///
+/// # Errors
+///
+/// [`ModesError`].
+pub fn mode_shape(
+    gear: &SolidGear,
+    asked: ModesAsked,
+    place: usize,
+    run: &Run,
+) -> Result<Option<ModeShape>, ModesError> {
+    let (_, shape) = of_gear(gear, |body| body.modes(asked, Some(place), run))?;
+    Ok(shape)
+}
+
+/// The size of the shape of a mode of `gear`.
+///
+/// # Errors
+///
+/// [`ModesError::Grid`].
+pub fn shape_size(gear: &SolidGear) -> Result<ShapeSize, ModesError> {
+    of_gear(gear, |body| Ok(body.shape_size()))
+}
+
+/// The answer of `work` on the body of `gear`.
+fn of_gear<T>(
+    gear: &SolidGear,
+    work: impl FnOnce(Body<'_>) -> Result<T, FemError>,
+) -> Result<T, ModesError> {
     let blank = Blank::new(gear)?;
     let section = gear.section();
     let cell = ToothCell::new(section, blank.parts[0].outer_radius)?;
-    let body = Body {
+    Ok(work(Body {
         blank: &blank,
         teeth: Some((gear, &cell)),
         material: section.material(),
-    };
-    Ok(body.modes(asked, run)?)
+    })?)
 }
 
 /// The most modes that can be asked of a gear with so many teeth: two of each number of nodal diameters that its grid follows, one in the plane and one out
@@ -155,6 +191,13 @@ impl Class<'_> {
     }
 }
 
+/// A mode among those found, by its place, and the one that is its sine where two single modes stand once, with its sign.
+#[derive(Debug, Clone, Copy)]
+struct Listed {
+    place: usize,
+    sine: Option<(usize, f64)>,
+}
+
 impl Body<'_> {
     /// The functions along the axis of all parts, and where the faces of each part are.
     fn heights(&self) -> (Heights, Vec<[f64; 2]>) {
@@ -212,7 +255,28 @@ impl Body<'_> {
         (numbering, entries)
     }
 
-    fn modes(&self, asked: ModesAsked, run: &Run) -> Result<Vec<Mode>, FemError> {
+    /// The size of the shape of a mode.
+    fn shape_size(&self) -> ShapeSize {
+        let (heights, faces) = self.heights();
+        let section = &self.blank.section;
+        let held = BoreSupport::Held;
+        let blank = System::new(section, &heights, &faces, self.material, held);
+        let size = ShapeSize::of(&blank, section.sectors);
+        let Some((gear, cell)) = self.teeth else {
+            return size;
+        };
+        let tooth = cell.system(&heights, gear.section(), gear.face_heights());
+        let z = gear.section().tooth_count() as usize;
+        size.and(ShapeSize::of(&tooth, z))
+    }
+
+    /// The lowest modes, and the shape of that at the place `shown`.
+    fn modes(
+        &self,
+        asked: ModesAsked,
+        shown: Option<usize>,
+        run: &Run,
+    ) -> Result<(Vec<Mode>, Option<ModeShape>), FemError> {
         let (heights, faces) = self.heights();
         let heights = &heights;
         let system = &System::new(
@@ -276,14 +340,13 @@ impl Body<'_> {
         lowest.sort_by(|one, other| one.0.total_cmp(&other.0));
         lowest.truncate(count);
         let weights = system.node_weights();
-        let made = lowest.par_iter().map(|(value, place, index)| {
-            let class = &classes[*place];
+        let found = |place: usize| {
+            let class = &classes[lowest[place].1];
             let of_parity = teeth.iter().find(|(of, _)| *of == class.parity);
             let teeth = of_parity.and_then(|(_, orders)| {
                 self.teeth
                     .map(|(gear, cell)| mode::Teeth { gear, cell, orders })
             });
-            let pair = &class.lanczos.found()[*index];
             mode::Found {
                 system: class.system,
                 numbering: &class.numbering,
@@ -293,22 +356,36 @@ impl Body<'_> {
                 phase: self.blank.phase,
                 teeth,
             }
-            .mode(*value, pair, &class.lanczos)
-        });
-        let made: Vec<(Mode, Mat<c64>)> = made.collect();
-        if sectors > 1 {
-            return Ok(made.into_iter().map(|(mode, _)| mode).collect());
-        }
-        let coupled = |(one, other): (usize, usize)| {
-            let class = &classes[lowest[one].1];
-            let [turned, _] = class.numbering.turned(&made[other].1);
-            inner(&made[one].1, &class.lanczos.pencil().mass_times(&turned)).re * heights.copies()
         };
-        let same_class = |one: usize, other: usize| lowest[one].1 == lowest[other].1;
-        let mut modes: Vec<Mode> = made.iter().map(|(mode, _)| mode.clone()).collect();
-        self.pair_up(&mut modes, same_class, coupled);
-        modes.truncate(asked.count);
-        Ok(modes)
+        let made = (0..lowest.len()).into_par_iter().map(|place| {
+            let (value, class, index) = lowest[place];
+            let lanczos = &classes[class].lanczos;
+            found(place).mode(value, &lanczos.found()[index], lanczos)
+        });
+        let (mut modes, vectors): (Vec<Mode>, Vec<Mat<c64>>) = made.unzip();
+        let alone = |place: usize| Listed { place, sine: None };
+        let mut listed: Vec<Listed> = (0..modes.len()).map(alone).collect();
+        if sectors == 1 {
+            let coupled = |(one, other): (usize, usize)| {
+                let class = &classes[lowest[one].1];
+                let [turned, _] = class.numbering.turned(&vectors[other]);
+                let mass = class.lanczos.pencil().mass_times(&turned);
+                inner(&vectors[one], &mass).re * heights.copies()
+            };
+            let same_class = |one: usize, other: usize| lowest[one].1 == lowest[other].1;
+            listed = self.pair_up(&mut modes, same_class, coupled);
+            listed.truncate(asked.count);
+        }
+        let shape = shown.and_then(|shown| {
+            let Listed { place, sine } = *listed.get(shown)?;
+            let mut x = vectors[place].clone();
+            if let Some((other, sign)) = sine {
+                x += &vectors[other] * faer::Scale(c64::new(0.0, sign));
+            }
+            Some(found(place).on_grid(modes[place].clone(), &x))
+        });
+        let of_list = listed.iter().map(|listed| modes[listed.place].clone());
+        Ok((of_list.collect(), shape))
     }
 
     /// How often the holes repeat around the gear.
@@ -317,16 +394,17 @@ impl Body<'_> {
             .map_or(1, |(gear, _)| gear.section().hole_repeats())
     }
 
-    /// Finds the cosine and the sine of each wave among single `modes`. Those that differ by their grid alone stand once.
+    /// Finds the cosine and the sine of each wave among single `modes`. Those that differ by their grid alone stand once in the list.
     fn pair_up(
         &self,
-        modes: &mut Vec<Mode>,
+        modes: &mut [Mode],
         same_class: impl Fn(usize, usize) -> bool,
         coupled: impl Fn((usize, usize)) -> f64,
-    ) {
+    ) -> Vec<Listed> {
         let repeats = self.repeats();
         let mut is_taken = vec![false; modes.len()];
         let mut is_left = vec![true; modes.len()];
+        let mut sines = vec![None; modes.len()];
         for one in 0..modes.len() {
             let (n, direction) = (modes[one].nodal_diameters, modes[one].direction);
             if is_taken[one] || n == 0 {
@@ -345,10 +423,15 @@ impl Body<'_> {
             (is_taken[one], is_taken[other]) = (true, true);
             is_left[other] = !are_alike;
             let (head, tail) = modes.split_at_mut(other);
-            head[one].pair_with(&mut tail[0], coupled((one, other)), are_alike);
+            let sign = head[one].pair_with(&mut tail[0], coupled((one, other)), are_alike);
+            sines[one] = are_alike.then_some((other, sign));
         }
-        let mut is_left = is_left.into_iter();
-        modes.retain(|_| is_left.next().unwrap_or(true));
+        let left = (0..modes.len()).filter(|place| is_left[*place]);
+        left.map(|place| Listed {
+            place,
+            sine: sines[place],
+        })
+        .collect()
     }
 
     /// The teeth on the orders 0 to `largest` of their circle, for each parity; the circle's system is made for it.

@@ -1,8 +1,11 @@
 //! One mode: its frequency, its kind, and how the teeth move in it.
 
+use std::f64::consts::TAU;
+
 use faer::{Mat, c64};
 
 use super::heights::Parity;
+use super::shape::ModeShape;
 use super::system::{Numbering, System};
 use super::teeth::{TeethOrder, ToothCell};
 use crate::fem::eigen::{EigenPair, Lanczos, inner};
@@ -74,8 +77,9 @@ impl Mode {
     }
 
     /// Takes `other`, a single mode with as many nodal diameters and nearly the same frequency, as its sine: both have the Coriolis forces of the wave
-    /// that they make. `coupled` is x₁ᵀ M J x₂ of their vectors, J the turn by a right angle. They become one double mode if they `are_alike`.
-    pub(super) fn pair_with(&mut self, other: &mut Self, coupled: f64, are_alike: bool) {
+    /// that they make. `coupled` is x₁ᵀ M J x₂ of their vectors, J the turn by a right angle. They become one double mode if they `are_alike`. Returns the
+    /// sign of `other` in the wave.
+    pub(super) fn pair_with(&mut self, other: &mut Self, coupled: f64, are_alike: bool) -> f64 {
         let joined = |sign: f64| -> Vec<OrderShape> {
             let both = self.shape.iter().zip(&other.shape);
             let add = |one: [c64; COMPONENTS], other: [c64; COMPONENTS]| {
@@ -106,6 +110,7 @@ impl Mode {
             self.residual = self.residual.max(other.residual);
             self.shape = shape;
         }
+        sign
     }
 
     fn at(
@@ -165,7 +170,7 @@ impl Found<'_> {
         let coupled = inner(&planar, &pencil.mass_times(&turned)).im;
         let sign = if order < 0 { 1.0 } else { -1.0 };
         let mode = Mode {
-            frequency: value.max(0.0).sqrt() / std::f64::consts::TAU,
+            frequency: value.max(0.0).sqrt() / TAU,
             is_double,
             direction,
             nodal_diameters: order.unsigned_abs() as u32,
@@ -292,23 +297,75 @@ impl Found<'_> {
         (order, component, changes as u32)
     }
 
+    /// The amplitude of order `k` of the outer circle in `x`; that of a negative order is conjugate, as its teeth are those of the opposite order.
+    fn amplitude(&self, x: &Mat<c64>, k: usize) -> Mat<c64> {
+        let size = self.numbering.amplitude_size();
+        let first = self.numbering.first_amplitude + k * size;
+        let amplitude = x.subrows(first, size);
+        if self.numbering.orders[k] < 0 {
+            amplitude.conjugate().to_owned()
+        } else {
+            amplitude.to_owned()
+        }
+    }
+
+    /// The shape of `mode`, whose vector is `x`, on the grids of blank and teeth.
+    pub(super) fn on_grid(&self, mode: Mode, x: &Mat<c64>) -> ModeShape {
+        let mut shape = ModeShape::of(mode);
+        let sectors = self.system.section.sectors;
+        let per_sector = TAU * self.class as f64 / sectors as f64;
+        let of_blank = |copy: usize, place: (u32, usize, usize)| {
+            let moved = self.system.displacement(self.numbering, x, place);
+            moved * c64::cis(per_sector * copy as f64)
+        };
+        shape.add(self.system, self.parity, (sectors, self.phase), of_blank);
+        let Some(Teeth { gear, cell, orders }) = self.teeth else {
+            return shape;
+        };
+        let tooth = cell.system(self.system.heights, gear.section(), gear.face_heights());
+        let (nodes, levels) = (
+            cell.section.grid.nodes.len(),
+            self.system.heights.nodes.len(),
+        );
+        let index = |(node, component, level): (u32, usize, usize)| {
+            (node as usize * COMPONENTS + component) * levels + level
+        };
+        let of_order = |k: usize| -> Vec<c64> {
+            let order = self.numbering.orders[k];
+            let of = &orders[order.unsigned_abs() as usize];
+            let moved = of.moved(self.amplitude(x, k));
+            let turn = c64::cis(-(order as f64) * self.phase);
+            let place = |i: usize| {
+                let component = i / levels % COMPONENTS;
+                ((i / levels / COMPONENTS) as u32, component, i % levels)
+            };
+            let value = |i: usize| {
+                let value = tooth.displacement(&of.numbering, &moved, place(i));
+                turn * if order < 0 { value.conj() } else { value }
+            };
+            (0..nodes * COMPONENTS * levels).map(value).collect()
+        };
+        let by_order: Vec<Vec<c64>> = (0..self.numbering.orders.len()).map(of_order).collect();
+        let z = gear.section().tooth_count() as usize;
+        let of_tooth = |copy: usize, place: (u32, usize, usize)| -> c64 {
+            let angle = TAU * copy as f64 / z as f64;
+            let all = self.numbering.orders.iter().zip(&by_order);
+            all.map(|(order, values)| values[index(place)] * c64::cis(*order as f64 * angle))
+                .sum()
+        };
+        shape.add(&tooth, self.parity, (z, 0.0), of_tooth);
+        shape
+    }
+
     /// How the teeth move, order by order.
     fn shape(&self, x: &Mat<c64>) -> Vec<OrderShape> {
         let Some(Teeth { gear, cell, orders }) = self.teeth else {
             return Vec::new();
         };
         let tooth = cell.system(self.system.heights, gear.section(), gear.face_heights());
-        let size = self.numbering.amplitude_size();
         let of_order = |(k, order): (usize, &i64)| {
             let of = &orders[order.unsigned_abs() as usize];
-            let mut amplitude = x
-                .subrows(self.numbering.first_amplitude + k * size, size)
-                .to_owned();
-            // The opposite order is the conjugate.
-            if *order < 0 {
-                amplitude = amplitude.conjugate().to_owned();
-            }
-            let moved = &of.follows * &amplitude;
+            let moved = of.moved(self.amplitude(x, k));
             let turn = c64::cis(-(*order as f64) * self.phase);
             let mean = |node: u32| {
                 let mut mean = tooth.mean(&of.numbering, &moved, node);

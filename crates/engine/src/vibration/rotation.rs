@@ -178,7 +178,7 @@ impl OfGear<'_> {
             }
             let (own, pulled) = &teeth[*order as usize / step];
             let amplitude = moved.subrows(numbering.first_amplitude + k * size, size);
-            let mut all = &own.follows * amplitude;
+            let mut all = own.moved(amplitude.to_owned());
             if *order == 0
                 && let Some(pulled) = pulled
             {

@@ -269,6 +269,11 @@ impl<'a> System<'a> {
         }
     }
 
+    /// The functions of an element of the section, by its place.
+    pub(super) fn part(&self, element: usize) -> &PartHeights {
+        &self.parts[self.section.part_of[element]]
+    }
+
     /// The functions of the outer circle: the first, and how many.
     pub(super) fn span_of_arc(&self) -> [usize; 2] {
         self.spans[self.section.arc[0] as usize]

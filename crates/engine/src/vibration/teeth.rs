@@ -40,7 +40,7 @@ pub(super) struct TeethOrder {
     /// The mass.
     pub(super) mass: Mat<c64>,
     /// The unknowns of the cell by those of the order.
-    pub(super) follows: Mat<c64>,
+    follows: Mat<c64>,
     /// The unknowns of the cell.
     pub(super) numbering: Numbering,
 }
@@ -145,6 +145,11 @@ impl TeethOrder {
             on_circle: self.follows.adjoint() * pull,
             held,
         })
+    }
+
+    /// The unknowns of the cell where the circle moves by this `amplitude` of the order.
+    pub(super) fn moved(&self, amplitude: Mat<c64>) -> Mat<c64> {
+        &self.follows * amplitude
     }
 
     /// The same on the opposite order.

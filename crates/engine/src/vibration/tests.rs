@@ -25,7 +25,8 @@ fn modes_of(blank: &Blank, count: usize) -> Vec<Mode> {
         highest: None,
         bore: BoreSupport::Held,
     };
-    body.modes(asked, &Run::unattended()).expect("sound")
+    let (modes, _) = body.modes(asked, None, &Run::unattended()).expect("sound");
+    modes
 }
 
 fn assert_near(found: f64, expected: f64, tolerance: f64) {

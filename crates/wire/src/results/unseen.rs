@@ -1,5 +1,6 @@
 //! Effects that each method leaves out.
 
+use meshwright_engine::analysis::at_speed::MountRequest;
 use meshwright_engine::analysis::forces::ForcesRequest;
 use meshwright_engine::analysis::{
     BodyFormula, Case, FaceHoles, Formulas, Model, SectionHoles, ToothFormula,
@@ -71,8 +72,13 @@ fn forces_do_not_see(forces: Option<&ForcesRequest>) -> Vec<&'static str> {
     if forces.is_some() {
         unseen.push("the holes under the other flanks where they are, and slopes of single teeth on them: those flanks carry as the mirror image of the loaded ones");
     }
-    if forces.is_some_and(|forces| forces.dynamics.is_some()) {
-        unseen.push("in the dynamics, shafts, bearings and housing, and vibrations of the gear bodies other than in torsion");
+    if let Some(dynamics) = forces.and_then(|forces| forces.dynamics.as_ref()) {
+        let is_mounted = dynamics.mounts != [MountRequest::default(); 2];
+        unseen.push(if is_mounted {
+            "in the dynamics, of shafts and supports their mass, the machines beyond them, gyroscopic moments and what displaced axes do to the contact; and vibrations of the gear bodies other than in torsion"
+        } else {
+            "in the dynamics, shafts, bearings and housing, and vibrations of the gear bodies other than in torsion"
+        });
         unseen.push("in the dynamics, that the gears turn unevenly: the mesh position follows the mean speed; the damping is one number, in contact and out of it");
     }
     unseen

@@ -1,23 +1,31 @@
 //! Checks of fields against each other: torques, interface, span, forces and size.
 
+use meshwright_engine::analysis::rotors::unheld;
 use meshwright_engine::analysis::{Case, Faces, Method, Resolution};
 use meshwright_engine::assembly::NearHoles;
+use meshwright_engine::dynamics::mount::extremes;
 use meshwright_engine::gear::{GearPair, Member, SpurGear};
 use meshwright_engine::vibration::most_modes;
 
 use super::document::{OUTPUT_TORQUE, Purpose, SubmissionDocument};
 use crate::declare::{Choice as _, Errors};
-use crate::forces::{DynamicsQuestion, ForceTableQuestion, SpeedRange, Speeds};
+use crate::forces::{DynamicsQuestion, ForceTableQuestion, MOTIONS, SpeedRange, Speeds};
 use crate::modes::ModesQuestion;
 use crate::problem::{Code, FieldError};
 use crate::resolution::{ContactSolverDocument, ResolutionDocument};
-use crate::units::{Side, plain, rounded_inward};
+use crate::units::{Side, plain, rounded_inward, significant};
 
 /// The most positions times torques of one submission.
 pub const MOST_POSITIONS: u64 = 20_000;
 
 /// The same for the projected methods on teeth that do not deviate: they solve one mesh period, and add the effect of holes at each position.
 pub const MOST_PROJECTED_POSITIONS: u64 = 200_000;
+
+/// The part of the largest eigenvalue, or of a stiffness, that counts as a rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// The part of the mesh force that may be left without a reaction.
+const UNHELD: f64 = 1e-6;
 
 /// The most mesh periods of a run-up: of its true period, at all speeds, under all torques.
 const MOST_PERIODS_RUN: u64 = 200_000;
@@ -196,6 +204,49 @@ impl SubmissionDocument {
                     "{pointer} takes the {member} gear in three dimensions, where it cannot be made: {error}."
                 );
                 errors.push(FieldError::new(pointer, Code::DiscretizationFailed, detail));
+            }
+        }
+    }
+
+    /// Refuses supports that are no stiffness, or leave a gear without a reaction to the mesh force.
+    pub(super) fn check_supports(&self, case: &Case, errors: &Errors) {
+        let dynamics = self.dynamics.as_ref();
+        let Some(supports) = dynamics.and_then(|dynamics| dynamics.support_stiffness.as_ref())
+        else {
+            return;
+        };
+        for member in Member::BOTH {
+            let Some(rows) = supports.of(member) else {
+                continue;
+            };
+            let pointer = format!(
+                "/{}/{}/{member}",
+                Self::dynamics.name,
+                DynamicsQuestion::support_stiffness.name
+            );
+            if let Err(error) = check_support(rows, &pointer) {
+                errors.push(error);
+                continue;
+            }
+            let Some(stiffness) = supports.matrix(member) else {
+                continue;
+            };
+            let [least, largest] = extremes(&stiffness);
+            if least < -ROUNDING * largest.abs().max(least.abs()) {
+                let detail = format!(
+                    "{pointer} has the eigenvalue {}: the support would push the gear on. A stiffness has none below 0.",
+                    plain(significant(least, 4))
+                );
+                errors.push(FieldError::new(pointer, Code::OutOfRange, detail));
+                continue;
+            }
+            let left = unheld(case, member, &stiffness);
+            if left > UNHELD {
+                let detail = format!(
+                    "{pointer} leaves {} % of the mesh force without a reaction: the {member} gear is free to move along it. Leave the support out for an axis that stands still.",
+                    plain(significant(100.0 * left, 3))
+                );
+                errors.push(FieldError::new(pointer, Code::OutOfRange, detail));
             }
         }
     }
@@ -428,4 +479,35 @@ fn refuse_large_torque(pair: &GearPair, torque: f64, pointer: String, errors: &E
         );
         errors.push(FieldError::new(pointer, Code::OutOfRange, detail).nearest(nearest));
     }
+}
+
+/// Refuses a support that has not six rows of six numbers, or is not symmetric.
+fn check_support(rows: &[Vec<f64>], pointer: &str) -> Result<(), FieldError> {
+    let wrong_length = |pointer: String, count: usize, of: &str| {
+        let detail = format!("{pointer} has {count} {of}; a support has {MOTIONS} by {MOTIONS}.");
+        FieldError::new(pointer, Code::WrongLength, detail).nearest(MOTIONS as f64)
+    };
+    if rows.len() != MOTIONS {
+        return Err(wrong_length(pointer.to_owned(), rows.len(), "rows"));
+    }
+    for (i, row) in rows.iter().enumerate() {
+        if row.len() != MOTIONS {
+            let pointer = format!("{pointer}/{i}");
+            return Err(wrong_length(pointer, row.len(), "numbers"));
+        }
+    }
+    for (i, row) in rows.iter().enumerate() {
+        for (j, (other, own)) in rows.iter().map(|row| row[i]).zip(row).enumerate().take(i) {
+            if (own - other).abs() > ROUNDING * own.abs().max(other.abs()) {
+                let pointer = format!("{pointer}/{i}/{j}");
+                let detail = format!(
+                    "{pointer} is {}, and its counterpart across the diagonal {}; a stiffness is symmetric.",
+                    plain(*own),
+                    plain(other)
+                );
+                return Err(FieldError::new(pointer, Code::OutOfRange, detail).nearest(other));
+            }
+        }
+    }
+    Ok(())
 }

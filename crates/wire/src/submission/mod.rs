@@ -187,6 +187,7 @@ impl SubmissionDocument {
         let modes = self.modes.as_ref();
         let modes = modes.map(|modes| modes.data(self.dynamics.as_ref()));
         self.check_modes(&case, errors);
+        self.check_supports(&case, errors);
         Some(Submission {
             document: self,
             case,

@@ -249,6 +249,71 @@ fn a_run_up_brings_the_usual_table_and_both_count() {
 }
 
 #[test]
+fn shafts_and_supports_reach_the_run_up_and_a_support_that_is_no_stiffness_is_refused_with_its_number()
+ {
+    let of = |name: &str, value: Value| {
+        let dynamics = json!({ "driving_speed_rpm": 3000, name: value });
+        with(case_2(), &[("/dynamics", dynamics)])
+    };
+    let rows = |diagonal: [f64; 6]| -> Vec<Vec<f64>> {
+        let row = |i: usize| {
+            (0..6)
+                .map(|j| if i == j { diagonal[i] } else { 0.0 })
+                .collect()
+        };
+        (0..6).map(row).collect()
+    };
+    let shafts = of("shaft_stiffness_n_m_per_rad", json!({ "driven": 2e4 }));
+    let submission = parse(&shafts).expect("valid");
+    let mounts = |submission: &crate::Submission| {
+        let request = submission.forces().expect("asked for");
+        request.dynamics.as_ref().expect("asked for").mounts
+    };
+    assert_eq!(
+        mounts(&submission).map(|mount| mount.shaft),
+        [None, Some(2e4)]
+    );
+    assert_eq!(
+        echo(&submission)["dynamics"]["shaft_stiffness_n_m_per_rad"],
+        json!({ "driving": null, "driven": 2e4 })
+    );
+    let support = |rows: Vec<Vec<f64>>| of("support_stiffness", json!({ "driving": rows }));
+    let pointer = "/dynamics/support_stiffness/driving";
+    let whole = rows([1e8, 2e8, 3e7, 1e5, 1e5, 0.0]);
+    let submission = parse(&support(whole.clone())).expect("valid");
+    let found = mounts(&submission)[0].support.expect("given");
+    assert_eq!((found[1][1], found[5][5], found[0][1]), (2e8, 0.0, 0.0));
+    let said = |document: &Value, pointer: &str, code: Code| {
+        let problem = parse(document).expect_err("refused");
+        let error = &problem.errors[0];
+        assert_eq!((error.pointer.as_str(), error.code), (pointer, code));
+        (error.nearest, error.detail.clone())
+    };
+    let (nearest, _) = said(&support(whole[..5].to_vec()), pointer, Code::WrongLength);
+    assert_eq!(nearest, Some(6.0));
+    let mut short = whole.clone();
+    short[2].pop();
+    said(&support(short), &format!("{pointer}/2"), Code::WrongLength);
+    let mut askew = whole.clone();
+    askew[4][0] = 3e6;
+    let (nearest, detail) = said(&support(askew), &format!("{pointer}/4/0"), Code::OutOfRange);
+    assert_eq!(nearest, Some(0.0));
+    assert!(detail.contains("3000000"), "{detail}");
+    // (a − b) and (a + b) of a pair of rows with a on the diagonal and b beside it.
+    let mut pushing = whole;
+    (pushing[1][1], pushing[0][1], pushing[1][0]) = (1e8, 1.5e8, 1.5e8);
+    let (_, detail) = said(&support(pushing), pointer, Code::OutOfRange);
+    assert!(detail.contains("-50000000"), "{detail}");
+    // Nothing along y: cos² of the working pressure angle of the force is left.
+    let (_, detail) = said(
+        &support(rows([1e8, 0.0, 0.0, 0.0, 0.0, 0.0])),
+        pointer,
+        Code::OutOfRange,
+    );
+    assert!(detail.contains("93.5 %"), "{detail}");
+}
+
+#[test]
 fn the_usual_table_ends_at_what_the_teeth_bear() {
     let of = |torque: f64| {
         let speeds = json!({ "driving_speed_rpm": 3000 });

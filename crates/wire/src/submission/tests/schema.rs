@@ -144,7 +144,7 @@ fn a_submission_with_other_fields_or_words_has_another_version() {
         (DOCUMENT_VERSION, sha256_hex(told.join("\n")).as_str()),
         (
             4,
-            "70c3fe72e1489443a91c88bd900b4424fe70bbb397c882ee5a99b94f836c532c"
+            "a155f6f4870bfd55bbe6e32d4679ade5bf6e1beaf301b9cd0a7e80f8a17bd2d0"
         ),
         "{told:#?}"
     );

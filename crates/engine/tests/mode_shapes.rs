@@ -1,0 +1,130 @@
+//! Shapes of natural modes on their grids.
+
+mod cases;
+
+use std::collections::HashMap;
+use std::f64::consts::TAU;
+
+use cases::{gear, helical};
+use meshwright_engine::gear::{HolePattern, SolidGear};
+use meshwright_engine::run::Run;
+use meshwright_engine::vibration::{
+    BoreSupport, ModeShape, ModesAsked, mode_shape, modes, shape_size,
+};
+use nalgebra::{Complex, Rotation3, Vector3};
+
+/// The order of the largest wave of `shape` around teeth, by the same node of each of `z` teeth, and the part of the whole that it has with its opposite.
+fn order_of_teeth(shape: &ModeShape, z: u32) -> (u32, f64) {
+    // The farthest out on the upper face: one of each tooth.
+    let place = |at: &&Vector3<f64>| (at.z * 1e9).round() + at.xy().norm();
+    let one = shape
+        .nodes
+        .iter()
+        .max_by(|one, other| place(one).total_cmp(&place(other)))
+        .expect("nodes");
+    let angle = |at: &Vector3<f64>| at.y.atan2(at.x);
+    let pitch = TAU / f64::from(z);
+    let tooth = |at: &Vector3<f64>| {
+        let teeth = (angle(at) - angle(one)) / pitch;
+        let is_same = (at.xy().norm() - one.xy().norm()).abs() < 1e-12
+            && (at.z - one.z).abs() < 1e-12
+            && (teeth - teeth.round()).abs() < 1e-6;
+        is_same.then_some(pitch * teeth.round())
+    };
+    let mut energies = vec![0.0; z as usize / 2 + 1];
+    let mut count = 0;
+    let mut sums = vec![[Complex::new(0.0, 0.0); 3]; z as usize];
+    for (at, [cosine, sine]) in shape.nodes.iter().zip(&shape.displacements) {
+        let Some(turned) = tooth(at) else { continue };
+        count += 1;
+        let u = Rotation3::from_axis_angle(&Vector3::z_axis(), -angle(at));
+        let [cosine, sine] = [u * *cosine, u * *sine];
+        for (n, sum) in sums.iter_mut().enumerate() {
+            for (sum, (re, im)) in sum.iter_mut().zip(cosine.iter().zip(&sine)) {
+                *sum += Complex::new(*re, *im) * Complex::cis(-(n as f64) * turned);
+            }
+        }
+    }
+    assert_eq!(count, z, "one node a tooth");
+    for (n, sum) in sums.iter().enumerate() {
+        let folded = n.min(z as usize - n);
+        energies[folded] += sum.iter().map(|of| of.norm_sqr()).sum::<f64>();
+    }
+    let all: f64 = energies.iter().sum();
+    let largest = (0..energies.len()).max_by(|a, b| energies[*a].total_cmp(&energies[*b]));
+    let largest = largest.expect("orders");
+    (largest as u32, energies[largest] / all)
+}
+
+/// The largest difference between nodes of `shape` at the same place, over the largest displacement.
+fn torn(shape: &ModeShape) -> f64 {
+    let key = |at: &Vector3<f64>| [at.x, at.y, at.z].map(|x| (x * 1e8).round() as i64);
+    let mut known = HashMap::new();
+    let mut most: f64 = 0.0;
+    for (at, moved) in shape.nodes.iter().zip(&shape.displacements) {
+        let first = known.entry(key(at)).or_insert(moved);
+        for (one, other) in first.iter().zip(moved) {
+            most = most.max((one - other).norm());
+        }
+    }
+    assert!(known.len() < shape.nodes.len(), "some nodes coincide");
+    most / shape.largest()
+}
+
+/// 24 teeth of module 2 mm with so many holes.
+fn holed(count: u32) -> SolidGear {
+    let mut data = gear(24, 7e-3);
+    let pattern = HolePattern {
+        count,
+        circle_radius: 13e-3,
+        radius: 2.5e-3,
+        phase: 0.3,
+    };
+    if count > 0 {
+        data.blank.holes = pattern.holes();
+    }
+    helical(data, 0.0, 0.0)
+}
+
+fn asked(count: usize) -> ModesAsked {
+    ModesAsked {
+        count,
+        highest: None,
+        bore: BoreSupport::Held,
+    }
+}
+
+/// That a shape has the nodal diameters of its mode, and that neighbors among sectors and teeth move alike where they share a place.
+fn assert_shape(gear: &SolidGear, shape: &ModeShape) {
+    let (order, share) = order_of_teeth(shape, 24);
+    assert_eq!(order, shape.mode.nodal_diameters);
+    assert!(share > 0.9, "{order}: {share}");
+    assert!(torn(shape) < 1e-6, "{order}: {}", torn(shape));
+    let size = shape_size(gear).expect("a size");
+    assert_eq!(shape.elements.len(), size.elements);
+    assert!(shape.nodes.len() <= size.nodes);
+}
+
+#[test]
+fn the_shape_of_the_lowest_mode_has_its_nodal_diameters_and_is_not_torn() {
+    let gear = holed(0);
+    let shape = mode_shape(&gear, asked(1), 0, &Run::unattended());
+    assert_shape(&gear, &shape.expect("sound").expect("in the list"));
+}
+
+#[test]
+#[ignore = "./test all"]
+fn shapes_on_the_grid_have_the_nodal_diameters_that_are_listed_and_are_not_torn() {
+    for holes in [0, 5] {
+        let (gear, run) = (holed(holes), Run::unattended());
+        let modes = modes(&gear, asked(6), &run).expect("sound");
+        for (place, mode) in modes.iter().enumerate() {
+            let shape = mode_shape(&gear, asked(6), place, &run).expect("sound");
+            let shape = shape.expect("in the list");
+            assert_eq!(&shape.mode, mode);
+            assert_shape(&gear, &shape);
+        }
+        let beyond = mode_shape(&gear, asked(6), modes.len(), &run);
+        assert!(beyond.expect("sound").is_none());
+    }
+}
