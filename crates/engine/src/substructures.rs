@@ -4,6 +4,7 @@
 
 pub use crate::assembly::blank::blank_grid;
 pub use crate::assembly::interface::{default_interface_radius, harmonics, orders_of_blank};
+pub use crate::fem::FemError;
 pub use crate::fem::axial::AxialBasis;
 pub use crate::fem::condensation::{Condensed, condense};
 pub use crate::fem::element::{ElementStiffness, stiffness as element_stiffness};

@@ -53,7 +53,7 @@ impl Prism<'_> {
     ///
     /// # Errors
     ///
-    /// As [`displacements`].
+    /// As `displacements`.
     pub fn displacements(
         &self,
         part: &'static str,
