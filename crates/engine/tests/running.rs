@@ -9,6 +9,7 @@ use meshwright_engine::analysis::running::{Bore, Running, RunningGear};
 use meshwright_engine::analysis::stress::PeakStress;
 use meshwright_engine::analysis::{
     AnalysisError, Case, Curve, Method, Model, RotationSpeed, SectionHoles, Warning, analyze,
+    estimate,
 };
 use meshwright_engine::assembly::FaceResolution;
 use meshwright_engine::gear::{
@@ -112,11 +113,9 @@ fn all_methods_of_the_plane_see_what_rotation_does() {
     }
 }
 
-#[test]
-#[ignore = "./test all"]
-fn what_rotation_does_to_a_narrow_pair_in_space_is_what_it_does_in_the_plane() {
-    let library = Library::default();
-    let plane = at_speed((10, 7.5e-3), Bore::Held, 20_000.0);
+/// The same pair with ten holes on faces of 2 mm, along them.
+fn narrow_at_speed(rpm: f64) -> Case {
+    let plane = at_speed((10, 7.5e-3), Bore::Held, rpm);
     let gears = Member::BOTH.map(|member| {
         let mut data = plane.pair.gear(member).data().clone();
         data.face_width = 2e-3;
@@ -124,10 +123,43 @@ fn what_rotation_does_to_a_narrow_pair_in_space_is_what_it_does_in_the_plane() {
     });
     let leads = [Vec::new(), Vec::new()];
     let pair = SolidPair::new(gears, leads, 100.5e-3, Alignment::default()).expect("meshes");
-    let section = pair.section().clone();
-    let torque = [TORQUE / 10.0];
-    let mut case = along_faces(pair, (FaceResolution::DRAFT, 8), &torque);
-    case.running = plane.running;
+    Case {
+        running: plane.running,
+        ..along_faces(pair, (FaceResolution::DRAFT, 8), &[TORQUE / 10.0])
+    }
+}
+
+#[test]
+fn an_estimate_includes_the_rotation_of_both_gears_and_the_contacts_at_rest() {
+    for case in [
+        at_speed((10, 7.5e-3), Bore::Held, 20_000.0),
+        narrow_at_speed(20_000.0),
+    ] {
+        let standing = Case {
+            running: None,
+            ..case.clone()
+        };
+        let [turning, standing] = [&case, &standing].map(|case| estimate(case, None));
+        assert!(
+            turning.seconds > 1.5 * standing.seconds,
+            "{turning:?} {standing:?}"
+        );
+        assert!(turning.memory > standing.memory);
+    }
+    let at_rest = narrow_at_speed(0.0);
+    let standing = Case {
+        running: None,
+        ..at_rest.clone()
+    };
+    assert_eq!(estimate(&at_rest, None), estimate(&standing, None));
+}
+
+#[test]
+#[ignore = "./test all"]
+fn what_rotation_does_to_a_narrow_pair_in_space_is_what_it_does_in_the_plane() {
+    let library = Library::default();
+    let mut case = narrow_at_speed(20_000.0);
+    let section = case.pair.clone();
     case.resolution.positions_per_mesh_period = 20;
     let model = case.model.clone();
     let found = [
