@@ -150,7 +150,7 @@ fn both_fillets_of_a_tooth_along_its_face_are_stressed_as_on_a_finer_grid() {
                 let [[outer, one], [inner, other]] = [expected[after - 1], expected[after]];
                 let between = one + (other - one) * (outer - radius) / (outer - inner);
                 let off = (stress - between).abs() / largest;
-                assert!(off < 0.03, "{part} {radius}: {stress} {between} {off}");
+                assert!(off < 0.04, "{part} {radius}: {stress} {between} {off}");
                 count += 1;
             }
             assert!(count >= 4, "{count}");
