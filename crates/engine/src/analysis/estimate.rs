@@ -75,9 +75,9 @@ pub struct PartCost {
 /// What a part depends on.
 #[derive(Debug, Clone, PartialEq)]
 enum PartSpec {
-    Teeth(TeethSpec),
-    Gear(GearSpec),
-    Face(FaceYieldSpec),
+    Teeth(Box<TeethSpec>),
+    Gear(Box<GearSpec>),
+    Face(Box<FaceYieldSpec>),
 }
 
 impl PartCost {
@@ -194,9 +194,10 @@ fn add_gears(estimate: &mut Estimate, plan: &Plan) {
             }
             estimate.memory += gear.memory / 4 * (times - 1);
             let times = times as f64;
-            let teeth = PartSpec::Teeth(gear.spec.teeth.clone());
+            let teeth = PartSpec::Teeth(Box::new(gear.spec.teeth.clone()));
             estimate.add_part(teeth, times * gear.teeth_seconds);
-            estimate.add_part(PartSpec::Gear(gear.spec), times * gear.joined_seconds);
+            let joined = PartSpec::Gear(Box::new(gear.spec));
+            estimate.add_part(joined, times * gear.joined_seconds);
         }
     }
 }
@@ -281,7 +282,7 @@ fn add_faces(estimate: &mut Estimate, plan: &Plan, faces: &Faces) {
                 estimate.degrees_of_freedom +=
                     (3.0 * functions * nodes * SECTION_NODES * teeth) as u64;
             }
-            estimate.add_part(PartSpec::Face(spec), seconds);
+            estimate.add_part(PartSpec::Face(Box::new(spec)), seconds);
         }
         let turns = |running: &Running| running.driving_speed.0 != 0.0;
         if number == 0 && case.runs().is_some_and(turns) {
