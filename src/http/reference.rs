@@ -83,6 +83,7 @@ impl StudyEstimate {
         let mut estimates = Vec::with_capacity(samples.len());
         for sample in &samples {
             run.check().map_err(|_| stopped())?;
+            #[expect(clippy::disallowed_methods, reason = "in `blocking`")]
             estimates.push(sample.estimate());
         }
         let scale = study.total() as f64 / estimates.len().max(1) as f64;
@@ -91,8 +92,8 @@ impl StudyEstimate {
             .iter()
             .zip(&estimates)
             .max_by(|(_, a), (_, b)| a.seconds.total_cmp(&b.seconds));
-        Ok(longest.map(|(sample, _)| Self {
-            design: EstimateDocument::of(sample),
+        Ok(longest.map(|(sample, estimate)| Self {
+            design: EstimateDocument::of((sample, estimate)),
             seconds: seconds_of_all(&estimates, [study.total(), study.unlike_designs()]),
             positions: (scale * positions as f64) as u64,
         }))

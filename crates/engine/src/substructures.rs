@@ -5,10 +5,13 @@
 pub use crate::assembly::blank::blank_grid;
 pub use crate::assembly::interface::{default_interface_radius, harmonics, orders_of_blank};
 pub use crate::fem::FemError;
+pub use crate::fem::Followers;
 pub use crate::fem::axial::AxialBasis;
 pub use crate::fem::condensation::{Condensed, condense};
+pub use crate::fem::divided::DividedPrism;
 pub use crate::fem::element::{ElementStiffness, stiffness as element_stiffness};
-pub use crate::fem::prism::Prism;
+pub use crate::fem::prescribed::{Load, displacements};
+pub use crate::fem::prism::{Interface, Prism};
 pub use crate::fem::recovery::{Functional, edge_stresses};
 pub use crate::fem::surface::SurfaceStress;
 pub use crate::flank::half_plane::{hertz, logarithm_factor};

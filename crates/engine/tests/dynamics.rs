@@ -737,7 +737,7 @@ fn gears_on_their_shafts_vibrate_as_inertias_in_a_row() {
 
 /// Stiffness of an isotropic support, mass, polar inertia and shaft of both gears with a base radius of 1; the force on the driven gear stands at 25° to y.
 const ON_SUPPORTS: [[f64; 4]; 2] = [[6.0, 2.0, 2.0, 0.4], [9.0, 3.0, 2.0, 0.3]];
-const LINE: [f64; 2] = [0.42261826174069944, 0.90630778703664994];
+const LINE: [f64; 2] = [0.422_618_261_740_699_44, 0.906_307_787_036_65];
 
 fn on_supports() -> [Body; 2] {
     ON_SUPPORTS.map(|[support, m, inertia, shaft]| {

@@ -360,9 +360,7 @@ pub struct Validation {
 
 document! {
     /// Estimated cost of a computation.
-    pub struct EstimateDocument as Estimate, "Estimate" answer of (submission: &Submission) with {
-        let estimate = submission.estimate();
-    } {
+    pub struct EstimateDocument as Estimate, "Estimate" answer of ((submission, estimate): (&Submission, &Estimate)) {
         /// Unknowns of both gears before condensation.
         degrees_of_freedom: u64 = estimate.degrees_of_freedom,
         /// Memory, in MB.
@@ -383,7 +381,7 @@ pub fn validate(submission: &Submission) -> Validation {
         submission: submission.clone(),
         pair: PairGeometry::of(case),
         warnings: submission.warnings(&warnings),
-        estimate: EstimateDocument::of(submission),
+        estimate: EstimateDocument::of((submission, &submission.estimate())),
     }
 }
 

@@ -20,7 +20,7 @@ use crate::run::Run;
 const UNKNOWNS: usize = 40_000;
 
 /// A prism in pieces.
-pub(crate) struct DividedPrism<'a> {
+pub struct DividedPrism<'a> {
     prism: Prism<'a>,
     interface: &'a Interface<'a>,
     /// Nothing where the prism is condensed as a whole.
@@ -71,14 +71,14 @@ struct PieceRows {
 
 impl<'a> DividedPrism<'a> {
     /// `prism` on `interface`, in as few pieces as are small enough.
-    pub(crate) fn new(prism: &Prism<'a>, interface: &'a Interface<'a>) -> Self {
+    pub fn new(prism: &Prism<'a>, interface: &'a Interface<'a>) -> Self {
         let sets = prism.independent();
         let largest = sets.iter().map(Vec::len).fold(1, usize::max);
         Self::of_pieces(prism, interface, UNKNOWNS / largest)
     }
 
     /// The same, of about so many nodes a piece at most.
-    pub(crate) fn of_pieces(prism: &Prism<'a>, interface: &'a Interface<'a>, most: usize) -> Self {
+    pub fn of_pieces(prism: &Prism<'a>, interface: &'a Interface<'a>, most: usize) -> Self {
         let grid = prism.grid;
         let count = grid.nodes.len().div_ceil(most).max(1);
         let pieces = match count {
@@ -124,7 +124,7 @@ impl<'a> DividedPrism<'a> {
     /// # Errors
     ///
     /// As [`Prism::condense`], and [`FemError::Stopped`].
-    pub(crate) fn condense(
+    pub fn condense(
         &self,
         part: &'static str,
         recovered: &[u32],
@@ -184,7 +184,7 @@ impl<'a> DividedPrism<'a> {
     }
 
     /// Cost of [`DividedPrism::condense`] with so many recovered nodes.
-    pub(crate) fn cost(&self, recovered: usize) -> CondensationCost {
+    pub fn cost(&self, recovered: usize) -> CondensationCost {
         if self.pieces.is_empty() {
             return self.prism.cost(self.interface, recovered);
         }

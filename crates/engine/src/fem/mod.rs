@@ -22,7 +22,7 @@ mod sparse;
 pub(crate) mod surface;
 pub(crate) mod volume;
 
-pub(crate) use sparse::Followers;
+pub use sparse::Followers;
 
 use crate::run::Stopped;
 

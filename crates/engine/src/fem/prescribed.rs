@@ -30,7 +30,7 @@ pub struct Load {
 /// # Errors
 ///
 /// [`FemError::NotPositiveDefinite`] if the grid is degenerate, or the prescribed nodes do not hold it.
-pub(crate) fn displacements(
+pub fn displacements(
     part: &'static str,
     grid: &Grid,
     (material, thickness): (&Material, f64),

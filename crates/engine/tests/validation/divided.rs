@@ -1,13 +1,10 @@
 //! A prism condensed piece by piece, against the same prism as a whole.
 
 use faer::Mat;
-use meshwright_engine::fem::Followers;
-use meshwright_engine::fem::axial::AxialBasis;
-use meshwright_engine::fem::divided::DividedPrism;
-use meshwright_engine::fem::prism::{Interface, Prism};
 use meshwright_engine::gear::{HolePattern, Material};
 use meshwright_engine::grid::{BlankGrid, GridLevel};
 use meshwright_engine::run::Run;
+use meshwright_engine::substructures::{AxialBasis, DividedPrism, Followers, Interface, Prism};
 
 #[test]
 fn a_ring_with_holes_in_pieces_is_the_ring_as_a_whole() {

@@ -1,10 +1,9 @@
 //! The largest stresses at roots and holes, settled with the grid; `tests/reference` has them against CalculiX.
 
 use meshwright_engine::analysis::stress::PeakStress;
-use meshwright_engine::fem::prescribed::{Load, displacements};
-use meshwright_engine::fem::recovery::{Functional, edge_stresses};
 use meshwright_engine::gear::{Material, SpurGear};
 use meshwright_engine::grid::{GridLevel, ToothGrid};
+use meshwright_engine::substructures::{Functional, Load, displacements, edge_stresses};
 
 use crate::support::{gear, holed, pair, paper_case, relieved, stressed, stresses};
 
