@@ -360,7 +360,8 @@ pub struct Validation {
 
 document! {
     /// Estimated cost of a computation.
-    pub struct EstimateDocument as Estimate, "Estimate" answer of ((submission, estimate): (&Submission, &Estimate)) {
+    pub struct EstimateDocument as Estimate, "Estimate"
+        answer of ((submission, estimate): (&Submission, &Estimate)) {
         /// Unknowns of both gears before condensation.
         degrees_of_freedom: u64 = estimate.degrees_of_freedom,
         /// Memory, in MB.
