@@ -165,6 +165,8 @@ async fn no_label_has_a_value_that_a_client_invents() {
         "/v1/jobs/{id}/results/{table}",
         "/shared/{secret}/results/{table}",
     ]);
+    // The document has the name of the file, `{n}.vtu`.
+    routes.extend(["/v1/jobs/{id}/results/modes/{n}"]);
     // What is no part of the document has one pattern for each of its folders.
     routes.extend(["/docs", "/docs/", "/docs/{name}", "/web/{*name}"]);
     routes.extend(["/guides", "/guides/{name}", "/guides/figures/{name}"]);

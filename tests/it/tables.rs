@@ -73,7 +73,7 @@ async fn points_between_positions_come_where_they_are_kept_and_tables_have_them(
     let lines: Vec<&str> = csv.lines().collect();
     assert!(lines[0].starts_with("output_torque_n_m,mesh_position,driving_angle_deg,driven_angle_deg,transmission_error_um,mesh_stiffness_tangent_n_per_m,"));
     assert!(
-        lines[0].ends_with(",peak_contact_pressure_mpa,load_share.0"),
+        lines[0].ends_with(",peak_contact_pressure_mpa,load_share.0,load_share.1"),
         "{}",
         lines[0]
     );

@@ -86,7 +86,7 @@ fn an_estimate_is_within_a_factor_of_two_of_what_was_measured() {
         ("fine", fine, 2.2, 571.0),
         ("decomposition", decomposed, 1.6, 294.0),
         ("case 3", test_case(3), 0.31, 71.0),
-        ("kidneys along the face", kidneys, 4.8, 665.0),
+        ("kidneys along the face", kidneys, 9.6, 690.0),
     ] {
         let told = estimate(&case, None);
         let parts = [told.seconds / seconds, told.memory as f64 * 1e-6 / memory];

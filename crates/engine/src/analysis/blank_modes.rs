@@ -1,8 +1,8 @@
 //! The natural modes of both gears of a case, and where the mesh meets them.
 
 use super::case::Case;
+use super::cost::Estimate;
 use super::error::AnalysisError;
-use super::estimate::Estimate;
 use super::running::RotationSpeed;
 use crate::fem::FemError;
 use crate::gear::{Helix, Member, SolidGear, SolidGearError};

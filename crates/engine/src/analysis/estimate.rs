@@ -1,15 +1,16 @@
-//! Cost of a case before it is computed.
+//! Estimate of the cost of a case before it is computed.
 
 use super::at_speed::{run_up_cost, usual_stiffness};
 use super::case::Model;
 use super::case::{Case, Faces};
+use super::cost::{Estimate, PartSpec};
 use super::forces::{ForcesRequest, TablePlan};
 use super::plan::{Pass, Plan};
 use super::running::Running;
 use crate::assembly::blank::blank_grid;
 use crate::assembly::interface::{harmonics, interface_radius, orders_of_blank};
 use crate::assembly::pair_spec::cells_per_patch;
-use crate::assembly::{FaceYieldSpec, GearSpec, TeethSpec};
+use crate::assembly::{FaceYieldSpec, GearSpec};
 use crate::contact::{ContactSolver, default_penalty};
 use crate::gear::{Member, SpurGear, gcd};
 use crate::grid::{BlankGrid, GridLevel, ToothGrid};
@@ -50,52 +51,6 @@ const PATTERNS: f64 = 18.0;
 
 /// Memory of any case in bytes, including the stored data of its flanks.
 const BASE_MEMORY: f64 = 56e6;
-
-/// Cost of a case.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Estimate {
-    /// Unknowns of both gears before condensation.
-    pub degrees_of_freedom: u64,
-    /// Memory in bytes.
-    pub memory: u64,
-    /// Time on one core in seconds, nothing cached.
-    pub seconds: f64,
-    /// The parts that are made in this time, and that other designs may have too.
-    pub parts: Vec<PartCost>,
-}
-
-/// A part of a case, and the time that it takes to make it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PartCost {
-    spec: PartSpec,
-    /// Time on one core in seconds.
-    pub seconds: f64,
-}
-
-/// What a part depends on.
-#[derive(Debug, Clone, PartialEq)]
-enum PartSpec {
-    Teeth(Box<TeethSpec>),
-    Gear(Box<GearSpec>),
-    Face(Box<FaceYieldSpec>),
-}
-
-impl PartCost {
-    /// True if it is the same part as `other`, which a library makes once for both.
-    pub fn is_same(&self, other: &Self) -> bool {
-        self.spec == other.spec
-    }
-}
-
-impl Estimate {
-    /// Adds the cost of a part. One that both gears have is made once.
-    fn add_part(&mut self, spec: PartSpec, seconds: f64) {
-        if self.parts.iter().all(|part| part.spec != spec) {
-            self.seconds += seconds;
-            self.parts.push(PartCost { spec, seconds });
-        }
-    }
-}
 
 /// Estimates the cost of `case` with its `forces`; the grids are divided, nothing is solved. A gear whose grid fails costs nothing.
 pub fn estimate(case: &Case, forces: Option<&ForcesRequest>) -> Estimate {

@@ -16,8 +16,8 @@ use crate::gear::Vector;
 use crate::grid::{Element, Grid};
 use crate::run::Run;
 
-/// Unknowns of a piece that are factorized at once, at most: its factor takes some 0.3 GB.
-const UNKNOWNS: usize = 40_000;
+/// Unknowns of a piece that are factorized at once, at most: its factor takes up to 0.8 GB.
+const UNKNOWNS: usize = 80_000;
 
 /// A prism in pieces.
 pub struct DividedPrism<'a> {

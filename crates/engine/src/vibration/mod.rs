@@ -11,6 +11,7 @@
 //! rotates: frequencies are those at rest in the frame of the gear ([`campbell`] says where they are met at speed).
 
 pub mod campbell;
+mod found;
 pub mod heights;
 mod mode;
 pub mod rotation;
@@ -345,9 +346,9 @@ impl Body<'_> {
             let of_parity = teeth.iter().find(|(of, _)| *of == class.parity);
             let teeth = of_parity.and_then(|(_, orders)| {
                 self.teeth
-                    .map(|(gear, cell)| mode::Teeth { gear, cell, orders })
+                    .map(|(gear, cell)| found::Teeth { gear, cell, orders })
             });
-            mode::Found {
+            found::Found {
                 system: class.system,
                 numbering: &class.numbering,
                 parity: class.parity,

@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 use faer::c64;
 use nalgebra::Vector3;
 
-use super::Mode;
 use super::heights::Parity;
+use super::mode::Mode;
 use super::system::System;
 use crate::fem::prism::COMPONENTS;
 use crate::fem::volume::VolumeElement;
