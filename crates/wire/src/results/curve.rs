@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Deref;
 
 use meshwright_engine::analysis::at_speed::CurveDynamics;
-use meshwright_engine::analysis::curve::{LeadCure, LoadShare};
+use meshwright_engine::analysis::curve::LeadCure;
 use meshwright_engine::analysis::mesh_wave::MeshWave;
 use meshwright_engine::analysis::running::CurveRunning;
 use meshwright_engine::analysis::{Case, Curve, FaceLoad, Statistics};
@@ -13,6 +13,7 @@ use super::between::BetweenDocument;
 use super::decomposition::DecompositionDocument;
 use super::forces::CurveDynamicsDocument;
 use super::largest_where::PressureStatistics;
+use super::load_share::LoadShareDocument;
 use super::spectrum::SpectrumDocument;
 use super::stress::{PeakStressDocument, StressDocument};
 use super::{all, each};
@@ -166,16 +167,6 @@ document! {
         crowning_um: f64 = significant(to_um(cure.crowning), 4),
         /// K_Hbeta with both.
         face_load_factor: f64 = significant(cure.face_load_factor, 4),
-    }
-}
-
-document! {
-    /// The share of the load that the pairs at one offset carry.
-    pub struct LoadShareDocument as LoadShare, "Load share" answer of (share: &LoadShare) {
-        /// 0 for the pair that passed the pitch point last, 1 for the next, -1 for the one before.
-        pair_offset: i32 = share.pair_offset,
-        /// Its share of the load, from 0 to 1.
-        share: Vec<f64> = share.share.clone(),
     }
 }
 

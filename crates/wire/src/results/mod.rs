@@ -10,6 +10,8 @@ mod forces;
 mod hole_phase;
 mod largest_where;
 mod list;
+mod load_share;
+mod merged;
 mod modes;
 mod spectrum;
 mod stress;
@@ -26,9 +28,8 @@ use meshwright_engine::analysis::forces::Forces;
 
 pub use between::{BetweenDocument, FaceBetween};
 pub use curve::{
-    CurveDocument, CurveRunningDocument, FaceDocument, LeadCureDocument, LoadShareDocument,
-    MOST_MESH_ORDERS, RadialGrowth, StatisticsDocument, StatisticsValues,
-    TransmissionErrorStatistics,
+    CurveDocument, CurveRunningDocument, FaceDocument, LeadCureDocument, MOST_MESH_ORDERS,
+    RadialGrowth, StatisticsDocument, StatisticsValues, TransmissionErrorStatistics,
 };
 pub use decomposition::{
     BlankFitDocument, BlankHarmonicDocument, BlankSampleDocument, DecompositionDocument,
@@ -40,6 +41,7 @@ pub use forces::{
 };
 pub use hole_phase::{HolePhaseDocument, OverTurnDocument};
 pub use largest_where::{PressureStatistics, WhereDocument};
+pub use load_share::LoadShareDocument;
 pub use modes::{CrossingDocument, ModeDirection, ModeDocument, ModesDocument, WaveName};
 pub use spectrum::{NamedOrderDocument, OrderKindName, SpectrumDocument};
 pub use stress::{

@@ -418,6 +418,13 @@ fn points_between_positions_make_the_lists_reach_the_extremes_of_the_statistics(
         example("test-case-2"),
         &json!({ "method": "flexible", "stress": true, "resolution": few, "output_torques_n_m": [115, 0] }),
     );
+    // No corner carries, so that the largest pressure has a limit.
+    let mut document = document;
+    for gear in ["driving", "driven"] {
+        let start = json!({ "radial_length_mm": 1.75 });
+        document["pair"][gear]["tip_relief"] =
+            json!({ "amount_um": 40, "shape": "parabolic", "start": start });
+    }
     let submission = parse(&document).expect("valid");
     let results = solve(&submission, &Library::default(), &Run::unattended()).expect("results");
     let plain: Value = serde_json::from_str(&results.to_json().expect("finite")).expect("JSON");
