@@ -248,7 +248,7 @@ async fn answer(
     done.look(client, (file, &form), request, look).await
 }
 
-/// What it takes to compute a job once more for a file.
+/// Cost of computing a job once more for a file.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cost {
     /// Bytes until the file is written.

@@ -92,7 +92,7 @@ fn number_of(file: &str) -> Result<u32, Problem> {
     })
 }
 
-/// What the shape of a mode of `gear` takes.
+/// Cost of the shape of a mode of `gear`.
 fn cost(submission: &Submission, gear: GearName) -> Result<Cost, Problem> {
     let (estimate, size) = mode_shape_estimate(submission, gear)?;
     let sent = packed_bytes(size);

@@ -39,7 +39,7 @@ fn drawn(tooth_count: u32, bore_radius: f64) -> GearData {
     }
 }
 
-/// So many positions in one mesh period, on the coarse grid.
+/// A resolution of this many positions in one mesh period, on the coarse grid.
 fn one_period(positions: u32) -> Resolution {
     Resolution {
         positions_per_mesh_period: positions,

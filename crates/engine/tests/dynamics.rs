@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use meshwright_engine::dynamics::orbit::{Repeating, Scale, multiplier};
 use meshwright_engine::dynamics::oscillator::Step;
 use meshwright_engine::dynamics::{
-    Body, BodyMode, Coupled, Damping, Excitation, FlankRows, ForceTable, Ladder, Laws, Mount,
-    Orbit, Order, Oscillator, RunUp, RunUpData, State, Support,
+    Body, BodyMode, Branch, Coupled, Damping, Excitation, FlankRows, ForceTable, Ladder, Laws,
+    Mount, Orbit, Order, Oscillator, RunUp, RunUpData, State, Support,
 };
 use meshwright_engine::run::Run;
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix6, SMatrix};
@@ -517,6 +517,18 @@ fn on_webs(speeds: Vec<f64>, orders: &[f64]) -> RunUpData {
     }
 }
 
+/// Holds the motion at the speed `place` to an `expected` root mean square, peak-to-peak and load factor.
+fn within_a_percent(found: &Branch, place: usize, expected: [f64; 3]) {
+    let of_motion = [&found.rms, &found.peak_to_peak, &found.load_factor].map(|list| list[place]);
+    for (told, expected) in of_motion.into_iter().zip(expected) {
+        let repeats = found.repeats[place];
+        assert!(
+            (told / expected - 1.0).abs() < 0.01,
+            "{place}: {told} {expected} {repeats:?}"
+        );
+    }
+}
+
 #[test]
 fn gears_on_webs_move_as_hubs_and_rims_that_a_plain_integrator_moves() {
     // The classical Runge-Kutta method on two hubs, two rims, and the table of the teeth alone: the webs yield 1/8 + 1/10 in the whole one.
@@ -580,17 +592,7 @@ fn gears_on_webs_move_as_hubs_and_rims_that_a_plain_integrator_moves() {
         }
         let mean: f64 = sum / n;
         let rms = (squares / n - mean * mean).sqrt();
-        for (told, expected) in [
-            (found.rms[place], rms),
-            (found.peak_to_peak[place], most - least),
-            (found.load_factor[place], largest),
-        ] {
-            let repeats = found.repeats[place];
-            assert!(
-                (told / expected - 1.0).abs() < 0.01,
-                "{omega}: {told} {expected} {repeats:?}"
-            );
-        }
+        within_a_percent(&found, place, [rms, most - least, largest]);
     }
 }
 
@@ -859,17 +861,7 @@ fn gears_on_shafts_and_supports_move_as_a_plain_integrator_moves_them() {
         }
         let mean: f64 = sum / n;
         let rms = (squares / n - mean * mean).sqrt();
-        for (told, expected) in [
-            (found.rms[place], rms),
-            (found.peak_to_peak[place], most - least),
-            (found.load_factor[place], largest),
-        ] {
-            let repeats = found.repeats[place];
-            assert!(
-                (told / expected - 1.0).abs() < 0.01,
-                "{omega}: {told} {expected} {repeats:?}"
-            );
-        }
+        within_a_percent(&found, place, [rms, most - least, largest]);
     }
 }
 

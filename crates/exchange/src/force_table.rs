@@ -32,7 +32,7 @@ const MOST_COLUMNS: usize = 320;
 /// Columns in the backlash.
 const IN_BACKLASH: usize = 2;
 
-/// What no form of the table has, so that the program that reads it has to add it.
+/// Parts of the dynamics that no form of the table has: the program that reads it has to add them.
 pub(super) const LEFT_OUT: &str = "inertia, shafts, supports and vibrations of the gear bodies; their static compliance with bores held is in it";
 
 /// How the table is written.

@@ -44,7 +44,7 @@ impl<'a> Piece<'a> {
         }
     }
 
-    /// What goes on at a point: where it lies in mm, how it moves in µm, and its stresses in MPa.
+    /// Values at a point: its place in mm, its displacement in µm, and its stresses in MPa.
     pub(crate) fn values(self, number: usize) -> Values {
         let (place, displacement, stress, von_mises) = match self {
             Self::Plate(gear) => {
@@ -148,7 +148,7 @@ pub(crate) const WEDGE: u8 = 13;
 /// The most corners of a cell.
 pub(crate) const MOST_CORNERS: usize = 8;
 
-/// What goes on at a point, in the units of the file.
+/// Values at a point, in the units of the file.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Values {
     pub(crate) place: [f64; 3],

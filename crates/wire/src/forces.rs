@@ -87,7 +87,7 @@ document! {
             "the torques at the hubs do not change",
         )
         .left_out(),
-        /// What carries each gear as a rigid body, beside its turn: motions of the gear along and about its axes, which the mesh force excites.
+        /// Stiffness that carries each gear as a rigid body, beside its turn: motions of the gear along and about its axes, which the mesh force excites.
         pub(super) support_stiffness: Option<SupportStiffnessDocument> = absent(
             nested("SupportStiffness"),
             "the axes stand still",

@@ -36,7 +36,7 @@ pub struct DynamicsRequest {
     pub blank_modes: Option<u32>,
     /// ζ of these modes, and of the gears on their shafts and supports.
     pub blank_damping_ratio: f64,
-    /// What carries the driving and the driven hub.
+    /// Supports of the driving and the driven hub.
     pub mounts: [MountRequest; 2],
     /// Directions: run-up, and run-down.
     pub sweeps: [bool; 2],

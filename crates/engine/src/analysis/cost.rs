@@ -23,7 +23,7 @@ pub struct PartCost {
     pub seconds: f64,
 }
 
-/// What a part depends on.
+/// Specification that decides a part.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum PartSpec {
     Teeth(Box<TeethSpec>),

@@ -209,7 +209,7 @@ impl Terms {
 
     /// The line of this curve at the order of the holes, place by place.
     ///
-    /// It is Σ δ e^(−2πi p x/q) over its positions x = n + f. Over n the part of c_k adds up only where k ± 1 is a multiple of q.
+    /// Its value is Σ δ e^(−2πi p x/q) over its positions x = n + f. Over n the part of c_k adds up only where k ± 1 is a multiple of q.
     fn lines(&self) -> impl Fn(f64) -> c64 + use<> {
         let [p, q] = self.ratio;
         let per_period = self.driving.len();

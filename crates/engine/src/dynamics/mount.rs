@@ -26,7 +26,7 @@ pub struct Support {
     pub at_mesh: [f64; MOTIONS],
 }
 
-/// What carries a hub beside the torque of its machine.
+/// Support of a hub, beside the torque of its machine.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mount {
     /// The torsional stiffness in N m/rad of the shaft; 0 without one.

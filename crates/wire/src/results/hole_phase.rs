@@ -23,7 +23,7 @@ document! {
         amplitude_now_um: f64 = to_um(phase.amplitude_now),
         /// The best turn where the other flanks carry, in degrees.
         other_flanks_turn_deg: f64 = degrees(phase.other_flanks_turn),
-        /// What turns from 0 to a hole pitch of the driving gear come to.
+        /// Results of turns from 0 to a hole pitch of the driving gear.
         over_turn: OverTurnDocument = OverTurnDocument::of(&phase.over_turn),
     }
 }

@@ -1,4 +1,4 @@
-//! What a submission is said to cost, beside what it was measured to cost.
+//! Estimated costs of submissions beside measured ones.
 
 use serde_json::{Value, json};
 
