@@ -100,7 +100,7 @@ impl PhasePlan {
             .map(|i| f64::from(i) / f64::from(full))
             .collect();
         let load = case.pair.load(self.output_torque);
-        let exact = pair.on_blanks(load, &positions, setup.run)?;
+        let exact = pair.transmission_errors(load, &positions, setup.run)?;
         let curve = terms.curve(place);
         let known = curve.iter().step_by((first_order / full) as usize);
         let beyond: Vec<f64> = exact
@@ -132,13 +132,13 @@ impl Terms {
     fn of(plan: &PhasePlan, setup: Setup<'_>) -> Result<Self, AnalysisError> {
         let Setup { case, run, .. } = setup;
         let ([p, q], turns) = (plan.ratio, plan.turns());
-        let pair = TurnedPair::new(setup)?;
+        let [pair, round] = TurnedPair::with_round(setup)?;
         let per_period = plan.per_period[0];
         let fractions: Vec<f64> = (0..per_period)
             .map(|i| f64::from(i) / f64::from(per_period))
             .collect();
         let load = case.pair.load(plan.output_torque);
-        let solved = pair.on_round_blanks(load, &fractions, run)?;
+        let solved = round.with_loads(load, &fractions, run)?;
         let places = (q * turns) as usize;
         // T_1 at u = j/(q turns) hole pitches: the tooth n stands n ν on from tooth 0, a turned blank by less than 1/q.
         let mut driving = vec![vec![0.0; places]; solved.len()];
@@ -155,16 +155,16 @@ impl Terms {
                 &of_turn
             };
             for ((_, loads), values) in solved.iter().zip(&mut driving) {
-                let alike = pair.added_round(Member::Driving, loads);
+                let mean = round.yielded(Member::Driving, loads, 0);
                 for n in 0..q {
                     let place = turn + turns * (n * p % q);
-                    let own = turned.added(Member::Driving, loads, n);
-                    values[place as usize] = own - alike;
+                    let own = turned.yielded(Member::Driving, loads, n);
+                    values[place as usize] = own - mean;
                 }
             }
         }
         let driven = |loads: &[PairLoads], n: u32| {
-            pair.added(Member::Driven, loads, n) - pair.added_round(Member::Driven, loads)
+            pair.yielded(Member::Driven, loads, n) - round.yielded(Member::Driven, loads, 0)
         };
         let means: Vec<f64> = driving
             .iter()

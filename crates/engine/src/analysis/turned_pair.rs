@@ -12,12 +12,12 @@ use crate::contact::{ContactCells, ContactSolution, PairLoads, PairModel};
 use crate::gear::{Member, SolidPair};
 use crate::run::Run;
 
-/// A pair on its blanks, and on the same ones alike all around.
+/// A pair on its blanks.
 pub(super) enum TurnedPair {
     /// In its transverse section.
-    InPlane(Box<[PairModel; 2]>),
+    InPlane(Box<PairModel>),
     /// Along its faces.
-    AlongFaces(Box<[FaceModel; 2]>),
+    AlongFaces(Box<FaceModel>),
 }
 
 impl TurnedPair {
@@ -25,80 +25,82 @@ impl TurnedPair {
     pub(super) fn new(setup: Setup<'_>) -> Result<Self, AnalysisError> {
         let Some(faces) = setup.case.faces() else {
             let (whole, _) = setup.model(Blanks::Flexible)?;
+            return Ok(Self::InPlane(Box::new(whole)));
+        };
+        let faces = faces.at(setup.modeling.level);
+        let yields = yields(&faces, setup.parts, setup.run)?;
+        Ok(Self::AlongFaces(Box::new(face_model(&faces, &yields))))
+    }
+
+    /// The pair of `setup`, and the same on the mean of its blanks over a revolution.
+    pub(super) fn with_round(setup: Setup<'_>) -> Result<[Self; 2], AnalysisError> {
+        let Some(faces) = setup.case.faces() else {
+            let (whole, _) = setup.model(Blanks::Flexible)?;
             let round = round_average(&whole, &Member::BOTH);
-            return Ok(Self::InPlane(Box::new([whole, round])));
+            return Ok([whole, round].map(|model| Self::InPlane(Box::new(model))));
         };
         let faces = faces.at(setup.modeling.level);
         let whole = yields(&faces, setup.parts, setup.run)?;
         let round = whole.each_ref().map(|of| of.round_average().into());
         let models = [whole, round].map(|yields| face_model(&faces, &yields));
-        Ok(Self::AlongFaces(Box::new(models)))
+        Ok(models.map(|model| Self::AlongFaces(Box::new(model))))
     }
 
     /// δ at `positions` under `load`.
-    pub(super) fn on_blanks(
+    pub(super) fn transmission_errors(
         &self,
         load: f64,
         positions: &[f64],
         run: &Run,
     ) -> Result<Vec<f64>, AnalysisError> {
         Ok(match self {
-            Self::InPlane(models) => {
-                let found = contacts(models[0].as_drawn(), load, positions, run)?;
+            Self::InPlane(model) => {
+                let found = contacts(model.as_drawn(), load, positions, run)?;
                 let found = found.iter().map(|contact| contact.transmission_error);
                 found.collect()
             }
-            Self::AlongFaces(models) => {
-                let found = models[0].contacts(load, positions, run)?;
+            Self::AlongFaces(model) => {
+                let found = model.contacts(load, positions, run)?;
                 let found = found.iter().map(|contact| contact.mesh.transmission_error);
                 found.collect()
             }
         })
     }
 
-    /// δ at `positions` under `load` on blanks that are alike all around, and the forces on the flanks.
-    pub(super) fn on_round_blanks(
+    /// δ at `positions` under `load`, and the forces on the flanks.
+    pub(super) fn with_loads(
         &self,
         load: f64,
         positions: &[f64],
         run: &Run,
     ) -> Result<Vec<(f64, Vec<PairLoads>)>, AnalysisError> {
         Ok(match self {
-            Self::InPlane(models) => {
+            Self::InPlane(model) => {
                 let keep = |cells: &ContactCells<'_>, solution: &ContactSolution| {
                     cells.loads(&[&solution.forces, &solution.load_derivative])
                 };
-                let found = contacts_keeping(models[1].as_drawn(), load, positions, run, keep)?;
+                let found = contacts_keeping(model.as_drawn(), load, positions, run, keep)?;
                 let found = found.into_iter();
                 found
                     .map(|(contact, loads)| (contact.transmission_error, loads))
                     .collect()
             }
-            Self::AlongFaces(models) => {
-                let found = models[1].contacts(load, positions, run)?;
+            Self::AlongFaces(model) => {
+                let found = model.contacts(load, positions, run)?;
                 let found = found.iter();
                 found
-                    .map(|contact| (contact.mesh.transmission_error, models[1].loads(contact)))
+                    .map(|contact| (contact.mesh.transmission_error, model.loads(contact)))
                     .collect()
             }
         })
     }
 
-    /// By how much the blank of `member` gives way under `loads`, so many mesh periods after they were found.
-    pub(super) fn added(&self, member: Member, loads: &[PairLoads], periods: u32) -> f64 {
-        self.of(0, member, loads, periods)
-    }
-
-    /// The same of a blank that is alike all around.
-    pub(super) fn added_round(&self, member: Member, loads: &[PairLoads]) -> f64 {
-        self.of(1, member, loads, 0)
-    }
-
-    fn of(&self, model: usize, member: Member, loads: &[PairLoads], periods: u32) -> f64 {
+    /// The part of δ by which the blank of `member` yields to `loads`, at this number of mesh periods after they were found.
+    pub(super) fn yielded(&self, member: Member, loads: &[PairLoads], periods: u32) -> f64 {
         let periods = i64::from(periods);
         let [delta, _] = match self {
-            Self::InPlane(models) => yielded(&models[model], &[member], loads, periods),
-            Self::AlongFaces(models) => models[model].yielded(member, loads, periods),
+            Self::InPlane(model) => yielded(model, &[member], loads, periods),
+            Self::AlongFaces(model) => model.yielded(member, loads, periods),
         };
         delta
     }
