@@ -100,8 +100,8 @@ impl StudyEstimate {
     }
 }
 
-/// Seconds of one core for so many designs of which `samples` are some, and of which so many may have unlike gears: a part that samples share is made once for all,
-/// and one that only one of them has is made as often as there are unlike gears.
+/// Seconds of one core for `total` designs, from some of them as `samples`. At most `unlike` of the designs have gears of their own. A part that samples share is
+/// made once for all designs; another part is made for each of the unlike ones.
 fn seconds_of_all(samples: &[Estimate], [total, unlike]: [usize; 2]) -> f64 {
     let mut known: Vec<&PartCost> = Vec::new();
     let [mut first, mut later, mut own] = [0.0; 3];

@@ -25,6 +25,7 @@ import {
   unfold,
 } from "./harness.mjs";
 import { seenByDeuteranopia } from "./colors.mjs";
+import { ROBOT_DRIVE } from "./designs.mjs";
 
 const DRIVEN = "/pair/driven";
 const HOLES = `${DRIVEN}/blank/holes`;
@@ -44,33 +45,6 @@ const LONG = {
     },
   },
   output_torques_n_m: [150, 250],
-};
-
-/** A steel pinion on a wheel of POM, of the drive of a robot, near what the wheel bears. */
-const PLASTIC = {
-  method: "flexible",
-  pair: {
-    center_distance_mm: 40.65,
-    driving: {
-      tooth_count: 18,
-      module_mm: 0.8,
-      face_width_mm: 11.5,
-      blank: { bore_radius_mm: 2.5 },
-      profile_shift: 0.42,
-      span_measurement: { teeth: 3, length_mm: 6.29 },
-    },
-    driven: {
-      tooth_count: 83,
-      module_mm: 0.8,
-      face_width_mm: 10,
-      blank: { bore_radius_mm: 8 },
-      profile_shift: -0.12,
-      material: { youngs_modulus_gpa: 2.8, poisson_ratio: 0.38, density_kg_m3: 1410 },
-      span_measurement: { teeth: 10, length_mm: 23.25 },
-    },
-  },
-  output_torques_n_m: [8.5],
-  resolution: { positions_per_mesh_period: 10, grid: "coarse" },
 };
 
 /** @param service the service whose page is used */
@@ -636,7 +610,10 @@ export async function benchSteps(service) {
   await step(
     "a run-up ends at what the teeth bear, and one that is refused says so where it was asked for",
     async (page) => {
-      await openDesign(page, service, PLASTIC);
+      await openDesign(page, service, {
+        ...ROBOT_DRIVE,
+        resolution: { positions_per_mesh_period: 10, grid: "coarse" },
+      });
       await settled(page);
       await tab(page, "speed");
       await page.locator("#run-up-ask").click();

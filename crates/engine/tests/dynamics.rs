@@ -784,7 +784,7 @@ fn gears_on_supports_vibrate_along_their_line_of_action_and_beside_it() {
     let found = coupled.natural_frequencies();
     let found: Vec<f64> = found.iter().map(|hertz| 2.0 * PI * hertz).collect();
     assert_frequencies(&found, &expected);
-    // The motions beside the line of action, and that of both gears along it at their common frequency, are told and not carried.
+    // The motions beside the line of action, and that of both gears along it at their common frequency, are listed and not carried.
     assert_eq!(coupled.count(), expected.len() - 3);
     for [support, m, _, _] in ON_SUPPORTS {
         let beside = f64::sqrt(support / m);

@@ -203,7 +203,7 @@ fn off(turn: f64, best: f64) -> f64 {
     (turn - best + 0.5).rem_euclid(1.0) - 0.5
 }
 
-/// Holds so many random pairs to sweeps of so many turns, at so many positions of a mesh period.
+/// Holds random pairs to sweeps of full solutions over the turns of a hole pitch.
 fn hold_to_sweeps((count, turns, positions): (u32, u32, u32)) {
     let library = Library::default();
     let mut seen = 0;
@@ -234,7 +234,7 @@ fn hold_to_sweeps((count, turns, positions): (u32, u32, u32)) {
             turned
         });
         let (best, least, of_one) = sweep.best();
-        // A pair is told at 36 turns of a hole pitch.
+        // The amplitude is listed at 36 turns of a hole pitch.
         let told = phase.over_turn.iter().step_by((36 / turns) as usize);
         let apart = sweep
             .lines

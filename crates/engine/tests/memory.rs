@@ -1,4 +1,4 @@
-//! The memory that a case takes, beside what was told of it: in a process of its own.
+//! The memory that a case takes, against its estimate; in a process of its own.
 
 mod cases;
 

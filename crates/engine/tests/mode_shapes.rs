@@ -71,7 +71,7 @@ fn torn(shape: &ModeShape) -> f64 {
     most / shape.largest()
 }
 
-/// 24 teeth of module 2 mm with so many holes.
+/// A gear of 24 teeth of module 2 mm with `count` holes.
 fn holed(count: u32) -> SolidGear {
     let mut data = gear(24, 7e-3);
     let pattern = HolePattern {
@@ -94,7 +94,7 @@ fn asked(count: usize) -> ModesAsked {
     }
 }
 
-/// That a shape has the nodal diameters of its mode, and that neighbors among sectors and teeth move alike where they share a place.
+/// Holds a shape to the nodal diameters of its mode, and sectors and teeth that meet at a place to one displacement there.
 fn assert_shape(gear: &SolidGear, shape: &ModeShape) {
     let (order, share) = order_of_teeth(shape, 24);
     assert_eq!(order, shape.mode.nodal_diameters);

@@ -115,8 +115,8 @@ document! {
 }
 
 document! {
-    /// The stiffness of the support of each gear about the middle of its face: six rows of six numbers, force and torque along x, y and z over displacement
-    /// and turn along x, y and z, in N/m, N and N m. x points towards the mate, z along the axis to the side from which the driving gear is seen to turn
+    /// The stiffness of the support of each gear about the middle of its face, in six rows of six numbers. Rows are force and torque along x, y and z; columns
+    /// are displacement and turn along x, y and z; units are N/m, N and N m. x points towards the mate, z along the axis to the side from which the driving gear is seen to turn
     /// counter-clockwise. It stands still as the gear turns, is symmetric, has no negative eigenvalue and holds the gear against the mesh force.
     pub struct SupportStiffnessDocument as "SupportStiffness", "Support stiffness" {
         /// That of the driving gear.

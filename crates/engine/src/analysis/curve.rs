@@ -1,6 +1,6 @@
 //! Results: curves over mesh position.
 
-pub use super::curve_point::{CurvePoint, EventSide};
+pub use super::curve_point::{CurvePoint, EventSide, SAME_POSITION};
 pub use super::load_share::LoadShare;
 use super::mesh_wave::MeshWave;
 use super::pressures::CurvePressures;

@@ -1,5 +1,8 @@
 //! Points of a curve between its positions.
 
+/// Mesh positions no farther apart than this are one.
+pub const SAME_POSITION: f64 = 1e-9;
+
 /// Sides of a mesh position at which a pair takes up or leaves the load.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EventSide {

@@ -284,7 +284,7 @@ fn along_faces(plan: &Plan, faces: &Faces) -> f64 {
     plan.passes.iter().map(of_pass).sum()
 }
 
-/// Seconds that so many contacts of `case` along `faces` take at a grid `level`, of which so many are the first at their fraction of the mesh period.
+/// Seconds that contacts of `case` along `faces` take at a grid `level`: `solutions` in all, `firsts` of them the first at their fraction of the mesh period.
 fn of_slices(case: &Case, faces: &Faces, level: GridLevel, [solutions, firsts]: [u64; 2]) -> f64 {
     let [per_first, as_drawn, deviating] = SLICE_SECONDS;
     let per_further = if case.pair.is_as_drawn() {
@@ -406,7 +406,7 @@ impl GearCost {
     }
 }
 
-/// Multiplications and additions in which `blank` is condensed to the nodes of its circle and its sides, and these to so many unknowns on the circle.
+/// Multiplications and additions in which `blank` is condensed to the nodes of its circle and its sides, and these to the `met` unknowns on the circle.
 fn condensed(blank: &BlankGrid, met: f64) -> f64 {
     let sectors = f64::from(blank.sector_count);
     let [arc, side] =

@@ -65,7 +65,7 @@ pub(super) struct CheckedStretch {
 #[derive(Debug)]
 pub(super) struct CheckedStretches {
     pub(super) stretches: Vec<CheckedStretch>,
-    /// The flank_points of those that have one, by the flank on which they lie: that of the seat of the pair, and the other one.
+    /// Points of those stretches that have one on a flank: those on the flank of the seat of the pair, and those on the other flank.
     pub(super) flank_points: [FlankPoints; 2],
     /// Displacements of each by unit forces on the cells of the pair, row by row with the interfaces held, and W V of each gear.
     pub(super) yields: Vec<f64>,

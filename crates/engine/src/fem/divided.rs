@@ -25,7 +25,7 @@ pub struct DividedPrism<'a> {
     interface: &'a Interface<'a>,
     /// Nothing where the prism is condensed as a whole.
     pieces: Vec<Piece>,
-    /// The places of the shared nodes and of those that are kept among the blocks of unknowns: shared ones, kept ones, then those that others follow.
+    /// The place of each shared or kept node among the blocks of unknowns. Shared ones come first, then kept ones, then the unknowns that others follow.
     places: Vec<Option<usize>>,
     /// The number of shared nodes, and of all blocks.
     shared: usize,
@@ -77,7 +77,7 @@ impl<'a> DividedPrism<'a> {
         Self::of_pieces(prism, interface, UNKNOWNS / largest)
     }
 
-    /// The same, of about so many nodes a piece at most.
+    /// The same, in pieces of about `most` nodes at most.
     pub fn of_pieces(prism: &Prism<'a>, interface: &'a Interface<'a>, most: usize) -> Self {
         let grid = prism.grid;
         let count = grid.nodes.len().div_ceil(most).max(1);
@@ -139,17 +139,17 @@ impl<'a> DividedPrism<'a> {
         let sets = self.prism.independent().into_iter();
         let sizes = [self.shared, self.blocks - self.shared];
         let mut sums: Vec<Sum> = sets.map(|unknowns| Sum::zeros(unknowns, sizes)).collect();
-        let mut told = Vec::new();
-        let mut is_told = vec![false; recovered.len()];
+        let mut rows_of_pieces = Vec::new();
+        let mut is_recovered = vec![false; recovered.len()];
         for piece in &self.pieces {
             run.check()?;
             let own: Vec<(usize, u32)> = recovered
                 .iter()
                 .enumerate()
-                .filter(|(i, _)| !is_told[*i])
+                .filter(|(i, _)| !is_recovered[*i])
                 .filter_map(|(i, node)| Some((i, piece.own(*node)?)))
                 .collect();
-            own.iter().for_each(|(i, _)| is_told[*i] = true);
+            own.iter().for_each(|(i, _)| is_recovered[*i] = true);
             let (places, own): (Vec<usize>, Vec<u32>) = own.into_iter().unzip();
             let interface = piece.interface(self);
             let prism = piece.prism(&self.prism);
@@ -157,7 +157,7 @@ impl<'a> DividedPrism<'a> {
             for sum in &mut sums {
                 sum.add(&condensed.stiffness, &interface, all);
             }
-            told.push(PieceRows {
+            rows_of_pieces.push(PieceRows {
                 recovered: places,
                 rows: interface.on_blocks(&rows.by_kept, all),
                 blocks: interface.blocks,
@@ -176,14 +176,14 @@ impl<'a> DividedPrism<'a> {
                     stiffness[(place(i), place(j))] = condensed[(i, j)];
                 }
             }
-            for of in &told {
+            for of in &rows_of_pieces {
                 of.add(&mut by_kept, (&unknowns, all), self.shared, &follows);
             }
         }
         Ok((stiffness, by_kept))
     }
 
-    /// Cost of [`DividedPrism::condense`] with so many recovered nodes.
+    /// Cost of [`DividedPrism::condense`] with a number of `recovered` nodes.
     pub fn cost(&self, recovered: usize) -> CondensationCost {
         if self.pieces.is_empty() {
             return self.prism.cost(self.interface, recovered);
@@ -209,18 +209,18 @@ impl<'a> DividedPrism<'a> {
         let (largest, blocks) = widest.fold((0.0, 0.0), |(memory, blocks): (f64, f64), of| {
             (memory.max(of.0), blocks.max(of.1))
         });
-        let told = 8.0 * rows * all * blocks;
+        let rows_of_pieces = 8.0 * rows * all * blocks;
         // While they are eliminated, twice what the kept ones have to do with each other.
         let result = 8.0 * all * kept * (all * kept + rows) + 8.0 * (all * kept).powi(2) / 2.0;
         CondensationCost {
-            memory: sums.memory + told + largest.max(result),
+            memory: sums.memory + rows_of_pieces + largest.max(result),
             ..sums
         }
     }
 }
 
 impl Piece {
-    /// The elements of `grid` around its axis, in so many pieces of equally many.
+    /// The elements of `grid` around its axis, in `count` pieces of equally many.
     fn around(grid: &Grid, count: usize) -> Vec<Self> {
         let angle = |element: &Element| {
             let places = element.nodes().iter();
@@ -318,7 +318,7 @@ impl PieceInterface {
         }
     }
 
-    /// `rows` by its nodes, of so many unknowns each, as rows by its blocks.
+    /// `rows` by its nodes, of `all` unknowns each, as rows by its blocks.
     fn on_blocks(&self, rows: &Mat<f64>, all: usize) -> Mat<f64> {
         let mut on_blocks = Mat::zeros(rows.nrows(), all * self.blocks.len());
         for unknown in 0..all {
@@ -359,7 +359,7 @@ impl Sum {
         }
     }
 
-    /// Adds the part of the `stiffness` of a piece on the nodes of its interface, of so many unknowns each.
+    /// Adds the part of the `stiffness` of a piece on the nodes of its interface, of `all` unknowns each.
     fn add(&mut self, stiffness: &Mat<f64>, of: &PieceInterface, all: usize) {
         let (size, shared) = (self.unknowns.len(), self.shared.nrows());
         let nodes = of.kept.len();
@@ -402,7 +402,7 @@ impl Sum {
 }
 
 impl PieceRows {
-    /// Adds the part of the `unknowns` of a node, of so many in all, to the rows by the kept ones; the shared nodes move as `follows` says.
+    /// Adds the part of some `unknowns` of a node to the rows by the kept ones; the shared nodes move as `follows` says.
     fn add(
         &self,
         by_kept: &mut Mat<f64>,

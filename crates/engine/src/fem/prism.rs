@@ -112,6 +112,16 @@ impl Prism<'_> {
         COMPONENTS * self.axial.len()
     }
 
+    /// The numbers of the unknowns on `interface` and inside it.
+    fn numbering(&self, interface: &Interface<'_>) -> Numbering {
+        let Interface {
+            kept,
+            followers,
+            fixed,
+        } = *interface;
+        Numbering::with_followers(self.grid.nodes.len(), kept, followers, fixed)
+    }
+
     /// The prism condensed to its interface, with the displacement at each of `points`: a node and a direction in polar components, for every function along
     /// the axis; and how all unknowns of the nodes `recovered` follow from those that are kept.
     ///
@@ -125,12 +135,7 @@ impl Prism<'_> {
         points: &[(u32, [f64; COMPONENTS])],
         recovered: &[u32],
     ) -> Result<(CondensedPrism, NodeRows), FemError> {
-        let Interface {
-            kept,
-            followers,
-            fixed,
-        } = *interface;
-        let numbering = Numbering::with_followers(self.grid.nodes.len(), kept, followers, fixed);
+        let numbering = self.numbering(interface);
         let kept = self.unknowns_of_node() * (numbering.count - numbering.interior);
         let (asked, recovered_rows) = (
             points.len() * self.axial.len(),
@@ -156,14 +161,9 @@ impl Prism<'_> {
         Ok((condensed, rows))
     }
 
-    /// Cost of [`Prism::condense`] to `interface`, with so many `recovered` nodes and no points.
+    /// Cost of [`Prism::condense`] to `interface`, with a number of `recovered` nodes and no points.
     pub fn cost(&self, interface: &Interface<'_>, recovered: usize) -> CondensationCost {
-        let Interface {
-            kept,
-            followers,
-            fixed,
-        } = *interface;
-        let numbering = Numbering::with_followers(self.grid.nodes.len(), kept, followers, fixed);
+        let numbering = self.numbering(interface);
         let kept = (numbering.count - numbering.interior) as f64;
         let [unknowns, rows] =
             [kept, recovered as f64].map(|count| count * self.unknowns_of_node() as f64);

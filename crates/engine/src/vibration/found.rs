@@ -28,7 +28,7 @@ pub(super) struct Teeth<'a> {
     pub(super) orders: &'a [TeethOrder],
 }
 
-/// A pair of a class, to be told as a mode.
+/// Eigenpair of a class, to be read as a mode.
 pub(super) struct Found<'a> {
     pub(super) system: &'a System<'a>,
     pub(super) numbering: &'a Numbering,

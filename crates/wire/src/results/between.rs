@@ -1,6 +1,6 @@
 //! A curve between its positions.
 
-use meshwright_engine::analysis::curve::{CurvePoint, EventSide, LoadShare};
+use meshwright_engine::analysis::curve::{CurvePoint, EventSide, LoadShare, SAME_POSITION};
 use meshwright_engine::analysis::stress::{GearStresses, PeakStress, StressedPlace};
 use meshwright_engine::analysis::{Case, Curve};
 
@@ -13,12 +13,9 @@ use crate::units::{or_null, to_mm, to_mpa, to_n_per_mm, to_um};
 /// Positions farther apart than this multiple of their step are of different windows.
 const NEXT: f64 = 1.5;
 
-/// Mesh positions nearer to each other than this are one.
-const SAME: f64 = 1e-9;
-
 document! {
-    /// A curve between its positions: at the events, at which a pair takes up or leaves the load, at the extremes of transmission error and stiffness, and at
-    /// further positions at which the contact was solved, where pressure and stresses are largest among them. Its lists have the names of those of the curve.
+    /// A curve between its positions: at events, where a pair takes up or leaves the load, at the extremes of transmission error and stiffness, and at further
+    /// positions at which the contact was solved. Pressure and stresses are largest at some of these. Its lists have the names of those of the curve.
     /// An event stands twice, with the stiffness just before and just behind it. Transmission error and stiffness are the curves of the statistics; pressure
     /// and stresses are solved where the contact was; the other values are on straight lines between the positions.
     pub struct BetweenDocument as Between, "Curve between its positions"
@@ -161,10 +158,10 @@ impl<'a> Between<'a> {
 
     /// The further position at which `point` stands, if the contact was solved there.
     fn solved_at(&self, point: &CurvePoint) -> Option<usize> {
-        let near = point.mesh_position - SAME;
+        let near = point.mesh_position - SAME_POSITION;
         let i = self.solved.partition_point(|(eta, _)| *eta < near);
         let (eta, place) = self.solved.get(i)?;
-        (eta - point.mesh_position <= SAME).then_some(*place)
+        (eta - point.mesh_position <= SAME_POSITION).then_some(*place)
     }
 
     /// The `values` of the nearer positions.

@@ -20,7 +20,7 @@ use super::{all, each};
 use crate::declare::document;
 use crate::units::{named_or_null, one_or_null, or_null, significant, to_mm, to_mpa, to_um, told};
 
-/// The most multiples of the mesh order that are told by name: of windows and in tables.
+/// The most multiples of the mesh order that have names, in windows and in tables.
 pub const MOST_MESH_ORDERS: u32 = 10;
 
 document! {

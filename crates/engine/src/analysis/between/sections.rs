@@ -6,7 +6,7 @@ use super::cubic::Cubic;
 use super::events::events;
 use super::{Sample, Span};
 use crate::analysis::Case;
-use crate::analysis::curve_point::{CurvePoint, EventSide};
+use crate::analysis::curve_point::{CurvePoint, EventSide, SAME_POSITION};
 use crate::analysis::long_wave::LongWave;
 use crate::analysis::statistics::{SamplingError, Statistics};
 use crate::quadrature::gauss_legendre_panels;
@@ -39,9 +39,6 @@ const WAVE: usize = 16;
 
 /// How well δ is to be known between positions: its extremes to this part of its peak-to-peak, and no better than so many meters.
 const TOLERANCE: (f64, f64) = (1e-3, 5e-10);
-
-/// Places nearer to each other than this are one.
-const SAME: f64 = 1e-9;
 
 /// The tolerance for this peak-to-peak.
 pub(super) fn tolerance(peak_to_peak: f64) -> f64 {
@@ -243,16 +240,17 @@ impl Sections {
         further: &[f64],
     ) -> Vec<CurvePoint> {
         let is_position = |place: f64| {
-            let i = positions.partition_point(|position| *position < place - SAME);
+            let i = positions.partition_point(|position| *position < place - SAME_POSITION);
             positions
                 .get(i)
-                .is_some_and(|position| (position - place).abs() <= SAME)
+                .is_some_and(|position| (position - place).abs() <= SAME_POSITION)
         };
         let each = self.sections.iter();
         let points = each.flat_map(|section| section.points(further));
         // The end of a curve that closes is its beginning.
-        let is_over =
-            |point: &CurvePoint| self.span.closes && point.mesh_position >= self.span.end() - SAME;
+        let is_over = |point: &CurvePoint| {
+            self.span.closes && point.mesh_position >= self.span.end() - SAME_POSITION
+        };
         let (mut rising, within): (Vec<_>, Vec<_>) = points.partition(is_over);
         for point in &mut rising {
             point.mesh_position = self.span.first;
@@ -260,7 +258,7 @@ impl Sections {
         rising.extend(within);
         rising.retain(|point| point.event.is_some() || !is_position(point.mesh_position));
         rising.dedup_by(|next, point| {
-            next.event.is_none() && next.mesh_position - point.mesh_position <= SAME
+            next.event.is_none() && next.mesh_position - point.mesh_position <= SAME_POSITION
         });
         rising
     }
