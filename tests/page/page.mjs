@@ -115,7 +115,12 @@ await daily.opened("each question has four numbers, and a mark where a warning l
   assert.equal(await mark.innerText(), "corner");
   await mark.click();
   assert.match(await page.locator("#about-pressure").innerText(), /corner/);
+  // What is not computed has no unit either.
+  await tab(page, "speed");
+  assert.deepEqual(await tiles(), ["k mean", "H_Z2", "Natural frequency", "Largest motion"]);
+  assert.equal((await page.locator("#answer-motion").innerText()).replace(/\s+/g, " ").trim(), "Largest motion –");
   await tab(page, "strength");
+  assert.ok(await page.locator("#brush").isHidden(), "nothing is moved where there are no curves");
   await page.locator("#ask-stress").click();
   await page.locator("#chart-stress").waitFor();
   assert.match(await page.locator("#answer-root-driven .value").innerText(), /^[0-9.]+$/);

@@ -24,8 +24,8 @@ export async function fetchMaterials() {
 }
 
 /**
- * The numbers of a material that change with its temperature: those of the two nearest temperatures that are printed, in
- * proportion. Throws what is wrong where none are printed for it.
+ * The numbers of a material that change with its temperature: in proportion between the two nearest temperatures that
+ * are printed. Throws what is wrong beyond these.
  *
  * @type {(name: string, temperature: number) => { youngs_modulus_gpa: number, expansion_per_k: number }}
  */

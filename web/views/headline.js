@@ -255,7 +255,6 @@ export const ANSWERS = [
     questions: ["speed"],
     name: "Largest motion",
     unit: "µm",
-    some: true,
     quantity: "dynamic_transmission_error_um.peak_to_peak",
     print: (value) => fixed(value, 2),
     about: "The largest peak-to-peak dynamic transmission error over the speeds of the run-up.",
@@ -286,7 +285,19 @@ function isLessBetter({ id, quantity }) {
 }
 
 /**
- * @typedef {{ tile: HTMLElement, value: HTMLElement, change: HTMLElement, mark: HTMLElement, name: HTMLElement, about:
+ * The mark of an answer among the warnings of its design, with the warning's sentence; undefined where there is none.
+ *
+ * @type {(answer: HeadlineAnswer, warnings: Warning[]) => { word: string, detail: string } | undefined}
+ */
+function markOf({ id }, warnings) {
+  return MARKS.flatMap(({ code, mark: word, of }) => {
+    const warning = of.includes(id) && warnings.find((each) => each.code === code);
+    return warning ? [{ word, detail: warning.detail }] : [];
+  })[0];
+}
+
+/**
+ * @typedef {{ tile: HTMLElement, value: HTMLElement, unit: HTMLElement, change: HTMLElement, mark: HTMLElement, name: HTMLElement, about:
  *   HTMLElement }} Tile
  */
 
@@ -311,17 +322,18 @@ export class Headline {
         aria: { expanded: "false", controls: about.id },
         title: answer.about,
       });
+      const unit = h("small", {}, ` ${answer.unit}`);
       const mark = button("", () => this.#tell(answer.id), { className: "mark", aria: { controls: about.id } });
       mark.hidden = true;
       const tile = h(
         "div",
         { className: "tile", hidden: true, id: `answer-${answer.id}` },
         name,
-        h("span", {}, value, h("small", {}, ` ${answer.unit}`), " ", mark),
+        h("span", {}, value, unit, " ", mark),
         change,
       );
       place.append(tile);
-      this.tiles.set(answer.id, { tile, value, change, mark, name, about });
+      this.tiles.set(answer.id, { tile, value, unit, change, mark, name, about });
     }
     place.append(...[...this.tiles.values()].map(({ about }) => about));
     this.ask(this.#question);
@@ -346,25 +358,25 @@ export class Headline {
   /**
    * Shows the answers of `curve`, beside those of another design, if there is one.
    *
-   * @param {{ curve: Curve, warnings: Warning[], other: { name: string, curve: Curve } | null, draft: boolean }} design
+   * @param {{ curve: Curve, warnings: Warning[], other: { name: string, curve: Curve, warnings: Warning[] } | null, draft:
+   *   boolean }} design
    */
   show({ curve, warnings, other, draft }) {
     for (const answer of ANSWERS) {
       const parts = this.tiles.get(answer.id);
       if (!parts) continue;
-      const { value, change, mark, about } = parts;
+      const { value, unit, change, mark, about } = parts;
       const [now, before] = [valueOf(answer, curve), other && valueOf(answer, other.curve)];
       value.textContent = now === null ? "–" : answer.print(now);
+      unit.hidden = now === null;
       const where = now === null ? undefined : answer.where?.(curve);
       value.title = where ? placed(where) : "";
-      const marked = MARKS.flatMap(({ code, mark: word, of }) => {
-        const warning = of.includes(answer.id) && warnings.find((each) => each.code === code);
-        return warning ? [{ word, sentence: this.inWords(warning.detail) }] : [];
-      })[0];
+      const marked = markOf(answer, warnings);
       mark.hidden = draft || !marked;
+      const sentence = marked && this.inWords(marked.detail);
       mark.textContent = marked?.word ?? "";
-      mark.title = marked?.sentence ?? "";
-      const sentences = [marked?.sentence, answer.about, where && `It stands ${placed(where)}.`];
+      mark.title = sentence ?? "";
+      const sentences = [sentence, answer.about, where && `It stands ${placed(where)}.`];
       about.textContent = sentences.filter(Boolean).join(" ");
       value.classList.toggle("draft", draft);
       const known = other && now !== null && before !== null;
@@ -375,6 +387,7 @@ export class Headline {
       const better =
         known &&
         !marked &&
+        !markOf(answer, other.warnings) &&
         other.curve.output_torque_n_m === curve.output_torque_n_m &&
         less !== null &&
         Math.abs(now - before) > 1e-3 * Math.abs(before)

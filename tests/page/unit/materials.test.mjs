@@ -11,7 +11,12 @@ const point = (temperature_c, youngs_modulus_gpa, expansion_per_k) => ({
   expansion_per_k,
 });
 learnMaterials([
-  { ...plain, name: "A", ...point(20, 210, 12e-6), at_temperatures: [point(100, 205, 12.5e-6), point(200, 195, 13e-6)] },
+  {
+    ...plain,
+    name: "A",
+    ...point(20, 210, 12e-6),
+    at_temperatures: [point(100, 205, 12.5e-6), point(200, 195, 13e-6)],
+  },
   { ...plain, name: "B", ...point(23, 3, 1e-4), at_temperatures: [] },
 ]);
 
