@@ -3,6 +3,7 @@
 // with, and with a mark where a warning limits what it says.
 
 import { button, h } from "../draw/dom.js";
+import { markOf } from "../state/marks.js";
 import { fixed, number } from "../state/numbers.js";
 import { inCurve, quantityOf } from "../state/quantities.js";
 
@@ -23,25 +24,6 @@ import { inCurve, quantityOf } from "../state/quantities.js";
  * @property {(value: number) => string} print
  * @property {string} about
  */
-
-/**
- * Marks of numbers: the warning that sets each, and the answers that it concerns. A marked number is never called
- * better or worse than another one.
- *
- * @type {{ code: string, mark: string, of: string[] }[]}
- */
-const MARKS = [
-  { code: "few_positions", mark: "few positions", of: ["p-p", "h-n", "h-z", "k"] },
-  { code: "partial_span", mark: "part of the period", of: ["p-p", "mean", "h-n", "h-z"] },
-  { code: "projection_doubtful", mark: "estimate", of: ["p-p", "h-n"] },
-  { code: "holes_not_seen", mark: "without holes", of: ["p-p", "mean", "k", "h-n"] },
-  { code: "web_outside_plane_model", mark: "estimate", of: ["p-p", "mean", "k", "h-n"] },
-  { code: "tip_corner_contact", mark: "corner", of: ["pressure"] },
-  { code: "pressure_at_kink", mark: "kink", of: ["pressure"] },
-  { code: "contact_beyond_elasticity", mark: "beyond elasticity", of: ["pressure"] },
-  { code: "rim_inertia_on_hub", mark: "estimate", of: ["natural-frequency"] },
-  { code: "motion_unbounded", mark: "no damping", of: ["natural-frequency"] },
-];
 
 /**
  * The part of its span in which one pair of teeth carries alone, in percent.
@@ -284,21 +266,10 @@ function isLessBetter({ id, quantity }) {
   return better ? better === "smaller" : null;
 }
 
-/**
- * The mark of an answer among the warnings of its design, with the warning's sentence; undefined where there is none.
- *
- * @type {(answer: HeadlineAnswer, warnings: Warning[]) => { word: string, detail: string } | undefined}
- */
-function markOf({ id }, warnings) {
-  return MARKS.flatMap(({ code, mark: word, of }) => {
-    const warning = of.includes(id) && warnings.find((each) => each.code === code);
-    return warning ? [{ word, detail: warning.detail }] : [];
-  })[0];
-}
+/** @typedef {{ curve: Curve, warnings: Warning[] }} Shown */
 
 /**
- * @typedef {{ tile: HTMLElement, value: HTMLElement, unit: HTMLElement, change: HTMLElement, mark: HTMLElement, name: HTMLElement, about:
- *   HTMLElement }} Tile
+ * @typedef {Record<"tile" | "value" | "unit" | "change" | "mark" | "name" | "about", HTMLElement>} Tile
  */
 
 /** The answers in `place`. */
@@ -358,8 +329,7 @@ export class Headline {
   /**
    * Shows the answers of `curve`, beside those of another design, if there is one.
    *
-   * @param {{ curve: Curve, warnings: Warning[], other: { name: string, curve: Curve, warnings: Warning[] } | null, draft:
-   *   boolean }} design
+   * @param {Shown & { other: (Shown & { name: string }) | null, draft: boolean }} design
    */
   show({ curve, warnings, other, draft }) {
     for (const answer of ANSWERS) {
@@ -371,7 +341,8 @@ export class Headline {
       unit.hidden = now === null;
       const where = now === null ? undefined : answer.where?.(curve);
       value.title = where ? placed(where) : "";
-      const marked = markOf(answer, warnings);
+      const name = answer.quantity ?? answer.id;
+      const marked = markOf(name, warnings);
       mark.hidden = draft || !marked;
       const sentence = marked && this.inWords(marked.detail);
       mark.textContent = marked?.word ?? "";
@@ -387,7 +358,7 @@ export class Headline {
       const better =
         known &&
         !marked &&
-        !markOf(answer, other.warnings) &&
+        !markOf(name, other.warnings) &&
         other.curve.output_torque_n_m === curve.output_torque_n_m &&
         less !== null &&
         Math.abs(now - before) > 1e-3 * Math.abs(before)
