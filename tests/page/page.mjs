@@ -634,6 +634,11 @@ await withOwnService({}, (locked, { step: onLocked }) => {
   return onLocked("a key is asked for, and used", async (page) => {
     await page.goto(locked.url);
     await page.locator("#key-dialog[open]").waitFor();
+    assert.equal(
+      await page.locator("#drawing circle:visible").count(),
+      0,
+      "nothing is drawn of a pair that is not known",
+    );
     await axe(page);
     await page.locator("#key").fill("mw_nobody");
     await page.locator("#key-form button.primary").click();

@@ -295,7 +295,7 @@ export class Headline {
       });
       const unit = h("small", {}, ` ${answer.unit}`);
       const mark = button("", () => this.#tell(answer.id), { className: "mark", aria: { controls: about.id } });
-      mark.hidden = true;
+      unit.hidden = mark.hidden = true;
       const tile = h(
         "div",
         { className: "tile", hidden: true, id: `answer-${answer.id}` },
