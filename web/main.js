@@ -274,7 +274,10 @@ class Page {
   #ask(question) {
     this.#headline.ask(question);
     this.#charts.ask(question);
-    byId("no-stress").hidden = question !== "strength" || this.#charts.answers || !this.#shown;
+    const { answers } = this.#charts;
+    byId("no-stress").hidden = question !== "strength" || answers || !this.#shown;
+    // What moves the curves stands with curves alone.
+    byId("brush").classList.toggle("idle", !answers);
   }
 
   /**
@@ -575,7 +578,11 @@ class Page {
     const named = seen.map((each) => ({ ...each, name: legendOf(each, seen) }));
     this.#charts.show(named, moving);
     const [curve] = shown.results.curves;
-    const other = against && { name: against.name, curve: atTorqueOf(curve, against.results) };
+    const other = against && {
+      name: against.name,
+      curve: atTorqueOf(curve, against.results),
+      warnings: against.results.warnings,
+    };
     this.#headline.show({ curve, warnings: shown.results.warnings, other, draft: moving });
     // Numbers that change with every move cannot be read, and a new table lays the page out.
     if (moving) return;

@@ -255,7 +255,7 @@ pub(super) struct Materials {
 
 /// Get materials
 ///
-/// The materials that `material.name` of a gear takes: their numbers at a temperature, and where these are printed.
+/// The materials that `material.name` of a gear takes: their numbers at a temperature, modulus and expansion at others, and where these are printed.
 #[utoipa::path(
     get, path = "/v1/materials", tag = "Reference", operation_id = "get_materials",
     security(()),

@@ -390,6 +390,35 @@ export async function benchSteps(service) {
     assert.equal(await change.innerText(), "±0 %");
   });
 
+  await step("no number is called better or best beside one that a warning limits", async (page) => {
+    // The first design comes with a warning that its peak-to-peak is open.
+    let limited = true;
+    await page.route("**/v1/preview", async (route) => {
+      const response = await route.fetch();
+      const json = await response.json();
+      const warning = { code: "few_positions", pointer: null, detail: "More positions would tell.", nearest: null };
+      if (limited) json.warnings = [...json.warnings.filter(({ code }) => code !== warning.code), warning];
+      await route.fulfill({ response, json });
+    });
+    await open(page, service);
+    assert.equal(await page.locator("#answer-p-p .mark").innerText(), "few positions");
+    await page.locator("#pin").click();
+    await page.locator("#against-label").waitFor();
+    limited = false;
+    const before = await answer(page, "p-p");
+    await (await field(page, `${HOLES}/count`)).fill("8");
+    await changed(page, "p-p", before);
+    const called = (id) => page.locator(`#answer-${id} .change`).getAttribute("class");
+    assert.match(await page.locator("#answer-p-p .change").innerText(), /%/);
+    assert.equal(await called("p-p"), "change");
+    assert.match(await called("tooth-to-tooth"), /better|worse/, "it has no mark");
+    await tab(page, "designs");
+    const row = page.locator("#table tr", { hasText: "STE p-p" }).first();
+    assert.equal(await row.locator("td.best").count(), 0);
+    assert.match(await row.innerText(), /few positions/);
+    assert.equal(await page.locator("#table tr", { hasText: "Mass of the driven gear" }).locator("td.best").count(), 1);
+  });
+
   await opened("holes that are asked for lie within the web, and a web around the holes", async (page) => {
     await page.locator("#start").selectOption("new pair");
     await settled(page);
@@ -662,6 +691,28 @@ export async function benchSteps(service) {
     assert.doesNotMatch(await chart.textContent(), /10×r7\.5@34/);
   });
 
+  await step(
+    "a natural frequency that is an estimate bears a mark, and the better one stands at the table",
+    async (page) => {
+      // What is warned of here is made up: a service of this version warns of it where hubs carry no rims.
+      const detail = "The blanks twist: about 4413 Hz.";
+      await page.route("**/v1/preview", async (route) => {
+        const response = await route.fetch();
+        const results = await response.json();
+        if (results.curves?.[0].dynamics) results.warnings.push({ code: "rim_inertia_on_hub", detail });
+        await route.fulfill({ response, json: results });
+      });
+      await open(page, service);
+      await tab(page, "speed");
+      await page.locator("#run-up-ask").click();
+      await page.locator("#run-up .outdated", { hasText: detail }).waitFor();
+      const mark = page.locator("#answer-natural-frequency .mark");
+      assert.equal(await mark.innerText(), "estimate");
+      await mark.click();
+      assert.match(await page.locator("#about-natural-frequency").innerText(), /about 4413 Hz/);
+    },
+  );
+
   await step("the excitation sounds when it is asked for, at the orders of the speed", async (page) => {
     await page.addInitScript(() => {
       window.audio = { contexts: 0, closed: 0, tones: [] };
@@ -706,16 +757,18 @@ export async function benchSteps(service) {
     await page.locator("#run-up .waterfall").waitFor();
     assert.equal(await page.evaluate(() => window.audio.contexts), 0, "nothing until it is pressed");
     assert.match(await page.locator("#run-up").innerText(), /It is not the noise of a gearbox/);
-    await page.locator("#run-up tbody tr", { hasText: "5,153" }).first().locator("button").click();
+    const row = page.locator("#run-up tbody tr").filter({ has: page.getByRole("cell", { name: "H_Z2", exact: true }) });
+    const speed = Number((await row.first().locator("th, td").first().innerText()).replace(",", ""));
+    await row.first().getByRole("button", { name: /^Look/ }).click();
     await page.locator("#run-up-hear").click();
     const loudest = () =>
       page.evaluate(() =>
         window.audio.tones.map(([hz, gain]) => [hz.value, gain.value]).reduce((a, b) => (b[1] > a[1] ? b : a)),
       );
-    // 50 teeth at 5,148 1/min meet 4,290 times a second; the nearest speed that was computed is less than a hundredth
-    // away.
+    // 50 teeth meet 50/60 times a second at each revolution a minute; the nearest speed that was computed is less than a
+    // hundredth away.
     const [hz, part] = await loudest();
-    assert.ok(Math.abs(hz / 4290 - 1) < 0.01, `${hz} Hz`);
+    assert.ok(Math.abs(hz / ((speed * 50) / 60) - 1) < 0.01, `${hz} Hz at ${speed} rpm`);
     assert.ok(part > 0.3 && part <= 1, String(part));
     await page.locator("#speed").fill("50");
     assert.notEqual((await loudest())[0], hz);
@@ -793,7 +846,8 @@ export async function benchSteps(service) {
         stiffness.slice(1),
         [...stiffness.slice(1)].sort((a, b) => a - b),
       );
-      assert.equal(stiffness[0].toFixed(1), (await answer(page, "k")).toFixed(1));
+      // Rounded to two decimals here, and to one there.
+      assert.ok(Math.abs(stiffness[0] - (await answer(page, "k"))) < 0.0551);
       assert.deepEqual(
         await line("k mean")
           .locator("td")
@@ -1664,6 +1718,9 @@ export async function benchSteps(service) {
       await tab(page, "robustness");
       // Each tooth meets each other after 27 times 79 mesh periods, of 10 positions each: more than 20,000.
       const told = page.locator("#population-ahead");
+      await told.filter({ hasText: /where its teeth differ most .* over \d+ mesh periods.*A member has/s }).waitFor();
+      // Whoever wants the whole of it empties the window.
+      await page.locator("#population-window").fill("");
       await told
         .filter({
           hasText:

@@ -115,7 +115,12 @@ await daily.opened("each question has four numbers, and a mark where a warning l
   assert.equal(await mark.innerText(), "corner");
   await mark.click();
   assert.match(await page.locator("#about-pressure").innerText(), /corner/);
+  // What is not computed has no unit either.
+  await tab(page, "speed");
+  assert.deepEqual(await tiles(), ["k mean", "H_Z2", "Natural frequency", "Largest motion"]);
+  assert.equal((await page.locator("#answer-motion").innerText()).replace(/\s+/g, " ").trim(), "Largest motion –");
   await tab(page, "strength");
+  assert.ok(await page.locator("#brush").isHidden(), "nothing is moved where there are no curves");
   await page.locator("#ask-stress").click();
   await page.locator("#chart-stress").waitFor();
   assert.match(await page.locator("#answer-root-driven .value").innerText(), /^[0-9.]+$/);
@@ -153,8 +158,19 @@ await engine.opened(
     await modulus.fill("1.2");
     const { material } = (await designOf(page)).pair.driven;
     assert.deepEqual(material, { name: "POM", youngs_modulus_gpa: 1.2 });
+    // Half of the way from 23 to 71 degrees: the mean of 2.85 and 1.37 GPa. Beyond what is printed nothing is told.
+    const temperature = page.locator("#temperature-driven");
+    await temperature.fill("47");
+    await changing(page, () => temperature.press("Enter"));
+    assert.equal((await designOf(page)).pair.driven.material.youngs_modulus_gpa, 2.11);
+    await temperature.fill("150");
+    await temperature.press("Enter");
+    await page.locator(".tool .field-error", { hasText: "from 23 to 104 °C" }).waitFor();
+    assert.equal(await modulus.inputValue(), "2.11");
+    await axe(page);
     if (process.argv.includes("--screenshots")) await page.screenshot({ path: `${import.meta.dirname}/material.png` });
     await name.selectOption("");
+    assert.ok(await temperature.isHidden());
     assert.equal(await density.getAttribute("placeholder"), "7850");
   },
 );
@@ -618,6 +634,11 @@ await withOwnService({}, (locked, { step: onLocked }) => {
   return onLocked("a key is asked for, and used", async (page) => {
     await page.goto(locked.url);
     await page.locator("#key-dialog[open]").waitFor();
+    assert.equal(
+      await page.locator("#drawing circle:visible").count(),
+      0,
+      "nothing is drawn of a pair that is not known",
+    );
     await axe(page);
     await page.locator("#key").fill("mw_nobody");
     await page.locator("#key-form button.primary").click();

@@ -126,7 +126,7 @@ export function wordsOfCure({ cure, face_load_factor: factor }) {
     { name: "a slope", amount: cure.lead_slope_um },
     { name: "a crowning", amount: cure.crowning_um },
   ].filter(({ amount }) => Math.abs(amount) >= 0.05);
-  return `K_Hβ would be ${fixed(cure.face_load_factor, 2)} with ${parts.map(({ name, amount }) => `${name} of ${fixed(amount, 1)} µm`).join(" and ")} more on the leads of the driving gear.`;
+  return `K_Hβ would be ${fixed(cure.face_load_factor, 2)} with ${parts.map(({ name, amount }) => `${name} of ${fixed(Math.abs(amount), 1)} µm ${amount < 0 ? "less" : "more"}`).join(" and ")} on the leads of the driving gear.`;
 }
 
 /**

@@ -86,7 +86,7 @@ export const inWords = ({ title }) => title[0].toLowerCase() + title.slice(1);
 /**
  * A value of a quantity as it is printed.
  *
- * @type {(quantity: Quantity, value: unknown) => string}
+ * @type {(quantity: Pick<Quantity, "printed" | "factor">, value: unknown) => string}
  */
 export function shown({ printed, factor }, value) {
   if (typeof value !== "number" || !Number.isFinite(value)) return "–";

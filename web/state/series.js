@@ -3,6 +3,7 @@
 
 import { fixed, number } from "./numbers.js";
 import { apart, withPoints } from "./points.js";
+import { shown } from "./quantities.js";
 
 /** @import { Curve, NamedDesign, Spectrum } from "./documents.js" */
 
@@ -339,7 +340,7 @@ export function wordsOf(panel, designs) {
     const found = extremes(line.values);
     if (!found) return [];
     const [[least, i], [most, j]] = found;
-    const range = `from ${number(least)} at position ${fixed(line.x[i], 2)} to ${number(most)} at ${fixed(line.x[j], 2)}, peak-to-peak ${number(most - least, 3)} ${panel.unit}`;
+    const range = `from ${number(least)} at position ${fixed(line.x[i], 2)} to ${number(most)} at ${fixed(line.x[j], 2)}, peak-to-peak ${shown({ printed: panel.unit, factor: 1 }, most - least)} ${panel.unit}`;
     return [`${line.name}: ${range}.`];
   });
   const gaps =

@@ -5,6 +5,7 @@ import { looks } from "../draw/charts.js";
 import { button, h, note } from "../draw/dom.js";
 import { saveTable } from "../draw/download.js";
 import { differences, told } from "../state/design.js";
+import { markOf } from "../state/marks.js";
 import { extent, number } from "../state/numbers.js";
 import { calledOf, inCurve, quantities, shown } from "../state/quantities.js";
 import { csvOf, fileOfDesign } from "../state/tables.js";
@@ -240,7 +241,8 @@ export class Compare {
   }
 
   /**
-   * A line for each quantity that any of the designs tells, the best of designs at one torque marked.
+   * A line for each quantity that any of the designs tells. The best of designs at one torque is marked, unless a
+   * warning limits what one of them says.
    *
    * @param {NamedDesign[]} designs
    */
@@ -260,17 +262,28 @@ export class Compare {
         line(
           calledOf(quantity),
           quantity.printed,
-          columns.map(({ curve: { output_torque_n_m: torque }, live }, i) => {
-            const rivals = values.filter(
-              (value, k) => value !== undefined && columns[k].curve.output_torque_n_m === torque,
+          columns.map(({ curve: { output_torque_n_m: torque }, results, live }, i) => {
+            const rivals = columns.flatMap(({ curve, results }, k) =>
+              values[k] !== undefined && curve.output_torque_n_m === torque
+                ? [{ value: values[k], mark: markOf(quantity.name, results.warnings) }]
+                : [],
             );
             const value = values[i];
-            const best = value !== undefined && isBest(value, rivals, quantity.better);
+            const mark = value === undefined ? undefined : markOf(quantity.name, results.warnings);
+            const best =
+              value !== undefined &&
+              rivals.every((rival) => !rival.mark) &&
+              isBest(
+                value,
+                rivals.map((rival) => rival.value),
+                quantity.better,
+              );
             return h(
               "td",
               { className: [best ? "best" : "", live ? "live" : ""].join(" ").trim() },
               shown(quantity, value),
               best ? h("span", { className: "visually-hidden" }, " best") : null,
+              mark ? h("small", { title: mark.detail }, ` ${mark.word}`) : null,
             );
           }),
         ),

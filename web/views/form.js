@@ -20,7 +20,7 @@ import {
 } from "../state/schema.js";
 import { chooseReading, inOtherUnit, parsed, readingsOf, stepped, turned, unreadable } from "../state/typed.js";
 import { deviations } from "./deviations.js";
-import { limitsTool, loadTool } from "./limits.js";
+import { limitsTool, loadTool, materialTool } from "./limits.js";
 
 /** @import { Properties } from "../draw/dom.js" */
 /** @import { Cause, Design } from "../state/design.js" */
@@ -93,6 +93,7 @@ export class Form {
     place.addEventListener("submit", (event) => event.preventDefault());
     // Made once: what they say stays while fields are made anew around them.
     this.tools = Object.fromEntries(MEMBERS.map((member) => [member, deviations(member, design)]));
+    this.materials = new Map(MEMBERS.map((member) => [`/pair/${member}/material`, materialTool(member, design)]));
     this.ofPair = limitsTool(design);
     this.ofLoad = loadTool(design);
     this.render();
@@ -1004,7 +1005,8 @@ export class Form {
           this.#field(`${pointer}/${name}`, schema, required.includes(name)),
         )
       : [];
-    return this.#fieldset(pointer, kind, title, fields, kind.optional && !needed);
+    const tool = this.materials.get(pointer);
+    return this.#fieldset(pointer, kind, title, tool ? [...fields, tool] : fields, kind.optional && !needed);
   }
 
   /**

@@ -3,6 +3,7 @@
 // with, and with a mark where a warning limits what it says.
 
 import { button, h } from "../draw/dom.js";
+import { markOf } from "../state/marks.js";
 import { fixed, number } from "../state/numbers.js";
 import { inCurve, quantityOf } from "../state/quantities.js";
 
@@ -23,25 +24,6 @@ import { inCurve, quantityOf } from "../state/quantities.js";
  * @property {(value: number) => string} print
  * @property {string} about
  */
-
-/**
- * Marks of numbers: the warning that sets each, and the answers that it concerns. A marked number is never called
- * better or worse than another one.
- *
- * @type {{ code: string, mark: string, of: string[] }[]}
- */
-const MARKS = [
-  { code: "few_positions", mark: "few positions", of: ["p-p", "h-n", "h-z", "k"] },
-  { code: "partial_span", mark: "part of the period", of: ["p-p", "mean", "h-n", "h-z"] },
-  { code: "projection_doubtful", mark: "estimate", of: ["p-p", "h-n"] },
-  { code: "holes_not_seen", mark: "without holes", of: ["p-p", "mean", "k", "h-n"] },
-  { code: "web_outside_plane_model", mark: "estimate", of: ["p-p", "mean", "k", "h-n"] },
-  { code: "tip_corner_contact", mark: "corner", of: ["pressure"] },
-  { code: "pressure_at_kink", mark: "kink", of: ["pressure"] },
-  { code: "contact_beyond_elasticity", mark: "beyond elasticity", of: ["pressure"] },
-  { code: "rim_inertia_on_hub", mark: "estimate", of: ["natural-frequency"] },
-  { code: "motion_unbounded", mark: "no damping", of: ["natural-frequency"] },
-];
 
 /**
  * The part of its span in which one pair of teeth carries alone, in percent.
@@ -255,7 +237,6 @@ export const ANSWERS = [
     questions: ["speed"],
     name: "Largest motion",
     unit: "µm",
-    some: true,
     quantity: "dynamic_transmission_error_um.peak_to_peak",
     print: (value) => fixed(value, 2),
     about: "The largest peak-to-peak dynamic transmission error over the speeds of the run-up.",
@@ -285,9 +266,10 @@ function isLessBetter({ id, quantity }) {
   return better ? better === "smaller" : null;
 }
 
+/** @typedef {{ curve: Curve, warnings: Warning[] }} Shown */
+
 /**
- * @typedef {{ tile: HTMLElement, value: HTMLElement, change: HTMLElement, mark: HTMLElement, name: HTMLElement, about:
- *   HTMLElement }} Tile
+ * @typedef {Record<"tile" | "value" | "unit" | "change" | "mark" | "name" | "about", HTMLElement>} Tile
  */
 
 /** The answers in `place`. */
@@ -311,17 +293,18 @@ export class Headline {
         aria: { expanded: "false", controls: about.id },
         title: answer.about,
       });
+      const unit = h("small", {}, ` ${answer.unit}`);
       const mark = button("", () => this.#tell(answer.id), { className: "mark", aria: { controls: about.id } });
-      mark.hidden = true;
+      unit.hidden = mark.hidden = true;
       const tile = h(
         "div",
         { className: "tile", hidden: true, id: `answer-${answer.id}` },
         name,
-        h("span", {}, value, h("small", {}, ` ${answer.unit}`), " ", mark),
+        h("span", {}, value, unit, " ", mark),
         change,
       );
       place.append(tile);
-      this.tiles.set(answer.id, { tile, value, change, mark, name, about });
+      this.tiles.set(answer.id, { tile, value, unit, change, mark, name, about });
     }
     place.append(...[...this.tiles.values()].map(({ about }) => about));
     this.ask(this.#question);
@@ -346,25 +329,25 @@ export class Headline {
   /**
    * Shows the answers of `curve`, beside those of another design, if there is one.
    *
-   * @param {{ curve: Curve, warnings: Warning[], other: { name: string, curve: Curve } | null, draft: boolean }} design
+   * @param {Shown & { other: (Shown & { name: string }) | null, draft: boolean }} design
    */
   show({ curve, warnings, other, draft }) {
     for (const answer of ANSWERS) {
       const parts = this.tiles.get(answer.id);
       if (!parts) continue;
-      const { value, change, mark, about } = parts;
+      const { value, unit, change, mark, about } = parts;
       const [now, before] = [valueOf(answer, curve), other && valueOf(answer, other.curve)];
       value.textContent = now === null ? "–" : answer.print(now);
+      unit.hidden = now === null;
       const where = now === null ? undefined : answer.where?.(curve);
       value.title = where ? placed(where) : "";
-      const marked = MARKS.flatMap(({ code, mark: word, of }) => {
-        const warning = of.includes(answer.id) && warnings.find((each) => each.code === code);
-        return warning ? [{ word, sentence: this.inWords(warning.detail) }] : [];
-      })[0];
+      const name = answer.quantity ?? answer.id;
+      const marked = markOf(name, warnings);
       mark.hidden = draft || !marked;
+      const sentence = marked && this.inWords(marked.detail);
       mark.textContent = marked?.word ?? "";
-      mark.title = marked?.sentence ?? "";
-      const sentences = [marked?.sentence, answer.about, where && `It stands ${placed(where)}.`];
+      mark.title = sentence ?? "";
+      const sentences = [sentence, answer.about, where && `It stands ${placed(where)}.`];
       about.textContent = sentences.filter(Boolean).join(" ");
       value.classList.toggle("draft", draft);
       const known = other && now !== null && before !== null;
@@ -375,6 +358,7 @@ export class Headline {
       const better =
         known &&
         !marked &&
+        !markOf(name, other.warnings) &&
         other.curve.output_torque_n_m === curve.output_torque_n_m &&
         less !== null &&
         Math.abs(now - before) > 1e-3 * Math.abs(before)

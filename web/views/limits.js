@@ -1,15 +1,17 @@
 // @ts-check
-// Tools of the form: the pair at its least, nominal or most backlash, and the load by the driving gear's torque or by
-// power and speed.
+// Tools of the form: the pair at its least, nominal or most backlash, the load by the driving gear's torque or by power
+// and speed, and a material at a temperature.
 
 import { button, h, inLine, labelled, note } from "../draw/dom.js";
 import { given, numeric, put } from "../draw/inputs.js";
 import { ProblemError } from "../state/api.js";
 import { drivingOf, outputOf, powerOf, sizesOf, torqueOf, valuesAt } from "../state/limits.js";
+import { materialAt, sourceOf } from "../state/materials.js";
 import { number } from "../state/numbers.js";
 import { js7 } from "../state/sensitivity.js";
 
 /** @import { Design } from "../state/design.js" */
+/** @import { GearName } from "../state/documents.js" */
 /** @import { Which } from "../state/limits.js" */
 
 const TORQUES = "/output_torques_n_m";
@@ -164,4 +166,60 @@ export function loadTool(design) {
     ),
     said,
   );
+}
+
+/**
+ * The tool that gives a gear's material the modulus and the expansion that are printed for a temperature. It is there
+ * where the material has a name.
+ *
+ * @param {GearName} member
+ * @param {Design} design
+ */
+export function materialTool(member, design) {
+  const pointer = `/pair/${member}/material`;
+  const said = h("p", { className: "note", role: "status" });
+  const source = note("");
+  const temperature = numeric({ id: `temperature-${member}` });
+  const press = () => {
+    const name = String(design.get(`${pointer}/name`) ?? "");
+    try {
+      const wanted = given(temperature);
+      if (wanted === undefined) throw new ProblemError({ detail: "Give the temperature." });
+      const numbers = materialAt(name, wanted);
+      const changes = Object.entries(numbers).map(([field, value]) => [`${pointer}/${field}`, value]);
+      design.setAll(Object.fromEntries(changes), "mend");
+      said.textContent = `${name} at ${number(wanted)} °C: ${number(numbers.youngs_modulus_gpa, 4)} GPa. Its yield strength is left at that of the cold material.`;
+    } catch (error) {
+      if (!(error instanceof ProblemError)) throw error;
+      said.replaceChildren(h("span", { className: "field-error" }, error.message));
+    }
+  };
+  temperature.addEventListener("keydown", (event) => {
+    if (event.key !== "Enter") return;
+    event.preventDefault();
+    press();
+  });
+  const element = h(
+    "div",
+    { className: "tool" },
+    inLine(
+      ...labelled("Numbers at", temperature),
+      h("span", { className: "unit" }, "°C"),
+      button("Take", press, { ariaLabel: `Take the numbers of the ${member} gear's material at this temperature` }),
+    ),
+    said,
+    source,
+  );
+  let known = "";
+  const refresh = () => {
+    const name = String(design.get(`${pointer}/name`) ?? "");
+    element.hidden = !name;
+    if (name === known) return;
+    known = name;
+    said.textContent = "";
+    source.textContent = name && `Sources: ${sourceOf(name)}.`;
+  };
+  refresh();
+  design.onChange(refresh);
+  return element;
 }

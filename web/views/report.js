@@ -7,6 +7,7 @@ import { h, table, tableRow } from "../draw/dom.js";
 import { drawingOf } from "../draw/download.js";
 import { figure } from "../draw/figure.js";
 import { differences, flattened, told } from "../state/design.js";
+import { markOf } from "../state/marks.js";
 import { fixed, number } from "../state/numbers.js";
 import { calledOf, shown } from "../state/quantities.js";
 import { DASHES } from "../state/series.js";
@@ -154,7 +155,13 @@ function designsOf(designs, { form, usual }) {
   const columns = columnsOf(designs);
   const heads = columns.map(({ name, curve }) => `${name}, ${number(curve.output_torque_n_m, 6)} N m`);
   const numbers = toldBy(columns).map(({ quantity, values }) =>
-    tableRow(`${calledOf(quantity)} ${quantity.printed}`, ...values.map((value) => shown(quantity, value))),
+    tableRow(
+      `${calledOf(quantity)} ${quantity.printed}`,
+      ...values.map((value, i) => {
+        const mark = value === undefined ? undefined : markOf(quantity.name, columns[i].results.warnings);
+        return mark ? `${shown(quantity, value)} (${mark.word})` : shown(quantity, value);
+      }),
+    ),
   );
   const differing = differences(designs.map(({ submission }) => submission))
     .map(({ pointer, values }) => ({

@@ -8,7 +8,8 @@ const THEME = "meshwright-theme";
 const LAYOUT = "meshwright-layout";
 
 /**
- * The theme, chosen by the button or by the system; `onTheme` draws anew what has its colors in itself.
+ * The theme, chosen by the button or by the system; `onTheme` draws anew what has its colors and letters in
+ * itself.
  *
  * @param {() => void} onTheme
  */
@@ -24,7 +25,9 @@ export function setUpTheme(onTheme) {
     localStorage.setItem(THEME, other);
     apply(other);
   });
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => apply(null));
+  // The size of letters changes at the widest screens, as style.css says.
+  for (const query of ["(prefers-color-scheme: dark)", "(min-width: 180rem)"])
+    matchMedia(query).addEventListener("change", () => apply(null));
 }
 
 /** The layouts in which both gears of the design stand side by side, with every section open. */

@@ -194,7 +194,10 @@ test("a cure adds to the slope and the crowning that are there, and is told wher
   const cure = { lead_slope_um: 3, crowning_um: -5, face_load_factor: 1.1 };
   const leads = cured([{ kind: "crowning", amount_um: 5 }, { kind: "table" }], cure);
   assert.deepEqual(leads, [{ kind: "table" }, { kind: "slope", amount_um: 3 }]);
-  assert.match(wordsOfCure({ cure, face_load_factor: 1.5 }), /^K_Hβ would be 1\.10 with a slope of 3\.0 µm and/);
+  assert.match(
+    wordsOfCure({ cure, face_load_factor: 1.5 }),
+    /^K_Hβ would be 1\.10 with a slope of 3\.0 µm more and a crowning of 5\.0 µm less on/,
+  );
   assert.equal(wordsOfCure({ cure, face_load_factor: 1.1 }), null);
 });
 

@@ -56,7 +56,6 @@ impl MaterialDocument {
     }
 
     /// The material of the engine.
-    /// The material of the engine.
     pub(super) fn data(&self) -> Material {
         Material {
             youngs_modulus: from_gpa(self.youngs_modulus_gpa),
