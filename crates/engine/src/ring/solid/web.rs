@@ -14,8 +14,8 @@ use crate::fem::prism::{CondensationCost, Interface, Prism};
 use crate::grid::BlankGrid;
 use crate::run::Run;
 
-/// The most threads that a computation has.
-const MOST_THREADS: f64 = 8.0;
+/// Classes that are condensed at the same time at most, on as many threads or fewer: each takes memory of its own meanwhile, which the estimate tells.
+const CLASSES_AT_ONCE: usize = 8;
 
 /// A ring of sectors with holes, each condensed to its interface.
 ///
@@ -187,7 +187,7 @@ impl<'a> HoledRing<'a> {
             true => (inner + outer) * (2.0 * inner + outer + rows) + outer * outer,
             false => outer * outer,
         };
-        let of_classes = 16.0 * (classes.min(MOST_THREADS) * meanwhile + classes * left);
+        let of_classes = 16.0 * (classes.min(CLASSES_AT_ONCE as f64) * meanwhile + classes * left);
         let kept = size * sides.blocks() as f64;
         CondensationCost {
             memory: made.memory.max(8.0 * kept * (kept + rows) + of_classes),
@@ -310,7 +310,8 @@ impl<'a> HoledRing<'a> {
         of: impl Fn(usize, Vec<i64>, Mat<c64>) -> Result<T, FemError> + Sync,
     ) -> Result<Vec<T>, FemError> {
         let sector = &self.sector;
-        let made = (0..=sector.count / 2).into_par_iter().map(|class| {
+        let of_class = |class: &usize| {
+            let class = *class;
             run.check()?;
             let orders = sector.orders(class, self.largest);
             if orders.is_empty() {
@@ -326,8 +327,13 @@ impl<'a> HoledRing<'a> {
                 }
             }
             of(class, orders, stiffness).map(Some)
-        });
-        let made: Vec<Option<T>> = made.collect::<Result<_, FemError>>()?;
+        };
+        let classes: Vec<usize> = (0..=sector.count / 2).collect();
+        let mut made = Vec::with_capacity(classes.len());
+        for together in classes.chunks(CLASSES_AT_ONCE) {
+            let some = together.par_iter().map(of_class);
+            made.extend(some.collect::<Result<Vec<Option<T>>, FemError>>()?);
+        }
         Ok(made.into_iter().flatten().collect())
     }
 }
