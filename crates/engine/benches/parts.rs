@@ -14,7 +14,8 @@ use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use meshwright_engine::substructures::{
-    BlankSubstructure, Coupling, Facing, FlankTable, Harmonics, TeethRing, ToothSubstructure,
+    BlankSubstructure, Coupling, Facing, FlankTable, Harmonics, InterfaceMotion, PlainGear,
+    TeethRing, ToothSubstructure,
     blank_grid, default_interface_radius, harmonics, orders_of_blank,
 };
 
@@ -63,12 +64,16 @@ fn gears(criterion: &mut Criterion) {
             condense(&grid, low),
             condense(&lay(&gear.without_holes()), orders),
         );
-        group.bench_function("gear: orders above the holes eliminated", |bencher| {
-            bencher.iter(|| black_box(ring.above(low, &solid, &run)));
+        group.bench_function("gear: without holes", |bencher| {
+            bencher.iter(|| black_box(PlainGear::new(&ring, &solid, &run)));
         });
-        let above = ring.above(low, &solid, &run).expect("a ring");
-        group.bench_function("gear: teeth and blank joined", |bencher| {
-            bencher.iter(|| black_box(Coupling::on_blank(&above, &blank, 0.0, 4, &run)));
+        let plain = PlainGear::new(&ring, &solid, &run).expect("a gear");
+        let joined = || {
+            let motion = InterfaceMotion::new(&ring, &plain, Some((&blank, 0.0)), &run)?;
+            Coupling::new(&motion, 4, &run)
+        };
+        group.bench_function("gear: holes in it", |bencher| {
+            bencher.iter(|| black_box(joined()));
         });
         group.finish();
     }

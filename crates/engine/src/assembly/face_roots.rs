@@ -308,6 +308,7 @@ mod tests {
     use crate::ring::blank::BlankSubstructure;
     use crate::ring::cyclic::Harmonics;
     use crate::ring::motion::InterfaceMotion;
+    use crate::ring::plain::PlainGear;
     use crate::ring::teeth::TeethRing;
     use crate::ring::teeth_recovery::TeethRecovery;
     use crate::ring::tooth::{ToothSubstructure, modal_loads};
@@ -448,21 +449,17 @@ mod tests {
             let harmonics = Harmonics { largest: 90 };
             let ring = TeethRing::new(&tooth, harmonics, &run).expect("sound");
             let inside = TeethRecovery::new(&tooth, &rows, harmonics, &run).expect("sound");
-            let holes = holes.then_some(&pattern);
-            let level = GridLevel::Fine;
-            let blank = BlankGrid::new(section.bore_radius(), radius, holes, 30, 8.0, level);
-            let plate = (&Material::STEEL, section.face_width());
-            let blank = BlankSubstructure::new(
-                &blank.expect("a usable grid"),
-                radius,
-                plate.0,
-                plate.1,
-                harmonics,
-                &run,
-            )
-            .expect("sound");
-            let angle = section.hole_angle();
-            let motion = InterfaceMotion::new(&ring, &blank, angle, None, &run).expect("sound");
+            let [solid, blank] = [None, holes.then_some(&pattern)].map(|holes| {
+                let (bore, level) = (section.bore_radius(), GridLevel::Fine);
+                let grid = BlankGrid::new(bore, radius, holes, 30, 8.0, level);
+                let (grid, width) = (grid.expect("a usable grid"), section.face_width());
+                let steel = &Material::STEEL;
+                let made = BlankSubstructure::new(&grid, radius, steel, width, harmonics, &run);
+                made.expect("sound")
+            });
+            let plain = PlainGear::new(&ring, &solid, &run).expect("sound");
+            let holed = Some((&blank, section.hole_angle()));
+            let motion = InterfaceMotion::new(&ring, &plain, holed, &run).expect("sound");
             for node in [9, 15] {
                 let loads = even(&roots, roots.pressed.roll_lengths[node]);
                 let answer = roots.under(Some(&yields), &loads);

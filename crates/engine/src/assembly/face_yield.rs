@@ -371,6 +371,8 @@ mod tests {
     use crate::grid::ToothGrid as PlaneGrid;
     use crate::ring::blank::BlankSubstructure;
     use crate::ring::body::Coupling;
+    use crate::ring::motion::InterfaceMotion;
+    use crate::ring::plain::PlainGear;
     use crate::ring::teeth::TeethRing;
     use crate::ring::tooth::ToothSubstructure;
 
@@ -551,13 +553,16 @@ mod tests {
         let ring = TeethRing::new(&tooth, harmonics, &run).expect("definite");
         let level = GridLevel::Standard;
         let around = 8.0 * (largest as f64 / 90.0);
-        let blank = crate::grid::BlankGrid::new(8e-3, radius, holes.as_ref(), 24, around, level)
-            .expect("a usable grid");
-        let plate = (core, section.material(), 1.0);
-        let made = BlankSubstructure::with_recovery(&blank, radius, plate, harmonics, &[], &run);
-        let (blank, _) = made.expect("definite");
-        let coupling =
-            Coupling::on_blank(&ring, &blank, section.hole_angle(), 2, &run).expect("definite");
+        let [solid, blank] = [None, holes.as_ref()].map(|holes| {
+            let grid = crate::grid::BlankGrid::new(8e-3, radius, holes, 24, around, level);
+            let (grid, plate) = (grid.expect("a usable grid"), (core, section.material(), 1.0));
+            let made = BlankSubstructure::with_recovery(&grid, radius, plate, harmonics, &[], &run);
+            made.expect("definite").0
+        });
+        let plain = PlainGear::new(&ring, &solid, &run).expect("definite");
+        let holed = Some((&blank, section.hole_angle()));
+        let motion = InterfaceMotion::new(&ring, &plain, holed, &run).expect("definite");
+        let coupling = Coupling::new(&motion, 2, &run).expect("definite");
         // Tooth 1 and, before it, tooth 0: the compliance from tooth 0 to tooth 1 is that from tooth 1 to it.
         let (x, _) = coupling.block(0, 1);
         let h = &tooth.modes * x * tooth.modes.transpose();

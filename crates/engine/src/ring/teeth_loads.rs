@@ -101,11 +101,10 @@ mod tests {
 
         let loads = Mat::from_fn(modal.len(), 1, |i, _| modal[i]);
         let shares = &ring.pattern_shares * &loads;
-        let every: Vec<usize> = (0..=orders.largest).collect();
         let mut sum = Mat::<f64>::zeros(orders.unknowns(), 1);
         for j in 0..teeth {
             let angle = tooth_angle(j, teeth);
-            sum += ring.forces_of_tooth_at(angle, shares.col_as_slice(0), &every);
+            sum += ring.forces_of_tooth_at(angle, shares.col_as_slice(0));
         }
         let apart = (&sum - &found.forces).norm_max();
         assert!(apart < 1e-7 * sum.norm_max(), "{apart:e}");
