@@ -1,4 +1,4 @@
-//! How the roots of the teeth of a solid gear are stressed under loads on its flanks.
+//! Stresses at the roots of the teeth of a solid gear under loads on its flanks.
 //!
 //! Rows lead from the forces on the flanks to the displacements of the fillets, as in the plane ([`super::inside`]), and these say the
 //! stress ([`crate::fem::surface`]).
@@ -46,7 +46,7 @@ pub struct FaceRoots {
     by_web: Option<Mat<f64>>,
 }
 
-/// How the roots answer to loads.
+/// Response of the roots to loads.
 pub struct RootAnswer<'a> {
     roots: &'a FaceRoots,
     yields: Option<&'a FaceYield>,
@@ -352,7 +352,7 @@ mod tests {
 
     /// Asserts that principal stresses along the edges are those in the plane: the largest and the smallest to a part `most` of the largest of
     /// all, and all of them to a percent, because a node of a grid does not know of itself that its surface is free.
-    fn assert_alike(found: &[[f64; 2]], plane: &[f64], most: f64) {
+    fn assert_equal(found: &[[f64; 2]], plane: &[f64], most: f64) {
         assert_eq!(found.len(), plane.len());
         let largest = plane.iter().map(|s| s.abs()).fold(0.0, f64::max);
         for (i, (found, plane)) in found.iter().zip(plane).enumerate() {
@@ -411,7 +411,7 @@ mod tests {
             let moved = &moved.expect("sound")[0];
             let plane = along_edges(&grid, material).into_iter();
             let plane: Vec<f64> = plane.map(|of| of.value(moved)).collect();
-            assert_alike(&found, &plane, most);
+            assert_equal(&found, &plane, most);
         }
     }
 
@@ -470,7 +470,7 @@ mod tests {
                 for tooth in [0, 1, 3, 29] {
                     let own = if tooth == 0 { &forces[..] } else { &[] };
                     let plane = inside.values(tooth, own, &loads, &motion);
-                    assert_alike(&in_the_middle(&answer, tooth), &plane, 5e-3);
+                    assert_equal(&in_the_middle(&answer, tooth), &plane, 5e-3);
                 }
             }
         }
@@ -513,7 +513,7 @@ mod tests {
 
     #[test]
     #[ignore = "./test all"]
-    fn a_gear_and_its_image_in_the_plane_of_its_face_are_stressed_alike() {
+    fn a_gear_and_its_image_in_the_plane_of_its_face_have_equal_stresses() {
         let of = |beta: f64, sign: f64| {
             let gear = webbed(sign * beta, sign * 4e-3, 0.0);
             let spec = FaceYieldSpec::new(&gear, of_order(4));

@@ -44,18 +44,18 @@ pub struct Gear {
 /// A gear that is wanted, and whose it is should it fail.
 #[derive(Debug, Clone)]
 pub struct WantedGear {
-    /// Which gear of the pair.
+    /// Its place in the pair.
     pub member: Member,
-    /// How it is made.
+    /// Its specification.
     pub spec: GearSpec,
 }
 
 /// The grids of a gear.
 #[derive(Debug, Clone)]
 pub struct GearGrids {
-    /// That of one tooth.
+    /// Grid of one tooth.
     pub tooth: ToothGrid,
-    /// That of its blank, or of one of its equal sectors; `None` for a rigid one.
+    /// Grid of its blank, or of one of its equal sectors; `None` for a rigid one.
     pub blank: Option<BlankGrid>,
 }
 

@@ -28,7 +28,7 @@ pub struct LoadedGear<'a> {
     motion: Option<InterfaceMotion<'a>>,
 }
 
-/// How a gear answers to one set of loads.
+/// Response of a gear to one set of loads.
 pub struct Answer<'a> {
     inside: &'a Inside,
     loads: &'a [FlankLoad],

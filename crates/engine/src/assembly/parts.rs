@@ -1,4 +1,4 @@
-//! Who provides the parts of a model.
+//! Providers of the parts of a model.
 
 use std::sync::Arc;
 
@@ -69,7 +69,7 @@ pub trait Parts: Sync {
         make_gears(wanted, self, run)
     }
 
-    /// How the gear of `spec` answers to its rotation.
+    /// Response of the gear of `spec` to its rotation.
     ///
     /// # Errors
     ///
@@ -97,7 +97,7 @@ pub trait Parts: Sync {
         spec.make(plain, run).map(Arc::new)
     }
 
-    /// How the roots of a solid gear are stressed, of which `spec` says all but the holes.
+    /// Stresses at the roots of a solid gear, of which `spec` says all but the holes.
     ///
     /// # Errors
     ///
@@ -107,7 +107,7 @@ pub trait Parts: Sync {
         FaceRoots::new(spec, &plain, run).map(Arc::new)
     }
 
-    /// How the edges of the holes of a solid gear are stressed; `None` if it has none.
+    /// Stresses at the edges of the holes of a solid gear; `None` if it has none.
     ///
     /// # Errors
     ///

@@ -1,6 +1,6 @@
 //! A gear that rotates, or is pressed onto a shaft: how its flanks stand out, and how its edges are stressed.
 //!
-//! The pull of rotation and the misfit of a shaft are loads inside the gear that all teeth, and all sectors of the blank, bear alike. With
+//! The pull of rotation and the misfit of a shaft are loads inside the gear, the same in all teeth and in all sectors of the blank. With
 //! the interface circle held each of them is one more right-hand side on the factor of its grid; then the circle moves by q = C f.
 
 use faer::Mat;

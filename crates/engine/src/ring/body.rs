@@ -15,7 +15,7 @@ use crate::run::Run;
 /// neighbors come on top.
 const ROWS_AT_ONCE: usize = 16;
 
-/// How the loaded teeth of one gear move each other: the blocks X_ij of H_ij = δ_ij H_0 + V X_ij Vᵀ.
+/// Compliance between the loaded teeth of one gear: the blocks X_ij of H_ij = δ_ij H_0 + V X_ij Vᵀ.
 ///
 /// A gear whose teeth and holes repeat together repeats its rows of X with them, and keeps one period of rows. Teeth are coupled
 /// as far apart as may be loaded together.
@@ -90,7 +90,7 @@ impl Coupling {
         })
     }
 
-    /// The coupling of a gear that is alike all around: each block the mean over the teeth.
+    /// The coupling of an axisymmetric gear: each block is the mean over the teeth.
     pub fn round_average(&self) -> Self {
         let share = faer::Scale(1.0 / self.rows() as f64);
         let means = (0..self.row_length).map(|d| {

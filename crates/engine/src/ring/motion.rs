@@ -1,4 +1,4 @@
-//! How the interface circle of a whole gear moves under loads on its flanks.
+//! Motion of the interface circle of a whole gear under loads on its flanks.
 
 use faer::{Mat, MatRef};
 

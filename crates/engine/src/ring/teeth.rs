@@ -84,7 +84,7 @@ impl TeethRing {
             .map(|d| held_coupling(&class_compliance, z, d))
             .collect();
         // Modes that hardly show at the flank need fewer digits, and on their way to the interface circle their fields grow
-        // alike: they exert about half as many patterns as they are.
+        // similar: they exert about half as many patterns as they are.
         let heights: Vec<f64> = tooth.modes.col_iter().map(|mode| mode.norm_l2()).collect();
         let seen = Mat::from_fn(tooth_forces.nrows(), r, |i, j| {
             tooth_forces[(i, j)] * heights[j]

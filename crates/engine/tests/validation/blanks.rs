@@ -14,8 +14,8 @@ use meshwright_engine::gear::{
 use meshwright_engine::grid::{BlankGrid, Grid, GridLevel, ToothGrid};
 use meshwright_engine::run::Run;
 use meshwright_engine::substructures::{
-    BlankSubstructure, Component, Coupling, Functional, Harmonics, InterfaceMotion, PlainGear, TeethRing, ToothSubstructure,
-    condense, edge_stresses,
+    BlankSubstructure, Component, Coupling, Functional, Harmonics, InterfaceMotion, PlainGear,
+    TeethRing, ToothSubstructure, condense, edge_stresses,
 };
 
 use crate::support::{case, gear, pair, solve};

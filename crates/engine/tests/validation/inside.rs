@@ -4,8 +4,8 @@ use meshwright_engine::gear::{Core, SpurGear};
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
 use meshwright_engine::run::Run;
 use meshwright_engine::substructures::{
-    BlankSubstructure, Harmonics, InterfaceMotion, PlainGear, TeethRecovery, TeethRing, ToothSubstructure,
-    default_interface_radius, edge_stresses, modal_loads, tooth_angle,
+    BlankSubstructure, Harmonics, InterfaceMotion, PlainGear, TeethRecovery, TeethRing,
+    ToothSubstructure, default_interface_radius, edge_stresses, modal_loads, tooth_angle,
 };
 
 use crate::support::{gear, holed};

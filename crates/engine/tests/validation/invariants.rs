@@ -13,7 +13,8 @@ use meshwright_engine::library::Library;
 use meshwright_engine::quadrature::GAUSS_3;
 use meshwright_engine::run::Run;
 use meshwright_engine::substructures::{
-    BlankSubstructure, Coupling, InterfaceMotion, PlainGear, default_interface_radius, harmonics, tooth_angle,
+    BlankSubstructure, Coupling, InterfaceMotion, PlainGear, default_interface_radius, harmonics,
+    tooth_angle,
 };
 use nalgebra::DMatrix;
 
@@ -421,14 +422,8 @@ fn couplings(gear: &SpurGear, level: GridLevel) -> [Coupling; 2] {
         let grid = BlankGrid::new(bore, r_w, holes.as_ref(), z, ELEMENTS_PER_TOOTH, level);
         let (material, width) = (gear.material(), gear.face_width());
         let orders = teeth.ring.harmonics;
-        let blank = BlankSubstructure::new(
-            &grid.expect("a grid"),
-            r_w,
-            material,
-            width,
-            orders,
-            &run,
-        );
+        let blank =
+            BlankSubstructure::new(&grid.expect("a grid"), r_w, material, width, orders, &run);
         blank.expect("a blank")
     });
     let plain = PlainGear::new(&teeth.ring, &solid, &run).expect("a gear");

@@ -8,8 +8,7 @@ use meshwright_engine::grid::{BlankGrid, Element, Grid, GridLevel, ToothGrid};
 use meshwright_engine::run::Run;
 use meshwright_engine::substructures::{
     BlankSubstructure, Coupling, Harmonics, InterfaceMotion, PlainGear, TeethRing,
-    ToothSubstructure, default_interface_radius,
-    harmonics, tooth_angle,
+    ToothSubstructure, default_interface_radius, harmonics, tooth_angle,
 };
 
 use crate::support::{gear, holed};

@@ -54,7 +54,7 @@ pub struct ClassStiffness {
     pub stiffness: Mat<c64>,
 }
 
-/// How nodes of sector 0 of a ring move by its outer circle, in one class.
+/// Motion of nodes of sector 0 of a ring by its outer circle, in one class.
 #[derive(Debug, Clone)]
 pub struct ClassRows {
     /// The class k: from a sector to the next all turns by e^{ik2π/S}.
@@ -65,7 +65,7 @@ pub struct ClassRows {
     pub rows: Mat<c64>,
 }
 
-/// How a ring moves.
+/// Motion of a ring.
 #[derive(Debug, Clone)]
 pub struct MovedRing {
     /// The interface of each sector, in its own axes: right side, left side, inner circle unless it is held, outer circle.
@@ -351,12 +351,12 @@ fn following(stiffness: &Mat<c64>, outer: usize) -> Result<Mat<c64>, FemError> {
     Ok(follows)
 }
 
-/// That of an order of either sign, of those of 0 and more.
+/// Matrix of an order of either sign, from those of 0 and more.
 pub(crate) fn of_order(orders: &[Mat<c64>], order: i64) -> Mat<c64> {
     conjugate_below_zero(&orders[order.unsigned_abs() as usize], order)
 }
 
-/// That of an order of either sign, of that of 0 or more; or the other way.
+/// Matrix of an order of either sign, from that of its absolute value, or the other way.
 pub(crate) fn conjugate_below_zero(of: &Mat<c64>, order: i64) -> Mat<c64> {
     if order < 0 {
         of.conjugate().to_owned()
