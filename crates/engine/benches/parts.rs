@@ -8,14 +8,14 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use meshwright_benches::group;
 use meshwright_engine::analysis::{Case, pair_model};
 use meshwright_engine::contact::WarmStart;
-use meshwright_engine::contact::{PairModel, Stage, solve_active_set};
+use meshwright_engine::contact::{MeshPhase, PairModel, solve_active_set};
 use meshwright_engine::gear::{BlankRegion, Core, Hole, HoleShape, SpurGear};
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use meshwright_engine::substructures::{
-    BlankSubstructure, Coupling, Facing, FlankTable, Harmonics, TeethRing, ToothSubstructure,
-    blank_grid, default_interface_radius, harmonics, orders_of_blank,
+    BlankSubstructure, Coupling, Facing, FlankTable, Harmonics, InterfaceMotion, PlainGear,
+    TeethRing, ToothSubstructure, blank_grid, default_interface_radius, harmonics, orders_of_blank,
 };
 
 #[path = "../tests/cases/mod.rs"]
@@ -63,12 +63,16 @@ fn gears(criterion: &mut Criterion) {
             condense(&grid, low),
             condense(&lay(&gear.without_holes()), orders),
         );
-        group.bench_function("gear: orders above the holes eliminated", |bencher| {
-            bencher.iter(|| black_box(ring.above(low, &solid, &run)));
+        group.bench_function("gear: without holes", |bencher| {
+            bencher.iter(|| black_box(PlainGear::new(&ring, &solid, &run)));
         });
-        let above = ring.above(low, &solid, &run).expect("a ring");
-        group.bench_function("gear: teeth and blank joined", |bencher| {
-            bencher.iter(|| black_box(Coupling::on_blank(&above, &blank, 0.0, 4, &run)));
+        let plain = PlainGear::new(&ring, &solid, &run).expect("a gear");
+        let joined = || {
+            let motion = InterfaceMotion::new(&ring, &plain, Some((&blank, 0.0)), &run)?;
+            Coupling::new(&motion, 4, &run)
+        };
+        group.bench_function("gear: holes in it", |bencher| {
+            bencher.iter(|| black_box(joined()));
         });
         group.finish();
     }
@@ -160,14 +164,14 @@ fn positions(criterion: &mut Criterion) {
                 },
             );
             // A curve meets the same fraction of the mesh period once in every mesh period.
-            let mut stage = Stage::new(model.as_drawn(), eta, load).expect("flanks come near");
+            let mut phase = MeshPhase::new(model.as_drawn(), eta, load).expect("flanks come near");
             let (mut period, periods) = (0, i64::from(case.pair.period()));
             group.bench_function(
                 format!("{pairs}: all of it, a further mesh period"),
                 |bencher| {
                     bencher.iter(|| {
                         period = (period + 1) % periods;
-                        black_box(stage.contact(period, &mut warm, |_, _| ()))
+                        black_box(phase.contact(period, &mut warm, |_, _| ()))
                     });
                 },
             );

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 #[error("the work was stopped")]
 pub struct Stopped;
 
-/// How far long work has come, and whether it should go on.
+/// Progress of long work, and whether it should go on.
 ///
 /// The engine knows neither job nor thread: it counts the positions that it has solved and asks, between
 /// factorizations and between positions, whether it has been told to stop.

@@ -22,6 +22,7 @@ pub use crate::ring::blank::BlankSubstructure;
 pub use crate::ring::body::Coupling;
 pub use crate::ring::cyclic::{Component, Harmonics};
 pub use crate::ring::motion::InterfaceMotion;
+pub use crate::ring::plain::PlainGear;
 pub use crate::ring::solid::joint::trace;
 pub use crate::ring::solid::revolution::Revolution;
 pub use crate::ring::solid::web::HoledRing;

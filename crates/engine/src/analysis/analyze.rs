@@ -159,7 +159,7 @@ fn passed(
     }
 }
 
-/// How a plane method computes a case.
+/// Computation of a case by a plane method.
 type Solve = fn(Setup<'_>, &Pass) -> Result<Analysis, AnalysisError>;
 
 /// Result of `solve` for `case` in the plane at `level`, with teeth coupled as far apart as they turn out to be loaded together.

@@ -91,7 +91,7 @@ pub fn equivalent_mass(case: &Case, inertias: [Option<f64>; 2]) -> f64 {
     1.0 / (of(Member::Driving) + of(Member::Driven))
 }
 
-/// The bodies of `case` with so many modes at most, of those up to twice the highest mesh frequency where nothing is said.
+/// The bodies of `case` with at most the given number of modes, of those up to twice the highest mesh frequency where nothing is said.
 fn bodies(
     case: &Case,
     request: &DynamicsRequest,

@@ -73,7 +73,7 @@ pub fn blank_modes(
         modes.map_err(|error| of_modes(error, member))
     };
     let driving = of(Member::Driving)?;
-    // Equal gears vibrate alike.
+    // Equal gears have equal modes.
     let driven = if gears[0] == gears[1] {
         driving.clone()
     } else {

@@ -62,7 +62,7 @@ impl Method {
     }
 }
 
-/// How the tangent stiffness is obtained.
+/// Rule of the tangent stiffness.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum StiffnessRule {
     /// Exactly, with the active contacts known.
@@ -74,7 +74,7 @@ pub enum StiffnessRule {
     },
 }
 
-/// How finely and by which rules a case is computed.
+/// Resolution of a case, and the rules by which it is computed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Resolution {
     /// Positions in one mesh period.
@@ -112,7 +112,7 @@ pub struct Faces {
     pub cure: bool,
 }
 
-/// How a pair is modeled.
+/// Model of a pair.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Model {
     /// Elastic gears in their transverse section.
@@ -359,24 +359,24 @@ impl Case {
             .collect()
     }
 
-    /// True if the flanks of all teeth of a gear are alike, so that contact on rotationally symmetric blanks repeats with every mesh period. A gear without
+    /// True if the flanks of all teeth of a gear are equal, so that contact on rotationally symmetric blanks repeats with every mesh period. A gear without
     /// holes grows evenly, and so does one with holes under heat alone.
-    fn flanks_are_alike(&self) -> bool {
-        let grow_alike = |running: &Running| self.holed().is_empty() || running.grows_evenly();
-        self.pair.is_as_drawn() && self.runs().is_none_or(grow_alike)
+    fn flanks_are_equal(&self) -> bool {
+        let grow_equally = |running: &Running| self.holed().is_empty() || running.grows_evenly();
+        self.pair.is_as_drawn() && self.runs().is_none_or(grow_equally)
     }
 
-    /// The mesh positions after which contact on blanks that are alike all around repeats: those of one mesh period, or of the whole
+    /// The mesh positions after which contact on axisymmetric blanks repeats: those of one mesh period, or of the whole
     /// span where teeth deviate.
     pub(super) fn repeating_positions(&self) -> Vec<f64> {
         let mut positions = self.mesh_positions();
-        if self.flanks_are_alike() {
+        if self.flanks_are_equal() {
             positions.truncate(self.resolution.positions_per_mesh_period as usize);
         }
         positions
     }
 
-    /// The places in a curve at which the contacts at the mesh positions `at` stand, which repeat `after` so many mesh periods: these positions, and as
+    /// The places in a curve at which the contacts at the mesh positions `at` stand, which repeat `after` that number of mesh periods: these positions, and as
     /// many mesh periods later as the span has.
     pub(super) fn places(&self, at: &[f64], after: u32) -> Vec<PositionInCurve> {
         let of_period = |later: i64| {
@@ -393,9 +393,9 @@ impl Case {
             .collect()
     }
 
-    /// The mesh periods after which contact on blanks that are alike all around repeats; the span where teeth deviate.
+    /// The mesh periods after which contact on axisymmetric blanks repeats; the span where teeth deviate.
     pub(super) fn contacts_repeat_after(&self) -> u32 {
-        if self.flanks_are_alike() {
+        if self.flanks_are_equal() {
             1
         } else {
             self.span()
@@ -429,7 +429,7 @@ impl Case {
 pub(in crate::analysis) mod tests {
     use super::*;
 
-    /// `pair` as `model` has it under one torque, on the coarse grid, with so many positions a mesh period.
+    /// `pair` as `model` has it under one torque, on the coarse grid, with a given number of positions a mesh period.
     pub(in crate::analysis) fn plain(
         pair: GearPair,
         model: Model,

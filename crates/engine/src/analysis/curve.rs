@@ -76,7 +76,7 @@ pub struct DecompositionParts {
 
 /// Lead that makes the load even along the face: a further modification of the driving leads. Lengths are in meters.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LeadCure {
+pub struct LeadCorrection {
     /// Removed at the end at +z, linear from zero at the end at −z.
     pub slope: f64,
     /// Removed at both ends, a parabola.
@@ -85,7 +85,7 @@ pub struct LeadCure {
     pub face_load_factor: f64,
 }
 
-impl LeadCure {
+impl LeadCorrection {
     /// The lead `lead` with the face load factor that it gives.
     pub(super) fn of(lead: EvenLead, face_load_factor: f64) -> Self {
         Self {
@@ -106,7 +106,7 @@ pub struct FaceLoad {
     /// K_Hβ: the largest of ten equal strips over their mean, the mean over the positions of each.
     pub face_load_factor: f64,
     /// The lead that would make K_Hβ least, if it was found.
-    pub cure: Option<LeadCure>,
+    pub cure: Option<LeadCorrection>,
     /// Where the load stands in the mean, at each position.
     pub load_centroid: Vec<f64>,
 }

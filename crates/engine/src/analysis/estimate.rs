@@ -266,7 +266,7 @@ fn repeated_teeth(gear: &SpurGear) -> f64 {
     f64::from(teeth / gcd(teeth, gear.hole_repeats().max(1)))
 }
 
-/// Multiplications and additions in which the `coupled` unknowns of holes answer to so many functions on flanks: of each set of orders that do not couple, a
+/// Multiplications and additions in which the `coupled` unknowns of holes respond to a number of functions on flanks: of each set of orders that do not couple, a
 /// factorization, and a product and a solution for each function.
 fn coupling([set, all]: [f64; 2], functions: f64) -> f64 {
     all / set.max(1.0) * set * set * (set / 3.0 + 2.0 * functions)
@@ -299,7 +299,7 @@ fn of_slices(case: &Case, faces: &Faces, level: GridLevel, [solutions, firsts]: 
     faces.at(level).slices as f64 * lines * each
 }
 
-/// Seconds that so many contacts of `case` under a torque take in the plane, of which so many are the first at their fraction of the mesh period.
+/// Seconds that contacts of `case` under a torque take in the plane: their number, and how many of them are the first at their fraction of the mesh period.
 fn in_plane(
     case: &Case,
     output_torque: f64,
@@ -377,10 +377,10 @@ impl GearCost {
             harmonics(gear, radius, level).unknowns() as f64,
             orders.unknowns() as f64,
         );
-        // The gear repeats itself so many times, and keeps the rows of the teeth of one period.
+        // A gear that repeats itself keeps the rows of the teeth of one period.
         let repeats = f64::from(gcd(gear.tooth_count(), blank.sector_count));
         let rows = teeth as f64 / repeats;
-        // One model has this blank flexible; in another that stands beside it all teeth are coupled alike.
+        // One model has this blank flexible; in another that stands beside it the coupling of all teeth is the same.
         let joined = f64::from(1 + again);
         let couplings = joined * rows + if pass.has_rigid_blanks() { 17.0 } else { 0.0 };
         // At most two matrices of all orders at once: the ring of teeth, and the matrix that is factorized.

@@ -37,7 +37,7 @@ pub struct Evidence {
 }
 
 impl Evidence {
-    /// That of a model of so many unknowns, before anything is solved.
+    /// Evidence of a model with the given number of unknowns, before anything is solved.
     pub(super) fn new(degrees_of_freedom: u64) -> Self {
         Self {
             degrees_of_freedom,

@@ -28,7 +28,7 @@ struct StressedFace {
 }
 
 impl<'a> FaceStressModel<'a> {
-    /// That of the pair of `faces`, which yields as `yields` say by the `specs`.
+    /// Stresses of the pair of `faces`, with the compliances `yields` of the `specs`.
     pub(super) fn new(
         faces: &'a Faces,
         yields: &'a [Arc<FaceYield>; 2],

@@ -8,7 +8,7 @@ use super::spun_pair::PairState;
 use super::{AnalysisError, Case};
 use crate::assembly::inside::Answer;
 use crate::assembly::{Blanks, Inside, PartError, Parts, Probes};
-use crate::contact::{FlankLoad, Stage, WarmStart};
+use crate::contact::{FlankLoad, MeshPhase, WarmStart};
 use crate::fem::FemError;
 use crate::fem::prescribed::{Load, displacements};
 use crate::fem::recovery::{Functional, stresses};
@@ -77,14 +77,14 @@ pub fn fields(
     let setup = Setup::new((case, deviations), level, FARTHEST_COUPLED, parts, run);
     let (model, _) = setup.model(Blanks::Flexible)?;
     let at = |error| AnalysisError::at_position(error, eta);
-    let mut stage = Stage::new(
+    let mut phase = MeshPhase::new(
         model.deviating(deviations),
         eta,
         case.pair.load(output_torque),
     )
     .map_err(at)?;
     let period = eta.floor() as i64;
-    let (contact, loads) = stage
+    let (contact, loads) = phase
         .contact(period, &mut WarmStart::default(), |cells, solution| {
             Member::BOTH.map(|member| cells.flank_loads(member, &solution.forces))
         })

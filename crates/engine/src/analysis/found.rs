@@ -72,7 +72,7 @@ impl<K: Kept> Found<K> {
 }
 
 impl Found {
-    /// That of `contacts` at the positions of `sweep` with this `stiffness`: they are alike in all mesh periods in which they repeat.
+    /// Values at the `contacts` of the positions of `sweep` with this `stiffness`: equal in all mesh periods in which contacts repeat.
     pub(super) fn of_contacts(
         (case, sweep): (&Case, &Sweep),
         contacts: Vec<MeshContact>,

@@ -35,7 +35,7 @@ pub struct HolePhase {
     pub turn_of_driving: f64,
     /// The amplitude of δ at this order with it, by full solutions at two turns.
     pub amplitude: f64,
-    /// That of the curve.
+    /// Amplitude of the curve.
     pub amplitude_now: f64,
     /// The best turn where the other flanks carry.
     pub other_flanks_turn: f64,
@@ -53,7 +53,7 @@ pub(super) struct PhasePlan {
 }
 
 impl PhasePlan {
-    /// That of `case`; `None` where both blanks do not repeat at one order, teeth deviate, the gears run, or the method sees no holes.
+    /// Best phase of `case`; `None` where both blanks do not repeat at one order, teeth deviate, the gears run, or the method sees no holes.
     pub(super) fn of(case: &Case) -> Option<Self> {
         if !case.method().finds_hole_phase()
             || !case.pair.is_as_drawn()

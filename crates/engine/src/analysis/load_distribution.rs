@@ -40,7 +40,7 @@ pub(super) fn ends_of_contact(formulas: &PairFormulas, case: &Case) -> Vec<f64> 
     (0..periods).flat_map(of_period).collect()
 }
 
-/// How the pairs share a load at the positions of `sweep`.
+/// Load sharing of the pairs at the positions of `sweep`.
 fn found(
     (case, formulas): (&Case, &PairFormulas),
     sweep: &Sweep,

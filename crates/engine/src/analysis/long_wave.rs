@@ -11,7 +11,7 @@ pub(super) struct LongWave {
 }
 
 impl LongWave {
-    /// That of `values` at equal steps from the mesh position `first` over so many mesh periods, after which they repeat.
+    /// Long wave of `values` at equal steps from the mesh position `first` over a number of mesh periods, after which they repeat.
     pub(super) fn of(values: &[f64], first: f64, periods: u32) -> Self {
         Self {
             first,
@@ -36,7 +36,7 @@ impl LongWave {
     }
 }
 
-/// The lines of `values`, at equal steps over so many mesh periods that repeat, with fewer than half a cycle in a mesh period, but for the mean.
+/// The lines of `values`, at equal steps over a number of mesh periods that repeat, with fewer than half a cycle in a mesh period, but for the mean.
 fn slow(values: &[f64], periods: usize) -> Vec<f64> {
     let n = values.len();
     if periods <= 2 {

@@ -23,7 +23,7 @@ pub struct MeshWave {
 }
 
 impl MeshWave {
-    /// That of the curve of `sections` of `case`, which runs over one window under `load`, with δ and the `load_shares` at its positions.
+    /// Wave of the curve of `sections` of `case`, which runs over one window under `load`, with δ and the `load_shares` at its positions.
     pub(super) fn of(
         (case, load): (&Case, f64),
         sections: &Sections,
@@ -85,7 +85,7 @@ impl MeshWave {
     }
 }
 
-/// `values` at equal steps over so many mesh periods, on straight lines at the places of a wave; the last one is followed by the first.
+/// `values` at equal steps over a number of mesh periods, on straight lines at the places of a wave; the last one is followed by the first.
 fn resampled(values: &[f64], periods: usize) -> Vec<f64> {
     let count = PLACES * periods;
     let step = values.len() as f64 / count as f64;

@@ -54,7 +54,7 @@ const NAMED_REVOLUTIONS: u32 = 3;
 /// Mesh harmonics around which sidebands get a name, and sidebands to either side.
 const SIDEBANDS: (u32, u32) = (4, 2);
 
-/// A line that stands so many orders of a revolution from a mesh harmonic is called its sideband.
+/// Largest distance, in orders of a revolution, from a mesh harmonic at which a line is called its sideband.
 const NEAR_MESH: i64 = 5;
 
 /// Orders nearer to each other than this are the same.

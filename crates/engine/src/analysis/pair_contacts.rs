@@ -31,7 +31,7 @@ impl<'a> ModeledPair<'a> {
         })
     }
 
-    /// Its contacts under `load` at `positions`. Equal pairs have them alike: with rigid blanks all hole patterns on the same teeth, and as drawn all
+    /// Its contacts under `load` at `positions`. They are equal for equal pairs: with rigid blanks all hole patterns on the same teeth, and as drawn all
     /// members of a population.
     pub(super) fn contacts(
         &self,

@@ -4,7 +4,7 @@ use super::case::Case;
 use super::load_share::LoadShare;
 use crate::gear::{Member, PairDeviations, gcd};
 
-/// The most mesh periods of a true period at which springs are asked: of longer ones every so many.
+/// Largest number of mesh periods of a true period at which springs are computed; of longer ones they are evenly spaced.
 const MOST_PERIODS: usize = 50_000;
 
 /// How much the compliance of all phases counts at one, beside the mean spread of the forces at a phase.

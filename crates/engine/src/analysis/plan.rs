@@ -243,7 +243,7 @@ impl Sweep {
         }
     }
 
-    /// The positions of `case` after which contact on blanks that are alike all around repeats.
+    /// The positions of `case` after which contact on axisymmetric blanks repeats.
     fn repeating(case: &Case, blanks: Blanks, step: Option<f64>) -> Self {
         let (positions, repeats_after) = (case.repeating_positions(), case.contacts_repeat_after());
         Self {

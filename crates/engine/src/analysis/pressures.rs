@@ -68,7 +68,7 @@ pub fn at_pitch_point(case: &Case, load: f64) -> Option<f64> {
     Some(hertz(load / cosine, radius, factors, length).1)
 }
 
-/// The part of the span of `case` in which something is so, known at mesh positions that repeat after so many mesh periods: halfway between two of them where it
+/// The part of the span of `case` in which something is so, known at mesh positions that repeat after a number of mesh periods: halfway between two of them where it
 /// is so at one.
 fn share_of((case, repeats_after): (&Case, u32), known: impl Iterator<Item = (f64, bool)>) -> f64 {
     let (first, length) = (case.resolution.first_position, f64::from(repeats_after));

@@ -62,7 +62,7 @@ pub(super) fn solve(setup: Setup<'_>, pass: &Pass) -> Result<Analysis, AnalysisE
     })
 }
 
-/// The model whose `holed` blanks are alike all around.
+/// The model whose `holed` blanks are axisymmetric.
 pub(super) fn round_average(whole: &PairModel, holed: &[Member]) -> PairModel {
     whole.with_couplings(|member, coupling| {
         if holed.contains(&member) {
@@ -95,7 +95,7 @@ mod tests {
     use crate::analysis::case::tests::plain;
     use crate::analysis::{Case, Model, SectionHoles};
     use crate::assembly::MakeAll;
-    use crate::contact::{Stage, WarmStart};
+    use crate::contact::{MeshPhase, WarmStart};
     use crate::gear::spur::tests::paper_gear;
     use crate::gear::{GearPair, HolePattern, PairDeviations, SpurGear};
     use crate::grid::GridLevel;
@@ -142,12 +142,12 @@ mod tests {
                     .expect("a contact")
                     .transmission_error
             };
-            let mut stage =
-                Stage::new(round.as_drawn(), eta, load).expect("flanks that face each other");
+            let mut phase =
+                MeshPhase::new(round.as_drawn(), eta, load).expect("flanks that face each other");
             let loads = |cells: &ContactCells<'_>, solution: &ContactSolution| {
                 cells.loads(&[&solution.forces, &solution.load_derivative])
             };
-            let (_, loads) = stage
+            let (_, loads) = phase
                 .contact(0, &mut WarmStart::default(), loads)
                 .expect("a contact");
             let delta =

@@ -1,4 +1,4 @@
-//! How a pair runs: gears that rotate, are warm and are pressed onto shafts.
+//! Running of a pair: gears that rotate, are warm and are pressed onto shafts.
 
 use std::f64::consts::TAU;
 
@@ -22,7 +22,7 @@ pub enum Bore {
     },
 }
 
-/// How one gear runs.
+/// Running of one gear.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RunningGear {
     /// The strain by which it has grown with its temperature.
@@ -59,7 +59,7 @@ impl Running {
         f64::midpoint(self.gears[0].thermal_strain, self.gears[1].thermal_strain)
     }
 
-    /// True if all teeth of a gear grow alike, whatever its holes are: at rest, and without a press fit.
+    /// True if all teeth of a gear grow by the same amount, whatever its holes are: at rest, and without a press fit.
     pub(super) fn grows_evenly(&self) -> bool {
         let is_fitted = |gear: &RunningGear| matches!(gear.bore, Bore::PressFit { .. });
         self.driving_speed.0 == 0.0 && !self.gears.iter().any(is_fitted)
@@ -92,12 +92,12 @@ pub(super) struct RestingStresses {
 }
 
 impl RestingStresses {
-    /// That at place `i` of the fillets of `tooth`.
+    /// Stress at place `i` of the fillets of `tooth`.
     pub(super) fn in_tooth(&self, tooth: usize, i: usize) -> f64 {
         self.in_teeth.get(tooth).map_or(0.0, |places| places[i])
     }
 
-    /// That at place `i` around the holes of `sector`.
+    /// Stress at place `i` around the holes of `sector`.
     pub(super) fn in_blank(&self, sector: usize, i: usize) -> f64 {
         self.in_blank.get(sector).map_or(0.0, |places| places[i])
     }

@@ -67,7 +67,7 @@ fn repeating_rms(values: &[f64], periods: usize) -> f64 {
     square.sqrt()
 }
 
-/// The largest range of the rising places and values `traced` in any stretch of one mesh period; the curve may repeat after so many.
+/// The largest range of the rising places and values `traced` in any stretch of one mesh period; the curve may repeat after `repeats` of them.
 fn range_within_a_period(traced: &[(f64, f64)], repeats: Option<f64>) -> f64 {
     /// Loss in the digits of a place.
     const ROUNDING: f64 = 1e-9;

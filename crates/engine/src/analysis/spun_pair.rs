@@ -45,7 +45,7 @@ struct GearState {
 }
 
 impl PairState {
-    /// That of `case`, of whose gears `parts` says how they answer to rotation at this grid `level`; `None` of a case that does not run.
+    /// Rotation of `case`, with the responses of its gears from `parts` at this grid `level`; `None` of a case that does not run.
     pub(super) fn of(
         case: &Case,
         level: GridLevel,
@@ -295,7 +295,7 @@ fn weakest(
 }
 
 impl Setup<'_> {
-    /// How the gear `member` answers to its rotation, its bore held as `hold` says.
+    /// Response of the gear `member` to its rotation, its bore held as `hold` says.
     fn spun(&self, member: Member, hold: Hold) -> Result<Option<Arc<Spun>>, AnalysisError> {
         let spec = self.spec(Blanks::Flexible);
         Ok(spec.spun(member, hold, self.parts, self.run)?)

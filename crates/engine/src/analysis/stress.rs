@@ -101,7 +101,7 @@ pub struct GearPeaks {
 pub(super) type PositionPeaks = [GearPeaks; 2];
 
 impl StressModel {
-    /// That of both gears as `setup` has them, blanks flexible.
+    /// Stresses of both gears as `setup` has them, blanks flexible.
     pub(super) fn new(setup: &Setup<'_>) -> Result<Self, AnalysisError> {
         let spec = setup.spec(Blanks::Flexible);
         let of = |member: Member| -> Result<StressedGear, AnalysisError> {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use faer::Mat;
 
 use super::case::{Case, FaceHoles, Faces};
-use super::curve::{FaceLoad, LeadCure};
+use super::curve::{FaceLoad, LeadCorrection};
 use super::face_stress::FaceStressModel;
 use super::first_order::with_holes;
 use super::found::{Found, Kept};
@@ -84,7 +84,7 @@ pub(super) fn solve(
         let farthest = deltas.fold(f64::NEG_INFINITY, f64::max);
         let even = solved.even_lead(load, &pass.evened, farthest, run)?;
         let mut face = face_load(case, asked, &found.kept);
-        face.cure = even.map(|lead| LeadCure::of(lead, face.face_load_factor));
+        face.cure = even.map(|lead| LeadCorrection::of(lead, face.face_load_factor));
         parts.face = Some(face);
         Ok(parts)
     })
@@ -129,7 +129,7 @@ struct OfFaces<'a> {
     run: &'a Run,
     /// Both gears as drawn.
     whole: FaceModel,
-    /// Both gears, alike all around.
+    /// Both gears, axisymmetric.
     round: FaceModel,
     /// Gears that are not rotationally symmetric.
     uneven: Vec<Member>,

@@ -153,7 +153,7 @@ fn check_work(case: &Case, output_torque: f64, sections: &Sections) -> Result<()
     })
 }
 
-/// The curves of `case` under its torques that are not 0: `solve` finds each. The model of the pair has so many unknowns.
+/// The curves of `case` under its torques that are not 0: `solve` finds each. The model of the pair has the given number of unknowns.
 pub(super) fn curves(
     (case, pass): (&Case, &Pass),
     degrees_of_freedom: u64,

@@ -28,10 +28,10 @@ const DOUBTFUL_PROJECTION: [f64; 2] = [0.01, 0.05];
 /// Part of the peak-to-peak above which the remainder of the decomposition's fits to the turn of holed blanks gives a warning.
 const DOUBTFUL_DECOMPOSITION: f64 = 0.05;
 
-/// Below so many positions a mesh period there is a warning of orders: each position gives half a mesh harmonic, and the upper ones badly.
+/// Positions a mesh period below which there is a warning of orders: each position gives half a mesh harmonic, and the upper ones badly.
 pub const FEW_POSITIONS: u32 = 20;
 
-/// There is a warning of positions that leave more than this part of the peak-to-peak open, by their own estimate, and more than so many meters.
+/// Part of the peak-to-peak, and length in meters, above which the estimated error between positions is warned of.
 pub const OPEN_PEAK_TO_PEAK: (f64, f64) = (0.02, 2e-9);
 
 /// There is a warning of forces beyond this part of the largest load of a table; up to it they are it but for rounding.

@@ -29,7 +29,7 @@ impl Case {
     }
 }
 
-/// Where windows of so many `mesh_periods` begin in the true period of `pair`, rising: at most `count` of them, none of which overlaps another.
+/// First positions of windows of `mesh_periods` in the true period of `pair`, rising: at most `count` of them, none of which overlaps another.
 ///
 /// The first has the largest step from one tooth pair to the next in its middle, at which tooth-to-tooth errors are largest: the change of the distance of both
 /// flanks from each other at the pitch point, runout included. Each further one has the largest remaining step. Where teeth do not deviate they are spread

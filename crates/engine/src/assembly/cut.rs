@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
-use super::{BlankUnderTeeth, GearSpec, PartError, Parts, Teeth};
+use super::{BlankUnderTeeth, GearSpec, PartError, Parts, Teeth, TeethSpec};
 use crate::contact::FlankLoad;
 use crate::fem::FemError;
 use crate::ring::annulus::{Annulus, Imposed};
 use crate::ring::blank::BlankSubstructure;
 use crate::ring::motion::InterfaceMotion;
+use crate::ring::plain::PlainGear;
 use crate::run::Run;
 
 /// A gear cut at its interface circle.
@@ -20,9 +21,9 @@ pub struct CutGear {
 /// A flexible blank.
 pub(super) struct CutBlank {
     blank: Arc<BlankSubstructure>,
-    /// The web by its highest orders, where that is another one.
-    solid: Option<Arc<BlankSubstructure>>,
     pub(super) hole_angle: f64,
+    is_holed: bool,
+    plain: Arc<PlainGear>,
 }
 
 impl CutGear {
@@ -32,14 +33,13 @@ impl CutGear {
     ///
     /// [`PartError`].
     pub fn new(spec: &GearSpec, parts: &dyn Parts, run: &Run) -> Result<Self, PartError> {
+        let teeth = parts.teeth(&spec.teeth, run)?;
         let blank = spec.blank.as_ref().map(|under| {
             let blank = parts.blank(&under.spec, run)?;
-            CutBlank::new(under, blank, parts, run)
+            CutBlank::new(under, blank, (&spec.teeth, &teeth), parts, run)
         });
-        Ok(Self {
-            teeth: parts.teeth(&spec.teeth, run)?,
-            blank: blank.transpose()?,
-        })
+        let blank = blank.transpose()?;
+        Ok(Self { teeth, blank })
     }
 
     /// How its circle moves; `None` if it is held.
@@ -48,11 +48,11 @@ impl CutGear {
     ///
     /// [`FemError::NotPositiveDefinite`], or [`FemError::Stopped`].
     pub fn motion(&self, run: &Run) -> Result<Option<InterfaceMotion<'_>>, FemError> {
-        let of = |cut: &CutBlank| {
-            let (blank, solid) = (&cut.blank, cut.solid.as_deref());
-            InterfaceMotion::new(&self.teeth.ring, blank, cut.hole_angle, solid, run)
-        };
-        self.blank.as_ref().map(of).transpose()
+        let motion = self.blank.as_ref().map(|cut| {
+            let holed = cut.is_holed.then_some((&*cut.blank, cut.hole_angle));
+            InterfaceMotion::new(&self.teeth.ring, &cut.plain, holed, run)
+        });
+        motion.transpose()
     }
 
     /// Loads on its flanks, in terms of the loading modes of each tooth.
@@ -85,14 +85,17 @@ impl CutBlank {
     pub(super) fn new(
         under: &BlankUnderTeeth,
         blank: Arc<BlankSubstructure>,
+        (spec, teeth): (&TeethSpec, &Teeth),
         parts: &dyn Parts,
         run: &Run,
     ) -> Result<Self, PartError> {
-        let solid = under.solid().map(|solid| parts.blank(&solid, run));
+        let spec = under.plain(spec);
+        let solid = parts.blank(&spec.blank, run)?;
         Ok(Self {
             blank,
-            solid: solid.transpose()?,
             hole_angle: under.hole_angle,
+            is_holed: under.holed().is_some(),
+            plain: parts.plain_gear(&spec, (teeth, &solid), run)?,
         })
     }
 }

@@ -1,4 +1,4 @@
-//! How the edges of the holes of a solid gear are stressed under loads on its flanks.
+//! Stresses at the edges of the holes of a solid gear under loads on its flanks.
 //!
 //! Loads move the outer circle of the web ([`super::face_yield`]), and that moves the nodes along the holes, sector by sector; the strain along their surface
 //! gives the stress ([`crate::fem::surface`]).
@@ -27,7 +27,7 @@ pub struct FaceHoles {
     phase: f64,
 }
 
-/// How the edges of holes answer to loads.
+/// Response of the edges of holes to loads.
 #[derive(Debug)]
 pub struct HoleAnswer<'a> {
     holes: &'a FaceHoles,
@@ -291,7 +291,7 @@ pub(super) mod tests {
 
     #[test]
     #[ignore = "./test all"]
-    fn holes_of_a_gear_and_of_its_image_are_stressed_alike() {
+    fn holes_of_a_gear_and_of_its_image_have_equal_stresses() {
         let (right, left) = (
             stressed(0.3, 1.0, 4e-3, 0.0),
             stressed(0.3, -1.0, 4e-3, 0.0),
@@ -313,7 +313,7 @@ pub(super) mod tests {
 
     #[test]
     #[ignore = "./test all"]
-    fn holes_are_stressed_alike_by_sectors_and_as_a_whole() {
+    fn stresses_of_holes_are_equal_by_sectors_and_as_a_whole() {
         // One hole a little larger, and there are no equal sectors.
         let (sectors, whole) = (
             stressed(0.3, 1.0, 2e-3, 0.0),

@@ -1,7 +1,7 @@
 //! Motion of a whole solid gear whose flanks are loaded, part by part.
 //!
 //! The ring of teeth tells how the sides of the teeth and the interface circle move ([`crate::ring::solid::gear`]); that moves the teeth inside,
-//! and the rim below, and so on from circle to circle down to the bore or the shaft, order by order where a part is alike all around, and sector by
+//! and the rim below, and so on from circle to circle down to the bore or the shaft, order by order where a part is axisymmetric, and sector by
 //! sector where it has holes.
 
 use std::f64::consts::TAU;
@@ -259,7 +259,7 @@ impl FaceInside {
         })
     }
 
-    /// Adds layer `index` to `parts`, a body that is alike all around, whose outer circle moves by the amplitudes `outer` of the orders 0 …;
+    /// Adds layer `index` to `parts`, an axisymmetric body, whose outer circle moves by the amplitudes `outer` of the orders 0 …;
     /// `forces` act on the circle below. How its inner circle moves.
     fn body(
         &self,

@@ -1,4 +1,4 @@
-//! How finely gears are modeled along their faces.
+//! Resolution of gears along their faces.
 
 use crate::grid::GridLevel;
 
@@ -6,7 +6,7 @@ const LEAST_ORDER: usize = 3;
 /// The width in modules from which a face has all of its polynomials, and the degree that any has.
 const WIDE: f64 = 2.0;
 
-/// How finely the yield of a face is resolved.
+/// Resolution of the compliance of a face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct FaceResolution {
     /// The degree P of the polynomials across the face.

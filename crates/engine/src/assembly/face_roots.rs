@@ -1,4 +1,4 @@
-//! How the roots of the teeth of a solid gear are stressed under loads on its flanks.
+//! Stresses at the roots of the teeth of a solid gear under loads on its flanks.
 //!
 //! Rows lead from the forces on the flanks to the displacements of the fillets, as in the plane ([`super::inside`]), and these say the
 //! stress ([`crate::fem::surface`]).
@@ -46,7 +46,7 @@ pub struct FaceRoots {
     by_web: Option<Mat<f64>>,
 }
 
-/// How the roots answer to loads.
+/// Response of the roots to loads.
 pub struct RootAnswer<'a> {
     roots: &'a FaceRoots,
     yields: Option<&'a FaceYield>,
@@ -308,6 +308,7 @@ mod tests {
     use crate::ring::blank::BlankSubstructure;
     use crate::ring::cyclic::Harmonics;
     use crate::ring::motion::InterfaceMotion;
+    use crate::ring::plain::PlainGear;
     use crate::ring::teeth::TeethRing;
     use crate::ring::teeth_recovery::TeethRecovery;
     use crate::ring::tooth::{ToothSubstructure, modal_loads};
@@ -351,7 +352,7 @@ mod tests {
 
     /// Asserts that principal stresses along the edges are those in the plane: the largest and the smallest to a part `most` of the largest of
     /// all, and all of them to a percent, because a node of a grid does not know of itself that its surface is free.
-    fn assert_alike(found: &[[f64; 2]], plane: &[f64], most: f64) {
+    fn assert_equal(found: &[[f64; 2]], plane: &[f64], most: f64) {
         assert_eq!(found.len(), plane.len());
         let largest = plane.iter().map(|s| s.abs()).fold(0.0, f64::max);
         for (i, (found, plane)) in found.iter().zip(plane).enumerate() {
@@ -410,7 +411,7 @@ mod tests {
             let moved = &moved.expect("sound")[0];
             let plane = along_edges(&grid, material).into_iter();
             let plane: Vec<f64> = plane.map(|of| of.value(moved)).collect();
-            assert_alike(&found, &plane, most);
+            assert_equal(&found, &plane, most);
         }
     }
 
@@ -448,21 +449,17 @@ mod tests {
             let harmonics = Harmonics { largest: 90 };
             let ring = TeethRing::new(&tooth, harmonics, &run).expect("sound");
             let inside = TeethRecovery::new(&tooth, &rows, harmonics, &run).expect("sound");
-            let holes = holes.then_some(&pattern);
-            let level = GridLevel::Fine;
-            let blank = BlankGrid::new(section.bore_radius(), radius, holes, 30, 8.0, level);
-            let plate = (&Material::STEEL, section.face_width());
-            let blank = BlankSubstructure::new(
-                &blank.expect("a usable grid"),
-                radius,
-                plate.0,
-                plate.1,
-                harmonics,
-                &run,
-            )
-            .expect("sound");
-            let angle = section.hole_angle();
-            let motion = InterfaceMotion::new(&ring, &blank, angle, None, &run).expect("sound");
+            let [solid, blank] = [None, holes.then_some(&pattern)].map(|holes| {
+                let (bore, level) = (section.bore_radius(), GridLevel::Fine);
+                let grid = BlankGrid::new(bore, radius, holes, 30, 8.0, level);
+                let (grid, width) = (grid.expect("a usable grid"), section.face_width());
+                let steel = &Material::STEEL;
+                let made = BlankSubstructure::new(&grid, radius, steel, width, harmonics, &run);
+                made.expect("sound")
+            });
+            let plain = PlainGear::new(&ring, &solid, &run).expect("sound");
+            let holed = Some((&blank, section.hole_angle()));
+            let motion = InterfaceMotion::new(&ring, &plain, holed, &run).expect("sound");
             for node in [9, 15] {
                 let loads = even(&roots, roots.pressed.roll_lengths[node]);
                 let answer = roots.under(Some(&yields), &loads);
@@ -473,7 +470,7 @@ mod tests {
                 for tooth in [0, 1, 3, 29] {
                     let own = if tooth == 0 { &forces[..] } else { &[] };
                     let plane = inside.values(tooth, own, &loads, &motion);
-                    assert_alike(&in_the_middle(&answer, tooth), &plane, 5e-3);
+                    assert_equal(&in_the_middle(&answer, tooth), &plane, 5e-3);
                 }
             }
         }
@@ -516,7 +513,7 @@ mod tests {
 
     #[test]
     #[ignore = "./test all"]
-    fn a_gear_and_its_image_in_the_plane_of_its_face_are_stressed_alike() {
+    fn a_gear_and_its_image_in_the_plane_of_its_face_have_equal_stresses() {
         let of = |beta: f64, sign: f64| {
             let gear = webbed(sign * beta, sign * 4e-3, 0.0);
             let spec = FaceYieldSpec::new(&gear, of_order(4));

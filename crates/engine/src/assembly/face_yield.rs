@@ -5,7 +5,7 @@ use std::sync::Arc;
 use faer::{Mat, c64};
 
 use super::flank_fit::{FlankFit, smoothed, smoothed_rows};
-use super::holed::{HoledChange, SeenWeb, cost_of_holes, coupled_unknowns};
+use super::holed::{HoledChange, WebInterface, cost_of_holes, coupled_unknowns};
 use super::stack::{Stack, StackStiffness};
 use super::{FaceResolution, PartError};
 use crate::fem::axial::AxialBasis;
@@ -38,7 +38,7 @@ pub struct PlainFace {
     blocks: Vec<Mat<f64>>,
     /// The stiffness of each order of the interface circle.
     stiffness_below: Vec<Mat<c64>>,
-    web: Option<SeenWeb>,
+    web: Option<WebInterface>,
     degrees_of_freedom: u64,
 }
 
@@ -68,7 +68,7 @@ impl FaceYieldSpec {
         &self.gear
     }
 
-    /// That of `gear`. No modification or deviation counts, nor a broken edge: they are gaps and hardly change how a tooth bends.
+    /// Specification of `gear`. No modification or deviation counts, nor a broken edge: they are gaps and hardly change how a tooth bends.
     pub fn new(gear: &SolidGear, resolution: FaceResolution) -> Self {
         Self {
             gear: gear.with_plain_flanks(),
@@ -128,7 +128,7 @@ impl FaceYieldSpec {
 }
 
 impl PlainFace {
-    /// That of `stack`.
+    /// Compliance of `stack`.
     ///
     /// # Errors
     ///
@@ -155,7 +155,7 @@ impl PlainFace {
                     stack.face.len(),
                 )
             };
-            SeenWeb::new(web, tooth.sector.count, &classes, &onto)
+            WebInterface::new(web, tooth.sector.count, &classes, &onto)
         });
         let own = tooth.grid_nodes - tooth.sector.side_nodes - 1;
         Ok(Self {
@@ -176,7 +176,7 @@ impl PlainFace {
             .iter()
             .map(|of| 2 * of.nrows() * of.ncols())
             .sum();
-        blocks + stiffness_below + self.web.as_ref().map_or(0, SeenWeb::entries)
+        blocks + stiffness_below + self.web.as_ref().map_or(0, WebInterface::entries)
     }
 
     /// The stiffness of each order of the interface circle, without holes.
@@ -185,7 +185,7 @@ impl PlainFace {
     }
 
     /// The web as the teeth see it, where it has holes.
-    pub(crate) fn web(&self) -> Option<&SeenWeb> {
+    pub(crate) fn web(&self) -> Option<&WebInterface> {
         self.web.as_ref()
     }
 }
@@ -371,6 +371,8 @@ mod tests {
     use crate::grid::ToothGrid as PlaneGrid;
     use crate::ring::blank::BlankSubstructure;
     use crate::ring::body::Coupling;
+    use crate::ring::motion::InterfaceMotion;
+    use crate::ring::plain::PlainGear;
     use crate::ring::teeth::TeethRing;
     use crate::ring::tooth::ToothSubstructure;
 
@@ -430,7 +432,7 @@ mod tests {
     }
 
     #[test]
-    fn the_yield_is_mutual_and_the_teeth_are_alike() {
+    fn compliance_is_symmetric_and_the_teeth_are_equal() {
         let gear = gear(0.3, Some((5e-3, -4e-3)), None);
         let face = yields(&gear);
         let smooth = face.smooth(&[3, 4, 1]);
@@ -444,7 +446,7 @@ mod tests {
 
     #[test]
     #[ignore = "./test all"]
-    fn a_gear_and_its_image_in_the_plane_of_its_face_yield_alike() {
+    fn a_gear_and_its_image_in_the_plane_of_its_face_have_equal_compliance() {
         let hub = |offset| Hub {
             outer_radius: 10e-3,
             width: 30e-3,
@@ -469,7 +471,7 @@ mod tests {
 
     #[test]
     #[ignore = "./test all"]
-    fn a_gear_on_its_shaft_and_its_image_in_the_plane_of_its_face_yield_alike() {
+    fn a_gear_on_its_shaft_and_its_image_in_the_plane_of_its_face_have_equal_compliance() {
         // Right on the shaft, and on a web that stands off the middle of it.
         let on_shaft = |beta: f64, offset: Option<f64>, torque_at: FaceEnds| {
             let core = Core::Shaft { torque_at };
@@ -551,13 +553,19 @@ mod tests {
         let ring = TeethRing::new(&tooth, harmonics, &run).expect("definite");
         let level = GridLevel::Standard;
         let around = 8.0 * (largest as f64 / 90.0);
-        let blank = crate::grid::BlankGrid::new(8e-3, radius, holes.as_ref(), 24, around, level)
-            .expect("a usable grid");
-        let plate = (core, section.material(), 1.0);
-        let made = BlankSubstructure::with_recovery(&blank, radius, plate, harmonics, &[], &run);
-        let (blank, _) = made.expect("definite");
-        let coupling =
-            Coupling::on_blank(&ring, &blank, section.hole_angle(), 2, &run).expect("definite");
+        let [solid, blank] = [None, holes.as_ref()].map(|holes| {
+            let grid = crate::grid::BlankGrid::new(8e-3, radius, holes, 24, around, level);
+            let (grid, plate) = (
+                grid.expect("a usable grid"),
+                (core, section.material(), 1.0),
+            );
+            let made = BlankSubstructure::with_recovery(&grid, radius, plate, harmonics, &[], &run);
+            made.expect("definite").0
+        });
+        let plain = PlainGear::new(&ring, &solid, &run).expect("definite");
+        let holed = Some((&blank, section.hole_angle()));
+        let motion = InterfaceMotion::new(&ring, &plain, holed, &run).expect("definite");
+        let coupling = Coupling::new(&motion, 2, &run).expect("definite");
         // Tooth 1 and, before it, tooth 0: the compliance from tooth 0 to tooth 1 is that from tooth 1 to it.
         let (x, _) = coupling.block(0, 1);
         let h = &tooth.modes * x * tooth.modes.transpose();
@@ -687,7 +695,7 @@ mod tests {
     }
 
     #[test]
-    fn teeth_that_stand_alike_to_the_holes_yield_alike() {
+    fn teeth_in_equal_positions_to_the_holes_have_equal_compliance() {
         let gear = holed(-0.3, None, Core::Bore, 0.0);
         let face = yields(&gear);
         let [p, q] = [0, 6].map(|i| places(&gear)[i]);

@@ -8,6 +8,8 @@ use crate::gear::{Member, SpurGear};
 use crate::grid::{BlankGrid, GridLevel, ToothGrid};
 use crate::ring::blank::BlankSubstructure;
 use crate::ring::body::Coupling;
+use crate::ring::motion::InterfaceMotion;
+use crate::ring::plain::PlainGear;
 use crate::run::Run;
 
 /// Specification of a gear.
@@ -42,18 +44,18 @@ pub struct Gear {
 /// A gear that is wanted, and whose it is should it fail.
 #[derive(Debug, Clone)]
 pub struct WantedGear {
-    /// Which gear of the pair.
+    /// Its place in the pair.
     pub member: Member,
-    /// How it is made.
+    /// Its specification.
     pub spec: GearSpec,
 }
 
 /// The grids of a gear.
 #[derive(Debug, Clone)]
 pub struct GearGrids {
-    /// That of one tooth.
+    /// Grid of one tooth.
     pub tooth: ToothGrid,
-    /// That of its blank, or of one of its equal sectors; `None` for a rigid one.
+    /// Grid of its blank, or of one of its equal sectors; `None` for a rigid one.
     pub blank: Option<BlankGrid>,
 }
 
@@ -96,25 +98,26 @@ impl GearSpec {
         })
     }
 
-    /// The blanks of which it is made: its own, and the solid one that its highest orders find, where they do.
-    pub(super) fn blanks(&self) -> Vec<BlankSpec> {
-        let Some(blank) = &self.blank else {
-            return Vec::new();
-        };
-        let own = blank.spec.clone();
-        [own].into_iter().chain(blank.solid()).collect()
+    /// The plain gear of which it is made; `None` on a rigid blank.
+    pub(super) fn plain(&self) -> Option<PlainGearSpec> {
+        self.blank.as_ref().map(|under| under.plain(&self.teeth))
     }
 
-    /// Joins `teeth` with the `blanks` of [`GearSpec::blanks`].
+    /// Joins `teeth` with its blank: with the `plain` gear, and with a blank that has `holes`.
     pub(super) fn join(
         &self,
         teeth: &Teeth,
-        blanks: &[Arc<BlankSubstructure>],
+        plain: Option<&PlainGear>,
+        holed: Option<&BlankSubstructure>,
         run: &Run,
     ) -> Result<Gear, PartError> {
-        let (coupling, blank_nodes) = match (&self.blank, blanks) {
-            (Some(under), [blank, solid @ ..]) => {
-                (under.couple(teeth, blank, solid, run)?, blank.grid_nodes)
+        let (coupling, blank_nodes) = match (&self.blank, plain) {
+            (Some(under), Some(plain)) => {
+                let holed_at = holed.map(|holed| (holed, under.hole_angle));
+                let motion = InterfaceMotion::new(&teeth.ring, plain, holed_at, run)?;
+                let coupling = Coupling::new(&motion, under.farthest, run)?;
+                let nodes = holed.map_or(plain.blank_nodes, |holed| holed.grid_nodes);
+                (Arc::new(coupling), nodes)
             }
             _ => (teeth.on_rigid_blank.clone(), 0),
         };
@@ -129,25 +132,25 @@ impl GearSpec {
 }
 
 impl BlankUnderTeeth {
-    /// The solid blank that the orders above those of its own find, if there are any.
-    pub(super) fn solid(&self) -> Option<BlankSpec> {
-        let solid = self.spec.solid();
-        (self.spec.orders() != solid.orders()).then_some(solid)
+    /// The gear without holes whose teeth are `teeth`.
+    pub(super) fn plain(&self, teeth: &TeethSpec) -> PlainGearSpec {
+        PlainGearSpec {
+            teeth: teeth.clone(),
+            blank: self.spec.solid(),
+        }
     }
 
-    /// How `teeth` move each other on `blank`, of which orders above its own find the `solid` one, if there are any.
-    fn couple(
-        &self,
-        teeth: &Teeth,
-        blank: &BlankSubstructure,
-        solid: &[Arc<BlankSubstructure>],
-        run: &Run,
-    ) -> Result<Arc<Coupling>, PartError> {
-        let on_blank = |ring| Coupling::on_blank(ring, blank, self.hole_angle, self.farthest, run);
-        let coupling = match solid {
-            [] => on_blank(&teeth.ring),
-            [solid, ..] => on_blank(&teeth.ring.above(blank.harmonics, solid, run)?),
-        };
-        Ok(Arc::new(coupling?))
+    /// The blank, if it has holes.
+    pub(super) fn holed(&self) -> Option<&BlankSpec> {
+        (self.spec != self.spec.solid()).then_some(&self.spec)
     }
+}
+
+/// Specification of a gear without holes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlainGearSpec {
+    /// Its teeth.
+    pub teeth: TeethSpec,
+    /// Its blank.
+    pub blank: BlankSpec,
 }

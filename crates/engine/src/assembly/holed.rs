@@ -34,7 +34,7 @@ const THIN: f64 = 0.35;
 
 /// The outer circle of a web as the teeth see it, while the web has no holes.
 #[derive(Debug)]
-pub(crate) struct SeenWeb {
+pub(crate) struct WebInterface {
     /// The largest order in which holes are seen.
     largest: usize,
     /// The unknowns of a component of an order.
@@ -61,7 +61,7 @@ pub(crate) struct HoledChange {
     changes: Vec<Mat<f64>>,
 }
 
-impl SeenWeb {
+impl WebInterface {
     /// Of a gear whose web is seen through `web` and answers to its teeth as in `classes`. `onto` makes rows for the functions on a
     /// flank of columns for its nodes.
     pub(crate) fn new(
@@ -192,10 +192,10 @@ impl HoledChange {
     pub(crate) fn new(
         stack: &Stack,
         section: &SpurGear,
-        web: &SeenWeb,
+        web: &WebInterface,
         run: &Run,
     ) -> Result<Self, PartError> {
-        let &SeenWeb {
+        let &WebInterface {
             largest,
             size,
             tooth_count: z,
@@ -253,7 +253,7 @@ impl HoledChange {
         self.changes.len()
     }
 
-    /// The same in the mean over the teeth, which are all alike then.
+    /// The mean over the teeth: axisymmetric.
     pub(crate) fn round_average(&self) -> Self {
         let share = 1.0 / self.changes.len() as f64;
         let mut mean = Mat::zeros(self.answers.nrows(), self.answers.ncols());
@@ -295,7 +295,7 @@ impl HoledChange {
 
     /// How the web's outer circle moves under `loads`, as in [`HoledChange::forces`], in amplitudes a_0, a_1, b_1, … from tooth 0; `web` is that
     /// without holes.
-    pub(crate) fn circle(&self, web: &SeenWeb, loads: &[(usize, &[f64])]) -> Vec<f64> {
+    pub(crate) fn circle(&self, web: &WebInterface, loads: &[(usize, &[f64])]) -> Vec<f64> {
         let forces = self.forces(loads);
         let forces = Mat::from_fn(forces.len(), 1, |i, _| forces[i]);
         let mut moved = web.compliance.times(&forces);

@@ -28,7 +28,7 @@ pub struct LoadedGear<'a> {
     motion: Option<InterfaceMotion<'a>>,
 }
 
-/// How a gear answers to one set of loads.
+/// Response of a gear to one set of loads.
 pub struct Answer<'a> {
     inside: &'a Inside,
     loads: &'a [FlankLoad],
@@ -58,7 +58,7 @@ impl Inside {
         let blank = spec.blank.as_ref().zip(grids.blank.as_ref());
         let made = blank.map(|(under, grid)| {
             let (blank, recovery) = under.spec.make_with(grid, &probes.in_blank, run)?;
-            let cut = CutBlank::new(under, Arc::new(blank), parts, run)?;
+            let cut = CutBlank::new(under, Arc::new(blank), (&spec.teeth, &teeth), parts, run)?;
             Ok::<_, PartError>((cut, recovery))
         });
         let (blank, in_blank) = made.transpose()?.unzip();

@@ -42,7 +42,7 @@ pub fn harmonics(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Ha
 }
 
 /// The orders that see the holes of `gear`, by the same rule: on its way from the holes to the interface circle their
-/// field falls as well. Without holes all orders find the blank alike.
+/// field falls as well. Without holes these are all orders.
 pub fn orders_of_blank(gear: &SpurGear, interface_radius: f64, level: GridLevel) -> Harmonics {
     let all = harmonics(gear, interface_radius, level);
     gear.data().blank.outer_reach().map_or(all, |reach| {

@@ -39,7 +39,7 @@ impl PairSpec {
         Inside::new(spec, grids, probes, parts, run).map_err(|error| error.of(member))
     }
 
-    /// How the gear `member` answers to its rotation, its bore held as `hold` says; `None` of one on a rigid blank.
+    /// Response of the gear `member` to its rotation, its bore held as `hold` says; `None` of one on a rigid blank.
     ///
     /// # Errors
     ///

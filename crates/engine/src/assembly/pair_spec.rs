@@ -7,7 +7,7 @@ use crate::contact::ContactSolver;
 use crate::gear::{GearPair, Member, PairDeviations};
 use crate::grid::GridLevel;
 
-/// Which blanks take part in a model.
+/// The blanks that take part in a model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Blanks {
     /// Both, as drawn.
@@ -29,7 +29,7 @@ impl Blanks {
     }
 }
 
-/// How a pair is modeled.
+/// Modeling of a pair.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Modeling {
     /// The grid level.

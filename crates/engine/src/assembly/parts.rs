@@ -1,4 +1,4 @@
-//! Who provides the parts of a model.
+//! Providers of the parts of a model.
 
 use std::sync::Arc;
 
@@ -10,7 +10,9 @@ use super::face_yield::{FaceYield, FaceYieldSpec, PlainFace};
 use super::pair_spec::{ContactsSpec, FlanksSpec, PairSpec};
 use super::spun::{Spun, SpunSpec};
 use super::stack::Stack;
-use super::{AssemblyError, BlankSpec, Gear, PartError, Teeth, TeethSpec, WantedGear};
+use super::{
+    AssemblyError, BlankSpec, Gear, PartError, PlainGearSpec, Teeth, TeethSpec, WantedGear,
+};
 
 use crate::contact::compliances::Compliances;
 use crate::contact::drawn::DrawnFlanks;
@@ -18,6 +20,7 @@ use crate::contact::positions::{PositionsError, contacts};
 use crate::contact::{MeshContact, PairModel};
 use crate::gear::Member;
 use crate::ring::blank::BlankSubstructure;
+use crate::ring::plain::PlainGear;
 use crate::run::Run;
 
 /// Providers of parts: one that makes them all ([`MakeAll`]), and one that keeps parts made before ([`crate::library::Library`]).
@@ -42,6 +45,20 @@ pub trait Parts: Sync {
         spec.make(run).map(Arc::new)
     }
 
+    /// The gear without holes of `spec`, whose `teeth` and whose `blank` are those of the spec.
+    ///
+    /// # Errors
+    ///
+    /// [`PartError`].
+    fn plain_gear(
+        &self,
+        _spec: &PlainGearSpec,
+        (teeth, blank): (&Teeth, &BlankSubstructure),
+        run: &Run,
+    ) -> Result<Arc<PlainGear>, PartError> {
+        Ok(Arc::new(PlainGear::new(&teeth.ring, blank, run)?))
+    }
+
     /// The gears that are `wanted`, all unlike, in their order. They are asked for together, because they may share teeth and
     /// blanks.
     ///
@@ -52,15 +69,13 @@ pub trait Parts: Sync {
         make_gears(wanted, self, run)
     }
 
-    /// How the gear of `spec` answers to its rotation.
+    /// Response of the gear of `spec` to its rotation.
     ///
     /// # Errors
     ///
     /// [`PartError`].
     fn spun(&self, spec: &SpunSpec, run: &Run) -> Result<Arc<Spun>, PartError> {
-        let teeth = self.teeth(spec.teeth(), run)?;
-        let solid = spec.solid().map(|solid| self.blank(&solid, run));
-        spec.make(teeth, solid.transpose()?, run).map(Arc::new)
+        make_spun(spec, self, run).map(Arc::new)
     }
 
     /// Compliance of a solid gear's flanks without holes.
@@ -82,7 +97,7 @@ pub trait Parts: Sync {
         spec.make(plain, run).map(Arc::new)
     }
 
-    /// How the roots of a solid gear are stressed, of which `spec` says all but the holes.
+    /// Stresses at the roots of a solid gear, of which `spec` says all but the holes.
     ///
     /// # Errors
     ///
@@ -92,7 +107,7 @@ pub trait Parts: Sync {
         FaceRoots::new(spec, &plain, run).map(Arc::new)
     }
 
-    /// How the edges of the holes of a solid gear are stressed; `None` if it has none.
+    /// Stresses at the edges of the holes of a solid gear; `None` if it has none.
     ///
     /// # Errors
     ///
@@ -154,33 +169,72 @@ pub fn make_gears<P: Parts + ?Sized>(
         .iter()
         .map(|gear| (gear.member, gear.spec.teeth.clone()))
         .collect();
-    let blanks: Vec<_> = wanted
+    let plain: Vec<_> = wanted
         .iter()
-        .flat_map(|gear| {
-            gear.spec
-                .blanks()
-                .into_iter()
-                .map(|blank| (gear.member, blank))
-        })
+        .filter_map(|gear| Some((gear.member, gear.spec.plain()?)))
         .collect();
-    // No part needs another. Teeth come first: they take longest.
+    let of_plain = plain
+        .iter()
+        .map(|(member, spec)| (*member, spec.blank.clone()));
+    let holed = wanted.iter().filter_map(|gear| {
+        let under = gear.spec.blank.as_ref()?;
+        Some((gear.member, under.holed()?.clone()))
+    });
+    let blanks: Vec<_> = of_plain.chain(holed).collect();
+    // Neither needs the other. Teeth come first: they take longest.
     let (teeth, blanks) = rayon::join(
         || made(&teeth, |spec| parts.teeth(spec, run)),
         || made(&blanks, |spec| parts.blank(spec, run)),
     );
-    let mut blanks = blanks?.into_iter();
-    let blanks: Vec<Vec<_>> = wanted
+    let (teeth, blanks) = (teeth?, blanks?);
+    let of_flexible = wanted.iter().zip(&teeth);
+    let of_flexible = of_flexible.filter(|(gear, _)| gear.spec.blank.is_some());
+    let of_flexible: Vec<_> = of_flexible.map(|(_, teeth)| teeth).zip(&blanks).collect();
+    let plain = made(&plain, |spec| {
+        let first = plain.iter().position(|(_, known)| known == spec);
+        let (teeth, blank) = of_flexible[first.unwrap_or_default()];
+        parts.plain_gear(spec, (teeth, blank), run)
+    })?;
+    let mut holed = blanks.into_iter().skip(plain.len());
+    let mut plain = plain.into_iter();
+    let under: Vec<_> = wanted
         .iter()
-        .map(|gear| blanks.by_ref().take(gear.spec.blanks().len()).collect())
+        .map(|gear| {
+            let under = gear.spec.blank.as_ref();
+            let plain = under.and_then(|_| plain.next());
+            (
+                plain,
+                under.and_then(|under| under.holed().and_then(|_| holed.next())),
+            )
+        })
         .collect();
-    (wanted, teeth?, blanks)
+    (wanted, teeth, under)
         .into_par_iter()
         .with_max_len(1)
-        .map(|(gear, teeth, blanks)| {
-            let joined = gear.spec.join(&teeth, &blanks, run);
+        .map(|(gear, teeth, (plain, holed))| {
+            let joined = gear
+                .spec
+                .join(&teeth, plain.as_deref(), holed.as_deref(), run);
             joined.map(Arc::new).map_err(|error| error.of(gear.member))
         })
         .collect()
+}
+
+/// Makes the answer of a gear to its rotation from the parts of `parts`.
+///
+/// # Errors
+///
+/// [`PartError`].
+pub fn make_spun<P: Parts + ?Sized>(
+    spec: &SpunSpec,
+    parts: &P,
+    run: &Run,
+) -> Result<Spun, PartError> {
+    let teeth = parts.teeth(spec.teeth(), run)?;
+    let plain = spec.plain();
+    let blank = parts.blank(&plain.blank, run)?;
+    let plain = parts.plain_gear(&plain, (&teeth, &blank), run)?;
+    spec.make(&teeth, &plain, run)
 }
 
 /// The parts of `wanted`, in its order, made by `make` in parallel; equal ones are made once, for the gear that comes first.

@@ -1,19 +1,18 @@
 //! A gear that rotates, or is pressed onto a shaft: how its flanks stand out, and how its edges are stressed.
 //!
-//! The pull of rotation and the misfit of a shaft are loads inside the gear that all teeth, and all sectors of the blank, bear alike. With
+//! The pull of rotation and the misfit of a shaft are loads inside the gear, the same in all teeth and in all sectors of the blank. With
 //! the interface circle held each of them is one more right-hand side on the factor of its grid; then the circle moves by q = C f.
-
-use std::sync::Arc;
 
 use faer::Mat;
 
-use super::{BlankSpec, BlankUnderTeeth, GearSpec, PartError, Probes, Teeth, TeethSpec};
+use super::{BlankUnderTeeth, GearSpec, PartError, PlainGearSpec, Probes, Teeth, TeethSpec};
 use crate::fem::centrifugal::centrifugal;
 use crate::fem::recovery::{Functional, edge_stresses};
 use crate::gear::{Core, Material, Vector};
 use crate::grid::BlankGrid;
-use crate::ring::blank::{BlankLoad, BlankLoads, BlankRecovery, BlankSubstructure, Hold};
+use crate::ring::blank::{BlankLoad, BlankLoads, BlankRecovery, Hold};
 use crate::ring::motion::InterfaceMotion;
+use crate::ring::plain::PlainGear;
 use crate::ring::teeth_loads::TeethLoads;
 use crate::ring::teeth_recovery::TeethRecovery;
 use crate::ring::tooth::ToothSubstructure;
@@ -66,25 +65,21 @@ impl SpunSpec {
         })
     }
 
-    /// Its teeth.
-    pub fn teeth(&self) -> &TeethSpec {
+    /// The teeth.
+    pub(super) fn teeth(&self) -> &TeethSpec {
         &self.teeth
     }
 
-    /// The solid blank that its highest orders find, where they do.
-    pub fn solid(&self) -> Option<BlankSpec> {
-        self.under.solid()
+    /// The gear without holes.
+    pub(super) fn plain(&self) -> PlainGearSpec {
+        self.under.plain(&self.teeth)
     }
 
-    /// Makes it of its `teeth` and of the `solid` blank that its highest orders find.
-    ///
-    /// # Errors
-    ///
-    /// [`PartError`].
-    pub fn make(
+    /// Makes it of its `teeth` and of the `plain` gear that it is without holes.
+    pub(super) fn make(
         &self,
-        teeth: Arc<Teeth>,
-        solid: Option<Arc<BlankSubstructure>>,
+        teeth: &Teeth,
+        plain: &PlainGear,
         run: &Run,
     ) -> Result<Spun, PartError> {
         run.check()?;
@@ -113,8 +108,8 @@ impl SpunSpec {
             under
                 .spec
                 .make_loaded(&grid, self.hold, &probes.in_blank, &loads, run)?;
-        let solid = solid.as_deref();
-        let motion = InterfaceMotion::new(&teeth.ring, &blank, under.hole_angle, solid, run)?;
+        let holed = Some((&blank, under.hole_angle));
+        let motion = InterfaceMotion::new(&teeth.ring, plain, holed, run)?;
 
         let flank = gear.flank();
         let answer = |load: usize| {

@@ -304,7 +304,7 @@ impl NearHoles {
     }
 }
 
-/// The unknowns that holes of `section` couple in `orders` of so many unknowns an amplitude: all at once where they do not repeat as teeth do. Without a
+/// The unknowns that holes of `section` couple in `orders`, at a given number of unknowns an amplitude: all at once where they do not repeat as teeth do. Without a
 /// pattern all amplitudes of the circles of a holed part are condensed together.
 pub(super) fn unknowns_of_holes(
     section: &SpurGear,
@@ -327,7 +327,7 @@ pub(super) fn repeats_of(section: &SpurGear) -> usize {
     gcd(section.tooth_count(), section.hole_repeats().max(1)) as usize
 }
 
-/// The functions across each of `layers`, no two of which that meet are alike in width: one polynomial, or pieces that are broken at the faces of
+/// The functions across each of `layers`, where no two layers that meet are equal in width: one polynomial, or pieces that are broken at the faces of
 /// the parts above and below that end within it.
 fn functions_across(
     gear: &SolidGear,
@@ -357,7 +357,7 @@ fn functions_across(
     layers.iter().enumerate().map(of).collect()
 }
 
-/// How the parts under the teeth give way to them.
+/// Compliance of the parts under the teeth.
 #[derive(Debug)]
 pub(crate) struct StackStiffness {
     /// The stiffness of each order 0 … M on the interface circle, without holes.

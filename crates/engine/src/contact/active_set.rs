@@ -270,7 +270,7 @@ impl<'a> Trial<'a> {
         (0..points).filter(|&point| touching[point]).collect()
     }
 
-    /// Lets one end of a row of so many touching points leap; `point(k)` is the one k outward from the last of the row.
+    /// Moves one end of a row of a given number of touching points by a larger step; `point(k)` is the one k outward from the last of the row.
     ///
     /// Held over a half width b where it would be a, the contact of a parabola presses as (a² + b² − 2 x²)/√(b² − x²): it pulls beyond the x_0 at
     /// which that changes sign, and if b is too small bodies penetrate deepest there. Newton's own end would halve the way to a, or leap too far.

@@ -18,7 +18,7 @@ const MOST_CORE_BYTES: usize = 36 << 20;
 
 /// Specification of the compliance of a model's cells.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub(super) struct StatedCells {
+pub(super) struct ComplianceKey {
     /// The pairs, numbered from the reference pair of the mesh period, and their cells.
     pub(super) pairs: Vec<(i64, CellsSpec)>,
     /// How the blanks stand under their teeth.
@@ -28,19 +28,13 @@ pub(super) struct StatedCells {
 /// The compliances of one model and the factors of cores; shared between threads.
 #[derive(Debug)]
 pub struct Compliances {
-    stated: Memo<StatedCells, NumberedCompliance>,
+    assembled: Memo<ComplianceKey, CachedCompliance>,
     cores: Arc<Cores>,
     count: AtomicU64,
 }
 
 /// Factors of cores by the number of the compliance, and the blocks.
 type Cores = Memo<(u64, Vec<usize>), Option<Core>>;
-
-#[derive(Debug)]
-struct NumberedCompliance {
-    number: u64,
-    compliance: Arc<Mat<f64>>,
-}
 
 /// A compliance whose factors are kept.
 #[derive(Debug, Clone)]
@@ -53,8 +47,8 @@ pub(super) struct CachedCompliance {
 impl Default for Compliances {
     fn default() -> Self {
         Self {
-            stated: Memo::new(MOST_BYTES, |known| {
-                size_of::<NumberedCompliance>() + size_of::<f64>() * entries(&known.compliance)
+            assembled: Memo::new(MOST_BYTES, |known| {
+                size_of::<CachedCompliance>() + size_of::<f64>() * entries(&known.compliance)
             }),
             cores: Arc::new(Memo::new(MOST_CORE_BYTES, |core| {
                 size_of::<Core>() + core.as_ref().map_or(0, Core::bytes)
@@ -67,24 +61,21 @@ impl Default for Compliances {
 impl Compliances {
     /// About how much memory is used, in bytes.
     pub fn bytes(&self) -> usize {
-        size_of::<Self>() + self.stated.bytes() + self.cores.bytes()
+        size_of::<Self>() + self.assembled.bytes() + self.cores.bytes()
     }
 
     /// The compliance of `cells`, made if it is not there.
     pub(super) fn get(
         &self,
-        cells: StatedCells,
+        cells: ComplianceKey,
         make: impl FnOnce() -> Mat<f64>,
     ) -> CachedCompliance {
-        let numbered = self.stated.get(cells, |_| NumberedCompliance {
-            number: self.count.fetch_add(1, Ordering::Relaxed),
+        let cached = self.assembled.get(cells, |_| CachedCompliance {
             compliance: Arc::new(make()),
-        });
-        CachedCompliance {
-            compliance: Arc::clone(&numbered.compliance),
-            number: numbered.number,
+            number: self.count.fetch_add(1, Ordering::Relaxed),
             cores: Arc::clone(&self.cores),
-        }
+        });
+        CachedCompliance::clone(&cached)
     }
 }
 

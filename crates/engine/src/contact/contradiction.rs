@@ -2,7 +2,7 @@
 
 use super::MeshContact;
 
-/// The largest penetration, as a part of the deflection; a penetration up to so many meters is allowed at any load.
+/// The largest penetration, as a part of the deflection, and the penetration in meters that is allowed at any load.
 const MOST_PENETRATION: (f64, f64) = (0.1, 1e-8);
 
 /// The largest deflection, as a part of the module: beyond it displacements are not small against the teeth.

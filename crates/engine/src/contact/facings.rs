@@ -9,10 +9,10 @@ use crate::touch::facing::{
 };
 use crate::touch::placement::{self, Pose, Section};
 
-/// Pairs whose teeth deviate are placed as drawn at the nearest of so many phases a mesh period.
+/// Phases a mesh period, at the nearest of which pairs whose teeth deviate are placed as drawn.
 const PHASES: f64 = 64.0;
 
-/// An eccentricity moves contacts by no more than so many times itself: the common tangent of the base circles turns, and cot α_w is 4 at
+/// Largest movement of contacts by an eccentricity, as a multiple of it: the common tangent of the base circles turns, and cot α_w is 4 at
 /// the most.
 const MOST_RUNOUT: f64 = 2.0;
 

@@ -58,7 +58,7 @@ pub(super) fn core_of(set: &[usize]) -> Vec<usize> {
 }
 
 impl Core {
-    /// That of the `blocks` of `compliance`; `None` where it is not positive definite.
+    /// Factor of the `blocks` of `compliance`; `None` where it is not positive definite.
     pub(super) fn new(compliance: &Mat<f64>, blocks: &[usize]) -> Option<Self> {
         let points = blocks
             .iter()
@@ -101,7 +101,7 @@ impl Core {
         })
     }
 
-    /// How much memory it may come to take beside itself, in bytes.
+    /// Largest memory that it can take beside itself, in bytes.
     pub(super) fn bytes(&self) -> usize {
         let beside = self.beside.len() - self.points.len();
         size_of::<f64>() * (self.factor.entries.len() + self.points.len() * (1 + beside))
@@ -119,7 +119,7 @@ impl Core {
 }
 
 impl Factor {
-    /// That of the rising points `set` of `compliance`, of which `core` is the core; `None` where it is not positive definite.
+    /// Factor of the rising points `set` of `compliance`, of which `core` is the core; `None` where it is not positive definite.
     pub(super) fn new(
         compliance: &Mat<f64>,
         set: &[usize],

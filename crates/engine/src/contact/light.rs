@@ -26,7 +26,7 @@ pub(super) struct FirstTouch {
 }
 
 impl FirstTouch {
-    /// That of the flanks of `pair` as they face each other in a transverse section, `delta` that at which they touch.
+    /// First contact of the flanks of `pair` in a transverse section, at the δ `delta`.
     pub(super) fn of(pair: i64, facing: &Facing, delta: f64) -> Self {
         Self {
             pair,
@@ -72,7 +72,7 @@ pub fn light_contact(
 }
 
 impl MeshContact {
-    /// That of pairs which just touch at `transmission_error`, each perhaps with the tip corner of a gear.
+    /// Contact of pairs which just touch at `transmission_error`, each perhaps with the tip corner of a gear.
     pub fn unloaded(transmission_error: f64, touching: Vec<(i64, Option<Member>)>) -> Self {
         let share = 1.0 / touching.len() as f64;
         let pairs = touching.into_iter().map(|(pair, tip_corner)| PairContact {
@@ -88,7 +88,7 @@ impl MeshContact {
         }
     }
 
-    /// That of the pairs of `touches` which touch first, or within `rounding` of it, at the δ `lag` more than they say.
+    /// Contact of the pairs of `touches` which touch first, or within `rounding` of it, at the δ `lag` more than they say.
     ///
     /// # Errors
     ///
@@ -136,7 +136,7 @@ pub(super) fn touching_near(
     touch: impl Fn(i64) -> Option<FirstTouch>,
 ) -> Vec<FirstTouch> {
     let mut found: Vec<FirstTouch> = on_path.clone().filter_map(&touch).collect();
-    // Beyond the path of contact gaps as drawn grow from pair to pair, and a lag closes all of them about alike.
+    // Beyond the path of contact gaps as drawn grow from pair to pair, and a lag closes all of them by about the same amount.
     let most = |found: &[FirstTouch]| {
         let least = first(found);
         least + 0.1 * least.abs() + apart

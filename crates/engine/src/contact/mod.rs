@@ -8,7 +8,7 @@
 //! - `compliances` and `factor`: stored data of pairs made to one drawing, for any deviations of their teeth,
 //! - `facings` and `cells`: the pairs that come near with the deviations of the teeth that stand there, and the cells of all of them; H on them, and the
 //!   summary of their solution,
-//! - `stage`: one fraction of the mesh period, from placing the cells to a solution that nothing penetrates,
+//! - `mesh_phase`: one fraction of the mesh period, from placing the cells to a solution that nothing penetrates,
 //! - `light`: its limit as the load vanishes,
 //! - `pressures`: the contact of each pair in plane strain, and `peak`: the place of the largest pressure; `mesh_contact`: the summary of a solved contact,
 //! - `checked` and `penetration`: the check of the whole flanks that proves that nothing penetrates; `contradiction`: the checks of a solution against its own
@@ -47,6 +47,7 @@ mod factor;
 mod light;
 mod memo;
 pub(crate) mod mesh_contact;
+pub(crate) mod mesh_phase;
 pub(crate) mod model;
 pub(crate) mod pair_cells;
 pub(crate) mod patch;
@@ -55,7 +56,6 @@ mod penetration;
 pub mod positions;
 mod pressures;
 mod problem;
-pub(crate) mod stage;
 
 pub use active_set::solve_active_set;
 pub use augmented_lagrangian::{AugmentedLagrangian, default_penalty, solve_augmented_lagrangian};
@@ -64,7 +64,7 @@ pub use contradiction::Contradiction;
 pub(crate) use coupled::add_yielded;
 pub use light::light_contact;
 pub use mesh_contact::{FlankLoad, MeshCells, MeshContact, PairContact, PairLoads};
+pub use mesh_phase::MeshPhase;
 pub use model::{ContactSolver, DeviatingPair, GearModel, PairModel, PositionError, WarmStart};
 pub use peak::PeakPlace;
 pub use problem::{ContactError, ContactProblem, ContactQuantity, ContactSolution};
-pub use stage::Stage;

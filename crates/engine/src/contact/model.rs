@@ -34,7 +34,7 @@ pub enum ContactSolver {
 pub struct GearModel {
     /// The flank of every tooth.
     pub flank: Arc<FlankTable>,
-    /// How loaded teeth move each other.
+    /// Compliance between loaded teeth.
     pub coupling: Arc<Coupling>,
 }
 

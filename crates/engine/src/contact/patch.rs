@@ -17,7 +17,7 @@ use crate::touch::placement::Pose;
 /// that a relief shifts still fits.
 const CORE: f64 = 1.25;
 
-/// No core reaches where the gap has risen by more than so many times c F: a parabola has risen by half of that at the end of its contact, a
+/// Largest rise of the gap within a core, in c F: a parabola has risen by half of that at the end of its contact, a
 /// tilted corner by twice.
 const MOST_RISE: f64 = 2.5;
 
@@ -365,7 +365,7 @@ impl Patch {
         !ends && kinks.all(|kink| *kink < from - beside || *kink > to + beside)
     }
 
-    /// The largest of the `pressures` of `active` cells at least half a contact's width away from kinks, where contacts are so many times as wide
+    /// The largest of the `pressures` of `active` cells at least half a contact's width away from kinks, where contacts are `times` as wide
     /// as these cells; 0 where there is none.
     pub(super) fn smooth_pressure(&self, pressures: &[f64], active: &[bool], times: f64) -> f64 {
         let kinks: Vec<f64> = self.kinks.iter().map(|kink| self.along(*kink)).collect();
@@ -559,7 +559,7 @@ const SLIVER: f64 = 1e-3;
 /// Nor narrower than this part of its distance from a kink.
 const NARROW: f64 = 0.2;
 
-/// Within so many widths of a kink, cells end only where the division about the kink says.
+/// Distance from a kink, in widths, within which cells end only where the division about the kink says.
 const BESIDE: f64 = 1.3;
 
 /// How often cells are halved towards a kink, where pressure grows with the logarithm of the distance from it.
@@ -641,7 +641,7 @@ fn ending_at_kinks([from, to]: [f64; 2], width: f64, facing: &Facing) -> Vec<f64
     ends
 }
 
-/// The ends of cells on both sides of `place`, from `width` off it, halved so many times towards it.
+/// The ends of cells on both sides of `place`, from `width` off it, halved a given number of times towards it.
 fn halved_about(place: f64, width: f64, times: u32) -> impl Iterator<Item = f64> {
     let parts = (0..=times).map(move |i| width * 0.5_f64.powi(i as i32));
     parts.flat_map(move |part| [place - part, place + part])

@@ -1,4 +1,4 @@
-//! How hard flanks press on each other at most, and where.
+//! Largest pressure between flanks, and its place.
 
 /// The place of the largest pressure of a mesh at one position. Lengths are in meters.
 #[derive(Debug, Clone, Copy, PartialEq)]

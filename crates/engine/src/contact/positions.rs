@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::{
-    ContactCells, ContactSolution, DeviatingPair, MeshContact, PositionError, Stage, WarmStart,
+    ContactCells, ContactSolution, DeviatingPair, MeshContact, MeshPhase, PositionError, WarmStart,
 };
 use crate::run::{Run, Stopped};
 
@@ -94,18 +94,18 @@ fn chunk_of(
 ) -> Result<(), PositionsError> {
     let mut first = WarmStart::default();
     for (fraction, places) in chunk {
-        // Each stage starts from the one before it, and each further period of a stage from the last period.
+        // Each phase starts from the one before it, and each further period of a phase from the last period.
         let at = |error, mesh_position| PositionsError::At {
             mesh_position,
             error,
         };
-        let mut stage = Stage::new(deviating, *fraction, load)
+        let mut phase = MeshPhase::new(deviating, *fraction, load)
             .map_err(|error| at(error, positions[places[0]]))?;
         let mut warm = first.clone();
         for &place in places {
             let eta = positions[place];
             let period = (eta - fraction).round() as i64;
-            let solved = stage.contact_with(period, &mut warm, |contact, cells, solution| {
+            let solved = phase.contact_with(period, &mut warm, |contact, cells, solution| {
                 each(place, contact, cells, solution);
             });
             solved.map_err(|error| at(error, eta))?;

@@ -21,7 +21,7 @@ use super::peak::Peak;
 use super::{ContactProblem, ContactSolution, PeakPlace, PositionError};
 use crate::gear::{GearPair, Member, PlaneState};
 
-/// How a pair of teeth is pressed, of which no sharp corner carries.
+/// Pressure on a pair of teeth of which no sharp corner carries.
 pub(super) struct PairPressures {
     /// The largest pressure.
     pub(super) peak: Peak,
@@ -101,7 +101,7 @@ fn pressures(patch: &Patch, forces: &[f64], one: f64) -> Vec<f64> {
 }
 
 impl Patch {
-    /// How the pair `n` is pressed by these `pressures` on `active` cells, where contacts are so many `times` as wide as those.
+    /// Pressure of the pair `n` from the `pressures` on `active` cells, where contacts are `times` as wide as those.
     fn pressed(&self, n: i64, pressures: &[f64], active: &[bool], times: f64) -> PairPressures {
         let each = pressures.iter().copied().enumerate();
         let (i, pressure) = each.fold(

@@ -90,7 +90,7 @@ impl AxialBasis {
         self.mixed(&self.plain(z).1)
     }
 
-    /// A rule over the width, piece by piece, of so many points a piece: heights and weights.
+    /// A rule over the width with the given number of points a piece: heights and weights.
     pub fn rule(&self, count: usize) -> Vec<(f64, f64)> {
         rule(&self.breaks, count)
     }
@@ -179,7 +179,7 @@ impl AxialBasis {
     }
 }
 
-/// A rule of so many points a piece between each two of `ends`: places and weights.
+/// A rule with the given number of points between each two of `ends`: places and weights.
 fn rule(ends: &[f64], count: usize) -> Vec<(f64, f64)> {
     let rule = gauss_legendre(count);
     let pieces = ends.windows(2);

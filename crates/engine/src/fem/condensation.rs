@@ -220,7 +220,7 @@ pub(super) mod tests {
         part(&b, &b) - part(&b, &i) * solved
     }
 
-    fn assert_alike(schur: &Mat<f64>, dense: &DMatrix<f64>) {
+    fn assert_equal(schur: &Mat<f64>, dense: &DMatrix<f64>) {
         assert_eq!(
             (schur.nrows(), schur.ncols()),
             (dense.nrows(), dense.ncols())
@@ -238,7 +238,7 @@ pub(super) mod tests {
         let grid = patch();
         let kept = [20, 0, 7, 4, 12];
         let schur = alone(&grid, &kept, &[]).expect("a sound grid");
-        assert_alike(&schur, &dense_schur(&grid, &kept, &[]));
+        assert_equal(&schur, &dense_schur(&grid, &kept, &[]));
         // It floats: a translation and a rotation of the kept nodes cost nothing.
         let scale = schur[(0, 0)];
         for i in 0..schur.nrows() {
@@ -260,7 +260,7 @@ pub(super) mod tests {
         let grid = patch();
         let (kept, fixed) = ([18, 20, 3], [0, 1, 2]);
         let schur = alone(&grid, &kept, &fixed).expect("a sound grid");
-        assert_alike(&schur, &dense_schur(&grid, &kept, &fixed));
+        assert_equal(&schur, &dense_schur(&grid, &kept, &fixed));
     }
 
     #[test]

@@ -14,6 +14,7 @@ use crate::run::{Run, Stopped};
 const PANEL: usize = 256;
 
 /// The lower Cholesky factor of a Hermitian positive definite matrix, of which the lower triangle is read.
+#[derive(Debug)]
 pub(crate) struct Cholesky<T: ComplexField>(Mat<T>);
 
 impl<T: ComplexField> Cholesky<T> {

@@ -46,7 +46,7 @@ pub(super) struct FactorSize {
 }
 
 impl FactorSize {
-    /// That of the matrix of `elements`; `None` if it cannot be ordered.
+    /// Factor of the matrix of `elements`; `None` if it cannot be ordered.
     pub(super) fn of(elements: &[Element], numbering: &Numbering) -> Option<Self> {
         let matrix = BlockMatrix::new(1, elements, numbering);
         let order = matrix.fill_reducing_order(numbering.interior).ok()?;

@@ -636,7 +636,7 @@ mod tests {
 
     #[test]
     fn a_twisted_bar_is_as_stiff_in_tension_bending_and_torsion_as_its_closed_form() {
-        // The same motions of the material, whose section turns: the moments of a square are alike in all directions. The
+        // The same motions of the material, whose section turns: the moments of a square are equal in all directions. The
         // energies of bending and tension are those of free sides; that of torsion is of sections that stay plane.
         let grid = square();
         let side = 8e-3_f64;
@@ -667,7 +667,7 @@ mod tests {
     }
 
     #[test]
-    fn even_and_odd_motions_of_a_straight_body_are_told_apart_and_make_the_same_of_it() {
+    fn even_and_odd_motions_of_a_straight_body_are_separated_and_give_the_same_result() {
         let grid = square();
         let axial = AxialBasis::new(&[-7e-3, 13e-3], 4);
         // A turn that nobody feels keeps them together.

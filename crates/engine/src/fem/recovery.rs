@@ -198,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ring_that_grows_is_strained_alike_all_around() {
+    fn the_strain_of_a_growing_ring_is_axisymmetric() {
         let count = 24;
         let at = |i: i32| {
             let angle = std::f64::consts::TAU * f64::from(i) / f64::from(count);

@@ -280,7 +280,7 @@ fn above(size: usize) -> usize {
     size * size.saturating_sub(1) / 2
 }
 
-/// Nodes whose displacements follow unknowns that take their place: u_i = Σ_j w_ij a_j, alike for each unknown of a node.
+/// Nodes whose displacements follow unknowns that take their place: u_i = Σ_j w_ij a_j, with the same weights for each unknown of a node.
 #[derive(Debug, Clone)]
 pub struct Followers<'a> {
     /// The nodes.
@@ -382,7 +382,7 @@ impl Numbering {
 mod tests {
     use super::*;
 
-    /// The matrix of two elements with so many unknowns at each node, entry by entry, and the same by adding up.
+    /// The matrix of two elements with the given number of unknowns a node, entry by entry, and the same by adding up.
     fn assembled(size: usize) {
         let elements = [
             Element::triangle([0, 1, 2, 3, 4, 5]),

@@ -70,7 +70,7 @@ impl SurfaceStress {
 }
 
 impl Surface {
-    /// That of `prism` over `edges`: corners and midsides in turn, beginning with a corner; closed ones without their first node again.
+    /// Stress of `prism` over `edges`: corners and midsides in turn, beginning with a corner; closed ones without their first node again.
     pub(crate) fn new(prism: &Prism<'_>, edges: &[&[u32]], closed: bool) -> Self {
         let mut nodes = Vec::new();
         for (edge, numbers) in edges.iter().enumerate() {

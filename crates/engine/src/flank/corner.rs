@@ -12,7 +12,8 @@ use faer::Mat;
 use super::half_plane::logarithm_factor;
 use crate::gear::{SpurGear, Vector, radial, tangential};
 
-/// Nodes between the corner and the distance d from which the table is trusted: seven elements.
+/// Nodes between the corner and the distance d from which the table is trusted: seven elements. On a flank shorter than 4 d, the largest distance
+/// that is read, d is a quarter of the flank.
 const TRUSTED_FROM: usize = 14;
 
 /// Places of the ratio t = (y − x)/(x + y), from −1 to 1, at which R is tabulated.
@@ -39,8 +40,10 @@ impl Corner {
         factor: f64,
         smooth: impl Fn(f64, f64) -> [[f64; 2]; 2],
     ) -> Self {
-        let tip = arcs[arcs.len() - 1];
-        let trusted = tip - arcs[arcs.len() - 1 - TRUSTED_FROM];
+        let last = arcs.len() - 1;
+        let tip = arcs[last];
+        let trusted = tip - arcs[last.saturating_sub(TRUSTED_FROM)];
+        let trusted = trusted.min(0.25 * (tip - arcs[0]));
         let mut growth = apex_compliance(gear);
         growth[0][0] -= factor;
         growth[1][1] -= factor;

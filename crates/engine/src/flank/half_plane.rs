@@ -41,7 +41,7 @@ pub struct NearField {
 }
 
 impl NearField {
-    /// That of `gear` about the roll length `s`, pressed over the width `common_width`.
+    /// Half plane of `gear` about the roll length `s`, pressed over the width `common_width`.
     pub fn new(gear: &SpurGear, s: f64, common_width: f64) -> Self {
         let (e, nu) = (
             gear.material().youngs_modulus,

@@ -239,7 +239,7 @@ mod tests {
 
     #[test]
     fn lines_yield_to_each_other_by_their_distances() {
-        // Summed over so many points that those of two lines are near each other nowhere.
+        // Summed over enough points that those of two lines are near each other nowhere.
         let gear = gear(0.4);
         for axial in [
             AxialBasis::new(&[-10e-3, 10e-3], 8),

@@ -1,4 +1,4 @@
-//! How far teeth may deviate: the tolerances of ISO 1328-1:2013, and teeth drawn at random within them.
+//! Tolerances of teeth: those of ISO 1328-1:2013, and teeth drawn at random within them.
 
 use std::f64::consts::{PI, TAU};
 
@@ -97,7 +97,7 @@ impl Tolerances {
 }
 
 impl Tolerances {
-    /// How far the leads of so many teeth slope, of independent σ = f_HβT/(3 c); one of `normals` for each.
+    /// Slopes of the leads of teeth, of independent σ = f_HβT/(3 c); one of `normals` for each.
     pub fn draw_lead_slopes(
         &self,
         tooth_count: u32,
@@ -121,7 +121,7 @@ pub struct Inspection {
     normal: f64,
 }
 
-/// A gear that has passed, and so many gears that were made for it.
+/// A gear that has passed, and the number of gears that were made for it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Passed {
     /// Deviations of its teeth.
@@ -134,7 +134,7 @@ impl Inspection {
     /// Maximum number of gears drawn for one. Where one in a hundred passes, all of them fail two times of a thousand millions.
     pub const MOST_ATTEMPTS: u32 = 2000;
 
-    /// That of `gear` in a class of [`CLASSES`].
+    /// Tolerances of `gear` in a class of [`CLASSES`].
     pub fn of(gear: &SpurGear, class: u32) -> Self {
         let pressure_angle = gear.data().rack.pressure_angle;
         let at_reference = gear.base_radius() * pressure_angle.tan();

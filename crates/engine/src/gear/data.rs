@@ -132,7 +132,7 @@ pub enum GearError {
     ProtuberanceHeight {
         /// The height asked for, from the hob's tip line.
         height: f64,
-        /// That of a flank that stands upright, or of the place where the rounding comes out of the hob's flank.
+        /// Height of a flank that stands upright, or of the place where the rounding comes out of the hob's flank.
         least: f64,
         /// The dedendum.
         largest: f64,

@@ -1,4 +1,4 @@
-//! How the teeth of a gear deviate from each other, and their circle from the axis of rotation.
+//! Deviations of the teeth of a gear from each other, and of their circle from the axis of rotation.
 
 use std::f64::consts::PI;
 
@@ -39,7 +39,7 @@ pub struct ToothLeads {
 pub struct ToothDeviations {
     /// The cumulative pitch deviation F_p of each loaded flank, tooth 0 first: a transverse arc on the reference circle (ISO 1328-1).
     pub cumulative_pitch: Vec<f64>,
-    /// That of each other flank, positive in the same sense of rotation. Empty: each tooth is displaced as a whole. Its mean has no meaning: that of
+    /// Deviation of each other flank, positive in the same sense of rotation. Empty: each tooth is displaced as a whole. Its mean has no meaning: that of
     /// the loaded flanks takes its place, because the drawing says how thick teeth are in the mean.
     pub other_cumulative_pitch: Vec<f64>,
     /// The profile slope deviation f_Hα of each loaded flank: nothing at the form circle, this at the tip circle.
@@ -79,11 +79,11 @@ impl ToothDeviations {
 
     /// True if every tooth stands as drawn, about the axis of rotation. Of a gear that has been checked.
     pub fn is_none(&self) -> bool {
-        self.are_teeth_alike() && self.eccentricity.is_none()
+        self.are_teeth_equal() && self.eccentricity.is_none()
     }
 
     /// True if no flank deviates. Of a gear that has been checked.
-    pub fn are_teeth_alike(&self) -> bool {
+    pub fn are_teeth_equal(&self) -> bool {
         self.cumulative_pitch.is_empty()
             && self.other_cumulative_pitch.is_empty()
             && self.profile_slope.is_empty()

@@ -1,4 +1,4 @@
-//! Which of two gears.
+//! The place of a gear in its pair.
 
 /// One of the two gears of a pair.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

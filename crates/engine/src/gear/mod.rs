@@ -73,7 +73,7 @@ pub(crate) fn turned(vector: Vector, angle: f64) -> Vector {
     vector.x * radial(angle) + vector.y * tangential(angle)
 }
 
-/// The greatest common divisor: a turn that two counts divide evenly repeats so many times.
+/// The greatest common divisor.
 pub(crate) fn gcd(a: u32, b: u32) -> u32 {
     if b == 0 { a } else { gcd(b, a % b) }
 }

@@ -2,7 +2,7 @@
 
 use super::Involute;
 
-/// How a relief grows from its start to its end.
+/// Shape of a relief from its start to its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ReliefShape {
     /// In proportion to the radius.

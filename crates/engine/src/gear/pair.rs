@@ -468,7 +468,7 @@ impl GearPair {
         PairDeviations::of([&self.driving, &self.driven], teeth)
     }
 
-    /// The number of mesh periods after which `member` stands alike again: Z/gcd(Z, N) with holes that repeat N times, 1 without, Z where its teeth
+    /// The number of mesh periods after which `member` stands in an equal position again: Z/gcd(Z, N) with holes that repeat N times, 1 without, Z where its teeth
     /// deviate.
     pub fn period_of(&self, member: Member) -> u32 {
         let gear = self.gear(member);

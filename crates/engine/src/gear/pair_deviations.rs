@@ -21,7 +21,7 @@ pub struct GearDeviations {
     profiles: Option<Profiles>,
     /// Removal by the trace of each lead. Empty where there are none.
     leads: Vec<LeadModification>,
-    /// The growth of each flank along the face, less its mean, as removal. Empty where flanks grow alike along their faces.
+    /// The growth of each flank along the face, less its mean, as removal. Empty where the growth of flanks is constant along their faces.
     grown: Vec<LeadModification>,
     /// The roll lengths between which a profile slope deviation grows from nothing to all of it.
     ends: [f64; 2],
@@ -269,7 +269,7 @@ impl Trace<'_> {
     }
 }
 
-/// How the loaded flanks of a gear that runs stand out beyond its drawing: along the normal, linear in the roll length, with a variation along the face that is the
+/// Distance of the loaded flanks of a running gear from its drawing: along the normal, linear in the roll length, with a variation along the face that is the
 /// same at all roll lengths. Empty lists are no growth.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct FlankGrowth {

@@ -22,7 +22,7 @@ pub struct Rack {
     pub protuberance: Option<Protuberance>,
 }
 
-/// How a hob that cuts before grinding differs from the rack of the ground flanks. Lengths are in meters.
+/// Difference of a hob that cuts before grinding from the rack of the ground flanks. Lengths are in meters.
 ///
 /// Its flank stands back by the stock q for grinding, and is parallel to that of the rack. From the height h above its tip line down a straight flank leads to
 /// the tip rounding and touches it; the rounding touches a parallel to the hob's own flank that stands out from it by the protuberance p_r. The rounding

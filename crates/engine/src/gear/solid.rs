@@ -8,7 +8,7 @@ use super::{GearData, GearError, Hole, Rack, SpurGear, ToolDepth, Web};
 /// The largest helix angle, in radians (45 degrees): beyond, teeth are those of a worm.
 pub const LARGEST_HELIX_ANGLE: f64 = std::f64::consts::FRAC_PI_4;
 
-/// Which way teeth wind.
+/// Hand of a helix.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Hand {
     /// As a common screw: the section turns counter-clockwise along +z.
@@ -27,7 +27,7 @@ impl Hand {
     }
 }
 
-/// How teeth wind about their gear.
+/// Helix of the teeth of a gear.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Helix {
     /// The angle β at the reference circle, in radians; 0 of straight teeth.

@@ -13,7 +13,7 @@ const LEAST_OVERLAP: f64 = 0.1;
 /// Least number of teeth of either gear that are out of mesh: no tooth carries at both ends of its face, in two pairs.
 const LEAST_OUT_OF_MESH: f64 = 2.0;
 
-/// How the axes of two gears, and their faces, stand from where they should. Lengths are in meters.
+/// Deviations of the axes of two gears, and of their faces. Lengths are in meters.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Alignment {
     /// Where the mid plane of the driven face stands from that of the driving one.

@@ -1,4 +1,4 @@
-//! How drawings say how thick teeth are: by a deviation, by a span over several teeth, or by balls in opposite spaces (ISO 21771).
+//! Tooth thickness on drawings: by a deviation, by a span over several teeth, or by balls in opposite spaces (ISO 21771).
 //!
 //! All of them are one number to the engine, the deviation of the transverse arc on the reference circle. With ψ_b half the angle of a tooth on its base
 //! circle and c = m_n z cos α_n, which is 2 r_b cos β_b:

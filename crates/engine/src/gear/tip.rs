@@ -2,7 +2,7 @@
 
 use super::{Involute, Vector, radial, tangential};
 
-/// How the edge at the tip is broken, on both flanks alike.
+/// Shape of the broken edge at the tip, the same on both flanks.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum TipEdge {
     /// Not at all.

@@ -61,7 +61,7 @@ impl GridBuilder {
 
     /// A block between four edges, its inner nodes by transfinite interpolation.
     ///
-    /// `bottom` and `top` run alike, from `left` to `right`; these run from bottom to top; seen from the bottom edge, the
+    /// `bottom` and `top` both run from `left` to `right`; these run from bottom to top; seen from the bottom edge, the
     /// block lies on the left. The interpolation is that of Gordon and Hall, with the coordinates u and v taken where the
     /// straight lines between arc-length fractions of opposite edges cross, so that gradings carry over.
     pub(super) fn block(&mut self, bottom: &[u32], right: &[u32], top: &[u32], left: &[u32]) {

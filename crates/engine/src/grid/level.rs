@@ -1,4 +1,4 @@
-//! How fine the finite-element grids are.
+//! Levels of the finite-element grids.
 
 /// The public grid levels; each step halves every element.
 ///
@@ -21,7 +21,7 @@ impl GridLevel {
     ///
     /// The standard count is made even, so that the levels are 1 : 2 : 4 exactly.
     pub(super) fn count(self, standard: f64) -> usize {
-        // A little more than half rounds up, so that similar gears, whose sizes differ by rounding, are divided alike.
+        // A little more than half rounds up, so that similar gears, whose sizes differ by rounding, have equal grids.
         let half = (standard / 2.0 + 1e-9).round().max(1.0) as usize;
         match self {
             Self::Coarse => half,

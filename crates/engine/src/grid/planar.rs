@@ -14,7 +14,7 @@ pub struct Grid {
     pub elements: Vec<Element>,
 }
 
-/// How far the elements of a grid are from parallelograms and from triangles with straight sides.
+/// Distortion of the elements of a grid: the distance from parallelograms and from triangles with straight sides.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GridQuality {
     /// The least ratio, over the elements, of the smallest to the largest Jacobian determinant at the quadrature points and

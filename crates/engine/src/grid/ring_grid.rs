@@ -1,4 +1,4 @@
-//! How a blank is divided: by one sector of a pattern, or as a whole.
+//! Grid of a blank: one sector of a pattern, or the whole.
 
 use std::f64::consts::TAU;
 

@@ -446,7 +446,7 @@ mod tests {
     }
 
     #[test]
-    fn boundary_nodes_lie_on_their_circles_in_order_and_the_sides_are_alike() {
+    fn boundary_nodes_lie_on_their_circles_in_order_and_the_sides_are_equal() {
         for case in CASES {
             let (bore, count, circle, radius, interface, teeth) = case;
             let blank = holed(case, GridLevel::Standard);

@@ -1,4 +1,4 @@
-//! How large the triangles of a whole blank are, place by place.
+//! Sizes of the triangles of a whole blank, place by place.
 
 use super::outline::Outline;
 use crate::gear::{Side, Vector};
@@ -17,7 +17,7 @@ const LEAST: f64 = 2e-4;
 /// Samples of the size along a curve, per element of its own size.
 const SAMPLES: f64 = 8.0;
 
-/// How much of an element sizes may be exceeded by in all, so that blanks that differ by rounding are divided alike.
+/// How much of an element sizes may be exceeded by in all, so that blanks that differ by rounding have equal grids.
 const SPARE: f64 = 1e-3;
 
 /// A boundary and the size of the triangles along it.
@@ -38,7 +38,7 @@ pub(super) struct Boundary {
 }
 
 impl Boundary {
-    /// That of `outline`, along which triangles have `size`, and where it has details the sizes that these ask for.
+    /// Sizes about `outline`, along which triangles have `size`, and where it has details the sizes that these ask for.
     pub(super) fn new(
         outline: Outline,
         size: f64,
@@ -91,7 +91,7 @@ pub(super) struct Sizes {
 }
 
 impl Sizes {
-    /// The size at `point`: 1-Lipschitz, so that neighboring triangles are alike.
+    /// The size at `point`: 1-Lipschitz, so that neighboring triangles are of similar size.
     pub(super) fn at(&self, point: Vector) -> f64 {
         let mut size = LARGEST * point.norm();
         let (mut nearest, mut second) = (f64::INFINITY, f64::INFINITY);

@@ -299,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn the_interface_circle_and_the_sides_are_in_order_and_alike() {
+    fn the_interface_circle_and_the_sides_are_in_order_and_equal() {
         for (gear, depth) in sweep() {
             let tooth = divided(&gear, depth, GridLevel::Standard);
             let r_w = gear.root_radius() - depth * gear.data().rack.module;

@@ -354,7 +354,7 @@ impl TriangleNet {
         middles
     }
 
-    /// Divides every triangle into four alike, those along a curve with new corners on it.
+    /// Divides every triangle into four similar ones, those along a curve with new corners on it.
     pub(super) fn halve(&mut self) {
         let middles = self.middles();
         let at = |a: u32, b: u32| middles[&(a.min(b), a.max(b))];

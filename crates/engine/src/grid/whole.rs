@@ -2,7 +2,7 @@
 //!
 //! The boundaries are divided by a field of sizes, the material between them is triangulated and smoothed at the coarse level
 //! (`triangles`), and each finer level halves every triangle, with new nodes on the true curves. All of it happens in
-//! interface radii with the last digits cut off, so that similar blanks are divided alike.
+//! interface radii with the last digits cut off, so that similar blanks have similar grids.
 
 use super::outline::Outline;
 use super::outlines::{LEAST_AROUND, Outlines};
@@ -511,7 +511,7 @@ mod tests {
     }
 
     #[test]
-    fn similar_blanks_are_divided_alike() {
+    fn similar_blanks_have_similar_grids() {
         for region in regions() {
             let factor = 7.3;
             let scaled = BlankRegion {

@@ -11,14 +11,15 @@ pub use shelf::ShelfUsage;
 
 use crate::assembly::{
     AssemblyError, BlankSpec, ContactsSpec, FaceHoles, FaceRoots, FaceYield, FaceYieldSpec,
-    FlanksSpec, Gear, GearSpec, PairSpec, PartError, Parts, PlainFace, Spun, SpunSpec, Stack,
-    Teeth, TeethSpec, WantedGear, make_gears,
+    FlanksSpec, Gear, GearSpec, PairSpec, PartError, Parts, PlainFace, PlainGearSpec, Spun,
+    SpunSpec, Stack, Teeth, TeethSpec, WantedGear, make_gears, make_spun,
 };
 use crate::contact::compliances::Compliances;
 use crate::contact::drawn::DrawnFlanks;
 use crate::contact::positions::{PositionsError, contacts};
 use crate::contact::{MeshContact, PairModel};
 use crate::ring::blank::BlankSubstructure;
+use crate::ring::plain::PlainGear;
 use crate::run::Run;
 use shelf::Shelf;
 
@@ -30,6 +31,7 @@ pub struct Library(Arc<Shelves>);
 struct Shelves {
     teeth: Shelf<TeethSpec, Teeth>,
     blanks: Shelf<BlankSpec, BlankSubstructure>,
+    plain: Shelf<PlainGearSpec, PlainGear>,
     gears: Shelf<GearSpec, Gear>,
     spun: Shelf<SpunSpec, Spun>,
     flanks: Shelf<FlanksSpec, DrawnFlanks>,
@@ -54,8 +56,9 @@ impl Library {
         Self(Arc::new(Shelves {
             teeth: Shelf::new(bytes / 8, bytes_of_teeth),
             blanks: Shelf::new(bytes / 8, bytes_of_blank),
+            plain: Shelf::new(bytes / 64, |_, plain| size_of::<f64>() * plain.entries()),
             gears: Shelf::new(bytes / 8, bytes_of_gear),
-            spun: Shelf::new(bytes / 32, |_, spun| size_of::<f64>() * spun.entries()),
+            spun: Shelf::new(bytes / 64, |_, spun| size_of::<f64>() * spun.entries()),
             flanks: Shelf::new(bytes / 8, |_, flanks| flanks.bytes()),
             compliances: Shelf::new(bytes / 8, |_, compliances| compliances.bytes()),
             contacts: Shelf::new(bytes / 8, |spec, contacts| {
@@ -69,10 +72,11 @@ impl Library {
     }
 
     /// Use of each of its shelves, by name.
-    pub fn usage(&self) -> [(&'static str, ShelfUsage); 11] {
+    pub fn usage(&self) -> [(&'static str, ShelfUsage); 12] {
         let Shelves {
             teeth,
             blanks,
+            plain,
             gears,
             spun,
             flanks,
@@ -86,6 +90,7 @@ impl Library {
         [
             ("teeth", teeth.usage()),
             ("blanks", blanks.usage()),
+            ("plain_gears", plain.usage()),
             ("gears", gears.usage()),
             ("spun", spun.usage()),
             ("flanks", flanks.usage()),
@@ -133,12 +138,18 @@ impl Parts for Library {
             .collect())
     }
 
+    fn plain_gear(
+        &self,
+        spec: &PlainGearSpec,
+        (teeth, blank): (&Teeth, &BlankSubstructure),
+        run: &Run,
+    ) -> Result<Arc<PlainGear>, PartError> {
+        let make = || Ok(PlainGear::new(&teeth.ring, blank, run)?);
+        self.0.plain.made_once(spec, make)
+    }
+
     fn spun(&self, spec: &SpunSpec, run: &Run) -> Result<Arc<Spun>, PartError> {
-        self.0.spun.made(spec, || {
-            let teeth = self.teeth(spec.teeth(), run)?;
-            let solid = spec.solid().map(|solid| self.blank(&solid, run));
-            spec.make(teeth, solid.transpose()?, run)
-        })
+        self.0.spun.made(spec, || make_spun(spec, self, run))
     }
 
     fn plain_face(&self, spec: &Stack, run: &Run) -> Result<Arc<PlainFace>, PartError> {

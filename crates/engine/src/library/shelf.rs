@@ -17,7 +17,7 @@ pub(super) struct Shelf<S, P> {
 struct Stock<S, P> {
     /// From the one that was not used for longest to the one used last.
     entries: Vec<Entry<S, P>>,
-    /// Who makes one of these parts holds its gate.
+    /// Gates of the parts that are being made: the thread that makes one holds its gate.
     making: Vec<(S, Arc<Mutex<()>>)>,
     bytes: usize,
     hits: u64,
@@ -32,7 +32,7 @@ struct Entry<S, P> {
     bytes: usize,
 }
 
-/// How a shelf is used.
+/// Use of a shelf.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ShelfUsage {
     /// Size of its parts in bytes.
@@ -134,7 +134,7 @@ impl<S: PartialEq + Clone, P> Shelf<S, P> {
         Ok(made)
     }
 
-    /// How it is used.
+    /// Its use.
     pub(super) fn usage(&self) -> ShelfUsage {
         let stock = self.stock();
         ShelfUsage {

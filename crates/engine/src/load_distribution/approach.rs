@@ -118,7 +118,7 @@ mod tests {
 
     const FACE_WIDTH: f64 = 20e-3;
 
-    /// A contact of two alike steel bodies whose relative radius is `relative_radius`.
+    /// A contact of two equal steel bodies whose relative radius is `relative_radius`.
     fn contact(relative_radius: f64, depth: f64, plane: PlaneState) -> LineContact {
         let body = ContactBody {
             material: Material::STEEL,
@@ -224,7 +224,7 @@ mod tests {
 
     #[test]
     fn a_contact_presses_as_in_plane_strain_whatever_the_state_of_the_bodies() {
-        // p_0² = F E'/(2 π b ρ) of two alike bodies (Hertz), with E' = E/(1 − ν²).
+        // p_0² = F E'/(2 π b ρ) of two equal bodies (Hertz), with E' = E/(1 − ν²).
         let (force, radius) = (2447.61, 8.9094e-3);
         let modulus = 210e9 / (1.0 - 0.3 * 0.3);
         let square = force * modulus / (2.0 * PI * FACE_WIDTH * radius);
@@ -272,10 +272,10 @@ mod tests {
         let mut stiff = body;
         stiff.material.youngs_modulus *= 1e6;
         let unlike = LineContact::new([body, stiff], FACE_WIDTH, PlaneState::Stress);
-        let alike = LineContact::new([body, body], FACE_WIDTH, PlaneState::Stress);
-        // Half of the alike contact under twice the force is as wide as the unlike one.
+        let equal = LineContact::new([body, body], FACE_WIDTH, PlaneState::Stress);
+        // Half of the contact of equal bodies under twice the force is as wide as that of unequal ones.
         let (force, tolerance) = (1000.0, 1e-5);
-        assert!((unlike.hertz(2.0 * force).0 / alike.hertz(force).0 - 1.0).abs() < tolerance);
-        assert!((unlike.approach(2.0 * force) / alike.approach(force) - 1.0).abs() < tolerance);
+        assert!((unlike.hertz(2.0 * force).0 / equal.hertz(force).0 - 1.0).abs() < tolerance);
+        assert!((unlike.approach(2.0 * force) / equal.approach(force) - 1.0).abs() < tolerance);
     }
 }

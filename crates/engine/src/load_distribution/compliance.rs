@@ -26,7 +26,7 @@ pub struct PairFormulas<'a> {
     law: Law,
 }
 
-/// How a pair of teeth yields.
+/// Compliance of a pair of teeth.
 enum Law {
     /// By the sum over its parts; the flanks' approach stands beside it.
     Parts([GearParts; 2]),

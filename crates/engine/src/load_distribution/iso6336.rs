@@ -59,7 +59,7 @@ pub(super) fn out_of_range(pair: &GearPair, least_torque: f64) -> Vec<FormulaRan
     .collect()
 }
 
-/// The gear with fewer teeth first; of two alike in teeth, the one with more profile shift.
+/// The gear with fewer teeth first; of two with equal counts, the one with more profile shift.
 fn pinion_and_wheel(pair: &GearPair) -> [&SpurGear; 2] {
     let mut gears = Member::BOTH.map(|member| pair.gear(member));
     let [(z_1, x_1), (z_2, x_2)] =

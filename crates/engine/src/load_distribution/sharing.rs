@@ -1,4 +1,4 @@
-//! How the pairs at one position share the load (eqs. 4 and 5).
+//! Load sharing of the pairs at one position (eqs. 4 and 5).
 //!
 //! Each pair yields on its own, δ = C F_n + h(F_n) + e with the compliance C of its teeth and bodies, the approach h of its
 //! flanks and their reliefs e, so that H of eq. 4 is diagonal. The F_n follow from δ pair by pair, and δ from their sum.

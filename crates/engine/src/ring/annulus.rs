@@ -7,7 +7,7 @@ use super::cyclic::Component;
 use crate::fem::FemError;
 use crate::fem::dense::Cholesky;
 
-/// Which components of the displacement of its circle are imposed on an annulus.
+/// Components of the displacement of its circle that are imposed on an annulus.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Imposed {
     /// All of it, as eq. 12 has it.
@@ -21,7 +21,7 @@ pub enum Imposed {
 pub struct Annulus {
     /// R_w.
     radius: f64,
-    /// The amplitude of the tangential displacement that is alike all around.
+    /// The amplitude of the axisymmetric tangential displacement.
     round: usize,
     /// The moment in N m about the axis that holds the circle when it moves by a unit amplitude, with the hub held.
     moments: Vec<f64>,

@@ -48,7 +48,7 @@ impl From<Core> for Hold {
     }
 }
 
-/// A load that all sectors of a blank bear alike.
+/// A load that is the same in all sectors of a blank.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BlankLoad {
     /// The forces on the nodes of sector 0, by the work that they do.
@@ -160,7 +160,7 @@ impl BlankSubstructure {
         let forces = rows_in_axes(&condensed.loads, &axes);
         let mut values = condensed.under_loads;
         if !loads.is_empty() {
-            values += sector.alike(&asked_rows, &forces, run)?;
+            values += sector.under_equal_loads(&asked_rows, &forces, run)?;
         }
         let core = match hold {
             Hold::Rigid => None,

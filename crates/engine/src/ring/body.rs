@@ -4,18 +4,18 @@ use faer::Mat;
 use rayon::prelude::*;
 
 use super::axes::tooth_angle;
-use super::blank::BlankSubstructure;
+use super::motion::InterfaceMotion;
+use super::plain::beside;
 use super::teeth::TeethRing;
 use crate::fem::FemError;
 use crate::fem::dense::{Cholesky, entries};
-use crate::gear::gcd;
 use crate::run::Run;
 
 /// Rows of X that one thread makes together, so that it passes the factor once for all of their teeth; the last teeth's
 /// neighbors come on top.
 const ROWS_AT_ONCE: usize = 16;
 
-/// How the loaded teeth of one gear move each other: the blocks X_ij of H_ij = δ_ij H_0 + V X_ij Vᵀ.
+/// Compliance between the loaded teeth of one gear: the blocks X_ij of H_ij = δ_ij H_0 + V X_ij Vᵀ.
 ///
 /// A gear whose teeth and holes repeat together repeats its rows of X with them, and keeps one period of rows. Teeth are coupled
 /// as far apart as may be loaded together.
@@ -39,75 +39,58 @@ impl Coupling {
         }
     }
 
-    /// Teeth on a flexible blank whose hole 0 stands at the angle `hole_angle`. Teeth up to `farthest` apart are coupled.
+    /// Teeth on the blank of the gear whose interface circle moves by `motion`. Teeth up to `farthest` apart are coupled.
     ///
-    /// C = (S_blank + S_teeth)⁻¹ on the harmonics of the interface circle, and X_ij adds F_iᵀ C F_j. With Z teeth and a
-    /// blank of N equal sectors the gear repeats g = gcd(Z, N) times: only orders that differ by a multiple of g meet in C,
-    /// and the rows of Z/g teeth say everything.
+    /// With C the compliance of the circle, X_ij adds F_iᵀ C F_j. A gear of Z teeth that repeats itself g times has Z/g different rows.
     ///
     /// # Errors
     ///
-    /// [`FemError::NotPositiveDefinite`], or [`FemError::Stopped`].
-    pub fn on_blank(
-        teeth: &TeethRing,
-        blank: &BlankSubstructure,
-        hole_angle: f64,
-        farthest: usize,
-        run: &Run,
-    ) -> Result<Self, FemError> {
-        let repeats = gcd(teeth.tooth_count as u32, blank.sector_count as u32);
-        Self::repeating(teeth, blank, hole_angle, repeats as usize, farthest, run)
-    }
-
-    /// As [`Coupling::on_blank`], with every tooth's own row and nothing taken from symmetry: an oracle for tests.
-    ///
-    /// # Errors
-    ///
-    /// As [`Coupling::on_blank`].
-    pub fn tooth_by_tooth(
-        teeth: &TeethRing,
-        blank: &BlankSubstructure,
-        hole_angle: f64,
-        farthest: usize,
-        run: &Run,
-    ) -> Result<Self, FemError> {
-        Self::repeating(teeth, blank, hole_angle, 1, farthest, run)
-    }
-
-    fn repeating(
-        teeth: &TeethRing,
-        blank: &BlankSubstructure,
-        hole_angle: f64,
-        repeats: usize,
-        farthest: usize,
-        run: &Run,
-    ) -> Result<Self, FemError> {
-        let rows = teeth.tooth_count / repeats;
-        let row_length = row_length(teeth, farthest);
-        let stiffness = blank.stiffness_at(hole_angle);
-        let mut blocks: Vec<Mat<f64>> = (0..rows)
-            .flat_map(|_| teeth.held_coupling[..row_length].iter().cloned())
-            .collect();
-        for orders in teeth.harmonics.meeting_orders(repeats) {
-            let unknowns = teeth.harmonics.unknowns_of(&orders);
-            let total = Mat::from_fn(unknowns.len(), unknowns.len(), |i, j| {
-                let at = (unknowns[i], unknowns[j]);
-                teeth.stiffness[at] + stiffness[at]
-            });
-            let ring = Cholesky::new_watched(total, run)?.ok_or(FemError::NotPositiveDefinite {
-                part: "the gear's interface",
-                unknowns: unknowns.len(),
-            })?;
-            add_answers(&mut blocks, row_length, teeth, &orders, &ring, run)?;
+    /// [`FemError::Stopped`].
+    pub fn new(motion: &InterfaceMotion<'_>, farthest: usize, run: &Run) -> Result<Self, FemError> {
+        let InterfaceMotion { ring, plain, holed } = motion;
+        let (row_length, patterns) = (row_length(ring, farthest), ring.force_patterns.ncols());
+        // Orders that see no hole.
+        let mut equal = Mat::<f64>::zeros(patterns, row_length * patterns);
+        let seen = holed.as_ref().map(|holed| holed.seen);
+        let mut forces = Mat::zeros(seen.map_or(0, |seen| seen.unknowns()), patterns);
+        for set in &plain.sets {
+            run.check()?;
+            let halves = set.halves_of_teeth(ring, row_length);
+            let above = seen.map_or(set.unknowns.len(), |seen| set.above(seen));
+            let of_above = halves.subrows(0, above);
+            equal += of_above.subcols(0, patterns).transpose() * of_above;
+            if let Some(holed) = holed {
+                holed.add_left(&mut forces, set, halves.subcols(0, patterns));
+            }
         }
+        let repeats = holed
+            .as_ref()
+            .map_or(ring.tooth_count, |holed| holed.repeats);
+        let distances = (0..ring.tooth_count / repeats).flat_map(|_| 0..row_length);
+        let block = |d: usize| equal.subcols(d * patterns, patterns).to_owned();
+        let mut blocks: Vec<Mat<f64>> = distances.map(block).collect();
+        if let Some(holed) = holed {
+            for (orders, factor) in &holed.sets {
+                let of_tooth = |tooth: usize| {
+                    let angle = tooth_angle(tooth % ring.tooth_count, ring.tooth_count);
+                    holed.seen.rows_at(&forces, angle, orders)
+                };
+                add_answers(&mut blocks, row_length, &of_tooth, factor, run)?;
+            }
+        }
+        let shares = &ring.pattern_shares;
+        blocks.par_iter_mut().enumerate().for_each(|(i, block)| {
+            let held = &ring.held_coupling[i % row_length];
+            *block = held + shares.transpose() * &*block * shares;
+        });
         Ok(Self {
-            tooth_count: teeth.tooth_count,
+            tooth_count: ring.tooth_count,
             row_length,
             blocks,
         })
     }
 
-    /// The coupling of a gear that is alike all around: each block the mean over the teeth.
+    /// The coupling of an axisymmetric gear: each block is the mean over the teeth.
     pub fn round_average(&self) -> Self {
         let share = faer::Scale(1.0 / self.rows() as f64);
         let means = (0..self.row_length).map(|d| {
@@ -186,19 +169,16 @@ impl Coupling {
     }
 }
 
-/// Adds F_iᵀ C F_j on `orders`, whose stiffness C⁻¹ is factorized in `ring`, to the `blocks` of every row.
+/// Adds G_iᵀ C G_j on the orders whose stiffness C⁻¹ is factorized in `ring` to the `blocks` of every row; `of_tooth` is G of a tooth on them.
 ///
-/// F_i = G_i W, and with L⁻¹ G of both teeth the inside is one plain product.
+/// With L⁻¹ G of both teeth the inside is one plain product.
 fn add_answers(
     blocks: &mut [Mat<f64>],
     row_length: usize,
-    teeth: &TeethRing,
-    orders: &[usize],
+    of_tooth: &(dyn Fn(usize) -> Mat<f64> + Sync),
     ring: &Cholesky<f64>,
     run: &Run,
 ) -> Result<(), FemError> {
-    let (z, r) = (teeth.tooth_count, teeth.force_patterns.ncols());
-    let unknowns = teeth.harmonics.unknowns_of(orders).len();
     blocks
         .par_chunks_mut(ROWS_AT_ONCE * row_length)
         .enumerate()
@@ -207,19 +187,15 @@ fn add_answers(
             let (first, rows) = (chunk * ROWS_AT_ONCE, blocks.len() / row_length);
             // L⁻¹ G of the teeth of these rows and of the neighbors of the last.
             let count = rows + row_length - 1;
-            let mut halves = Mat::<f64>::zeros(unknowns, count * r);
-            for tooth in 0..count {
-                let angle = tooth_angle((first + tooth) % z, z);
-                let patterns = teeth.patterns_of_tooth_at(angle, orders);
-                halves.subcols_mut(tooth * r, r).copy_from(patterns);
-            }
+            let of_teeth = (0..count).map(|tooth| of_tooth(first + tooth));
+            let mut halves = beside(of_teeth);
             ring.half_solve_in_place(halves.as_mut());
+            let r = halves.ncols() / count;
             for (row, blocks) in blocks.chunks_exact_mut(row_length).enumerate() {
                 let one = halves.subcols(row * r, r);
                 let answers = one.transpose() * halves.subcols(row * r, row_length * r);
                 for (d, block) in blocks.iter_mut().enumerate() {
-                    let answer = answers.subcols(d * r, r);
-                    *block += teeth.pattern_shares.transpose() * answer * &teeth.pattern_shares;
+                    *block += answers.subcols(d * r, r);
                 }
             }
             Ok(())

@@ -230,13 +230,13 @@ impl Sector {
         on_harmonics
     }
 
-    /// Values of `rows` on the unknowns of sector 0 under `forces` on the same unknowns, a row each, that act on every sector alike: the sides follow, and all
+    /// Values of `rows` on the unknowns of sector 0 under `forces` on the same unknowns, a row each, the same in every sector: the sides follow, and all
     /// behind them is held. One row a functional, one column a load.
     ///
     /// # Errors
     ///
     /// [`FemError::NotPositiveDefinite`], or [`FemError::Stopped`].
-    pub(super) fn alike(
+    pub(super) fn under_equal_loads(
         &self,
         rows: &Mat<f64>,
         forces: &Mat<f64>,
@@ -303,7 +303,7 @@ pub(super) fn at_angles(angles: &[f64], orders: &[i64]) -> Mat<c64> {
     e
 }
 
-/// Adds the blocks of `condensed`, of one set of orders by another, to a real `stiffness` so many times.
+/// Adds the blocks of `condensed`, of one set of orders by another, to a real `stiffness`, times `weight`.
 pub(super) fn add_orders(
     stiffness: &mut Mat<f64>,
     harmonics: &Harmonics,

@@ -107,6 +107,27 @@ impl Harmonics {
         turned
     }
 
+    /// The rows of `columns` on all unknowns that belong to `orders`, turned by `angle` counter-clockwise.
+    pub(super) fn rows_at(&self, columns: &Mat<f64>, angle: f64, orders: &[usize]) -> Mat<f64> {
+        let unknowns = self.unknowns_of(orders);
+        let mut turned = Mat::from_fn(unknowns.len(), columns.ncols(), |i, j| {
+            columns[(unknowns[i], j)]
+        });
+        let turns: Vec<(usize, (f64, f64))> = (0..unknowns.len())
+            .filter(|&i| self.is_cosine(unknowns[i]))
+            .map(|i| (i, (self.order(unknowns[i]) as f64 * angle).sin_cos()))
+            .collect();
+        for j in 0..turned.ncols() {
+            let column = turned.col_as_slice_mut(j);
+            for &(i, (sin, cos)) in &turns {
+                let (x, y) = (column[i], column[i + 2]);
+                column[i] = cos * x - sin * y;
+                column[i + 2] = sin * x + cos * y;
+            }
+        }
+        turned
+    }
+
     /// The sum over `sectors` equal sectors of `rows` on the unknowns, each turned to its sector: a column for each row. Orders that are no multiple of
     /// the number of sectors cancel.
     pub(super) fn of_all_sectors(&self, rows: MatRef<'_, f64>, sectors: usize) -> Mat<f64> {

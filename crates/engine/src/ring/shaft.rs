@@ -25,7 +25,7 @@ pub(crate) fn orders_of_edge(grid: &BlankGrid) -> Harmonics {
     }
 }
 
-/// A load that acts on all sectors of a ring alike.
+/// A load that is the same in all sectors of a ring.
 pub(super) struct EdgeLoads<'a> {
     /// The forces on the unknowns of sector 0, behind the arc those of the edge: a load a row.
     pub(super) forces: &'a Mat<f64>,

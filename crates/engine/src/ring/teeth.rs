@@ -2,13 +2,10 @@
 
 use faer::{Mat, c64};
 
-use super::axes::tooth_angle;
-use super::blank::BlankSubstructure;
 use super::cyclic::{Component, Harmonics};
 use super::modes::compress;
 use super::tooth::ToothSubstructure;
 use crate::fem::FemError;
-use crate::fem::dense::Cholesky;
 use crate::run::Run;
 
 /// Largest distance, in teeth, of two teeth of one section that may be loaded together: several times the transverse contact ratio under the heaviest load of
@@ -87,7 +84,7 @@ impl TeethRing {
             .map(|d| held_coupling(&class_compliance, z, d))
             .collect();
         // Modes that hardly show at the flank need fewer digits, and on their way to the interface circle their fields grow
-        // alike: they exert about half as many patterns as they are.
+        // similar: they exert about half as many patterns as they are.
         let heights: Vec<f64> = tooth.modes.col_iter().map(|mode| mode.norm_l2()).collect();
         let seen = Mat::from_fn(tooth_forces.nrows(), r, |i, j| {
             tooth_forces[(i, j)] * heights[j]
@@ -107,118 +104,17 @@ impl TeethRing {
         })
     }
 
-    /// This ring on a blank of which only the orders of `low` see the holes: the ones above, which find the blank as
-    /// stiff as the `solid` one, are eliminated.
-    ///
-    /// Both are alike at every tooth, so that only orders meet that differ by a multiple of Z: few at a time.
-    ///
-    /// # Errors
-    ///
-    /// [`FemError::NotPositiveDefinite`].
-    pub fn above(
-        &self,
-        low: Harmonics,
-        solid: &BlankSubstructure,
-        run: &Run,
-    ) -> Result<Self, FemError> {
-        let (z, n) = (self.tooth_count, low.unknowns());
-        let mut reduced = Self {
-            harmonics: low,
-            stiffness: self.stiffness.submatrix(0, 0, n, n).to_owned(),
-            force_patterns: self.force_patterns.subrows(0, n).to_owned(),
-            pattern_shares: self.pattern_shares.clone(),
-            tooth_count: z,
-            held_coupling: self.held_coupling.clone(),
-        };
-        for orders in self.harmonics.meeting_orders(z) {
-            run.check()?;
-            // Unknowns stand by rising order: the low ones keep their places.
-            let above: Vec<usize> = orders
-                .iter()
-                .copied()
-                .filter(|&n| n > low.largest)
-                .collect();
-            if above.is_empty() {
-                continue;
-            }
-            let (of_low, of_high) = (
-                low.unknowns_of(&orders[..orders.len() - above.len()]),
-                self.harmonics.unknowns_of(&above),
-            );
-            let stiffness = Mat::from_fn(of_high.len(), of_high.len(), |i, j| {
-                let at = (of_high[i], of_high[j]);
-                self.stiffness[at] + solid.stiffness[at]
-            });
-            let rim = Cholesky::new(stiffness).ok_or(FemError::NotPositiveDefinite {
-                part: "the rim",
-                unknowns: of_high.len(),
-            })?;
-            let mut half = Mat::from_fn(of_high.len(), of_low.len(), |i, j| {
-                self.stiffness[(of_high[i], of_low[j])]
-            });
-            rim.half_solve_in_place(half.as_mut());
-            let patterns_of = |tooth: usize| {
-                let mut patterns = self.patterns_of_tooth_at(tooth_angle(tooth, z), &above);
-                rim.half_solve_in_place(patterns.as_mut());
-                patterns
-            };
-            let own = patterns_of(0);
-            let (softer, weaker) = (half.transpose() * &half, half.transpose() * &own);
-            for (i, &row) in of_low.iter().enumerate() {
-                for (j, &column) in of_low.iter().enumerate() {
-                    reduced.stiffness[(row, column)] -= softer[(i, j)];
-                }
-                for pattern in 0..weaker.ncols() {
-                    reduced.force_patterns[(row, pattern)] -= weaker[(i, pattern)];
-                }
-            }
-            for (d, coupling) in reduced.held_coupling.iter_mut().enumerate() {
-                let shares = &self.pattern_shares;
-                *coupling += shares.transpose() * (own.transpose() * patterns_of(d)) * shares;
-            }
-        }
-        Ok(reduced)
-    }
-
     /// G on the harmonics of `orders`, order by order, for the tooth at `angle`.
     pub fn patterns_of_tooth_at(&self, angle: f64, orders: &[usize]) -> Mat<f64> {
-        let unknowns = self.harmonics.unknowns_of(orders);
-        let patterns = Mat::from_fn(unknowns.len(), self.force_patterns.ncols(), |i, j| {
-            self.force_patterns[(unknowns[i], j)]
-        });
-        self.turned(patterns, &unknowns, angle)
+        self.harmonics.rows_at(&self.force_patterns, angle, orders)
     }
 
-    /// G f on the harmonics of `orders`, order by order, for the tooth at `angle` with the modal loads f.
-    pub fn forces_of_tooth_at(&self, angle: f64, loads: &[f64], orders: &[usize]) -> Mat<f64> {
-        let unknowns = self.harmonics.unknowns_of(orders);
-        let forces = Mat::from_fn(unknowns.len(), 1, |i, _| {
-            let patterns = loads.iter().enumerate();
-            patterns
-                .map(|(j, load)| self.force_patterns[(unknowns[i], j)] * load)
-                .sum()
-        });
-        self.turned(forces, &unknowns, angle)
-    }
-
-    /// The columns of `turned` on these `unknowns`, of the tooth at angle 0, at `angle`.
-    fn turned(&self, mut turned: Mat<f64>, unknowns: &[usize], angle: f64) -> Mat<f64> {
-        let turns: Vec<(usize, (f64, f64))> = (0..unknowns.len())
-            .filter(|&i| self.harmonics.is_cosine(unknowns[i]))
-            .map(|i| {
-                let n = self.harmonics.order(unknowns[i]);
-                (i, (n as f64 * angle).sin_cos())
-            })
-            .collect();
-        for j in 0..turned.ncols() {
-            let column = turned.col_as_slice_mut(j);
-            for &(i, (sin, cos)) in &turns {
-                let (x, y) = (column[i], column[i + 2]);
-                column[i] = cos * x - sin * y;
-                column[i + 2] = sin * x + cos * y;
-            }
-        }
-        turned
+    /// G f on all harmonics for the tooth at `angle` with the loads f on its patterns.
+    pub fn forces_of_tooth_at(&self, angle: f64, loads: &[f64]) -> Mat<f64> {
+        let loads = Mat::from_fn(loads.len(), 1, |i, _| loads[i]);
+        let orders: Vec<usize> = (0..=self.harmonics.largest).collect();
+        let forces = &self.force_patterns * loads;
+        self.harmonics.rows_at(&forces, angle, &orders)
     }
 }
 

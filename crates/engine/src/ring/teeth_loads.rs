@@ -1,4 +1,4 @@
-//! Loads inside the teeth that all of them bear alike, such as the pull of rotation.
+//! Loads inside the teeth, the same in all of them, such as the pull of rotation.
 
 use faer::Mat;
 
@@ -8,7 +8,7 @@ use super::tooth::{ToothLoads, ToothRows, ToothSubstructure};
 use crate::fem::FemError;
 use crate::run::Run;
 
-/// Loads that act on all teeth of a ring alike.
+/// Loads that are the same in all teeth of a ring.
 #[derive(Debug, Clone)]
 pub(crate) struct TeethLoads {
     /// The forces that they exert on the harmonics of the interface circle, a load a column.
@@ -33,10 +33,10 @@ impl TeethLoads {
     ) -> Result<Self, FemError> {
         let (sector, harmonics) = (&tooth.sector, &ring.harmonics);
         let on_circle = sector.ring_rows(&loads.on_interface, harmonics, run)?;
-        let values = sector.alike(&rows.by_interface, &loads.on_interface, run)?;
+        let values = sector.under_equal_loads(&rows.by_interface, &loads.on_interface, run)?;
         // The modes do work on the interface as it moves.
         let modes = tooth.mode_forces.transpose().to_owned();
-        let moved = sector.alike(&modes, &loads.on_interface, run)?;
+        let moved = sector.under_equal_loads(&modes, &loads.on_interface, run)?;
         Ok(Self {
             forces: harmonics.of_all_sectors(on_circle.as_ref(), sector.count),
             flank: &loads.flank + &tooth.modes * moved,
@@ -101,11 +101,10 @@ mod tests {
 
         let loads = Mat::from_fn(modal.len(), 1, |i, _| modal[i]);
         let shares = &ring.pattern_shares * &loads;
-        let every: Vec<usize> = (0..=orders.largest).collect();
         let mut sum = Mat::<f64>::zeros(orders.unknowns(), 1);
         for j in 0..teeth {
             let angle = tooth_angle(j, teeth);
-            sum += ring.forces_of_tooth_at(angle, shares.col_as_slice(0), &every);
+            sum += ring.forces_of_tooth_at(angle, shares.col_as_slice(0));
         }
         let apart = (&sum - &found.forces).norm_max();
         assert!(apart < 1e-7 * sum.norm_max(), "{apart:e}");

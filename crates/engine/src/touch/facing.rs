@@ -135,7 +135,7 @@ impl Facing {
 pub(crate) fn nearer_tip(gears: &GearPair, phase: f64) -> Member {
     let (s_a, s_e) = gears.path_of_contact();
     // Past the middle of the path of contact the contact is nearer to the driving tip, which leaves it at E. A pair that stands
-    // just there is found alike however its numbers are rounded.
+    // just there is assigned to the same gear however its numbers are rounded.
     let middle = f64::midpoint(s_a, s_e) + 1e-9 * (s_e - s_a);
     if gears.roll_length_of(phase) > middle {
         Member::Driving

@@ -62,7 +62,7 @@ pub(crate) struct Section {
 }
 
 impl Section {
-    /// That of straight teeth as drawn, of `pair` at the mesh position `eta`.
+    /// Section of straight teeth as drawn, of `pair` at the mesh position `eta`.
     pub(crate) fn straight(eta: f64, pair: i64) -> Self {
         Self {
             pair,

@@ -42,7 +42,7 @@ impl Mode {
         }
     }
 
-    /// The frequencies of its waves in hertz, in space, at so many turns a second.
+    /// The frequencies of its waves in hertz, in space, at a speed in turns a second.
     pub fn waves(&self, turns: f64) -> Vec<(Wave, f64)> {
         let split = self.split();
         if split.abs() < STANDING {

@@ -1,6 +1,6 @@
 //! Functions along the axis that parts of unlike width share: quadratic pieces between the faces of all of them.
 //!
-//! Every part is some of the pieces, so that two parts which meet move alike where both are. A gear that is its own image in the middle
+//! Every part is some of the pieces, so that two parts which meet have the same motion where both are. A gear that is its own image in the middle
 //! of its face is half of one, once with motions that are even about that plane and once with odd ones.
 
 use faer::Mat;

@@ -1,7 +1,7 @@
 //! Natural frequencies and shapes of a gear: blank and teeth in three dimensions, by classes of its symmetry.
 //!
 //! K x = ω² M x with consistent masses. The blank from the bore to a circle below the roots is divided in its plane (`section`) and carries
-//! quadratic functions along the axis that all parts share ([`heights`]), so that rim, web and hub move alike where they meet. The teeth stand on
+//! quadratic functions along the axis that all parts share ([`heights`]), so that rim, web and hub move equal where they meet. The teeth stand on
 //! that circle, order by order (`teeth`). In class k of S equal sectors all turns by e^{i2πk/S} from one to the next; each class is one sparse
 //! Hermitian problem (`system`) for Lanczos's method (`fem::eigen`). Classes between 0 and S/2 stand for two modes, a cosine and a sine.
 //!
@@ -127,7 +127,7 @@ fn of_gear<T>(
     })?)
 }
 
-/// The most modes that can be asked of a gear with so many teeth: two of each number of nodal diameters that its grid follows, one in the plane and one out
+/// The largest number of modes that can be asked of a gear with the given number of teeth: two of each number of nodal diameters that its grid follows, one in the plane and one out
 /// of it.
 pub fn most_modes(tooth_count: u32) -> usize {
     2 * (section::least_around(tooth_count as usize) / 2).min(MOST_ORDERS)
@@ -413,19 +413,19 @@ impl Body<'_> {
             }
             let apart = |other: &usize| modes[*other].frequency / modes[one].frequency - 1.0;
             let Some(other) = (one + 1..modes.len()).find(|other| {
-                let alike =
+                let equal =
                     modes[*other].nodal_diameters == n && modes[*other].direction == direction;
-                alike && !is_taken[*other] && same_class(one, *other) && apart(other) < NEAR
+                equal && !is_taken[*other] && same_class(one, *other) && apart(other) < NEAR
             }) else {
                 continue;
             };
-            let are_alike =
+            let are_equal =
                 repeats > 2 && !(2 * n).is_multiple_of(repeats) && apart(&other) < ALIKE;
             (is_taken[one], is_taken[other]) = (true, true);
-            is_left[other] = !are_alike;
+            is_left[other] = !are_equal;
             let (head, tail) = modes.split_at_mut(other);
-            let sign = head[one].pair_with(&mut tail[0], coupled((one, other)), are_alike);
-            sines[one] = are_alike.then_some((other, sign));
+            let sign = head[one].pair_with(&mut tail[0], coupled((one, other)), are_equal);
+            sines[one] = are_equal.then_some((other, sign));
         }
         let left = (0..modes.len()).filter(|place| is_left[*place]);
         left.map(|place| Listed {

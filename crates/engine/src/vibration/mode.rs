@@ -7,7 +7,7 @@ use crate::fem::prism::COMPONENTS;
 /// Main direction of a mode's motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
-    /// Around the axis, alike on all of a circle.
+    /// Around the axis, axisymmetric.
     Torsion,
     /// In the plane of the gear.
     InPlane,
@@ -62,9 +62,9 @@ impl Mode {
     }
 
     /// Takes `other`, a single mode with as many nodal diameters and nearly the same frequency, as its sine: both have the Coriolis forces of the wave
-    /// that they make. `coupled` is x₁ᵀ M J x₂ of their vectors, J the turn by a right angle. They become one double mode if they `are_alike`. Returns the
+    /// that they make. `coupled` is x₁ᵀ M J x₂ of their vectors, J the turn by a right angle. They become one double mode if they `are_equal`. Returns the
     /// sign of `other` in the wave.
-    pub(super) fn pair_with(&mut self, other: &mut Self, coupled: f64, are_alike: bool) -> f64 {
+    pub(super) fn pair_with(&mut self, other: &mut Self, coupled: f64, are_equal: bool) -> f64 {
         let joined = |sign: f64| -> Vec<OrderShape> {
             let both = self.shape.iter().zip(&other.shape);
             let add = |one: [c64; COMPONENTS], other: [c64; COMPONENTS]| {
@@ -89,7 +89,7 @@ impl Mode {
         };
         let coriolis = -sign * coupled;
         (self.coriolis, other.coriolis) = (coriolis, coriolis);
-        if are_alike {
+        if are_equal {
             self.is_double = true;
             self.frequency = f64::midpoint(self.frequency, other.frequency);
             self.residual = self.residual.max(other.residual);

@@ -1,6 +1,6 @@
 //! Displacement of a gear by its rotation at a steady speed: the static solution of the same bodies, whose load is the mass matrix times the radius.
 //!
-//! All sectors bear the pull alike, which is class 0 of the ring. A free bore lets the gear turn, which no pull does: with s > 0
+//! The pull is the same in all sectors, which is class 0 of the ring. A free bore lets the gear turn, which no pull does: with s > 0
 //!
 //! ```text
 //! u ← (K + s M)⁻¹ (f + s M u)
@@ -42,7 +42,7 @@ pub struct PulledTeeth {
 }
 
 impl PulledTeeth {
-    /// That of the teeth of `gear`, whose bore is carried as `bore` says.
+    /// Pulled teeth of `gear`, whose bore is carried as `bore` says.
     ///
     /// # Errors
     ///

@@ -70,7 +70,7 @@ impl Blank {
         Self::of_region(parts, region, gear.face_width(), section.tooth_count())
     }
 
-    /// The blank of these parts, from outside to the bore, with the holes of `region`, under so many teeth.
+    /// The blank of these parts, from outside to the bore, with the holes of `region`, under the given number of teeth.
     pub(super) fn of_region(
         parts: Vec<Layer>,
         region: &BlankRegion,
@@ -120,7 +120,7 @@ impl Blank {
     }
 
     #[cfg(test)]
-    /// A blank of these parts, from outside to the bore, that is made up of so many equal sectors.
+    /// A blank of these parts, from outside to the bore, made up of the given number of equal sectors.
     pub(super) fn of_parts(parts: Vec<Layer>, sectors: usize) -> Self {
         Self {
             section: Section::plain(&parts, sectors),
@@ -215,7 +215,7 @@ impl Section {
     }
 }
 
-/// Elements around a ring without holes of so many sectors.
+/// Elements around a ring without holes that has the given number of sectors.
 pub(super) fn least_around(sectors: usize) -> usize {
     sectors * LEAST_AROUND.div_ceil(sectors)
 }

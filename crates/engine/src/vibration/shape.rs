@@ -18,7 +18,7 @@ const LEVELS: usize = 3;
 
 /// The shape of a mode on second-order elements in space, in the frame of its gear: z along the axis from the middle of the face, tooth 0 at the x axis.
 ///
-/// Blank and teeth have grids of their own on both sides of the circle on which the teeth stand. They move alike there.
+/// Blank and teeth have grids of their own on both sides of the circle on which the teeth stand. Both have the same motion there.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModeShape {
     /// The mode.
@@ -49,7 +49,7 @@ impl ShapeSize {
         self.nodes * node + self.elements * element
     }
 
-    /// That of both.
+    /// Sizes of both together.
     pub(super) fn and(self, other: Self) -> Self {
         Self {
             nodes: self.nodes + other.nodes,
@@ -57,7 +57,7 @@ impl ShapeSize {
         }
     }
 
-    /// That of `copies` of the section of `system`.
+    /// Size of a shape of `copies` of the section of `system`.
     pub(super) fn of(system: &System<'_>, copies: usize) -> Self {
         let halves = system.heights.copies() as usize;
         let layers = |element: usize| (system.part(element).count() - 1) / (LEVELS - 1);

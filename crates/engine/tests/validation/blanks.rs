@@ -14,8 +14,8 @@ use meshwright_engine::gear::{
 use meshwright_engine::grid::{BlankGrid, Grid, GridLevel, ToothGrid};
 use meshwright_engine::run::Run;
 use meshwright_engine::substructures::{
-    BlankSubstructure, Component, Coupling, Functional, Harmonics, TeethRing, ToothSubstructure,
-    condense, edge_stresses,
+    BlankSubstructure, Component, Coupling, Functional, Harmonics, InterfaceMotion, PlainGear,
+    TeethRing, ToothSubstructure, condense, edge_stresses,
 };
 
 use crate::support::{case, gear, pair, solve};
@@ -158,7 +158,12 @@ fn triangles_agree_with_quadrilaterals_on_a_pattern_of_holes() {
 /// How loaded teeth of the standard gear move each other through a blank: the blocks between a tooth and itself and the next
 /// four.
 fn yields(blank: &BlankSubstructure, ring: &TeethRing) -> Vec<Mat<f64>> {
-    let coupling = Coupling::on_blank(ring, blank, 0.0, 4, &Run::unattended()).expect("a gear");
+    let run = Run::unattended();
+    let solid = BlankGrid::new(15e-3, INTERFACE, None, TEETH, 4.0, GridLevel::Coarse);
+    let solid = condensed(&solid.expect("a ring"), ring.harmonics.largest);
+    let plain = PlainGear::new(ring, &solid, &run).expect("a gear");
+    let motion = InterfaceMotion::new(ring, &plain, Some((blank, 0.0)), &run).expect("a gear");
+    let coupling = Coupling::new(&motion, 4, &run).expect("a gear");
     let blocks = (0..5).flat_map(|tooth| (0..5).map(move |offset| (7 * tooth, offset)));
     blocks
         .map(|(tooth, offset)| coupling.block(tooth, offset).0.clone())

@@ -4,8 +4,8 @@ use meshwright_engine::gear::{Core, SpurGear};
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
 use meshwright_engine::run::Run;
 use meshwright_engine::substructures::{
-    BlankSubstructure, Harmonics, InterfaceMotion, TeethRecovery, TeethRing, ToothSubstructure,
-    default_interface_radius, edge_stresses, modal_loads, tooth_angle,
+    BlankSubstructure, Harmonics, InterfaceMotion, PlainGear, TeethRecovery, TeethRing,
+    ToothSubstructure, default_interface_radius, edge_stresses, modal_loads, tooth_angle,
 };
 
 use crate::support::{gear, holed};
@@ -93,7 +93,8 @@ fn by_recovery(level: GridLevel, teeth: &[usize], orders: (usize, usize)) -> Str
         .into_iter()
         .zip(forces.iter().map(|p| modal_loads(&tooth.modes, p)))
         .collect();
-    let motion = InterfaceMotion::new(&ring, &blank, 0.21, Some(&solid), &run)
+    let plain = PlainGear::new(&ring, &solid, &run).expect("a gear");
+    let motion = InterfaceMotion::new(&ring, &plain, Some((&blank, 0.21)), &run)
         .expect("a gear")
         .under(&loads);
     let none = vec![0.0; forces[0].len()];

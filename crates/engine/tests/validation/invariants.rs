@@ -13,7 +13,8 @@ use meshwright_engine::library::Library;
 use meshwright_engine::quadrature::GAUSS_3;
 use meshwright_engine::run::Run;
 use meshwright_engine::substructures::{
-    BlankSubstructure, Coupling, default_interface_radius, harmonics, tooth_angle,
+    BlankSubstructure, Coupling, InterfaceMotion, PlainGear, default_interface_radius, harmonics,
+    tooth_angle,
 };
 use nalgebra::DMatrix;
 
@@ -417,27 +418,22 @@ fn couplings(gear: &SpurGear, level: GridLevel) -> [Coupling; 2] {
     let teeth = TeethSpec::new(gear, r_w, level);
     let teeth = library().teeth(&teeth, &run).expect("teeth");
     let (bore, z) = (gear.bore_radius(), gear.tooth_count());
-    let grid = BlankGrid::new(
-        bore,
-        r_w,
-        gear.hole_pattern().as_ref(),
-        z,
-        ELEMENTS_PER_TOOTH,
-        level,
-    );
-    let blank = BlankSubstructure::new(
-        &grid.expect("a grid"),
-        r_w,
-        gear.material(),
-        gear.face_width(),
-        teeth.ring.harmonics,
-        &run,
-    )
-    .expect("a blank");
-    let phase = gear.hole_angle();
-    let tooth_by_tooth = Coupling::tooth_by_tooth(&teeth.ring, &blank, phase, 4, &run);
-    let on_blank = Coupling::on_blank(&teeth.ring, &blank, phase, 4, &run);
-    [tooth_by_tooth, on_blank].map(|coupling| coupling.expect("a gear"))
+    let [solid, blank] = [None, gear.hole_pattern()].map(|holes| {
+        let grid = BlankGrid::new(bore, r_w, holes.as_ref(), z, ELEMENTS_PER_TOOTH, level);
+        let (material, width) = (gear.material(), gear.face_width());
+        let orders = teeth.ring.harmonics;
+        let blank =
+            BlankSubstructure::new(&grid.expect("a grid"), r_w, material, width, orders, &run);
+        blank.expect("a blank")
+    });
+    let plain = PlainGear::new(&teeth.ring, &solid, &run).expect("a gear");
+    let holed = (&blank, gear.hole_angle());
+    let some = gear.hole_pattern().map(|_| holed);
+    let motions = [
+        InterfaceMotion::tooth_by_tooth(&teeth.ring, &plain, holed, &run),
+        InterfaceMotion::new(&teeth.ring, &plain, some, &run),
+    ];
+    motions.map(|motion| Coupling::new(&motion.expect("a gear"), 4, &run).expect("a gear"))
 }
 
 #[test]

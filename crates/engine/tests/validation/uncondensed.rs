@@ -7,8 +7,8 @@ use meshwright_engine::gear::{SpurGear, Vector, radial, tangential};
 use meshwright_engine::grid::{BlankGrid, Element, Grid, GridLevel, ToothGrid};
 use meshwright_engine::run::Run;
 use meshwright_engine::substructures::{
-    BlankSubstructure, Coupling, Harmonics, TeethRing, ToothSubstructure, default_interface_radius,
-    harmonics, tooth_angle,
+    BlankSubstructure, Coupling, Harmonics, InterfaceMotion, PlainGear, TeethRing,
+    ToothSubstructure, default_interface_radius, harmonics, tooth_angle,
 };
 
 use crate::support::{gear, holed};
@@ -113,17 +113,16 @@ fn answers_of_substructures(
     let ring =
         TeethRing::new(&substructure, harmonics, &Run::unattended()).expect("a ring of teeth");
     let r_w = default_interface_radius(gear);
-    let blank = BlankSubstructure::new(
-        blank,
-        r_w,
-        gear.material(),
-        gear.face_width(),
-        harmonics,
-        &Run::unattended(),
-    )
-    .expect("a blank");
-    let phase = gear.hole_angle();
-    let coupling = Coupling::on_blank(&ring, &blank, phase, 4, &Run::unattended()).expect("a gear");
+    let (run, z) = (Run::unattended(), gear.tooth_count());
+    let solid = BlankGrid::new(gear.bore_radius(), r_w, None, z, 6.0, GridLevel::Coarse);
+    let [solid, blank] = [&solid.expect("a ring"), blank].map(|grid| {
+        let (material, width) = (gear.material(), gear.face_width());
+        BlankSubstructure::new(grid, r_w, material, width, harmonics, &run).expect("a blank")
+    });
+    let plain = PlainGear::new(&ring, &solid, &run).expect("a gear");
+    let holed = Some((&blank, gear.hole_angle()));
+    let motion = InterfaceMotion::new(&ring, &plain, holed, &run).expect("a gear");
+    let coupling = Coupling::new(&motion, 4, &run).expect("a gear");
     let unknowns = loaded_unknowns(substructure.roll_lengths.len());
     let v = &substructure.modes;
     let v_loaded = Mat::from_fn(unknowns.len(), v.ncols(), |i, j| v[(unknowns[i], j)]);

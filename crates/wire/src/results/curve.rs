@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Deref;
 
 use meshwright_engine::analysis::at_speed::CurveDynamics;
-use meshwright_engine::analysis::curve::LeadCure;
+use meshwright_engine::analysis::curve::LeadCorrection;
 use meshwright_engine::analysis::mesh_wave::MeshWave;
 use meshwright_engine::analysis::running::CurveRunning;
 use meshwright_engine::analysis::{Case, Curve, FaceLoad, Statistics};
@@ -160,7 +160,7 @@ document! {
     /// Lead modification that makes the load even along the face at this torque: add a slope and a crowning of these amounts to the `lead_modifications` of the
     /// driving gear. Found from a few positions, and within 2 % of the amounts that a job finds for it.
     pub struct LeadCureDocument as LeadCure, "Lead that evens the load"
-    answer of (cure: &LeadCure) {
+    answer of (cure: &LeadCorrection) {
         /// The slope to add, in um: taken off at the +z end of the face; negative adds.
         lead_slope_um: f64 = significant(to_um(cure.slope), 4),
         /// The crowning to add, in um; negative reduces the crowning of the leads, and never makes a flank hollow.

@@ -127,7 +127,7 @@ fn real_teeth_do_not_see(case: &Case) -> Vec<&'static str> {
     if any(one_sided) {
         unseen.push("the unloaded flanks: modifications, slopes and traces of single teeth are those of the loaded ones");
     }
-    if any(|gear| !gear.deviations().are_teeth_alike()) {
+    if any(|gear| !gear.deviations().are_teeth_equal()) {
         unseen.push("that a tooth which stands out is thicker, and stiffer, by what it stands out: every tooth yields as drawn");
     }
     if case.faces().is_none() && any(|gear| gear.data().blank.web.is_some()) {

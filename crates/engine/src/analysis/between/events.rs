@@ -105,7 +105,7 @@ fn clearance_of(samples: &[Sample], at: usize, n: i64) -> Option<f64> {
     of(&samples[at]).or_else(|| of(&samples[at + 1]))
 }
 
-/// Where `value`, followed along two samples on one side of the interval that begins at `at`, comes to zero within it.
+/// Where `value`, extrapolated from two samples on one side of the interval that begins at `at`, is zero within it.
 fn zero(
     samples: &[Sample],
     at: usize,

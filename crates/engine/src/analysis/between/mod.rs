@@ -31,7 +31,7 @@ pub(super) struct Sample {
     pub(super) pairs: Vec<PairState>,
 }
 
-/// How near to the load a pair is.
+/// Load share of a pair, or its distance from contact.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PairState {
     /// The pair n.
@@ -105,7 +105,7 @@ pub(super) struct Span {
 }
 
 impl Span {
-    /// That of the curves of `case`.
+    /// Span of the curves of `case`.
     pub(super) fn of(case: &Case) -> Self {
         Self {
             first: case.resolution.first_position,

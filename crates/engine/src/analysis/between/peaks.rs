@@ -38,7 +38,7 @@ struct Doubt {
 }
 
 impl PeakSearch {
-    /// That of the curves of `case`, whose contacts repeat after so many mesh periods.
+    /// Peaks of the curves of `case`, whose contacts repeat after the given number of mesh periods.
     pub(in crate::analysis) fn of(case: &Case, repeats_after: u32) -> Self {
         Self::within(Span::of(case), repeats_after)
     }
@@ -175,7 +175,7 @@ mod tests {
 
     use super::*;
 
-    /// The largest value that is found of a curve at so many positions of one mesh period, and how many more were solved.
+    /// The largest value found of a curve at a given number of positions of one mesh period, and the number of further positions solved.
     fn found(curve: impl Fn(f64) -> Option<f64>, count: u32) -> (f64, usize) {
         let search = PeakSearch::within(Span::new(0.0, 1, count, true), 1);
         let watched = |x: f64| (x, vec![curve(x)]);

@@ -15,7 +15,7 @@ const NEAREST: f64 = 1.0 / 32.0;
 const SHARED: f64 = 1.0 / 8.0;
 
 /// An extreme at an event is believed once a position stands within this part of a step of it: from farther away both sides of an event may
-/// well agree about a wrong place. Until then it counts as one if it comes to an extreme but for this part of the peak-to-peak.
+/// well agree about a wrong place. Until then it counts as one if it is within this part of the peak-to-peak of an extreme.
 const BELIEVED: (f64, f64) = (1.0 / 16.0, 0.02);
 
 /// Shares of the remaining positions that each round may use: later rounds have more evidence.
@@ -28,7 +28,7 @@ const FURTHER: (usize, f64) = (20, 0.2);
 /// positions each of its events is looked for by itself.
 const FURTHER_AT_EVENTS: usize = 2 * 3;
 
-/// How a curve is looked at between its positions.
+/// Refinement of a curve between its positions.
 pub(in crate::analysis) struct Refinement {
     span: Span,
     /// Positions that may be solved further.
@@ -37,7 +37,7 @@ pub(in crate::analysis) struct Refinement {
     repeats_after: u32,
 }
 
-/// How many positions are solved further at most for a curve of so many, over the mesh `periods` after which contact repeats.
+/// Largest number of further positions solved for a curve with a given number, over the mesh `periods` after which contact repeats.
 pub(in crate::analysis) fn most_further(positions: usize, periods: u32) -> usize {
     let of_positions = (FURTHER.1 * positions as f64) as usize;
     let at_events = FURTHER_AT_EVENTS * periods as usize;
@@ -51,7 +51,7 @@ struct Candidate {
 }
 
 impl Refinement {
-    /// That of a curve of `case` whose contacts repeat after so many mesh periods and are known at so many `positions`.
+    /// Refinement of a curve of `case` whose contacts repeat after a number of mesh periods and are known at the number `positions`.
     pub(in crate::analysis) fn of(case: &Case, repeats_after: u32, positions: usize) -> Self {
         Self {
             span: Span::of(case),

@@ -17,7 +17,7 @@ const OVERLAP: usize = 8;
 /// How much the error of a section with too few nodes for two cubics is less than the difference to the next lower degree.
 const LOWER_DEGREE: f64 = 0.3;
 
-/// A polynomial may go beyond both of its ends by so many times as much as another one through the nodes beside does: farther, it swings.
+/// Largest excursion of a polynomial beyond both of its ends, as a multiple of that of another one through the nodes beside does: farther, it swings.
 const SWING: f64 = 2.0;
 
 /// The error of δ between two places of which nothing else is known, for their difference.
@@ -37,7 +37,7 @@ const CLOSE: f64 = 1.0 / 8.0;
 /// Places in a mesh period by which the long wave is known well enough to tell extremes from it.
 const WAVE: usize = 16;
 
-/// How well δ is to be known between positions: its extremes to this part of its peak-to-peak, and no better than so many meters.
+/// Tolerance of δ between positions: of its extremes, as a part of its peak-to-peak, and its least value in meters.
 const TOLERANCE: (f64, f64) = (1e-3, 5e-10);
 
 /// The tolerance for this peak-to-peak.
@@ -215,7 +215,7 @@ impl Sections {
         f64::from(self.span.periods)
     }
 
-    /// Rising places and δ there, at least so many in a mesh period, with all at which δ is level or has a kink; where it jumps, both sides.
+    /// Rising places and δ there, at least a given number in a mesh period, with all at which δ is level or has a kink; where it jumps, both sides.
     pub(in crate::analysis) fn traced(&self, per_period: usize) -> Vec<(f64, f64)> {
         let mut traced = Vec::new();
         for Section {
@@ -431,7 +431,7 @@ struct Side {
 }
 
 impl Side {
-    /// That of `samples`, the nearest to `place` first.
+    /// Polynomial of `samples`, the nearest to `place` first.
     fn of<'a>(samples: impl Iterator<Item = &'a Sample>, place: f64) -> Option<Self> {
         const RELIABILITIES: [f64; 3] = [0.03, 0.3, 1.0];
         let mut nodes: Vec<(f64, f64)> = Vec::with_capacity(RELIABILITIES.len());

@@ -344,7 +344,7 @@ pub enum ContourFault {
         /// The corner.
         corner: usize,
     },
-    /// It runs clockwise.
+    /// The curve runs clockwise.
     Clockwise,
     /// The axis of the gear lies within.
     AroundAxis,

@@ -1,4 +1,4 @@
-//! How often a blank repeats around its axis.
+//! Number of times that a blank repeats around its axis.
 
 use std::f64::consts::TAU;
 
@@ -24,13 +24,13 @@ struct Slack {
 }
 
 impl Slack {
-    /// That of holes that are computed.
+    /// Tolerance of holes that are computed.
     const ROUNDING: Self = Self {
         relative: ALIKE,
         length: 0.0,
     };
 
-    /// That of holes of a drawing whose coordinates have decimals of `unit`, in meters.
+    /// Tolerance of holes of a drawing whose coordinates have decimals of `unit`, in meters.
     fn of_drawing(unit: f64) -> Self {
         Self {
             relative: DRAWN,

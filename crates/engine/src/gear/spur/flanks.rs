@@ -1,4 +1,4 @@
-//! How the flanks of a gear differ from the involute that the rack cuts, and from each other.
+//! Differences of the flanks of a gear from the involute that the rack cuts, and from each other.
 
 use super::SpurGear;
 use crate::gear::modification::{Modification, Relief};

@@ -128,7 +128,7 @@ impl ClassOfRing {
     }
 }
 
-/// How the interfaces of all teeth move in one class.
+/// Motion of the interfaces of all teeth in one class.
 #[derive(Debug)]
 pub(crate) struct ClassMotion {
     /// The class k.
@@ -169,7 +169,7 @@ pub(crate) fn motions(
     })
 }
 
-/// How the interfaces of all teeth move in one class under given forces.
+/// Motion of the interfaces of all teeth in one class under given forces.
 #[derive(Debug)]
 pub(crate) struct ForcedClass {
     /// The class k.

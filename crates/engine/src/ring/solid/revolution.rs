@@ -27,7 +27,7 @@ const RECOVERED_BY_RADIUS: f64 = 0.12;
 const GROWTH: f64 = 0.4;
 /// The least number of elements in the depth of a layer.
 const LEAST_ELEMENTS: f64 = 3.0;
-/// That of a layer which goes to the axis, where fields rise with powers of the radius.
+/// The least number in a layer that goes to the axis, where fields rise with powers of the radius.
 const LEAST_TO_AXIS: f64 = 6.0;
 
 /// A layer: a ring whose section in the plane of the axis is a rectangle.
@@ -52,7 +52,7 @@ pub struct Ports {
     pub size: usize,
 }
 
-/// How the circles of a layer move in one order.
+/// Motion of the circles of a layer in one order.
 #[derive(Debug, Clone)]
 pub struct Circles {
     /// From the inner to the outer one: corners and middles of elements.

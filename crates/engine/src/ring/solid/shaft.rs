@@ -100,7 +100,7 @@ impl SolidShaft<'_> {
                 .map(|(f, g)| shares[0] * f + shares[1] * g)
                 .collect(),
         };
-        // Both ends together and against each other, which a thin disc does not do alike.
+        // Both ends together and against each other: two different stiffnesses of a thin disc.
         let both = |components: [c64; 3], power: i32| {
             [[1.0, 1.0], [-1.0, 1.0]].map(|shares| mean(components, power, shares))
         };

@@ -14,8 +14,8 @@ use crate::fem::prism::{CondensationCost, Interface, Prism};
 use crate::grid::BlankGrid;
 use crate::run::Run;
 
-/// The most threads that a computation has.
-const MOST_THREADS: f64 = 8.0;
+/// Classes that are condensed at the same time at most, on as many threads or fewer: each takes memory of its own meanwhile, which the estimate tells.
+const CLASSES_AT_ONCE: usize = 8;
 
 /// A ring of sectors with holes, each condensed to its interface.
 ///
@@ -54,7 +54,7 @@ pub struct ClassStiffness {
     pub stiffness: Mat<c64>,
 }
 
-/// How nodes of sector 0 of a ring move by its outer circle, in one class.
+/// Motion of nodes of sector 0 of a ring by its outer circle, in one class.
 #[derive(Debug, Clone)]
 pub struct ClassRows {
     /// The class k: from a sector to the next all turns by e^{ik2π/S}.
@@ -65,7 +65,7 @@ pub struct ClassRows {
     pub rows: Mat<c64>,
 }
 
-/// How a ring moves.
+/// Motion of a ring.
 #[derive(Debug, Clone)]
 pub struct MovedRing {
     /// The interface of each sector, in its own axes: right side, left side, inner circle unless it is held, outer circle.
@@ -187,7 +187,7 @@ impl<'a> HoledRing<'a> {
             true => (inner + outer) * (2.0 * inner + outer + rows) + outer * outer,
             false => outer * outer,
         };
-        let of_classes = 16.0 * (classes.min(MOST_THREADS) * meanwhile + classes * left);
+        let of_classes = 16.0 * (classes.min(CLASSES_AT_ONCE as f64) * meanwhile + classes * left);
         let kept = size * sides.blocks() as f64;
         CondensationCost {
             memory: made.memory.max(8.0 * kept * (kept + rows) + of_classes),
@@ -310,7 +310,8 @@ impl<'a> HoledRing<'a> {
         of: impl Fn(usize, Vec<i64>, Mat<c64>) -> Result<T, FemError> + Sync,
     ) -> Result<Vec<T>, FemError> {
         let sector = &self.sector;
-        let made = (0..=sector.count / 2).into_par_iter().map(|class| {
+        let of_class = |class: &usize| {
+            let class = *class;
             run.check()?;
             let orders = sector.orders(class, self.largest);
             if orders.is_empty() {
@@ -326,8 +327,13 @@ impl<'a> HoledRing<'a> {
                 }
             }
             of(class, orders, stiffness).map(Some)
-        });
-        let made: Vec<Option<T>> = made.collect::<Result<_, FemError>>()?;
+        };
+        let classes: Vec<usize> = (0..=sector.count / 2).collect();
+        let mut made = Vec::with_capacity(classes.len());
+        for together in classes.chunks(CLASSES_AT_ONCE) {
+            let some = together.par_iter().map(of_class);
+            made.extend(some.collect::<Result<Vec<Option<T>>, FemError>>()?);
+        }
         Ok(made.into_iter().flatten().collect())
     }
 }
@@ -345,12 +351,12 @@ fn following(stiffness: &Mat<c64>, outer: usize) -> Result<Mat<c64>, FemError> {
     Ok(follows)
 }
 
-/// That of an order of either sign, of those of 0 and more.
+/// Matrix of an order of either sign, from those of 0 and more.
 pub(crate) fn of_order(orders: &[Mat<c64>], order: i64) -> Mat<c64> {
     conjugate_below_zero(&orders[order.unsigned_abs() as usize], order)
 }
 
-/// That of an order of either sign, of that of 0 or more; or the other way.
+/// Matrix of an order of either sign, from that of its absolute value, or the other way.
 pub(crate) fn conjugate_below_zero(of: &Mat<c64>, order: i64) -> Mat<c64> {
     if order < 0 {
         of.conjugate().to_owned()

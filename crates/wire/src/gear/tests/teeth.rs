@@ -290,7 +290,7 @@ fn traces_reach_the_engine_and_their_wrong_lengths_orders_and_amounts_are_told()
     let traces = data.deviations.profiles.as_ref().expect("traces");
     near(traces.removed[7][1], 7e-6);
     near(traces.places.values()[2], 22e-3);
-    assert!(!data.deviations.are_teeth_alike());
+    assert!(!data.deviations.are_teeth_equal());
     let by_diameter = json!({ "tooth_deviations": { "profiles": { "diameter_mm": [97, 100, 103], "removed_um": rows(50) } } });
     let data = data_of(&by_diameter);
     near(

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use super::cells::{ContactCells, PlacedCells, Refinement};
 use super::checked::Penetration;
-use super::compliances::StatedCells;
+use super::compliances::ComplianceKey;
 use super::facings::{PairGap, PairsInReach};
 use super::mesh_contact::{MeshCells, MeshContact};
 use super::model::{DeviatingPair, PositionError, WarmStart};
@@ -23,7 +23,7 @@ const REACH: f64 = 1.0 + MARGIN;
 const GUESS: f64 = 1.0 + 2.0 * MARGIN;
 
 /// The mesh at one fraction of its period, under one load.
-pub struct Stage<'a> {
+pub struct MeshPhase<'a> {
     deviating: DeviatingPair<'a>,
     load: f64,
     facings: PairsInReach<'a>,
@@ -57,8 +57,8 @@ impl DeviatingPair<'_> {
         load: f64,
         warm: &mut WarmStart,
     ) -> Result<MeshContact, PositionError> {
-        let mut stage = Stage::new(self, eta, load)?;
-        let (contact, ()) = stage.contact(eta.floor() as i64, warm, |_, _| ())?;
+        let mut phase = MeshPhase::new(self, eta, load)?;
+        let (contact, ()) = phase.contact(eta.floor() as i64, warm, |_, _| ())?;
         Ok(contact)
     }
 
@@ -73,11 +73,11 @@ impl DeviatingPair<'_> {
         load: f64,
         warm: &mut WarmStart,
     ) -> Result<MeshCells, PositionError> {
-        Stage::new(self, eta, load)?.cells(eta.floor() as i64, warm)
+        MeshPhase::new(self, eta, load)?.cells(eta.floor() as i64, warm)
     }
 }
 
-impl<'a> Stage<'a> {
+impl<'a> MeshPhase<'a> {
     /// The mesh of `deviating` at the mesh position `eta` and whole mesh periods from there, under `load`.
     ///
     /// # Errors
@@ -240,7 +240,7 @@ impl<'a> Stage<'a> {
     /// The problem on `cells`. A compliance that was met before is not stated anew.
     fn state(&self, cells: &ContactCells<'_>) -> Result<ContactProblem, PositionError> {
         let pairs = cells.placed.iter();
-        let spec = StatedCells {
+        let spec = ComplianceKey {
             pairs: pairs
                 .map(|placed| (placed.pair, placed.cells().spec))
                 .collect(),
