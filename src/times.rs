@@ -22,7 +22,7 @@ pub struct Times {
 }
 
 impl Times {
-    /// The timeouts of `meshwright serve`; docs/operations.md lists them.
+    /// The timeouts of `meshwright serve`; its help and docs/operations.md list them.
     pub const USUAL: Self = Self {
         provider: Duration::from_secs(5),
         webhook: Duration::from_secs(10),
@@ -31,4 +31,32 @@ impl Times {
         look_at_keys: Duration::from_secs(1),
         shutdown: Duration::from_secs(8),
     };
+
+    /// The timeouts in words, for the help of `meshwright serve`.
+    pub(crate) fn help(self) -> String {
+        let Self {
+            provider,
+            webhook,
+            body,
+            request,
+            look_at_keys,
+            shutdown,
+        } = self;
+        let lines = [
+            (
+                body,
+                "the body of a request, from when there is memory for it",
+            ),
+            (request, "a request, until the head of its answer"),
+            (
+                look_at_keys,
+                "between two looks at the key of an open stream",
+            ),
+            (provider, "one document of the identity provider"),
+            (webhook, "one attempt to send a message to a webhook"),
+            (shutdown, "running work and open answers at a shutdown"),
+        ];
+        let lines = lines.map(|(time, what)| format!("\n  {:>2} s  {what}", time.as_secs_f64()));
+        format!("Timeouts without an option:{}", lines.concat())
+    }
 }

@@ -21,6 +21,7 @@ use crate::webhooks::HookRules;
 
 /// Serve jobs over HTTP.
 #[derive(Debug, clap::Args)]
+#[command(after_help = Times::USUAL.help())]
 #[command(mut_args(|option| if option.get_id() == "demo" { option } else { with_variable(option) }))]
 pub(crate) struct Serve {
     #[command(flatten)]

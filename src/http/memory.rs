@@ -230,6 +230,17 @@ pub(super) fn weight_of_lines(document: &[u8]) -> u64 {
 mod tests {
     use super::*;
 
+    #[test]
+    fn a_document_weighs_what_its_values_take_however_few_bytes_they_have() {
+        let count = 10_000;
+        let numbers = format!("[{}0]", "0,".repeat(count));
+        let values = count * size_of::<serde_json::Value>();
+        assert!(weight(numbers.as_bytes()) > values as u64);
+        // A text has no values in it.
+        let text = format!("[\"{}\"]", "a".repeat(2 * count));
+        assert!(weight(text.as_bytes()) < values as u64);
+    }
+
     #[tokio::test]
     async fn an_answer_holds_as_much_memory_as_it_has_bytes_until_the_last_of_them_has_left() {
         let memory = BodyMemory::of(1 << 20, 1 << 20);

@@ -287,17 +287,9 @@ impl WorkerContext {
         &self,
         write: impl Fn() -> F,
     ) -> Result<T, StoreError> {
-        let mut patience = self.pace.lease / 3;
-        loop {
-            match self.answered_within(patience, write()).await {
-                Err(error) if error.may_pass() && !self.jobs.stop().is_cancelled() => {
-                    warn!(error = %error, "an outcome waits until it can be written");
-                    self.jobs.wait_for_storage().await;
-                    patience = patience.saturating_mul(2);
-                }
-                written => return written,
-            }
-        }
+        let is_over = |error: &StoreError| !error.may_pass() || self.jobs.stop().is_cancelled();
+        let wait = || self.jobs.wait_for_storage();
+        repeated(self.patience(), write, is_over, wait).await
     }
 
     /// Tells those who wait, and the log, how a job has ended, if it has by this attempt.
@@ -382,19 +374,44 @@ impl WorkerContext {
         &self,
         answer: impl Future<Output = Result<T, StoreError>>,
     ) -> Result<T, StoreError> {
-        self.answered_within(self.pace.lease / 3, answer).await
+        answered_within(self.patience(), answer).await
     }
 
-    async fn answered_within<T>(
-        &self,
-        patience: Duration,
-        answer: impl Future<Output = Result<T, StoreError>>,
-    ) -> Result<T, StoreError> {
-        if !self.jobs.store.is_shared() {
-            return answer.await;
+    /// How long an answer of the store is waited for; without an end where no other process can take a lease.
+    fn patience(&self) -> Option<Duration> {
+        self.jobs.store.is_shared().then(|| self.pace.lease / 3)
+    }
+}
+
+/// The answer of the store, if it comes within `patience`.
+async fn answered_within<T>(
+    patience: Option<Duration>,
+    answer: impl Future<Output = Result<T, StoreError>>,
+) -> Result<T, StoreError> {
+    let Some(patience) = patience else {
+        return answer.await;
+    };
+    let answer = tokio::time::timeout(patience, answer).await;
+    answer.unwrap_or_else(|_| Err(StoreError::timed_out()))
+}
+
+/// Repeats `write` until it succeeds or `is_over` after an error, and waits in between. The first time an answer is waited for within `patience`, each further
+/// time twice as long.
+async fn repeated<T, F: Future<Output = Result<T, StoreError>>, W: Future<Output = ()>>(
+    mut patience: Option<Duration>,
+    write: impl Fn() -> F,
+    is_over: impl Fn(&StoreError) -> bool,
+    wait: impl Fn() -> W,
+) -> Result<T, StoreError> {
+    loop {
+        match answered_within(patience, write()).await {
+            Err(error) if !is_over(&error) => {
+                warn!(error = %error, "an outcome waits until it can be written");
+                wait().await;
+                patience = patience.map(|patience| patience.saturating_mul(2));
+            }
+            written => return written,
         }
-        let answer = tokio::time::timeout(patience, answer).await;
-        answer.unwrap_or_else(|_| Err(StoreError::timed_out()))
     }
 }
 
@@ -490,4 +507,27 @@ fn internal_problem() -> Problem {
         Code::InternalError,
         "The service failed while it computed this job. The failure has been logged.",
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicU32, Ordering};
+
+    use super::*;
+
+    #[tokio::test]
+    async fn a_write_that_nobody_answers_is_begun_anew() {
+        let count = AtomicU32::new(0);
+        // The first connection has died without a word.
+        let write = async || match count.fetch_add(1, Ordering::Relaxed) {
+            0 => std::future::pending().await,
+            1 => Err(StoreError::timed_out()),
+            number => Ok(number),
+        };
+        let patience = Some(Duration::from_millis(1));
+        let is_over = |error: &StoreError| !error.may_pass();
+        let written = repeated(patience, write, is_over, async || {});
+        let written = tokio::time::timeout(Duration::from_secs(60), written).await;
+        assert_eq!(written.unwrap().unwrap(), 2);
+    }
 }

@@ -7,7 +7,6 @@ folder=$(mktemp -d)
 MESHWRIGHT_LOG=warn target/debug/meshwright serve --listen 127.0.0.1:"$port" --webhook-host "$MESHWRIGHT_HOOK" --database "$folder/jobs.db" &
 service=$!
 trap 'kill $service; wait $service 2>/dev/null; rm -rf "$folder"' EXIT
-for _ in $(seq 100); do
-    python3 -c "import urllib.request as r; r.urlopen('$MESHWRIGHT_URL/health/ready')" 2>/dev/null && break
-    sleep 0.1
+until python3 -c "import urllib.request as r; r.urlopen('$MESHWRIGHT_URL/health/ready')" 2>/dev/null; do
+    kill -0 $service; sleep 0.1
 done

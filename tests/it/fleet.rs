@@ -19,7 +19,7 @@ use tokio::net::tcp::{OwnedReadHalf, OwnedWriteHalf};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::{Mutex, watch};
 
-use crate::bench::Asked;
+use crate::bench::{Asked, eventually};
 use crate::process::Process;
 use crate::submitters::{Bases, Submitters};
 use crate::{server, stores};
@@ -363,6 +363,14 @@ async fn a_password_stands_neither_in_the_help_nor_in_an_error() {
     }
 }
 
+/// The transaction that waits for a lock in the database.
+async fn waiting(connection: &mut PgConnection) -> Option<String> {
+    let waiting = sqlx::query_scalar(
+        "select pid || ' since ' || xact_start from pg_stat_activity where datname = current_database() and wait_event_type = 'Lock'",
+    );
+    waiting.fetch_optional(connection).await.unwrap()
+}
+
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn a_dismissal_that_takes_long_keeps_no_lost_job_waiting() {
     let address = server::database().await;
@@ -381,16 +389,23 @@ async fn a_dismissal_that_takes_long_keeps_no_lost_job_waiting() {
         sqlx::raw_sql(words).execute(&mut lock).await.unwrap();
     }
     let mut other = server::connect(&address).await;
-    for words in [
-        "update studies set cancelled_at = submitted_at",
-        "update jobs set status = 'running', attempt = 1, owner = 'gone', lease_until = 1 where study is null",
-    ] {
-        sqlx::query(words).execute(&mut other).await.unwrap();
-    }
-    let waits =
-        "select count(*) from jobs where study is null and status = 'accepted' and attempt = 1";
-    // The lost job is found meanwhile.
-    fleet.until(waits, 1).await;
+    let cancel = "update studies set cancelled_at = submitted_at";
+    sqlx::query(cancel).execute(&mut other).await.unwrap();
+    // A transaction that waits for a lock gives up after a while, and another one follows it. The lost job is found while one of them waits.
+    eventually(async || {
+        let before = waiting(&mut other).await;
+        let lose = "update jobs set status = 'running', attempt = 1, owner = 'gone', lease_until = 1 where study is null";
+        sqlx::query(lose).execute(&mut other).await.unwrap();
+        let found =
+            "select count(*) from jobs where study is null and status = 'accepted' and attempt = 1";
+        fleet.until(found, 1).await;
+        let after = waiting(&mut other).await;
+        match before.is_some() && before == after {
+            true => Ok(()),
+            false => Err((before, after)),
+        }
+    })
+    .await;
     sqlx::raw_sql("rollback").execute(&mut lock).await.unwrap();
     let dismissed = "select count(*) from jobs where status = 'dismissed'";
     fleet.until(dismissed, 10).await;

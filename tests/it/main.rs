@@ -11,30 +11,23 @@ mod server;
 mod stores;
 mod submitters;
 
-/// What holds on either store: `./test` runs these suites once more with `MESHWRIGHT_TEST_STORE=postgres`.
+/// What the store has a part in: `./test all` runs these suites once more with `MESHWRIGHT_TEST_STORE=postgres`, and `./test` eight of them.
 #[path = "."]
 mod either_store {
     pub(crate) mod admission;
     mod batch;
     mod chaos;
-    mod connections;
-    mod edge;
     mod events;
     mod growth;
     mod life;
     mod links;
     mod lists;
     mod members;
-    mod page;
     mod population;
-    mod previews;
     pub(crate) mod process;
     mod projects;
-    mod real;
     mod recovery;
-    mod refusals;
     mod repeats;
-    mod rexs;
     mod searches;
     mod shares;
     mod sigkill;
@@ -48,8 +41,10 @@ mod either_store {
 }
 
 mod circles;
+mod connections;
 mod contract;
 mod disk;
+mod edge;
 mod fleet;
 mod flood;
 mod frozen;
@@ -58,7 +53,12 @@ mod mangled;
 mod memory;
 mod one_process;
 mod operators;
+mod page;
+mod previews;
 mod readers;
+mod real;
+mod refusals;
+mod rexs;
 #[cfg(feature = "otlp")]
 mod spans;
 mod threads;

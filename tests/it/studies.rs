@@ -7,7 +7,9 @@ use meshwright_wire::{Code, Problem};
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 
-use crate::bench::{Asked, Bench, Engine, Events, RESULTS, Work, problem, results, submission};
+use crate::bench::{
+    Asked, Bench, Engine, Events, RESULTS, Work, eventually, problem, results, submission,
+};
 
 /// A study of torques: as many designs, all of which can be built.
 fn torques(values: &[f64]) -> Value {
@@ -133,15 +135,11 @@ async fn a_single_job_is_served_before_the_designs_of_a_study() {
     assert_eq!(next_torque(&mut engine).await, 2.0);
 
     // All rows come, although they are expanded in chunks.
-    let mut rows = 0;
-    for _ in 0..200 {
-        rows = table(&bench, &path).await["rows"].as_array().unwrap().len();
-        if rows == 1000 {
-            break;
-        }
-        tokio::time::sleep(std::time::Duration::from_millis(20)).await;
-    }
-    assert_eq!(rows, 1000);
+    let all = eventually(async || {
+        let rows = table(&bench, &path).await["rows"].as_array().unwrap().len();
+        if rows == 1000 { Ok(()) } else { Err(rows) }
+    });
+    all.await;
     bench.cancel(&path).answer().await;
     drop(engine);
 }

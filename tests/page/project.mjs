@@ -26,6 +26,13 @@ async function holes(page, count) {
   await computed(page);
 }
 
+/** Waits until a reload finds the driven gear with so many holes. */
+const remembers = (page, count) =>
+  page.waitForFunction(async (holes) => {
+    const { remembered } = await import(new URL("web/state/kept.js", document.baseURI).href);
+    return (await remembered())?.submission.pair.driven.blank.holes.count === holes;
+  }, count);
+
 const holesOf = async (page) => (await designOf(page)).pair.driven.blank.holes.count;
 
 async function choose(page, text) {
@@ -58,7 +65,7 @@ export async function projectSteps() {
       await holes(page, 7);
       assert.equal(await page.locator("#project-button").innerText(), `${NAME} *`, "it has changes");
 
-      await page.waitForTimeout(600);
+      await remembers(page, 7);
       await page.reload();
       await named(page, "7×");
       assert.equal(await page.locator("#project-button").innerText(), `${NAME} *`);

@@ -91,6 +91,51 @@ const watch = (page) =>
     );
   });
 
+/**
+ * What stands in each of these places as if it were of the design in the form: words that are not gray, and
+ * pictures that are not pale.
+ */
+const standingIn = (page, places) =>
+  page.evaluate((all) => {
+    const faint = getComputedStyle(document.querySelector("#state")).color;
+    return Object.fromEntries(
+      Object.entries(all).map(([name, selector]) => {
+        const seen = [...document.querySelectorAll(selector)].filter(
+          (element) =>
+            element.checkVisibility({ visibilityProperty: true }) &&
+            (element.matches("canvas, svg, g") ||
+              [...element.childNodes].some(({ nodeType, data }) => nodeType === 3 && data.trim())),
+        );
+        const stands = (element) => {
+          let opacity = 1;
+          for (let each = element; each; each = each.parentElement) opacity *= Number(getComputedStyle(each).opacity);
+          return opacity > 0.6 && (element.matches("canvas, svg, g") || getComputedStyle(element).color !== faint);
+        };
+        return [
+          name,
+          seen.filter(stands).map((element) => `${element.tagName} ${element.textContent.trim().slice(0, 30)}`),
+        ];
+      }),
+    );
+  }, places);
+/** Each of these places shows the design, and once `edit` has made another one it does not stand as that. */
+const marked = async (page, places, edit) => {
+  for (const [name, stands] of Object.entries(await standingIn(page, places)))
+    assert.ok(stands.length, `${name} shows its design`);
+  const release = await heldPreviews(page);
+  await edit();
+  await page.waitForFunction(() => document.body.classList.contains("other"));
+  const left = Object.entries(await standingIn(page, places)).filter(([, stands]) => stands.length);
+  assert.deepEqual(left, []);
+  return release;
+};
+
+/** What tells of a run-up. */
+const RUN_UP = "#run-up svg, #run-up td, #run-up th, #run-up caption, #run-up output, #speed-readout";
+
+/** Types a text into the field at a pointer. */
+const typing = (page, pointer, text) => async () => (await field(page, pointer)).fill(text);
+
 /** @param service the service whose page is used */
 export async function shownSteps(service) {
   const { opened, step, daily, engine } = stepsOn(service);
@@ -225,7 +270,7 @@ export async function shownSteps(service) {
     },
   );
 
-  await step(
+  await daily.step(
     "by the clock: numbers are gray 300 to 400 ms after an edit, what takes over a second waits for 700, and Enter waits for nothing",
     async (page) => {
       await page.clock.install();
@@ -271,48 +316,21 @@ export async function shownSteps(service) {
     },
   );
 
-  await step("every view shows one design: while the form has another one it says so, or is empty", async (page) => {
-    /**
-     * What stands in each of these places as if it were of the design in the form: words that are not gray, and
-     * pictures that are not pale.
-     */
-    const standingIn = (places) =>
-      page.evaluate((all) => {
-        const faint = getComputedStyle(document.querySelector("#state")).color;
-        return Object.fromEntries(
-          Object.entries(all).map(([name, selector]) => {
-            const seen = [...document.querySelectorAll(selector)].filter(
-              (element) =>
-                element.checkVisibility({ visibilityProperty: true }) &&
-                (element.matches("canvas, svg, g") ||
-                  [...element.childNodes].some(({ nodeType, data }) => nodeType === 3 && data.trim())),
-            );
-            const stands = (element) => {
-              let opacity = 1;
-              for (let each = element; each; each = each.parentElement)
-                opacity *= Number(getComputedStyle(each).opacity);
-              return opacity > 0.6 && (element.matches("canvas, svg, g") || getComputedStyle(element).color !== faint);
-            };
-            return [
-              name,
-              seen.filter(stands).map((element) => `${element.tagName} ${element.textContent.trim().slice(0, 30)}`),
-            ];
-          }),
-        );
-      }, places);
-    /** Each of these places shows the design, and once `edit` has made another one it does not stand as that. */
-    const marked = async (places, edit) => {
-      for (const [name, stands] of Object.entries(await standingIn(places)))
-        assert.ok(stands.length, `${name} shows its design`);
-      const release = await heldPreviews(page);
-      await edit();
-      await page.waitForFunction(() => document.body.classList.contains("other"));
-      const left = Object.entries(await standingIn(places)).filter(([, stands]) => stands.length);
-      assert.deepEqual(left, []);
-      return release;
-    };
-    const typing = (pointer, text) => async () => (await field(page, pointer)).fill(text);
+  await daily.opened("loads and a run-up are pale as long as the form has another design than theirs", async (page) => {
+    const drawing = "#drawing .forces > *";
+    await (
+      await marked(page, { drawing }, typing(page, "/output_torques_n_m", "90"))
+    )();
+    await tab(page, "speed");
+    await page.locator("#run-up-ask").click();
+    await page.locator("#run-up .waterfall").waitFor();
+    await settled(page);
+    await (
+      await marked(page, { "run-up": RUN_UP }, typing(page, "/output_torques_n_m", "100"))
+    )();
+  });
 
+  await step("every view shows one design: while the form has another one it says so, or is empty", async (page) => {
     await openDesign(page, service, { ...HELICAL, method: "three_dimensional_projected" });
     await settled(page);
     await tab(page, "contact");
@@ -324,15 +342,15 @@ export async function shownSteps(service) {
       pattern: "#pattern svg",
     };
     await (
-      await marked({ ...curves, drawing: "#drawing .forces > *" }, typing("/output_torques_n_m", "130"))
+      await marked(page, { ...curves, drawing: "#drawing .forces > *" }, typing(page, "/output_torques_n_m", "130"))
     )();
     await tab(page, "designs");
     await (
-      await marked({ compare: "#table .live" }, typing("/output_torques_n_m", "140"))
+      await marked(page, { compare: "#table .live" }, typing(page, "/output_torques_n_m", "140"))
     )();
     await tab(page, "data");
     await (
-      await marked({ geometry: "#geometry td:not(.unit)" }, typing("/output_torques_n_m", "150"))
+      await marked(page, { geometry: "#geometry td:not(.unit)" }, typing(page, "/output_torques_n_m", "150"))
     )();
     // In space the outline is that of the form as soon as it is there, and loads of another pair are not on it.
     await page.locator("[data-view=space]").click();
@@ -341,7 +359,11 @@ export async function shownSteps(service) {
       /Colors are the load on each line/.test(document.querySelector("#space-words")?.textContent),
     );
     const outlined = page.waitForResponse(/v1\/outline$/);
-    const drawn = await marked({ space: "canvas.space, .in-space .legend" }, typing("/pair/helix_angle_deg", "18"));
+    const drawn = await marked(
+      page,
+      { space: "canvas.space, .in-space .legend" },
+      typing(page, "/pair/helix_angle_deg", "18"),
+    );
     await outlined;
     await page.waitForFunction(() =>
       /helical teeth of 18°.*Loads are not computed yet\.$/.test(document.querySelector("#space-words").textContent),
@@ -358,10 +380,7 @@ export async function shownSteps(service) {
     await page.locator("#run-up .waterfall").waitFor();
     await settled(page);
     await (
-      await marked(
-        { "run-up": "#run-up svg, #run-up td, #run-up th, #run-up caption, #run-up output, #speed-readout" },
-        typing("/output_torques_n_m", "90"),
-      )
+      await marked(page, { "run-up": RUN_UP }, typing(page, "/output_torques_n_m", "90"))
     )();
   });
 

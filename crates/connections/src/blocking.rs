@@ -68,7 +68,7 @@ mod tests {
             .await
             .unwrap();
         request.abort();
-        let end = spawn_blocking(move || ends.recv_timeout(Duration::from_secs(20)));
+        let end = spawn_blocking(move || ends.recv_timeout(Duration::from_secs(60)));
         assert!(end.await.unwrap().is_ok());
     }
 }

@@ -319,13 +319,14 @@ mod tests {
 
     use super::*;
 
-    const PATIENCE: Duration = Duration::from_secs(20);
+    const PATIENCE: Duration = Duration::from_secs(60);
 
-    /// A connection that is served, its client's end, and the number of answers. The network holds `room` bytes.
+    /// A connection that is served until `stop`, its client's end, and the number of answers. The network holds `room` bytes.
     fn connect(
         room: usize,
         answer: usize,
         stall: Duration,
+        stop: &CancellationToken,
     ) -> (JoinHandle<()>, DuplexStream, Arc<AtomicUsize>) {
         let made = Arc::new(AtomicUsize::new(0));
         let count = Arc::clone(&made);
@@ -339,17 +340,11 @@ mod tests {
             stall,
         };
         let (ours, theirs) = duplex(room);
+        let stop = stop.clone();
         let serve = async move {
             let address = IpAddr::from([127, 0, 0, 1]).into();
             let (connection, limit) = (Arc::new(Connection::new(address)), Connections::new(1));
-            serve_connection(
-                ours,
-                service,
-                bounds,
-                (&connection, &limit),
-                &CancellationToken::new(),
-            )
-            .await;
+            serve_connection(ours, service, bounds, (&connection, &limit), &stop).await;
         };
         (tokio::spawn(serve), theirs, made)
     }
@@ -359,7 +354,7 @@ mod tests {
     #[tokio::test]
     async fn of_many_pipelined_requests_one_answer_is_in_memory_at_a_time() {
         // The answers are larger than the buffer of the network, and much smaller than the buffer of an answer.
-        let (_, mut client, made) = connect(1 << 10, 2 << 10, PATIENCE);
+        let (_, mut client, made) = connect(1 << 10, 2 << 10, PATIENCE, &CancellationToken::new());
         let requests = REQUEST.repeat(20);
         client.write_all(requests.as_bytes()).await.unwrap();
         // There is one thread, and nothing waits for anything but the client.
@@ -378,15 +373,37 @@ mod tests {
     #[tokio::test]
     async fn a_client_that_reads_nothing_is_given_up_whatever_is_buffered() {
         for answer in [1 << 10, 30 << 10, 1 << 20] {
-            let (served, mut client, _) = connect(512, answer, Duration::from_millis(20));
+            let (served, mut client, _) = connect(
+                512,
+                answer,
+                Duration::from_millis(20),
+                &CancellationToken::new(),
+            );
             client.write_all(REQUEST.as_bytes()).await.unwrap();
             timeout(PATIENCE, served).await.unwrap().unwrap();
         }
     }
 
     #[tokio::test]
+    async fn a_client_that_reads_nothing_does_not_hold_the_end_up() {
+        let (stop, patient) = (CancellationToken::new(), Duration::from_secs(3600));
+        let (served, mut client, made) = connect(512, 1 << 20, patient, &stop);
+        client.write_all(REQUEST.as_bytes()).await.unwrap();
+        while made.load(Ordering::Relaxed) == 0 {
+            yield_now().await;
+        }
+        stop.cancel();
+        timeout(PATIENCE, served).await.unwrap().unwrap();
+    }
+
+    #[tokio::test]
     async fn a_client_that_reads_a_trickle_is_given_up() {
-        let (served, mut client, _) = connect(16, 1 << 20, Duration::from_millis(20));
+        let (served, mut client, _) = connect(
+            16,
+            1 << 20,
+            Duration::from_millis(20),
+            &CancellationToken::new(),
+        );
         client.write_all(REQUEST.as_bytes()).await.unwrap();
         let trickle = async {
             let mut byte = [0];

@@ -217,22 +217,3 @@ fn orders_that_do_not_see_the_holes_may_be_solved_apart() {
         assert!(off < 0.01);
     }
 }
-
-#[test]
-#[ignore = "./test all"]
-fn stresses_at_fillets_and_hole_edges_settle_from_the_standard_to_the_fine_level() {
-    let teeth = [0, 1];
-    let [standard, fine] =
-        [GridLevel::Standard, GridLevel::Fine].map(|level| by_recovery(level, &teeth, (54, 54)));
-    let peak_of = |values: &Vec<f64>| values.iter().copied().fold(0.0, f64::max);
-    let places = standard
-        .fillets
-        .iter()
-        .chain(&standard.holes)
-        .zip(fine.fillets.iter().chain(&fine.holes));
-    for (standard, fine) in places {
-        let (standard, fine) = (peak_of(standard), peak_of(fine));
-        println!("{:.3} MPa, fine {:.3} MPa", standard / 1e6, fine / 1e6);
-        assert!((standard / fine - 1.0).abs() < 0.02);
-    }
-}

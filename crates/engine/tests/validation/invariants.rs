@@ -571,11 +571,3 @@ fn both_contact_solvers_give_the_same_curves() {
         }
     }
 }
-
-#[test]
-#[ignore = "./test all"]
-fn a_fresh_library_and_a_full_one_give_the_same_bits() {
-    let case = case(paper_case(2).0, &[115.0]);
-    let fresh = analyze(&case, &Library::default(), &Run::unattended()).expect("an answer");
-    assert_eq!(fresh, solve(&case));
-}

@@ -76,7 +76,7 @@ async fn a_locked_database_is_told_as_such_and_found_to_be_free_again() {
     assert!(matches!(refused, StoreError::Unavailable(_)), "{refused:?}");
     assert!(store.fault().is_some_and(|cause| cause.contains("locked")));
     held.rollback().await.unwrap();
-    tokio::time::timeout(std::time::Duration::from_secs(20), store.writable())
+    tokio::time::timeout(std::time::Duration::from_secs(60), store.writable())
         .await
         .unwrap();
     queued(&store, 2, "a").await;
