@@ -56,11 +56,15 @@ fn along_faces(departure: Departure, beta: f64) -> Case {
 #[test]
 fn along_faces_delta_of_a_few_pairs_rises_with_light_loads_from_where_rigid_flanks_touch() {
     let mut wrong = Vec::new();
-    for (name, beta) in [("pitch of both", 0.0), ("crowning", 0.3)] {
+    for (name, beta) in [
+        ("pitch of both", 0.0),
+        ("pitch of both", 0.3),
+        ("crowning", 0.3),
+    ] {
         let departure = of_profiles().into_iter().find(|each| each.name == name);
         let mut case = along_faces(departure.expect("a departure of this name"), beta);
         case.output_torques = vec![0.0, 1e-2, 1.0];
-        case.resolution.positions_per_mesh_period = 4;
+        case.resolution.span_mesh_periods = Some(1);
         rises_from_its_limit(case, name, &mut wrong);
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));

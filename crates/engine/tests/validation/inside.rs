@@ -1,4 +1,4 @@
-//! Stresses inside a whole gear by recovery rows against the same gear solved whole, and settled with the grid.
+//! Stresses inside a whole gear by recovery rows against the same gear solved whole.
 
 use meshwright_engine::gear::{Core, SpurGear};
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};

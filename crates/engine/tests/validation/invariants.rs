@@ -3,13 +3,12 @@
 
 use std::sync::Arc;
 
-use meshwright_engine::analysis::{Case, ContactSolver, Curve, StiffnessRule, analyze, pair_model};
+use meshwright_engine::analysis::{Case, ContactSolver, Curve, StiffnessRule, pair_model};
 use meshwright_engine::assembly::{Parts, TeethSpec};
 use meshwright_engine::contact::{MeshCells, WarmStart, light_contact};
 use meshwright_engine::gear::{GearPair, Member, SpurGear, Vector, radial, tangential};
 use meshwright_engine::grid::ring_grid::ELEMENTS_PER_TOOTH;
 use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
-use meshwright_engine::library::Library;
 use meshwright_engine::quadrature::GAUSS_3;
 use meshwright_engine::run::Run;
 use meshwright_engine::substructures::{
