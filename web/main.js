@@ -15,13 +15,13 @@ import { study } from "./panels/study.js";
 import { sweep } from "./panels/sweep.js";
 import { json, patiently, ProblemError } from "./state/api.js";
 import { Design, fromFragment, nameOf, same, toFragment } from "./state/design.js";
-import { isSolid, needsSolid } from "./state/dimensions.js";
+import { isSolid, learnDimensions, needsSolid } from "./state/dimensions.js";
 import { remember, remembered } from "./state/kept.js";
 import { fetchMaterials } from "./state/materials.js";
 import { fixed, number } from "./state/numbers.js";
 import { alike, Follower, resultsOf } from "./state/preview.js";
 import { fetchQuantities } from "./state/quantities.js";
-import { bare, openapi, usualAt } from "./state/schema.js";
+import { bare, beyondPlane, openapi, usualAt } from "./state/schema.js";
 import { wordsAt } from "./state/series.js";
 import { fileOfDesign } from "./state/tables.js";
 import { kindOf } from "./state/work.js";
@@ -240,6 +240,7 @@ class Page {
     if (before) this.#design.restore(first, before);
     else this.#design.replace(first, "start");
     const [api, limits] = await fetched(() => Promise.all([openapi(), json("v1/limits")]));
+    learnDimensions(beyondPlane(api));
     const form = new Form(byId("form"), api, this.#design, {
       notify: (words) => this.#notice.say(words),
       limits,

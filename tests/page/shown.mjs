@@ -756,6 +756,7 @@ export async function shownSteps(service) {
       });
       await open(page, service);
       await changing(page, async () => (await field(page, "/stress")).check());
+      await tab(page, "strength");
       await page.locator("#answer-stress .name").click();
       assert.match(
         await page.locator("#about-stress").innerText(),

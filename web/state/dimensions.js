@@ -21,9 +21,22 @@ const USUAL_HELIX = 15;
 /** @type {GearName[]} */
 const MEMBERS = ["driving", "driven"];
 
-/** Fields that plane methods refuse, by the ends of their pointers. */
-const NEED_SOLID =
-  /\/(helix_angle_deg|axial_offset_mm|misalignment_um|lead_modifications|hub|web\/offset_mm|shaft\/torque_at|lead_slope_um)$/;
+/**
+ * The fields that plane methods refuse, once the schema has told them.
+ *
+ * @type {string[]}
+ */
+let beyondPlane = [];
+
+/**
+ * Takes the pointers of the fields that plane methods refuse.
+ *
+ * @param {string[]} pointers
+ */
+export function learnDimensions(pointers) {
+  beyondPlane = pointers;
+}
+
 /** What the methods in three dimensions have no choice of. */
 const CHOSEN_IN_PLANE = "contact_solver";
 
@@ -39,7 +52,7 @@ export const isSolid = (method) => String(method ?? "").startsWith(SOLID);
  *
  * @type {(pointer: string) => boolean}
  */
-export const needsThird = (pointer) => NEED_SOLID.test(pointer);
+export const needsThird = (pointer) => beyondPlane.includes(pointer);
 
 /**
  * What a pair is called that has teeth like these.
@@ -234,19 +247,6 @@ export const needsSolid = (design) => pointersNeeding(design).length > 0;
 /**
  * The fields of the design that plane methods refuse.
  *
- * @param {Design} design
+ * @type {(design: Design) => string[]}
  */
-function pointersNeeding(design) {
-  /** @type {(member: GearName) => string[]} */
-  const ofGear = (member) =>
-    [
-      "lead_modifications",
-      "blank/hub",
-      "blank/web/offset_mm",
-      "blank/shaft/torque_at",
-      "tooth_deviations/lead_slope_um",
-    ].map((name) => `/pair/${member}/${name}`);
-  return [HELIX, "/pair/axial_offset_mm", "/pair/misalignment_um", ...MEMBERS.flatMap(ofGear)].filter((pointer) =>
-    isGiven(design.get(pointer)),
-  );
-}
+const pointersNeeding = (design) => beyondPlane.filter((pointer) => isGiven(design.get(pointer)));

@@ -28,6 +28,7 @@ import { numberOfMaterial } from "./materials.js";
  * @property {string} [x-unit]
  * @property {number} [x-default-modules]
  * @property {string} [x-absent]
+ * @property {number} [x-dimensions]
  */
 
 /**
@@ -300,3 +301,19 @@ const isNested = (value) => value !== null && typeof value === "object" && !Arra
  */
 const isFilledIn = (pointer) =>
   pointer === "/resolution" || pointer === "/resolution/load_distribution" || /\/material$/.test(pointer);
+
+/**
+ * The pointers of the fields of a submission that methods in the plane refuse, as the schema says.
+ *
+ * @type {(api: Api) => string[]}
+ */
+export function beyondPlane(api) {
+  /** @type {(given: Schema, pointer: string) => string[]} */
+  const within = (given, pointer) => {
+    if (given["x-dimensions"] === 3) return [pointer];
+    const { kind, schema } = kindOf(api, given);
+    if (kind !== "object") return [];
+    return Object.entries(schema.properties ?? {}).flatMap(([name, each]) => within(each, `${pointer}/${name}`));
+  };
+  return within(SUBMISSION, "");
+}

@@ -21,12 +21,15 @@ document! {
         center_distance_mm: f64 = number("Center distance", "mm", 0.5, 52_500.0),
         /// The helix angle at the reference circle: positive where the driving gear is right-handed and the driven one left-handed. Module,
         /// pressure angle, rack and profile shift are those of the normal section then. Other than 0 it needs three dimensions.
-        helix_angle_deg: f64 = number("Helix angle", "deg", -45.0, 45.0).or(0.0),
+        helix_angle_deg: f64 =
+            number("Helix angle", "deg", -45.0, 45.0).or(0.0) => in_three_dimensions,
         /// Where the mid plane of the driven face stands from that of the driving one; +z is the side from which the driving gear is seen
         /// to turn counter-clockwise. Other than 0 it needs three dimensions.
-        axial_offset_mm: f64 = number("Axial offset", "mm", -2_000.0, 2_000.0).or(0.0),
+        axial_offset_mm: f64 =
+            number("Axial offset", "mm", -2_000.0, 2_000.0).or(0.0) => in_three_dimensions,
         /// How the axes stand askew over the common face. It needs three dimensions.
-        misalignment_um: Option<MisalignmentDocument> = absent(nested("Misalignment"), "none"),
+        misalignment_um: Option<MisalignmentDocument> =
+            absent(nested("Misalignment"), "none") => in_three_dimensions,
         /// Gear 1, which drives.
         pub driving: GearDocument = nested(""),
         /// Gear 2, which is driven.

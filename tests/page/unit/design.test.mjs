@@ -4,8 +4,12 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { apart, at, Design, differences, flattened, fromFragment, nameOf, told } from "../../../web/state/design.js";
 import { toFragment, withValue } from "../../../web/state/design.js";
-import { helix, intoPlane, intoSolid, needsSolid, offers, teeth } from "../../../web/state/dimensions.js";
-import { example } from "./contract.mjs";
+import { helix, intoPlane, intoSolid, learnDimensions } from "../../../web/state/dimensions.js";
+import { needsSolid, needsThird, offers, teeth } from "../../../web/state/dimensions.js";
+import { beyondPlane } from "../../../web/state/schema.js";
+import { api, example } from "./contract.mjs";
+
+learnDimensions(beyondPlane(api));
 
 const HOLES = "/pair/driven/blank/holes";
 const begun = () => {
@@ -132,6 +136,26 @@ test("a helix moves the gears apart and takes the method that knows it; straight
   assert.equal(design.get("/method"), "flexible");
   assert.ok(Math.abs(design.get("/pair/center_distance_mm") - distance) < 1e-3);
   assert.deepEqual(offers(design), []);
+});
+
+test("the schema says which fields plane methods refuse", () => {
+  const ofGear = ["lead_modifications", "tooth_deviations/lead_slope_um", "tooth_deviations/leads", "blank/hub"];
+  const expected = [
+    ...["helix_angle_deg", "axial_offset_mm", "misalignment_um"].map((name) => `/pair/${name}`),
+    ...["driving", "driven"].flatMap((gear) =>
+      [...ofGear, "blank/web/offset_mm", "blank/shaft/torque_at"].map((name) => `/pair/${gear}/${name}`),
+    ),
+  ];
+  assert.deepEqual(beyondPlane(api).sort(), expected.sort());
+  assert.ok(needsThird("/pair/driven/blank/hub") && !needsThird("/pair/driven/blank/hub/width_mm"));
+});
+
+test("measured leads go with what else has an extent along the axis", () => {
+  const design = begun();
+  design.setAll(intoSolid(design).changes, "mend");
+  design.set("/pair/driven/tooth_deviations", { leads: { z_mm: [0, 1], removed_um: [[0, 1]] } }, "form");
+  assert.ok(needsSolid(design));
+  assert.ok("/pair/driven/tooth_deviations/leads" in intoPlane(design).changes);
 });
 
 test("what plane methods refuse goes when the pair is computed in the plane, and is named", () => {

@@ -114,12 +114,29 @@ pub struct Declared<S> {
     pub about: &'static str,
     /// Specification of its kind of value.
     pub spec: S,
+    /// True if plane methods refuse it.
+    is_solid: bool,
+}
+
+impl<S: Copy> Declared<S> {
+    /// The same of a field that plane methods refuse. The schema says so by `x-dimensions`.
+    pub const fn in_three_dimensions(self) -> Self {
+        Self {
+            is_solid: true,
+            ..self
+        }
+    }
 }
 
 impl<S> Declared<S> {
     /// The declaration of the field `name`.
     pub const fn new(name: &'static str, about: &'static str, spec: S) -> Self {
-        Self { name, about, spec }
+        Self {
+            name,
+            about,
+            spec,
+            is_solid: false,
+        }
     }
 
     /// Reads the field.
@@ -141,7 +158,10 @@ impl<S> Declared<S> {
 
     /// Schema of the field.
     pub fn property<K: Kind<Spec = S>>(&self) -> Property {
-        let schema = K::describe(self.about.trim_start(), &self.spec);
+        let mut schema = K::describe(self.about.trim_start(), &self.spec);
+        if self.is_solid {
+            schema["x-dimensions"] = Value::from(3);
+        }
         Property {
             exclusion: K::exclusion(&self.spec),
             ..Property::new(self.name, schema, K::is_needed(&self.spec))

@@ -214,7 +214,10 @@ macro_rules! document {
     (
         $(#[doc = $about:literal])*
         $visibility:vis struct $Object:ident as $name:literal, $title:literal {
-            $($(#[doc = $sentence:literal])* $within:vis $field:ident: $kind:ty = $spec:expr,)*
+            $(
+                $(#[doc = $sentence:literal])*
+                $within:vis $field:ident: $kind:ty = $spec:expr $(=> $needs:ident)?,
+            )*
         }
     ) => {
         $(#[doc = $about])*
@@ -233,7 +236,7 @@ macro_rules! document {
                         stringify!($field),
                         concat!($($sentence),*),
                         $spec,
-                    );
+                    )$(.$needs())?;
             )*
         }
 

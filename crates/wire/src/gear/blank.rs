@@ -29,7 +29,8 @@ document! {
         /// A ring that is thinner, or thicker, than the face is wide.
         pub(super) web: Option<WebDocument> = absent(nested("Web"), "none"),
         /// The ring on the bore where it is not as wide as the face. It needs three dimensions.
-        pub(crate) hub: Option<HubDocument> = absent(nested("Hub"), "as wide as the face"),
+        pub(crate) hub: Option<HubDocument> =
+            absent(nested("Hub"), "as wide as the face") => in_three_dimensions,
     }
 }
 
@@ -42,7 +43,8 @@ document! {
         pub(super) radius_mm: f64 = number("Radius of the shaft", "mm", 0.02, 25_000.0),
         /// Through which ends of the face the torque enters, half of it each where it is both: through one of them the gear twists under its teeth, and these
         /// carry more there. A plane knows both only.
-        pub(super) torque_at: FaceEnds = word("Where the torque enters").or(FaceEnds::Both),
+        pub(super) torque_at: FaceEnds =
+            word("Where the torque enters").or(FaceEnds::Both) => in_three_dimensions,
     }
 }
 
@@ -58,7 +60,8 @@ document! {
         /// none.
         pub(super) thickness_mm: f64 = number("Thickness of the web", "mm", 0.001, 8_000.0),
         /// Where the middle of the web stands from that of the face. Other than 0 it needs three dimensions.
-        pub(crate) offset_mm: f64 = number("Offset of the web", "mm", -1_000.0, 1_000.0).or(0.0),
+        pub(crate) offset_mm: f64 =
+            number("Offset of the web", "mm", -1_000.0, 1_000.0).or(0.0) => in_three_dimensions,
     }
 }
 

@@ -38,13 +38,14 @@ document! {
         profile_slope_um: Option<Vec<f64>> = absent(each_tooth("Profile slope deviations"), "none"),
         /// Material removed from the loaded flank of each tooth at the +z end of the face, tooth 0 first, linear from zero at its -z end, as a slope of
         /// lead_modifications: positive is away from the mate. It needs three dimensions.
-        pub(crate) lead_slope_um: Option<Vec<f64>> = absent(each_tooth("Lead slopes"), "none"),
+        pub(crate) lead_slope_um: Option<Vec<f64>> =
+            absent(each_tooth("Lead slopes"), "none") => in_three_dimensions,
         /// A measured trace of the profile of each loaded flank, beside its slope.
         profiles: Option<ProfileTracesDocument> =
             absent(nested("ProfileTraces"), "none").left_out(),
         /// A measured trace of the lead of each loaded flank, beside its slope. It needs three dimensions.
         pub(crate) leads: Option<LeadTracesDocument> =
-            absent(nested("LeadTraces"), "none").left_out(),
+            absent(nested("LeadTraces"), "none").left_out() => in_three_dimensions,
         /// The gear's own axis beside the axis of rotation.
         eccentricity: Option<EccentricityDocument> = absent(nested("Eccentricity"), "none"),
     }

@@ -163,7 +163,8 @@ document! {
             list("Profile modifications", EACH, MOST_MODIFICATIONS).or_empty().or_null(),
         /// Material removed from the loaded flanks along the face; they add up. They need three dimensions. Default: none.
         pub(super) lead_modifications: Vec<LeadModificationDocument> =
-            list("Lead modifications", EACH, MOST_MODIFICATIONS).or_empty().or_null(),
+            list("Lead modifications", EACH, MOST_MODIFICATIONS).or_empty().or_null()
+                => in_three_dimensions,
         /// Deviations of the teeth from each other. The contact then repeats once a revolution.
         tooth_deviations: Option<DeviationsDocument> =
             absent(nested("Tooth deviations"), "nothing"),
