@@ -12,7 +12,7 @@ pub struct Stopped;
 /// Progress of long work, and whether it should go on.
 ///
 /// The engine knows neither job nor thread: it counts the positions that it has solved and asks, between
-/// factorizations and between positions, whether it has been told to stop.
+/// factorizations and between positions, whether it is to stop.
 #[derive(Clone)]
 pub struct Run {
     stop: Arc<AtomicBool>,

@@ -1,4 +1,4 @@
-//! From a case to its answer: the methods carry out their plan.
+//! Computation of a case: the methods carry out their plan.
 
 use super::case::{Case, Model, SectionHoles};
 use super::evidence::{ErrorEstimate, Evidence};

@@ -39,7 +39,7 @@ pub struct HolePhase {
     pub amplitude_now: f64,
     /// The best turn where the other flanks carry.
     pub other_flanks_turn: f64,
-    /// From turn 0 to a whole hole pitch.
+    /// Values from turn 0 to a whole hole pitch.
     pub over_turn: Vec<AtTurn>,
 }
 

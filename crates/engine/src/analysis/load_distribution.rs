@@ -27,7 +27,7 @@ pub(super) fn solve(
     })
 }
 
-/// The mesh positions just beside which a pair comes to the line of contact of `case` or leaves it: those of one mesh period, or of the whole span
+/// The mesh positions just beside the begin and the end of the contact of a pair on the line of contact of `case`: those of one mesh period, or of the whole span
 /// where teeth deviate.
 pub(super) fn ends_of_contact(formulas: &PairFormulas, case: &Case) -> Vec<f64> {
     let periods = if case.pair.is_as_drawn() {

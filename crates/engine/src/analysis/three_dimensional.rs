@@ -24,7 +24,7 @@ use crate::contact::{MeshContact, PairLoads};
 use crate::gear::{Member, PairDeviations};
 use crate::run::Run;
 
-/// There is a warning of a tip corner from this part of the load: one of many slices touches nearly always.
+/// Part of the load from which a tip corner is warned of: one of many slices touches nearly always.
 const WARNED_OF: f64 = 0.005;
 
 /// Computes `case` along its faces at the grid level of `pass`; its teeth have these `deviations`.

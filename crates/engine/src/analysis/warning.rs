@@ -17,7 +17,7 @@ const LOST_TIP_CLEARANCE: f64 = 0.05;
 /// The least clearance that racks leave, in modules, where their addendum is not known because a tip diameter is given.
 const CLEARANCE_OF_RACKS: f64 = 0.2;
 
-/// Beyond this ratio of the face widths there is a warning of plane models: the load spreads over the wider gear's width by bending it, which
+/// Ratio of the face widths above which plane models are warned of: the load spreads over the wider gear's width by bending it, which
 /// a plane does not see.
 const LIKE_WIDTHS: f64 = 1.5;
 
@@ -34,7 +34,7 @@ pub const FEW_POSITIONS: u32 = 20;
 /// Part of the peak-to-peak, and length in meters, above which the estimated error between positions is warned of.
 pub const OPEN_PEAK_TO_PEAK: (f64, f64) = (0.02, 2e-9);
 
-/// There is a warning of forces beyond this part of the largest load of a table; up to it they are it but for rounding.
+/// Part of the largest load of a table above which forces are warned of; up to this ratio the difference is rounding.
 const BEYOND: f64 = 1.0 + 1e-9;
 
 /// From this part on by which the natural frequency is another with the inertia of rims and teeth where it is, there is a warning: the estimate is as good.

@@ -103,6 +103,11 @@ impl GearSpec {
         self.blank.as_ref().map(|under| under.plain(&self.teeth))
     }
 
+    /// Its blank, if that has holes.
+    pub(super) fn holed(&self) -> Option<&BlankSpec> {
+        self.blank.as_ref().and_then(BlankUnderTeeth::holed)
+    }
+
     /// Joins `teeth` with its blank: with the `plain` gear, and with a blank that has `holes`.
     pub(super) fn join(
         &self,

@@ -165,59 +165,53 @@ pub fn make_gears<P: Parts + ?Sized>(
     parts: &P,
     run: &Run,
 ) -> Result<Vec<Arc<Gear>>, AssemblyError> {
-    let teeth: Vec<_> = wanted
+    let specs_of_teeth: Vec<_> = wanted
         .iter()
         .map(|gear| (gear.member, gear.spec.teeth.clone()))
         .collect();
-    let plain: Vec<_> = wanted
+    let specs_of_plain: Vec<_> = wanted
         .iter()
         .filter_map(|gear| Some((gear.member, gear.spec.plain()?)))
         .collect();
-    let of_plain = plain
+    let of_plain = specs_of_plain.iter();
+    let of_plain = of_plain.map(|(member, spec)| (*member, spec.blank.clone()));
+    let holed = wanted
         .iter()
-        .map(|(member, spec)| (*member, spec.blank.clone()));
-    let holed = wanted.iter().filter_map(|gear| {
-        let under = gear.spec.blank.as_ref()?;
-        Some((gear.member, under.holed()?.clone()))
-    });
-    let blanks: Vec<_> = of_plain.chain(holed).collect();
+        .filter_map(|gear| Some((gear.member, gear.spec.holed()?.clone())));
+    let specs_of_blanks: Vec<_> = of_plain.chain(holed).collect();
     // Neither needs the other. Teeth come first: they take longest.
     let (teeth, blanks) = rayon::join(
-        || made(&teeth, |spec| parts.teeth(spec, run)),
-        || made(&blanks, |spec| parts.blank(spec, run)),
+        || made(&specs_of_teeth, |spec| parts.teeth(spec, run)),
+        || made(&specs_of_blanks, |spec| parts.blank(spec, run)),
     );
     let (teeth, blanks) = (teeth?, blanks?);
-    let of_flexible = wanted.iter().zip(&teeth);
-    let of_flexible = of_flexible.filter(|(gear, _)| gear.spec.blank.is_some());
-    let of_flexible: Vec<_> = of_flexible.map(|(_, teeth)| teeth).zip(&blanks).collect();
-    let plain = made(&plain, |spec| {
-        let first = plain.iter().position(|(_, known)| known == spec);
-        let (teeth, blank) = of_flexible[first.unwrap_or_default()];
-        parts.plain_gear(spec, (teeth, blank), run)
+    let plain_gears = made(&specs_of_plain, |spec| {
+        let teeth = found(&specs_of_teeth, &teeth, &spec.teeth);
+        let blank = found(&specs_of_blanks, &blanks, &spec.blank);
+        let teeth = teeth.map_or_else(|| parts.teeth(&spec.teeth, run), Ok)?;
+        let blank = blank.map_or_else(|| parts.blank(&spec.blank, run), Ok)?;
+        parts.plain_gear(spec, (&teeth, &blank), run)
     })?;
-    let mut holed = blanks.into_iter().skip(plain.len());
-    let mut plain = plain.into_iter();
-    let under: Vec<_> = wanted
-        .iter()
-        .map(|gear| {
-            let under = gear.spec.blank.as_ref();
-            let plain = under.and_then(|_| plain.next());
-            (
-                plain,
-                under.and_then(|under| under.holed().and_then(|_| holed.next())),
-            )
-        })
-        .collect();
-    (wanted, teeth, under)
+    (wanted, teeth)
         .into_par_iter()
         .with_max_len(1)
-        .map(|(gear, teeth, (plain, holed))| {
+        .map(|(gear, teeth)| {
+            let plain = gear.spec.plain();
+            let plain = plain.and_then(|spec| found(&specs_of_plain, &plain_gears, &spec));
+            let holed = gear.spec.holed();
+            let holed = holed.and_then(|spec| found(&specs_of_blanks, &blanks, spec));
             let joined = gear
                 .spec
                 .join(&teeth, plain.as_deref(), holed.as_deref(), run);
             joined.map(Arc::new).map_err(|error| error.of(gear.member))
         })
         .collect()
+}
+
+/// The part of `spec` among the `parts` that were made for `wanted`.
+fn found<S: PartialEq, P>(wanted: &[(Member, S)], parts: &[Arc<P>], spec: &S) -> Option<Arc<P>> {
+    let place = wanted.iter().position(|(_, known)| known == spec);
+    place.map(|place| Arc::clone(&parts[place]))
 }
 
 /// Makes the answer of a gear to its rotation from the parts of `parts`.

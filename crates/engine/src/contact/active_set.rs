@@ -131,7 +131,7 @@ struct Trial<'a> {
     /// Gaps less those of the first touch: g_0 - delta_0 w, so that far bodies cost no digits.
     gaps_at_touch: Vec<f64>,
     gap_tolerance: f64,
-    /// Below this a force counts as none; its absence would leave a gap within the tolerance.
+    /// Largest force that counts as none; its absence would leave a gap within the tolerance.
     force_tolerances: Vec<f64>,
     set: Vec<usize>,
     active: Vec<bool>,

@@ -60,7 +60,7 @@ pub struct ContactCells<'a> {
 /// The cells of one pair with the deviations of the teeth that stand there.
 #[derive(Debug, Clone)]
 pub(super) struct PlacedCells {
-    /// From the reference pair of the mesh period.
+    /// Number of the pair, counted from the reference pair of the mesh period.
     pub(super) pair: i64,
     pub(super) drawn: DrawnPair,
     pub(super) extent: Extent,

@@ -71,7 +71,7 @@ pub(super) struct CheckedStretches {
     pub(super) yields: Vec<f64>,
 }
 
-/// From which cell to which one a contact may carry, in steps: a little more than it does.
+/// First and last cell of a contact, in steps: a little more than those that carry.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) struct Carrying {
     from: usize,

@@ -46,7 +46,7 @@ struct NextPair {
 /// A pair that comes near.
 #[derive(Debug, Clone)]
 pub(super) struct PairGap {
-    /// From the reference pair of the mesh period.
+    /// Number of the pair, counted from the reference pair of the mesh period.
     pub(super) pair: i64,
     /// The pair as drawn at its phase.
     pub(super) drawn: DrawnPair,

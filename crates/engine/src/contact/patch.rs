@@ -553,7 +553,7 @@ fn indentation(gears: &GearPair, minimum: &GapMinimum, load: f64) -> (f64, f64) 
     (load * factors, rho_1 * rho_2 / (rho_1 + rho_2))
 }
 
-/// No cell is narrower than this part of the others.
+/// Least width of a cell, as a part of the others.
 const SLIVER: f64 = 1e-3;
 
 /// Nor narrower than this part of its distance from a kink.

@@ -188,7 +188,7 @@ pub enum GearError {
         "the relief starts at radius {start_radius} m, outside the flank from {form_radius} m to {tip_radius} m"
     )]
     ReliefTooLong {
-        /// Which of the modifications.
+        /// Index of the modification in its list.
         modification: usize,
         /// The radius at which it was to start.
         start_radius: f64,
@@ -200,7 +200,7 @@ pub enum GearError {
     /// A profile table has fewer than two entries, or as many places as it has no values for, or does not rise.
     #[error("entry {entry} of the profile table does not follow the one before it")]
     TableDoesNotRise {
-        /// Which of the modifications.
+        /// Index of the modification in its list.
         modification: usize,
         /// The first entry that is missing or not larger than the one before.
         entry: usize,

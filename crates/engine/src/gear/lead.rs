@@ -66,7 +66,7 @@ pub enum LeadError {
         "an end relief of {length} m does not fit the face: more than 0 and at most {largest} m"
     )]
     EndReliefTooLong {
-        /// Which of the modifications.
+        /// Index of the modification in its list.
         modification: usize,
         /// The length asked for.
         length: f64,
@@ -76,7 +76,7 @@ pub enum LeadError {
     /// A table has fewer than two entries, or as many places as it has no values for, or does not rise.
     #[error("entry {entry} of the lead table does not follow the one before it")]
     TableDoesNotRise {
-        /// Which of the modifications.
+        /// Index of the modification in its list.
         modification: usize,
         /// The first entry that is missing or not larger than the one before.
         entry: usize,

@@ -97,7 +97,7 @@ impl Outline {
     }
 }
 
-/// Below this sine of the angle between them, two curves count as touching rather than crossing: an element between them
+/// Sine of the angle between two curves below which they count as touching rather than crossing: an element between them
 /// would be too sharp.
 const LEAST_CROSSING: f64 = 0.6;
 /// An arc that turns less, in radians, is a piece of a smooth curve and no rounding: 15 degrees.

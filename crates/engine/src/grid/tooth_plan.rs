@@ -150,7 +150,7 @@ pub struct ToothGrid {
 pub(super) struct Plan<'a> {
     gear: &'a SpurGear,
     interface_radius: f64,
-    /// From the fillet's dividing point up to the form point and on to the tip corner, and the length from the first.
+    /// Places from the fillet's dividing point up to the form point and on to the tip corner, and their distance from the first.
     side: Vec<(Vector, f64)>,
     /// The number of leading entries of `side` below the form point.
     below_form: usize,

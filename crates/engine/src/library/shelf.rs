@@ -15,7 +15,7 @@ pub(super) struct Shelf<S, P> {
 
 #[derive(Debug)]
 struct Stock<S, P> {
-    /// From the one that was not used for longest to the one used last.
+    /// Entries by the time of their last use, the oldest first.
     entries: Vec<Entry<S, P>>,
     /// Gates of the parts that are being made: the thread that makes one holds its gate.
     making: Vec<(S, Arc<Mutex<()>>)>,

@@ -24,7 +24,7 @@ pub(crate) struct GapAndArms<T = f64> {
 pub(crate) struct FlankPoint<T = f64> {
     /// The roll length on the seat, as placed.
     roll_length: T,
-    /// From the center of the seat.
+    /// Position from the center of the seat.
     point: Vector2<T>,
     normal: Vector2<T>,
     radial: Vector2<T>,

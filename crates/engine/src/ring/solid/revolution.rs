@@ -55,7 +55,7 @@ pub struct Ports {
 /// Motion of the circles of a layer in one order.
 #[derive(Debug, Clone)]
 pub struct Circles {
-    /// From the inner to the outer one: corners and middles of elements.
+    /// Radii from the inner to the outer circle: corners and middles of elements.
     radii: Vec<f64>,
     /// The amplitudes on each.
     moved: Vec<Mat<c64>>,
