@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use anyhow::{Context, bail};
+use futures_util::FutureExt as _;
 use meshwright_connections::Server;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
@@ -14,12 +15,15 @@ use tokio::net::TcpListener;
 use tokio_util::sync::CancellationToken;
 use tracing::{info, warn};
 
-use crate::compute::{Previews, Solve};
+use crate::compute::{Asker, FileRules, Files, Previews, Solve};
 use crate::config::{Config, Part};
 use crate::http::{
     Access, App, BodyMemory, Edge, KeysRule, Outlines, Readings, router, router_of_metrics,
 };
-use crate::jobs::{Clock, DatabaseAddress, Jobs, Keeper, Migrate, OpenError, Store, Workers};
+use crate::jobs::{
+    Clock, DatabaseAddress, Job, JobError, Jobs, Keeper, Migrate, OpenError, Resource as _, Store,
+    Workers,
+};
 use crate::times::Times;
 use crate::tokens::Tokens;
 use crate::webhooks::{Deliveries, HookRules, Webhooks};
@@ -139,6 +143,8 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
         jobs.memory().clone(),
         stop.clone(),
     )?;
+    let bodies = BodyMemory::of(config.memory().reading << 20, config.memory().answers << 20);
+    let files = files(config, &jobs, &bodies, world.times)?;
     let pace = config.pace();
     let in_order = lock.as_ref().is_some_and(DatabaseLock::ended_in_order);
     let workers =
@@ -186,6 +192,7 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
     let app = App {
         jobs,
         previews,
+        files,
         library,
         computes: config.role.computes(),
         workers_alive: workers.alive(),
@@ -196,7 +203,7 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
         readings: Arc::new(Readings::default()),
         times: world.times,
         outlines: Outlines::default(),
-        bodies: BodyMemory::of(config.memory().reading << 20, config.memory().answers << 20),
+        bodies,
     };
     let bounds = config.bounds();
     let metrics_server = metrics_listener.map(|listener| {
@@ -223,6 +230,31 @@ pub async fn serve(config: &Config, world: World) -> anyhow::Result<Service> {
         lock,
         times: world.times,
     })
+}
+
+/// The files that are computed anew from `jobs`. Half of the memory for answers may hold files that wait for their clients.
+fn files(config: &Config, jobs: &Jobs, bodies: &BodyMemory, times: Times) -> anyhow::Result<Files> {
+    let rules = FileRules {
+        at_once: config.preview_rules().at_once,
+        wait: times.file,
+        keep: times.keep_file,
+        look: times.look_at_jobs,
+        bytes: bodies.most_answers() / 2,
+    };
+    let of_jobs = jobs.clone();
+    let is_there = move |Asker { client, job }| {
+        let jobs = of_jobs.clone();
+        // Where the database does not answer, the job counts as being there.
+        async move {
+            !matches!(
+                Job::find(&jobs, &client, job).await,
+                Err(JobError::NotFound(_))
+            )
+        }
+        .boxed()
+    };
+    let (memory, stop) = (jobs.memory().clone(), jobs.stop().clone());
+    Ok(Files::new(rules, Arc::new(is_there), memory, stop)?)
 }
 
 /// Brings the tables of a database up to date, if it is no file that another process serves.

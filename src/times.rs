@@ -15,6 +15,12 @@ pub struct Times {
     pub body: Duration,
     /// Time for a request until the head of its answer. Longer than the longest wait that a client may ask for.
     pub request: Duration,
+    /// Time that a request waits for a file that is computed anew, before its client is told to come back for it.
+    pub file: Duration,
+    /// Time that such a file is kept, once a client was told to come back for it.
+    pub keep_file: Duration,
+    /// Time between two looks at the jobs of such a file, which ends with the last of them.
+    pub look_at_jobs: Duration,
     /// Time between two looks at the key of an open stream of events, which ends with its key.
     pub look_at_keys: Duration,
     /// Time that running work and open answers have to end at a shutdown. The database has one second more, see [`END`](crate::serve::END).
@@ -28,6 +34,9 @@ impl Times {
         webhook: Duration::from_secs(10),
         body: Duration::from_secs(30),
         request: Duration::from_secs(90),
+        file: Duration::from_secs(10),
+        keep_file: Duration::from_secs(300),
+        look_at_jobs: Duration::from_secs(1),
         look_at_keys: Duration::from_secs(1),
         shutdown: Duration::from_secs(8),
     };

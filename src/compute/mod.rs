@@ -1,11 +1,14 @@
 //! Threads that run the engine, and computations outside of jobs.
 //!
-//! In reading order: the [`Cores`] of the machine and the threads on them; and [`Previews`], for each of
-//! which a request waits, and of which nothing is kept. Jobs are computed by their workers in the same way.
+//! In reading order: the [`Cores`] of the machine and the threads on them; the rooms in which one computation at a time has them; [`Previews`], for each of
+//! which a request waits, and of which nothing is kept; and [`Files`], which are computed anew from a job and kept for a while. Jobs are computed by their
+//! workers in the same way.
 
 #![warn(clippy::disallowed_methods)]
 
+mod files;
 mod previews;
+mod rooms;
 mod threads;
 
 use std::any::Any;
@@ -15,7 +18,8 @@ use meshwright_engine::run::Run;
 
 use meshwright_wire::{Problem, Results, Submission};
 
-pub use previews::{Computed, PreviewError, PreviewRules, Previewed, Previews};
+pub use files::{Asked, Asker, FileError, FileRules, Files, IsThere, Making};
+pub use previews::{PreviewError, PreviewRules, Previewed, Previews};
 pub use threads::{Cores, NoThreads};
 pub(crate) use threads::{Work, engine_threads};
 

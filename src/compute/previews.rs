@@ -6,25 +6,19 @@
 //! refused because of the older one that it replaces, and the engine never does more than its rooms allow.
 
 use std::collections::HashMap;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
 
-use meshwright_connections::{Budget, Part};
+use meshwright_connections::Budget;
 use meshwright_engine::run::Run;
-use meshwright_wire::{Code, Preview, Problem, memory_of};
-use rayon::ThreadPool;
-use tokio::sync::oneshot;
+use meshwright_wire::{Preview, Problem, memory_of};
 use tokio::time::{Instant, sleep_until};
 use tokio_util::sync::CancellationToken;
-use tracing::error;
 
-use super::threads::{Cores, NoThreads, Work, engine_threads};
-use super::{Solve, message_of};
-
-/// Rooms that there are at least, so that a newer preview begins while the one that it replaces winds down.
-const FEWEST_ROOMS: usize = 2;
+use super::Solve;
+use super::rooms::{Rooms, failure};
+use super::threads::NoThreads;
 
 /// Limits of previews.
 #[derive(Debug, Clone, Copy)]
@@ -42,17 +36,6 @@ pub struct PreviewRules {
 pub struct Previewed {
     /// The text of the results document: the one that a job would give.
     pub document: String,
-    /// How long it waited for threads.
-    pub waited: Duration,
-    /// How long the engine took.
-    pub computed: Duration,
-}
-
-/// Something else that was computed while a request waited.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Computed<T> {
-    /// The result of the work.
-    pub answer: T,
     /// How long it waited for threads.
     pub waited: Duration,
     /// How long the engine took.
@@ -87,11 +70,9 @@ struct Desk {
     solve: Solve,
     rules: PreviewRules,
     stop: CancellationToken,
-    memory: Budget,
-    // Mutexes of the standard library: they are never held across an await.
+    // A mutex of the standard library: it is never held across an await.
     wanted: Mutex<Wanted>,
-    rooms: Budget,
-    free: Mutex<Vec<Arc<ThreadPool>>>,
+    rooms: Rooms,
 }
 
 /// The previews that requests wait for, of each client in their order of arrival.
@@ -150,14 +131,6 @@ struct Admitted {
     ticket: Arc<Ticket>,
 }
 
-/// Threads for one computation. They are free for the next when this is dropped.
-struct Room {
-    desk: Arc<Desk>,
-    threads: Arc<ThreadPool>,
-    client: String,
-    _part: Part,
-}
-
 impl Previews {
     /// Previews that `solve` computes, until `stop` comes.
     ///
@@ -170,22 +143,12 @@ impl Previews {
         memory: Budget,
         stop: CancellationToken,
     ) -> Result<Self, NoThreads> {
-        let cores = Cores::here();
-        let rooms = rules.at_once.min(cores.rooms().max(FEWEST_ROOMS));
-        let free: Result<_, _> = (0..rooms)
-            .map(|room| {
-                let name = move |index| format!("preview-{room}-{index}");
-                engine_threads(name, Work::Preview, cores.for_one()).map(Arc::new)
-            })
-            .collect();
         Ok(Self(Arc::new(Desk {
             solve,
             rules,
             stop,
-            memory,
             wanted: Mutex::default(),
-            rooms: Budget::of(rooms as u64),
-            free: Mutex::new(free?),
+            rooms: Rooms::new("preview", rules.at_once, Budget::of, memory)?,
         })))
     }
 
@@ -213,40 +176,12 @@ impl Previews {
         #[expect(clippy::disallowed_methods, reason = "on the engine's threads")]
         let memory = move || memory_of(&asked);
         let work = move |run: &Run| solve(&submission, run)?.to_json();
-        let Computed {
-            answer,
-            waited,
-            computed,
-        } = self
-            .work(client, id, (memory, self.rules().time_limit), work)
-            .await?;
-        metrics::histogram!("meshwright_preview_engine_seconds").record(computed.as_secs_f64());
-        Ok(Previewed {
-            document: answer,
-            waited,
-            computed,
-        })
-    }
-
-    /// Does `work` for which a request of `client` waits, and which takes so many MB of memory, counted on the engine's threads, and at most so
-    /// long; and stops the older one of the same `id`. Dropping the future stops the engine.
-    ///
-    /// # Errors
-    ///
-    /// A [`PreviewError`].
-    pub async fn work<T: Send + 'static>(
-        &self,
-        client: &str,
-        id: Option<String>,
-        (memory, time_limit): (impl FnOnce() -> u64 + Send + 'static, Duration),
-        work: impl FnOnce(&Run) -> Result<T, Problem> + Send + 'static,
-    ) -> Result<Computed<T>, PreviewError> {
         let rules = self.rules();
         let admitted = self.admit(client, id)?;
         let start = Instant::now();
-        let deadline = start + time_limit;
+        let deadline = start + rules.time_limit;
 
-        let room = self.room(client);
+        let room = self.0.rooms.enter(client);
         let room = admitted
             .unless_over(deadline, PreviewError::Full(rules.at_once), room)
             .await?;
@@ -254,14 +189,16 @@ impl Previews {
         let result = admitted
             .unless_over(
                 deadline,
-                PreviewError::TimeLimit(time_limit),
+                PreviewError::TimeLimit(rules.time_limit),
                 room.launch(memory, work, admitted.run()),
             )
             .await?;
         // The sender is only ever dropped with a result in it.
         let (result, computed) = result.unwrap_or_else(|_| (Err(failure()), Duration::ZERO));
-        Ok(Computed {
-            answer: result.map_err(PreviewError::Failed)?,
+        let document = result.map_err(PreviewError::Failed)?;
+        metrics::histogram!("meshwright_preview_engine_seconds").record(computed.as_secs_f64());
+        Ok(Previewed {
+            document,
             waited,
             computed,
         })
@@ -301,29 +238,11 @@ impl Previews {
             ticket,
         })
     }
-
-    /// Waits for threads. Of the clients that wait, the one that has fewest gets them first.
-    async fn room(&self, client: &str) -> Room {
-        let part = self.0.rooms.take(client, 1).await;
-        let threads = self.0.free().pop();
-        Room {
-            desk: Arc::clone(&self.0),
-            threads: threads.expect("there are as many rooms as parts"),
-            client: client.to_owned(),
-            _part: part,
-        }
-    }
 }
 
 impl Desk {
     fn wanted(&self) -> MutexGuard<'_, Wanted> {
         self.wanted
-            .lock()
-            .expect("nothing panics while it holds this lock")
-    }
-
-    fn free(&self) -> MutexGuard<'_, Vec<Arc<ThreadPool>>> {
-        self.free
             .lock()
             .expect("nothing panics while it holds this lock")
     }
@@ -374,55 +293,4 @@ impl Drop for Admitted {
         self.desk.wanted().remove(&self.ticket);
         self.ticket.stop.store(true, Ordering::Relaxed);
     }
-}
-
-impl Room {
-    /// Starts the computation on the room's threads. A panic in it is the engine's fault and ends this preview only.
-    fn launch<T: Send + 'static>(
-        self,
-        memory: impl FnOnce() -> u64 + Send + 'static,
-        work: impl FnOnce(&Run) -> Result<T, Problem> + Send + 'static,
-        run: Run,
-    ) -> oneshot::Receiver<(Result<T, Problem>, Duration)> {
-        let (sender, receiver) = oneshot::channel();
-        let threads = Arc::clone(&self.threads);
-        threads.spawn(move || {
-            let is_wanted = || run.check().is_ok();
-            let memory = self
-                .desk
-                .memory
-                .take_on_thread(&self.client, memory(), is_wanted);
-            let start = std::time::Instant::now();
-            let work = || work(&run);
-            let result = catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
-                error!(
-                    panic = message_of(&*panic),
-                    "the engine panicked in a preview"
-                );
-                Err(failure())
-            });
-            let computed = start.elapsed();
-            // Before the answer, so that who asks again at once finds the room free.
-            drop(memory);
-            drop(self);
-            // Nobody waits for a preview that was stopped.
-            let _ = sender.send((result, computed));
-        });
-        receiver
-    }
-}
-
-impl Drop for Room {
-    fn drop(&mut self) {
-        // The permit follows when the fields are dropped, so that who gets it finds the threads.
-        self.desk.free().push(Arc::clone(&self.threads));
-    }
-}
-
-/// The cause stands in the log.
-fn failure() -> Problem {
-    Problem::new(
-        Code::InternalError,
-        "The service failed while it computed this preview. The failure has been logged.",
-    )
 }

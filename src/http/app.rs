@@ -10,7 +10,7 @@ use super::edge::Edge;
 use super::memory::BodyMemory;
 use super::readings::Readings;
 use super::studies::Outlines;
-use crate::compute::Previews;
+use crate::compute::{Files, Previews};
 use crate::jobs::Jobs;
 use crate::times::Times;
 use crate::tokens::Tokens;
@@ -23,6 +23,8 @@ pub struct App {
     pub jobs: Jobs,
     /// The previews.
     pub previews: Previews,
+    /// The files that are computed anew from jobs.
+    pub files: Files,
     /// The substructures that jobs and previews share.
     pub library: Library,
     /// The number of workers that live.

@@ -10,8 +10,8 @@ use utoipa::IntoParams;
 use uuid::Uuid;
 
 use super::client::Client;
-use super::fields::{Done, File, NoLook};
-use super::parameters::{IfNoneMatch, JobId, Parameters};
+use super::fields::{Cost, Done, File, NoLook};
+use super::parameters::{IfNoneMatch, JobId, Parameters, number};
 use super::pictures;
 use super::problem::{Refusal, internal};
 
@@ -22,6 +22,7 @@ use super::problem::{Refusal, internal};
 pub(super) struct PatternParameters {
     /// One of the job's output torques, in N m, not 0; without it, all of them.
     #[param(example = 115.0)]
+    #[serde(default, deserialize_with = "number")]
     torque: Option<f64>,
 }
 
@@ -29,8 +30,7 @@ pub(super) struct PatternParameters {
 ///
 /// The largest pressure over the period on both flanks of a pair that was computed along its faces, and the lines of contact at each position with
 /// the load and the pressure along them. It is
-/// computed anew from the submission while the request waits. It is bounded as previews are, but may take four times as long as they, or as the job:
-/// by its estimate, or as it was.
+/// computed anew from the submission, bounded, and answered later (202) as `fields.vtu` is.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/results/contact-pattern.json", tag = "Results", operation_id = "get_contact_pattern",
     params(PatternParameters, IfNoneMatch),
@@ -97,7 +97,8 @@ async fn answer(
     let work = move |submission: &Submission, library: &_, run: &_| {
         write(&contact_pattern(submission, &torques, library, run)?)
     };
-    done.look(client, (file, &form), request, work).await
+    let cost = |submission: &Submission| Ok(Cost::of_fields(submission, None));
+    done.look(client, (file, &form), request, cost, work).await
 }
 
 impl PatternParameters {

@@ -4,8 +4,8 @@ use std::io::{self, Read};
 use std::time::Duration;
 
 use axum::body::{Body, Bytes};
-use axum::http::HeaderMap;
-use axum::http::header::{CONTENT_ENCODING, CONTENT_TYPE, HeaderValue, VARY};
+use axum::http::header::{CACHE_CONTROL, CONTENT_ENCODING, CONTENT_TYPE, HeaderValue, VARY};
+use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
 use bytes::Buf;
 use flate2::Compression;
@@ -29,16 +29,16 @@ use super::answer::{self, tag_of_parts};
 use super::blocking::blocking;
 use super::client::Client;
 use super::memory::Held;
-use super::parameters::{IfNoneMatch, JobId, Parameters, invalid};
-use super::problem::{Refusal, internal, of_missing_results};
-use crate::compute::PreviewError;
+use super::parameters::{IfNoneMatch, JobId, Parameters, invalid, number};
+use super::problem::{Refusal, internal, of_missing_results, sentence};
+use crate::compute::{Asker, FileError, Making};
 use crate::jobs::{Job, Resource as _};
 
-/// Time limit in multiples of that of a preview: nobody drags these pictures, and volumes of both gears take seconds.
+/// Time limit of a file in multiples of that of a preview, at most [`LONGEST`]: nobody drags these pictures, and volumes of both gears take seconds.
 const PREVIEWS_LONG: u32 = 4;
 const LONGEST: Duration = Duration::from_secs(60);
 
-/// Time limit in multiples of the job's estimate or of its time, if that is longer than the limit of a preview: all of its positions are solved again.
+/// Time limit in multiples of the job's estimate or of its time, if that is longer: all of its positions are solved again.
 const JOBS_LONG: f64 = 4.0;
 
 /// Bytes that volumes of both gears take until they are written, for each tooth, and the largest size of their packed file.
@@ -58,9 +58,11 @@ const LINEAR: [u64; 2] = [40, 10];
 pub(super) struct FieldParameters {
     /// One of the job's output torques, in N m, not 0; without it, the first of them.
     #[param(example = 115.0)]
+    #[serde(default, deserialize_with = "number")]
     torque: Option<f64>,
     /// The mesh position in mesh periods, from 0 to the span of the job; without it, 0.
     #[param(example = 0.25, minimum = 0)]
+    #[serde(default, deserialize_with = "number")]
     mesh_position: Option<f64>,
 }
 
@@ -71,9 +73,11 @@ pub(super) struct FieldParameters {
 pub(super) struct GridParameters {
     /// One of the job's output torques, in N m, not 0; without it, the first of them.
     #[param(example = 115.0)]
+    #[serde(default, deserialize_with = "number")]
     torque: Option<f64>,
     /// The mesh position in mesh periods, from 0 to the span of the job; without it, 0.
     #[param(example = 0.25, minimum = 0)]
+    #[serde(default, deserialize_with = "number")]
     mesh_position: Option<f64>,
     /// The cells of the grid: `quadratic`, the elements as they were solved, or `linear`, each element divided so that filters which take a cell as straight between its
     /// corners are within 1 % of it. Without it, `quadratic`.
@@ -95,8 +99,9 @@ pub(super) enum Cells {
 /// A VTK unstructured grid that ParaView, PyVista and meshio read: at points `displacement_um` of each gear against its hub, `stress_mpa`
 /// and `von_mises_mpa`, in cells `gear` (0 driving, 1 driven); points in mm, the driving axis at the origin, the driven one on the x axis. Of a plane
 /// method plates with `thickness_mm`, by the flexible method; of `three_dimensional` and its projection volumes, by `three_dimensional`, with z from
-/// the middle of the common face. It is computed while the request waits. It is bounded as previews
-/// are, but may take four times as long as they, or as the job: by its estimate, or as it was.
+/// the middle of the common face. It is computed anew from the submission. Where that takes longer than 10 s, the answer is 202:
+/// the file is made meanwhile, and comes at the same address after `Retry-After` seconds. It is kept for five minutes. It may take four times as long as a preview,
+/// or as the job: by its estimate, or as it was.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/results/fields.vtu", tag = "Results", operation_id = "get_fields",
     params(GridParameters, IfNoneMatch),
@@ -138,8 +143,8 @@ pub(super) async fn vtu(
 ///
 /// The part of `fields.vtu` that a drawing of the deformed pair needs: the boundaries of the gears, the displacement of each node there against the hub of its
 /// gear, and its von Mises stress; and the transmission error, by which the driven gear is to be turned back for the flanks to touch. For pairs along their
-/// faces it is a section through the middle of the common face; of a part that ends before it, its end. It is computed by the method of `fields.vtu` while the
-/// request waits. Its time limit is four times that of a preview, or four times the job's estimate or time.
+/// faces it is a section through the middle of the common face; of a part that ends before it, its end. It is computed by the method of `fields.vtu`, with its time
+/// limit, and comes later (202) as that does.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/results/edges.json", tag = "Results", operation_id = "get_edges",
     params(FieldParameters, IfNoneMatch),
@@ -167,10 +172,16 @@ pub(super) async fn edges(
     answer(&client, id, &place, &request, file, work).await
 }
 
-/// Why a job that is computed once more shows nothing.
+/// Why a job that is computed once more shows nothing now.
 #[derive(IntoResponses)]
 #[expect(dead_code, reason = "the document alone reads it")]
 pub(super) enum NoLook {
+    #[response(
+        status = 202,
+        description = "The file is not made yet. It is computed meanwhile; ask again at the same address.",
+        headers(("Retry-After" = u32, description = "Seconds after which to ask again."))
+    )]
+    Later,
     #[response(
         status = 400,
         description = "A parameter is not understood, or outside the span."
@@ -193,7 +204,7 @@ pub(super) enum NoLook {
     Uncomputed,
     #[response(
         status = 503,
-        description = "As many previews are computed as the service takes at once, or it is shutting down. Try again after `Retry-After` seconds."
+        description = "As many files are computed as the service takes at once, or it is shutting down. Try again after `Retry-After` seconds."
     )]
     Busy,
 }
@@ -245,7 +256,9 @@ async fn answer(
     let look = move |submission: &Submission, library: &Library, run: &Run| {
         work(submission, (torque, position), library, run)
     };
-    done.look(client, (file, &form), request, look).await
+    let grids = file.grids;
+    let cost = move |submission: &Submission| Ok(Cost::of_fields(submission, grids));
+    done.look(client, (file, &form), request, cost, look).await
 }
 
 /// Cost of computing a job once more for a file.
@@ -259,10 +272,39 @@ pub(super) struct Cost {
     pub(super) sent: u64,
 }
 
+impl Cost {
+    /// That of fields of both gears, or of a file made of them.
+    pub(super) fn of_fields(submission: &Submission, grids: Option<Cells>) -> Self {
+        let case = submission.case();
+        // The full method of the plane or of faces solves it, whichever the job had.
+        let whole = Case {
+            model: match &case.model {
+                Model::Faces(faces, _) => Model::Faces(faces.clone(), FaceHoles::Whole),
+                Model::Section(_) | Model::Formulas(_) => Model::Section(SectionHoles::Whole),
+            },
+            ..case.clone()
+        };
+        #[expect(clippy::disallowed_methods, reason = "called in `blocking`")]
+        let Estimate {
+            degrees_of_freedom,
+            memory,
+            seconds,
+            ..
+        } = analysis::estimate(&whole, None);
+        let [made, sent] = field_bytes(case, degrees_of_freedom, grids);
+        Self {
+            memory: memory + made,
+            seconds,
+            sent,
+        }
+    }
+}
+
 /// A job with results whose submission is computed again for fields that the results do not hold.
 pub(super) struct Done {
     job: Job,
     hash: String,
+    input_hash: String,
     pub(super) submission: Submission,
 }
 
@@ -275,77 +317,111 @@ impl Done {
             return Err(of_missing_results(job.status, job.problem.as_ref()));
         };
         let submission = jobs.readable_submission(id).await?;
-        let read = move |_: &Run| Submission::parse(submission.as_bytes());
+        let read = move |_: &Run| -> Result<_, Problem> {
+            let submission = Submission::parse(submission.as_bytes())?;
+            Ok((submission.input_hash(), submission))
+        };
+        let (input_hash, submission) = blocking(client.name(), read).await??;
         Ok(Self {
-            submission: blocking(client.name(), read).await??,
             job,
             hash,
+            input_hash,
+            submission,
         })
     }
 
-    /// The `file` that `work` makes while the request waits, packed if it has grids; `form` tells it from others of the same name.
+    /// The `file` that `work` makes of a job, packed if it has grids, at the cost that `cost` tells; `form` tells it from others of the same name. 202 where it
+    /// is not made in time.
     pub(super) async fn look(
         self,
         client: &Client,
         (file, form): (File, &str),
         request: &HeaderMap,
+        cost: impl FnOnce(&Submission) -> Result<Cost, Problem> + Send + 'static,
         work: impl FnOnce(&Submission, &Library, &Run) -> Result<Vec<u8>, Problem> + Send + 'static,
     ) -> Result<Response, Refusal> {
-        let grids = file.grids;
-        let case = self.submission.case().clone();
-        // The full method of the plane or of faces solves it, whichever the job had.
-        let whole = Case {
-            model: match &case.model {
-                Model::Faces(faces, _) => Model::Faces(faces.clone(), FaceHoles::Whole),
-                Model::Section(_) | Model::Formulas(_) => Model::Section(SectionHoles::Whole),
-            },
-            ..case.clone()
-        };
-        #[expect(clippy::disallowed_methods, reason = "in `blocking`")]
-        let estimated = blocking(client.name(), move |_| analysis::estimate(&whole, None));
-        let Estimate {
-            degrees_of_freedom,
-            memory,
-            seconds,
-            ..
-        } = estimated.await?;
-        let [made, sent] = field_bytes(&case, degrees_of_freedom, grids);
-        let cost = Cost {
-            memory: memory + made,
-            seconds,
-            sent,
-        };
-        self.look_for(cost, client, (file, form), request, work)
-            .await
-    }
-
-    /// The same at a `cost` that is known.
-    pub(super) async fn look_for(
-        self,
-        cost: Cost,
-        client: &Client,
-        (file, form): (File, &str),
-        request: &HeaderMap,
-        work: impl FnOnce(&Submission, &Library, &Run) -> Result<Vec<u8>, Problem> + Send + 'static,
-    ) -> Result<Response, Refusal> {
-        let Self {
-            job,
-            hash,
-            submission,
-        } = self;
-        let app = &client.app;
-        app.jobs.check_memory(client.name(), &submission).await?;
         let File {
             name,
             media_type,
             grids,
         } = file;
-        let has_grids = grids.is_some();
+        let id = self.job.id;
+        let version = self.job.solver_version.clone();
+        let tag = tag_of_parts(&[&self.hash, name, form, SOLVER_VERSION]);
+        let made = async {
+            let file = self.made(client, (name, form), cost, work).await;
+            let Some(bytes) = file.map_err(IntoResponse::into_response)? else {
+                return Err(made_later());
+            };
+            let held = Held(bytes);
+            Ok(match grids {
+                Some(_) => {
+                    let body = packed_or_plain(held, request);
+                    answer::file(media_type, &format!("{id}-{name}"), body)
+                }
+                None => ([(CONTENT_TYPE, media_type)], held).into_response(),
+            })
+        };
+        // The answer of this version of the solver; another version may answer otherwise at the same address.
+        let mut response = match tag.answer(Keep::AskAgain, request, made).await {
+            Ok(response) => response,
+            // Nobody keeps a refusal, nor that the file comes later.
+            Err(response) => return Ok(response),
+        };
+        let headers = response.headers_mut();
+        headers.insert("solver-version", HeaderValue::from_static(SOLVER_VERSION));
+        if let Some(version) = version.filter(|version| version != SOLVER_VERSION)
+            && let Ok(version) = HeaderValue::try_from(version)
+        {
+            headers.insert("results-solver-version", version);
+        }
+        Ok(response)
+    }
+
+    /// The bytes of a file; `None` if they come later.
+    async fn made(
+        self,
+        client: &Client,
+        (name, form): (&str, &str),
+        cost: impl FnOnce(&Submission) -> Result<Cost, Problem> + Send + 'static,
+        work: impl FnOnce(&Submission, &Library, &Run) -> Result<Vec<u8>, Problem> + Send + 'static,
+    ) -> Result<Option<Bytes>, Refusal> {
+        let files = client.app.files.clone();
+        let asker = Asker {
+            client: client.name().into(),
+            job: self.job.id,
+        };
+        // Jobs of equal submissions share their files.
+        let name = format!("{}/{name}/{form}", self.input_hash);
+        let asked = match files.find(&asker, &name) {
+            Some(asked) => asked,
+            None => {
+                let making = self.making(client, cost, work).await?;
+                files.find_or_make(&asker, &name, making).map_err(of_file)?
+            }
+        };
+        Ok(asked.file().await.map_err(of_file)?)
+    }
+
+    /// The computation of a file, if it fits.
+    async fn making(
+        self,
+        client: &Client,
+        cost: impl FnOnce(&Submission) -> Result<Cost, Problem> + Send + 'static,
+        work: impl FnOnce(&Submission, &Library, &Run) -> Result<Vec<u8>, Problem> + Send + 'static,
+    ) -> Result<Making<impl FnOnce(&Run) -> Result<Bytes, Problem> + Send + 'static>, Refusal> {
+        let Self {
+            job, submission, ..
+        } = self;
+        let app = &client.app;
+        app.jobs.check_memory(client.name(), &submission).await?;
+        let counted = blocking(client.name(), move |_| (cost(&submission), submission));
+        let (cost, submission) = counted.await?;
         let Cost {
             memory,
             seconds,
             sent,
-        } = cost;
+        } = cost?;
         let memory = memory.div_ceil(1_000_000);
         let limit = app.jobs.rules().memory_mb;
         if memory > limit {
@@ -354,53 +430,57 @@ impl Done {
         app.bodies.check_answer(sent)?;
         let took = job.elapsed.map_or(0.0, |elapsed| elapsed.as_secs_f64());
         let again = Duration::try_from_secs_f64(JOBS_LONG * seconds.max(took)).unwrap_or(LONGEST);
-        let made = async {
-            let held = app.bodies.for_answer(client.name(), sent).await?;
-            let library = app.library.clone();
-            let work = move |run: &Run| work(&submission, &library, run);
-            let most = (app.previews.rules().time_limit * PREVIEWS_LONG).min(LONGEST);
-            let made =
-                app.previews
-                    .work(client.name(), None, (move || memory, most.max(again)), work);
-            let document = made.await.map_err(of_look)?.answer;
-            let body = match has_grids {
-                true => packed_or_plain(held.hold(document), request),
-                false => document.into_response(),
-            };
-            Ok::<_, Refusal>(if has_grids {
-                answer::file(media_type, &format!("{}-{name}", job.id), body)
-            } else {
-                ([(CONTENT_TYPE, media_type)], body).into_response()
-            })
+        let least = (app.previews.rules().time_limit * PREVIEWS_LONG).min(LONGEST);
+        let (library, bodies, files) = (app.library.clone(), app.bodies.clone(), app.files.clone());
+        let client = client.name().to_owned();
+        let work = move |run: &Run| {
+            let made = work(&submission, &library, run)?;
+            let is_wanted = || run.check().is_ok();
+            let give_way = || files.remove_oldest_of(&client);
+            Ok(bodies.hold_file(&client, made, is_wanted, give_way).0)
         };
-        // The answer of this version of the solver; another version may answer otherwise at the same address.
-        let mut response = tag_of_parts(&[&hash, name, form, SOLVER_VERSION])
-            .answer(Keep::AskAgain, request, made)
-            .await?;
-        let headers = response.headers_mut();
-        headers.insert("solver-version", HeaderValue::from_static(SOLVER_VERSION));
-        if let Some(version) = job
-            .solver_version
-            .filter(|version| version != SOLVER_VERSION)
-            && let Ok(version) = HeaderValue::try_from(version)
-        {
-            headers.insert("results-solver-version", version);
-        }
-        Ok(response)
+        Ok(Making {
+            memory,
+            time_limit: least.max(again),
+            work,
+        })
     }
 }
 
-/// Why a job that was computed once more shows nothing: no job has more time for it.
-fn of_look(error: PreviewError) -> Problem {
+/// The answer until a file is made.
+fn made_later() -> Response {
+    let mut response = (StatusCode::ACCEPTED, [(CACHE_CONTROL, "no-store")]).into_response();
+    answer::tell_when_to_return(false, &mut response);
+    response
+}
+
+/// Why there is no file of a job.
+fn of_file(error: FileError) -> Problem {
     match error {
-        PreviewError::TimeLimit(limit) => Problem::new(
+        FileError::Full(_) => Problem::new(
+            Code::PreviewsFull,
+            format!("{}. Try again later.", sentence(&error)),
+        ),
+        FileError::ClientFull(_) => Problem::new(
+            Code::RateLimited,
+            format!("{}. Ask again when one of them has come.", sentence(&error)),
+        ),
+        FileError::TimeLimit(limit) => Problem::new(
             Code::TimeLimit,
             format!(
                 "It was stopped after {} s, the most that it may take. One torque takes less than all of them.",
                 limit.as_secs()
             ),
         ),
-        other => other.into(),
+        FileError::JobRemoved => Problem::new(
+            Code::JobNotFound,
+            "The job was removed while its file was computed.",
+        ),
+        FileError::ShuttingDown => Problem::new(
+            Code::Unavailable,
+            "The service is shutting down and computes no more files.",
+        ),
+        FileError::Failed(problem) => problem,
     }
 }
 

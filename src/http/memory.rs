@@ -93,7 +93,7 @@ impl BodyMemory {
     ///
     /// `too_large`.
     pub(super) fn check_answer(&self, bytes: u64) -> Result<(), Problem> {
-        let most = self.answers.most();
+        let most = self.most_answers();
         if bytes <= most {
             return Ok(());
         }
@@ -102,6 +102,31 @@ impl BodyMemory {
             "The file has up to {bytes} MB; all answers at the same time may have {most} MB here. A coarser grid or fewer teeth take less."
         );
         Err(Problem::new(Code::TooLarge, detail))
+    }
+
+    /// The memory for all answers together, in bytes.
+    pub fn most_answers(&self) -> u64 {
+        self.answers.most()
+    }
+
+    /// Holds a file that was made for `client` on a thread of the engine, as long as somebody `is_wanted`. Where there is no memory for it, `give_way` is asked for
+    /// some as long as it gives any.
+    pub(super) fn hold_file(
+        &self,
+        client: &str,
+        bytes: Vec<u8>,
+        is_wanted: impl Fn() -> bool,
+        give_way: impl Fn() -> bool,
+    ) -> Held {
+        let size = bytes.len() as u64;
+        let part = loop {
+            match self.answers.try_take(client, size) {
+                None if give_way() => {}
+                None => break self.answers.take_on_thread(client, size, is_wanted),
+                part => break part,
+            }
+        };
+        AnswerMemory(part).hold(bytes)
     }
 
     /// The memory for an answer to `client` while it is made and until it has left: at most so many bytes.

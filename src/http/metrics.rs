@@ -57,6 +57,7 @@ const GAUGES: &[(&str, &str)] = numbers! {
     "meshwright_jobs_waiting": "Jobs in the queue, alone or of studies.",
     "meshwright_jobs_running": "Jobs that are being computed.",
     "meshwright_previews_running": "Previews that requests wait for.",
+    "meshwright_files_running": "Files that are computed anew from jobs.",
     "meshwright_cache_bytes": "Memory of the substructures that jobs and previews share.",
     "meshwright_cache_capacity_bytes": "Memory that they may take.",
     "meshwright_cache_entries": "Substructures that are kept.",
@@ -196,6 +197,7 @@ async fn render(app: &App) -> Result<Response, Refusal> {
     let workers = app.workers_alive.load(Ordering::Relaxed);
     metrics::gauge!("meshwright_workers").set(workers as f64);
     metrics::gauge!("meshwright_previews_running").set(app.previews.count() as f64);
+    metrics::gauge!("meshwright_files_running").set(app.files.count() as f64);
     set_cache(&app.library);
     set_process(app);
     recorder().run_upkeep();

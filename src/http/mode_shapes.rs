@@ -17,7 +17,6 @@ use meshwright_wire::{Code, Problem, Submission};
 use serde::Deserialize;
 use utoipa::IntoParams;
 
-use super::blocking::blocking;
 use super::client::Client;
 use super::fields::{Cells, Cost, Done, File, NoLook};
 use super::parameters::{IfNoneMatch, JobId, Parameters};
@@ -41,7 +40,7 @@ pub(super) struct ShapeParameters {
 /// A VTK unstructured grid of blank and teeth of one gear, in mm: its axis is the z axis, the middle of its face z = 0, tooth 0 at the x axis. Teeth of a
 /// helix stand straight. At points `displacement_um`, and `displacement_sine_um` of a double mode, which turns as the first times cos(wt) plus the second
 /// times sin(wt) or against it. The largest displacement of either is 1 um. In the field data `frequency_hz`, and `modal_mass_kg`, the modal mass of the
-/// first for displacements over the largest. It is computed while the request waits, and bounded as `fields.vtu` is.
+/// first for displacements over the largest. It is computed anew, bounded, and answered later (202) as `fields.vtu` is.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/results/modes/{n}", tag = "Results", operation_id = "get_mode_shape",
     params(
@@ -68,8 +67,7 @@ pub(super) async fn vtu(
     let gear = gear.unwrap_or(GearName::Driving);
     let done = Done::find(&client, id).await?;
     check_mode_number(&done.submission, gear, number)?;
-    let submission = done.submission.clone();
-    let cost = blocking(client.name(), move |_| cost(&submission, gear)).await??;
+    let cost = move |submission: &Submission| cost(submission, gear);
     let work = move |submission: &Submission, _: &Library, run: &Run| {
         let shape = mode_shape(submission, (gear, number), run)?;
         packed(&shape).map_err(|error| {
@@ -79,7 +77,7 @@ pub(super) async fn vtu(
     };
     let form = format!("{}/{number}", gear.word());
     let file = File::grids("mode.vtu", "text/xml", Cells::Quadratic);
-    done.look_for(cost, &client, (file, &form), &request, work)
+    done.look(&client, (file, &form), &request, cost, work)
         .await
 }
 

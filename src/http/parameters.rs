@@ -1,11 +1,13 @@
 //! Parts of a request beside its body: path, query and headers.
 
+use std::str::FromStr;
+
 use axum::extract::{FromRequestParts, Path, Query};
 use axum::http::HeaderMap;
 use axum::http::request::Parts;
 use meshwright_wire::{Code, Problem};
-use serde::Deserialize;
-use serde::de::DeserializeOwned;
+use serde::de::{DeserializeOwned, Error as _};
+use serde::{Deserialize, Deserializer};
 use utoipa::IntoParams;
 use uuid::Uuid;
 
@@ -31,6 +33,50 @@ impl<T: DeserializeOwned, S: Sync> FromRequestParts<S> for Parameters<T> {
             Query::try_from_uri(&parts.uri).map_err(|error| invalid(error.body_text()))?;
         Ok(Self(parameters))
     }
+}
+
+/// A number of a query, which has a decimal point.
+pub(super) fn number<'de, D: Deserializer<'de>>(given: D) -> Result<Option<f64>, D::Error> {
+    let text = String::deserialize(given)?;
+    match number_of(&text) {
+        Some(number) => Ok(Some(number)),
+        None => Err(D::Error::custom(match number_of(&with_point(&text)) {
+            Some(nearest) => {
+                format!("{text:?} is no number; with a decimal point, {nearest} would do")
+            }
+            None => format!("{text:?} is no number"),
+        })),
+    }
+}
+
+/// A whole number of a query.
+pub(super) fn whole<'de, T, D>(given: D) -> Result<Option<T>, D::Error>
+where
+    T: FromStr + ToString,
+    D: Deserializer<'de>,
+{
+    let text = String::deserialize(given)?;
+    if let Ok(number) = text.parse() {
+        return Ok(Some(number));
+    }
+    let rounded = number_of(&with_point(&text)).map(|number| format!("{:.0}", number.round()));
+    let nearest = rounded.and_then(|rounded| rounded.parse::<T>().ok());
+    Err(D::Error::custom(match nearest {
+        Some(nearest) => format!(
+            "{text:?} is no whole number; {} would do",
+            nearest.to_string()
+        ),
+        None => format!("{text:?} is no whole number that is taken"),
+    }))
+}
+
+fn number_of(text: &str) -> Option<f64> {
+    text.parse().ok().filter(|number: &f64| number.is_finite())
+}
+
+/// A decimal comma as a point.
+fn with_point(text: &str) -> String {
+    text.replacen(',', ".", 1)
 }
 
 /// The word under which a client may repeat a submission.

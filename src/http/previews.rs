@@ -72,8 +72,10 @@ const USUAL_LIMIT: Duration = Duration::from_secs(5);
 /// Gives a preview back, unless it is estimated to take longer than one may.
 async fn refuse_long(client: &Client, preview: Preview) -> Result<Preview, Problem> {
     let limit = client.app.previews.rules().time_limit;
-    let is_quick =
-        preview.submission.modes().is_none() && is_plain(preview.submission.case(), QUICK_TEETH);
+    let submission = &preview.submission;
+    let is_quick = submission.modes().is_none()
+        && submission.forces().is_none()
+        && is_plain(submission.case(), QUICK_TEETH);
     if limit >= USUAL_LIMIT && is_quick {
         return Ok(preview);
     }

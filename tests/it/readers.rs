@@ -3,7 +3,7 @@
 
 use std::time::{Duration, Instant};
 
-use reqwest::Client;
+use reqwest::{Client, StatusCode};
 use serde_json::{Value, json};
 use tokio::task::JoinSet;
 
@@ -303,11 +303,13 @@ async fn fields_of_gears_are_refused_where_they_never_fit_and_others_stay_in_the
     };
     let fields = async |job: &str, file: &str| {
         let url = format!("{}/v1/jobs/{job}/results/{file}", process.base);
-        client
-            .get(url)
-            .header("accept-encoding", "gzip")
-            .answer()
-            .await
+        loop {
+            let asked = client.get(&url).header("accept-encoding", "gzip");
+            let answer = asked.answer().await;
+            if answer.status() != StatusCode::ACCEPTED {
+                return answer;
+            }
+        }
     };
     let large = job(300).await;
     for file in ["fields.vtu", "edges.json"] {

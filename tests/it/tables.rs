@@ -1,11 +1,12 @@
 //! Parts of the results as tables.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 
-use crate::bench::{Asked, Bench, problem, results, submission};
+use crate::bench::{Asked, Bench, eventually, problem, results, submission};
 use crate::stores;
 
 #[tokio::test]
@@ -123,6 +124,52 @@ async fn a_table_of_a_job_that_has_not_ended_is_not_ready() {
             .status(),
         StatusCode::OK
     );
+}
+
+#[tokio::test]
+async fn a_file_that_is_not_made_in_time_is_202_and_comes_later_at_the_same_address() {
+    let mut bench = Bench::quick().await;
+    bench.times.file = Duration::ZERO;
+    bench.shut_down().await;
+    bench.start_again().await;
+    let mut small = submission(115.0);
+    small["resolution"] = json!({ "grid": "coarse" });
+    for member in ["driving", "driven"] {
+        small["pair"][member]["tooth_count"] = 25.into();
+        small["pair"][member]["blank"] = json!({ "bore_radius_mm": 8.0 });
+    }
+    small["pair"]["center_distance_mm"] = 50.25.into();
+    let path = bench.submit(&small).await;
+    bench.ended(&path).await;
+    for file in ["edges.json", "fields.vtu"] {
+        let path = format!("{path}/results/{file}?mesh_position=0.25");
+        let later = bench.get(&path).answer().await;
+        assert_eq!(later.status(), StatusCode::ACCEPTED, "{file}");
+        assert_eq!(later.headers()["retry-after"], "1");
+        assert_eq!(later.headers()["cache-control"], "no-store");
+        assert!(!later.headers().contains_key("etag"));
+        assert_eq!(later.whole_text().await, "");
+        let made = eventually(async || {
+            let answer = bench.get(&path).answer().await;
+            match answer.status() {
+                StatusCode::OK => Ok(answer),
+                status => Err(status),
+            }
+        })
+        .await;
+        let tag = made.headers()["etag"].clone();
+        let made = made.whole_text().await;
+        // It is kept.
+        let again = bench.get(&path).answer().await;
+        assert_eq!(again.status(), StatusCode::OK, "{file}");
+        assert!(again.whole_text().await == made, "{file}");
+        let known = bench.get(&path).header("if-none-match", tag);
+        assert_eq!(known.answer().await.status(), StatusCode::NOT_MODIFIED);
+    }
+    // It ends with its job.
+    assert!(bench.delete(&path).answer().await.status().is_success());
+    let gone = bench.get(&format!("{path}/results/edges.json?mesh_position=0.25"));
+    problem(gone, 404, "job_not_found").await;
 }
 
 #[tokio::test]

@@ -2,7 +2,7 @@
 // The files that the service makes of a job.
 
 import { save, saveTable } from "./download.js";
-import { request } from "../state/api.js";
+import { made } from "../state/api.js";
 import { isSolid } from "../state/dimensions.js";
 
 /** @import { Submission } from "../state/documents.js" */
@@ -66,8 +66,8 @@ export const filesOf = (submission) =>
  */
 export async function saveFile(id, name, prefix, query = "", signal = undefined) {
   const place = name === "submission.rexs" ? name : `results${name === "results.json" ? "" : `/${name}`}`;
-  const file = await request(`v1/jobs/${id}/${place}${query}`, { signal });
+  const answer = await made(`v1/jobs/${id}/${place}${query}`, { signal });
   const saved = `${prefix}${name.replace("/", "-")}`;
-  if (name.endsWith(".csv")) saveTable(saved, await file.text());
-  else save(saved, "", await file.blob());
+  if (name.endsWith(".csv")) saveTable(saved, await answer.text());
+  else save(saved, "", await answer.blob());
 }

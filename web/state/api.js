@@ -144,6 +144,20 @@ export async function patiently(work, told = () => {}) {
 }
 
 /**
+ * The answer to a GET. A file that is not made yet (202) is asked for again until it is.
+ *
+ * @type {(path: string, options?: Options) => Promise<Response>}
+ */
+export async function made(path, options) {
+  for (;;) {
+    const response = await request(path, options);
+    if (response.status !== 202) return response;
+    await rest(1000 * Number(response.headers.get("retry-after")));
+    options?.signal?.throwIfAborted();
+  }
+}
+
+/**
  * The JSON of an answer.
  *
  * @template {string} P
@@ -152,7 +166,7 @@ export async function patiently(work, told = () => {}) {
  * @returns {Promise<AnswerAt<P, "get">>}
  */
 export async function json(path, options) {
-  return (await request(path, options)).json();
+  return (await made(path, options)).json();
 }
 
 /**

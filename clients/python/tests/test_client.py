@@ -241,6 +241,29 @@ def test_results_are_plotted(service):
     assert service.preview(service.example("standard-pair")).plot("mesh_stiffness_tangent_n_per_m").get_ylabel() == "mesh stiffness tangent in N/m"
 
 
+def test_a_file_that_comes_later_is_asked_for_again_however_often():
+    def answers():
+        # Busy between: tries of a busy service are counted by themselves.
+        told = iter([202] * 9 + [503] + [202] * 9)
+
+        def answer(request):
+            status = next(told, 200)
+            return httpx.Response(status, headers={"retry-after": "0"}, text="<VTKFile/>" if status == 200 else "")
+
+        return httpx.MockTransport(answer)
+
+    with Client("http://service") as client:
+        client._http = httpx.Client(base_url="http://service", transport=answers())
+        assert client.fields("job") == "<VTKFile/>"
+
+    async def asynchronous():
+        async with AsyncClient("http://service") as client:
+            client._http = httpx.AsyncClient(base_url="http://service", transport=answers())
+            return await client.fields("job")
+
+    assert asyncio.run(asynchronous()) == "<VTKFile/>"
+
+
 def test_fields_are_read_back_with_the_stresses_of_the_curve(service, tmp_path):
     submission = service.example("stress")
     curve = service.solve(submission).curves[0]

@@ -230,6 +230,20 @@ fn run_up(data: &RunUpData, table: &ForceTable) -> RunUp {
 }
 
 #[test]
+fn the_estimate_of_a_run_up_grows_with_the_time_in_which_free_motion_dies_away() {
+    // With a tenth of the damping, free motion lasts ten times as long, and the stiffness excites more orders.
+    let of = |damping_ratio: f64| {
+        let data = RunUpData {
+            damping_ratio,
+            ..data(vec![0.1, 0.4], 1.0, &[1.0])
+        };
+        data.seconds(1)
+    };
+    let grows = of(0.005) / of(0.05);
+    assert!(grows > 5.0, "{grows}");
+}
+
+#[test]
 fn a_linear_mesh_answers_each_harmonic_as_a_forced_oscillator() {
     // x'' + 2ζx' + x = F_0 + e(θ): the response to e = Σ A cos kθ is A/√((1 − r²)² + (2ζr)²), r = kω.
     let wave = |eta: f64| 0.02 * (2.0 * PI * eta).cos() + 0.01 * (6.0 * PI * eta + 0.4).cos();

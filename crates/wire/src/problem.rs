@@ -174,7 +174,7 @@ codes! {
     QueueFull "queue-full" 503 "The queue is full"
         "More jobs are waiting than the service accepts. Nothing was stored; send the request again after the time in Retry-After."
     PreviewsFull "previews-full" 503 "Too many previews at once"
-        "The service computes as many previews as it takes at the same time. Send the request again after the time in Retry-After. One that replaces an older one, by the same preview_id, is not refused for that."
+        "The service computes as many previews, or files of jobs, as it takes at the same time. Send the request again after the time in Retry-After. One that replaces an older one, by the same preview_id, is not refused for that."
     PreviewSuperseded "preview-superseded" 409 "A newer preview took the place of this one"
         "The client sent another preview with the same preview_id before this one was computed. The newer one is answered; this one is not computed to its end."
     ClientQueueFull "client-queue-full" 429 "Too many jobs of yours wait"

@@ -28,7 +28,7 @@ _ENDED = ("successful", "failed", "dismissed")
 
 @dataclass(frozen=True)
 class Call:
-    """A request, or with `pause` a wait in seconds before it."""
+    """A request, or with `pause` a wait in seconds before it; with `until_made` one for a file that may come later (202)."""
 
     method: str
     path: str
@@ -36,6 +36,7 @@ class Call:
     headers: Mapping[str, str] = field(default_factory=dict)
     pause: float = 0.0
     as_text: bool = False
+    until_made: bool = False
 
 
 Flow = Generator[Call, Any, T]
@@ -61,13 +62,13 @@ def force_table(job_id: str) -> Flow[ForceTable]:
 def fields(job_id: str, torque: float | None, mesh_position: float | None) -> Flow[str]:
     asked = {"torque": torque, "mesh_position": mesh_position}
     query = "&".join(f"{name}={value}" for name, value in asked.items() if value is not None)
-    text: str = yield Call("GET", f"/v1/jobs/{job_id}/results/fields.vtu?{query}", as_text=True)
+    text: str = yield Call("GET", f"/v1/jobs/{job_id}/results/fields.vtu?{query}", as_text=True, until_made=True)
     return text
 
 
 def contact_pattern(job_id: str, torque: float | None) -> Flow[ContactPattern]:
     query = "" if torque is None else f"?torque={torque}"
-    return ContactPattern((yield from get(f"/v1/jobs/{job_id}/results/contact-pattern.json{query}")))
+    return ContactPattern((yield Call("GET", f"/v1/jobs/{job_id}/results/contact-pattern.json{query}", until_made=True)))
 
 
 def preview(submission: Submission) -> Flow[Results]:

@@ -54,14 +54,19 @@ def _answer(call: Call, response: httpx.Response) -> Any:
     raise ProblemError(problem)
 
 
-def _pause_before_another_try(response: httpx.Response, tried: int) -> float | None:
-    """Seconds to wait where the service says that it is busy; None where another try makes no sense."""
-    if response.status_code not in (429, 503) or tried >= _TRIES:
+def _pause_before_another_try(call: Call, response: httpx.Response, busy: int) -> float | None:
+    """Seconds to wait where a file is not made yet, or the service was `busy` so many times; None where another try makes no sense."""
+    is_made_later = response.status_code == 202 and call.until_made
+    if not is_made_later and (not _is_busy(response) or busy > _TRIES):
         return None
     try:
         return float(response.headers.get("retry-after", "1"))
     except ValueError:
         return 1.0
+
+
+def _is_busy(response: httpx.Response) -> bool:
+    return response.status_code in (429, 503)
 
 
 class Client:
@@ -160,16 +165,17 @@ class Client:
 
     def _send(self, call: Call) -> Any:
         time.sleep(call.pause)
-        for tried in range(_TRIES + 1):
+        busy = 0
+        while True:
             try:
                 response = self._http.request(call.method, call.path, json=call.body, headers=dict(call.headers))
             except httpx.ConnectError as error:
                 raise _unreachable(self._http.base_url, error) from error
-            pause = _pause_before_another_try(response, tried)
+            busy += _is_busy(response)
+            pause = _pause_before_another_try(call, response, busy)
             if pause is None:
-                break
+                return _answer(call, response)
             time.sleep(pause)
-        return _answer(call, response)
 
 
 class AsyncClient:
@@ -248,13 +254,14 @@ class AsyncClient:
 
     async def _send(self, call: Call) -> Any:
         await asyncio.sleep(call.pause)
-        for tried in range(_TRIES + 1):
+        busy = 0
+        while True:
             try:
                 response = await self._http.request(call.method, call.path, json=call.body, headers=dict(call.headers))
             except httpx.ConnectError as error:
                 raise _unreachable(self._http.base_url, error) from error
-            pause = _pause_before_another_try(response, tried)
+            busy += _is_busy(response)
+            pause = _pause_before_another_try(call, response, busy)
             if pause is None:
-                break
+                return _answer(call, response)
             await asyncio.sleep(pause)
-        return _answer(call, response)

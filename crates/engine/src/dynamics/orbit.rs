@@ -15,13 +15,13 @@ const CLOSED: f64 = 1e-11;
 const MOST_PERIODS: u32 = 8;
 
 /// Time constants of free motion after which it has died away, at first and where that was not enough.
-const SETTLED: [f64; 2] = [30.0, 200.0];
+pub(super) const SETTLED: [f64; 2] = [30.0, 200.0];
 
 /// Time constants over which a motion that does not repeat is looked at.
-const WATCHED: f64 = 60.0;
+pub(super) const WATCHED: f64 = 60.0;
 
 /// Looks that one of these may take, so that a mesh far above its natural frequency, or hardly damped, keeps nobody waiting.
-const MOST_LOOKS: f64 = 1e6;
+pub(super) const MOST_LOOKS: f64 = 1e6;
 
 /// How far, over the scale of the motion, a periodic motion may stand from where the last one stood to be its continuation.
 const NEAR: f64 = 0.1;

@@ -15,7 +15,7 @@ pub(super) const LOOKED_AT: f64 = 8.0;
 
 /// The orders whose resonances are sought, those with the largest amplitudes expected: so many that their true periods have this many mesh periods together,
 /// within these bounds.
-const MOST_SOUGHT: (u32, [u32; 2]) = (2000, [8, 160]);
+pub(super) const MOST_SOUGHT: (u32, [u32; 2]) = (2000, [8, 160]);
 
 /// The largest lines of the static curve that are expected to resonate.
 const MOST_LINES: usize = 400;

@@ -3,10 +3,11 @@
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
+use super::bodies::Coupled;
 use super::mesh::{CARRIES, Mesh, Motion, RunUpData, STEPS_A_PERIOD};
-use super::orbit::Orbit;
+use super::orbit::{MOST_LOOKS, Orbit, SETTLED, WATCHED};
 use super::order::Order;
-use super::resonance::{self, LOOKED_AT, Pass, Resonance};
+use super::resonance::{self, LOOKED_AT, MOST_SOUGHT, Pass, Resonance};
 use super::table::ForceTable;
 use crate::run::{Run, Stopped};
 
@@ -18,6 +19,13 @@ const A_MODE: f64 = 0.6;
 
 /// How often a period is gone through at each speed, about; where the motion jumps, more often.
 const LOOKED_THROUGH: f64 = 8.0;
+
+/// Motions that settle anew in the search for the resonances at one line of the stiffness, about: measured with damping ratios of 0.001 to 0.07.
+const SETTLED_AT: f64 = 150.0;
+
+/// The first line of the stiffness over its mean, and the power of its number by which further ones fall, about.
+const VARIATION: f64 = 0.3;
+const FALLING: f64 = 1.5;
 
 /// One branch of the motion, speed by speed.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -97,7 +105,37 @@ impl RunUpData {
         let resonant: f64 = meetings.map(looks).sum();
         let sweeps = self.sweeps.iter().filter(|asked| **asked).count() as f64;
         let all = sweeps * swept + LOOKED_AT * resonant;
-        each * SECONDS_A_LOOK * LOOKED_THROUGH * steps * all
+        let decay = coupled
+            .as_ref()
+            .map_or_else(|| 1.0 / (self.damping_ratio * moves), Coupled::decay);
+        let settled = self.looks_until_settled(moves, decay, period);
+        each * SECONDS_A_LOOK * (LOOKED_THROUGH * steps * all + settled)
+    }
+
+    /// Looks until motions have settled where the mesh is expected to excite them by its stiffness, about. Free motions of the circular frequency `moves` fall by
+    /// a factor e in the time `decay`.
+    fn looks_until_settled(&self, moves: f64, decay: f64, period: u32) -> f64 {
+        let natural = self.natural() / (2.0 * PI);
+        let teeth = f64::from(self.tooth_count);
+        // Mathieu's equation is unstable at twice the natural frequency from a variation of 4 ζ on.
+        let lines = (VARIATION / (2.0 * self.damping_ratio)).powf(1.0 / FALLING);
+        let most = f64::from(MOST_SOUGHT.1[1]);
+        let orders = (1..)
+            .map(f64::from)
+            .take_while(|line| *line <= lines.min(most));
+        let speeds = orders.map(|line| natural / (0.5 * line * teeth));
+        let at = |speed: f64| {
+            let per_period =
+                self.looks(speed, STEPS_A_PERIOD as f64, moves) * STEPS_A_PERIOD as f64;
+            let in_a_second = per_period * speed * teeth;
+            let [least, most] = [per_period * f64::from(period), MOST_LOOKS];
+            let [first, second] = SETTLED;
+            let each = [first, second, WATCHED]
+                .map(|constants| (constants * decay * in_a_second).min(most).max(least));
+            each.iter().sum::<f64>()
+        };
+        let reached = speeds.filter(|speed| self.reaches(*speed));
+        SETTLED_AT * reached.map(at).sum::<f64>()
     }
 
     /// Bytes that the run-up takes, about: the amplitudes of all motions, from which orders are chosen.

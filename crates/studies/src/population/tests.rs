@@ -789,6 +789,28 @@ fn windows_as_long_as_the_true_period_are_the_true_period() {
 }
 
 #[test]
+fn members_with_too_many_positions_are_refused_at_their_window_with_the_longest_that_would_do() {
+    // 20 and 21 teeth come together again after 420 mesh periods; 20,000 positions are taken.
+    let mut base = hunting();
+    base["resolution"]["positions_per_mesh_period"] = json!(100);
+    for (more, place, nearest) in [
+        (json!({}), "/population/window", 200.0),
+        (
+            json!({ "window": { "mesh_periods": 150, "places": 2 } }),
+            "/population/window/mesh_periods",
+            100.0,
+        ),
+    ] {
+        let document = json!({ "base": base, "population": of_class_6(more) });
+        let refused = refusal(&document);
+        assert_eq!(refused, [(place.to_owned(), Code::TooLarge, Some(nearest))]);
+    }
+    base["resolution"]["span_mesh_periods"] = json!(420);
+    let refused = refusal(&json!({ "base": base, "population": of_class_6(json!({})) }));
+    assert!(refused[0].0.starts_with("/base/resolution/"), "{refused:?}");
+}
+
+#[test]
 fn a_window_is_refused_beside_a_span_and_for_goals_that_it_does_not_tell() {
     let window = json!({ "window": { "mesh_periods": 32 } });
     let mut spanned = hunting();
