@@ -107,7 +107,8 @@ export function sensitivity(place, design, form, live) {
     clear();
     const base = await live();
     return question.study(() => {
-      if (!base) throw new ProblemError({ detail: "This design cannot be computed." });
+      if (!base)
+        throw new ProblemError({ detail: "There are no numbers of this design. Ask again once they stand above." });
       const limits = {
         torque: given(torque) ?? 0,
         distance: given(distance) ?? 0,

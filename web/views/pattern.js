@@ -83,7 +83,8 @@ export class Pattern {
     const live = await this.live();
     const mine = () => this.#shown === live?.submission;
     try {
-      if (!live) throw new ProblemError({ detail: "This design cannot be computed." });
+      if (!live)
+        throw new ProblemError({ detail: "There are no numbers of this design. Ask again once they stand above." });
       this.#shown = live.submission;
       sessionStorage.setItem(AWAITED, JSON.stringify(live.submission));
       // Every position is solved again, by the whole method.
