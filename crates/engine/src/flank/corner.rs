@@ -180,6 +180,24 @@ mod tests {
     }
 
     #[test]
+    fn a_short_flank_is_read_within_its_own_table() {
+        let gear = SpurGear::new(paper_gear(50)).expect("the standard gear");
+        let tip = gear.flank_arcs().1;
+        // Fewer nodes than the distance from which tables are trusted, and some more.
+        for nodes in [9, 15, 30] {
+            let arcs: Vec<f64> = (0..nodes)
+                .rev()
+                .map(|i| tip - 8e-6 * f64::from(i))
+                .collect();
+            let within = |arc: f64| arc >= arcs[0] - 1e-12 && arc <= tip + 1e-12;
+            Corner::new(&gear, &arcs, 1.0, |one, other| {
+                assert!(within(one) && within(other), "{nodes} nodes: {one} {other}");
+                [[0.0; 2]; 2]
+            });
+        }
+    }
+
+    #[test]
     fn a_wedge_of_a_straight_angle_is_the_half_plane() {
         // φ = π: 2/(π E b) along its middle. Here the middle leans; across, the force pulls the half plane sideways.
         let c = crate::flank::half_plane::logarithm_factor(210e9, 20e-3);
