@@ -26,7 +26,7 @@ use crate::sample::normal;
 use crate::sample::points::Points;
 use document::{GearAccuracy, MembersDepth};
 
-pub(crate) use document::PopulationDocument;
+pub(crate) use document::{PopulationDocument, WindowDocument};
 pub(crate) use reading::{number_at, rises};
 
 /// Members drawn from laws. Each law has been checked, and its field takes a number.

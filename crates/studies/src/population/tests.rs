@@ -551,7 +551,7 @@ fn a_population_of_which_no_member_can_be_is_refused_with_the_reason() {
     let errors = refused(&json!({ "base": made, "population": population }));
     assert_eq!(
         (&*errors[0].pointer, errors[0].code),
-        ("/base/resolution/positions_per_mesh_period", Code::TooLarge)
+        ("/population/window", Code::TooLarge)
     );
     assert!(
         errors[0].detail.contains("None of 50 members") && errors[0].detail.contains("2465"),
@@ -573,7 +573,7 @@ fn a_population_of_which_no_member_can_be_is_refused_with_the_reason() {
     let errors = refused(&search(&relieved));
     assert_eq!(
         (&*errors[0].pointer, errors[0].code),
-        ("/base/resolution/positions_per_mesh_period", Code::TooLarge)
+        ("/search/population/window", Code::TooLarge)
     );
     relieved["resolution"]["span_mesh_periods"] = json!(29);
     assert_eq!(testing::study(&search(&relieved)).err(), None);
@@ -786,6 +786,28 @@ fn windows_as_long_as_the_true_period_are_the_true_period() {
     let submission = whole.expect("a population").design(3).unwrap().submission;
     let submission = submission.expect("valid");
     assert!(submission.case().windows.is_empty() && submission.case().covers_whole_periods());
+}
+
+#[test]
+fn members_with_too_many_positions_are_refused_at_their_window_with_the_longest_that_would_do() {
+    // 20 and 21 teeth come together again after 420 mesh periods; 20,000 positions are taken.
+    let mut base = hunting();
+    base["resolution"]["positions_per_mesh_period"] = json!(100);
+    for (more, place, nearest) in [
+        (json!({}), "/population/window", 200.0),
+        (
+            json!({ "window": { "mesh_periods": 150, "places": 2 } }),
+            "/population/window/mesh_periods",
+            100.0,
+        ),
+    ] {
+        let document = json!({ "base": base, "population": of_class_6(more) });
+        let refused = refusal(&document);
+        assert_eq!(refused, [(place.to_owned(), Code::TooLarge, Some(nearest))]);
+    }
+    base["resolution"]["span_mesh_periods"] = json!(420);
+    let refused = refusal(&json!({ "base": base, "population": of_class_6(json!({})) }));
+    assert!(refused[0].0.starts_with("/base/resolution/"), "{refused:?}");
 }
 
 #[test]

@@ -4,11 +4,11 @@ use meshwright_engine::run::Run;
 use meshwright_wire::declare::{Errors, Node};
 use meshwright_wire::pointer::Pointer;
 use meshwright_wire::problem::{Code, FieldError, Problem};
-use meshwright_wire::submission::Submission;
+use meshwright_wire::submission::{Submission, Windows};
 
 use super::faults::look_around;
 use super::{Plan, Study};
-use crate::population::Population;
+use crate::population::{Population, WindowDocument};
 use crate::search::{Role, Search};
 use crate::table::Quantity;
 
@@ -17,6 +17,9 @@ const MEMBERS: usize = 256;
 
 /// Maximum number of designs that are tried for those from which the cost of a study is estimated.
 const LOOKED_AT: usize = 16;
+
+/// Place of the span of a submission.
+const SPAN: [&str; 2] = ["resolution", "span_mesh_periods"];
 
 /// Maximum number of designs of a search that are tried over its population, and of members of each.
 const OF_SEARCH: (usize, u32) = (4, 16);
@@ -131,8 +134,39 @@ impl Study {
                 return Ok(());
             }
         }
-        failures.report(&format!("None of {tried} members can be built"), errors);
+        let what = format!("None of {tried} members can be built");
+        let member = |population: &Population| {
+            let composed = self.composed(0)?;
+            Some(composed.design(Some((population, 0))).submission)
+        };
+        let placed = |error| self.at_window((population, "/population"), member, error);
+        failures.report(&what, placed, errors);
         Ok(())
+    }
+
+    /// The `error` at its place in the base; one of too many positions at the window of the `population` at `at`, with the longest window over which `member` gives
+    /// one that can be built, unless the base has a span of its own.
+    fn at_window(
+        &self,
+        (population, at): (&Population, &str),
+        member: impl Fn(&Population) -> Option<Result<Submission, Problem>>,
+        error: FieldError,
+    ) -> FieldError {
+        let is_of_span = error.code == Code::TooLarge && error.pointer.starts_with("/resolution/");
+        let spans = self.base.at(&SPAN).is_some_and(|span| *span != Node::Null);
+        let longest = (is_of_span && !spans).then(|| longest_window(population, member));
+        let Some(longest) = longest.flatten() else {
+            return in_base(error);
+        };
+        let pointer = match population.windows {
+            Some(_) => format!("{at}/window/mesh_periods"),
+            None => format!("{at}/window"),
+        };
+        let detail = format!(
+            "{} {at}/window of {longest} mesh periods would do.",
+            error.detail
+        );
+        FieldError::new(pointer, Code::TooLarge, detail).nearest(f64::from(longest))
     }
 
     /// Refuses a search none of whose designs, or none of whose members, can be built for a reason outside of the pair, and one that needs values that they do
@@ -168,11 +202,60 @@ impl Study {
             let mut paths = search.paths();
             pointer.starts_with("/pair/") || paths.any(|path| path.covers(pointer))
         };
+        let member = |population: &Population| {
+            let changes = search.trials(self.base()).next()?;
+            let (composed, _) = self.composed_of_search(Role::Member(1, 0), &changes);
+            Some(composed.design(Some((population, 0))).submission)
+        };
+        let placed = |error| match search.population() {
+            Some(population) => self.at_window((population, "/search/population"), member, error),
+            None => in_base(error),
+        };
         for (asked, what) in [(of_designs, "design"), (of_members, "member")] {
-            asked.report(what, mends, errors);
+            asked.report(what, mends, placed, errors);
         }
         Ok(())
     }
+}
+
+/// The `error` of a submission at its place in the base.
+fn in_base(error: FieldError) -> FieldError {
+    let pointer = format!("/base{}", error.pointer);
+    FieldError { pointer, ..error }
+}
+
+/// The mesh periods of the longest window of `population` over which `member` gives one that has few enough positions, if there is one.
+fn longest_window(
+    population: &Population,
+    member: impl Fn(&Population) -> Option<Result<Submission, Problem>>,
+) -> Option<u32> {
+    let places = population
+        .windows
+        .as_ref()
+        .map_or(1, |windows| windows.places);
+    let fits = |mesh_periods: u32| {
+        let windows = Some(Windows {
+            mesh_periods,
+            places,
+        });
+        let mut over = population.clone();
+        over.windows = windows;
+        matches!(member(&over), Some(Ok(_)))
+    };
+    let (least, most) = WindowDocument::mesh_periods.spec.bounds;
+    let (mut least, mut most) = (least as u32, most as u32);
+    if !fits(least) {
+        return None;
+    }
+    while most - least > 1 {
+        let middle = u32::midpoint(least, most);
+        if fits(middle) {
+            least = middle;
+        } else {
+            most = middle;
+        }
+    }
+    Some(least)
 }
 
 /// A value that a search needs and that no design, or no member, has so far: the place of the request, and the reason of the first design that was built.
@@ -202,12 +285,18 @@ impl Asked {
         self.any_built && self.missing.is_empty()
     }
 
-    fn report(self, what: &str, mends: impl Fn(&str) -> bool, errors: &Errors) {
+    fn report(
+        self,
+        what: &str,
+        mends: impl Fn(&str) -> bool,
+        placed: impl Fn(FieldError) -> FieldError,
+        errors: &Errors,
+    ) {
         if !self.any_built {
             self.report_stresses(errors);
             if self.failures.are_alike && !self.failures.could_be_mended(mends) {
-                self.failures
-                    .report(&format!("No {what} can be built"), errors);
+                let what = format!("No {what} can be built");
+                self.failures.report(&what, placed, errors);
             }
             return;
         }
@@ -263,11 +352,11 @@ impl Failures {
         errors.any(|error| mends(&error.pointer))
     }
 
-    /// Reports the errors of the first at their places in the base.
-    fn report(self, what: &str, errors: &Errors) {
+    /// Reports the errors of the first at their places in the study.
+    fn report(self, what: &str, placed: impl Fn(FieldError) -> FieldError, errors: &Errors) {
         for error in self.first.into_iter().flat_map(|problem| problem.errors) {
+            let error = placed(error);
             errors.push(FieldError {
-                pointer: format!("/base{}", error.pointer),
                 detail: format!("{what}: {}", error.detail),
                 ..error
             });
