@@ -208,11 +208,14 @@ impl<'a> Drawing<'a> {
             .iter()
             .flat_map(|closed| self.layers_of(closed))
             .collect();
-        self.leave_out_lines(&layers, pieces, lone)?;
         if openings.is_empty() {
             let detail = "Each loop runs around the axis of the gear; none bounds an opening.";
-            return Err(detail.to_owned().into());
+            // One that was meant may be open.
+            let mut refused = self.faults(pieces, lone);
+            refused.0.insert(0, detail.to_owned());
+            return Err(refused);
         }
+        self.leave_out_lines(&layers, pieces, lone)?;
         self.check_openings(&openings)?;
         let clockwise = openings.iter().map(|closed| match closed.whole.area < 0.0 {
             true => closed.sides.clone(),

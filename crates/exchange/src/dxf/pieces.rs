@@ -300,8 +300,11 @@ impl<'a> Reader<'a> {
             [] => String::new(),
             layers => format!(" on layer {}", layers.join(" or ")),
         };
+        if known.is_empty() {
+            return format!("There are no lines and arcs{on}; the drawing has no entities.");
+        }
         format!(
-            "There are no lines and arcs{on}; there is something on: {}.",
+            "There are no lines and arcs{on}; entities are on: {}.",
             known.join(", ")
         )
     }

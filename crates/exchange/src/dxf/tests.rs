@@ -345,6 +345,15 @@ fn on_layers(layers: &[&str]) -> Choices {
 }
 
 #[test]
+fn a_drawing_without_entities_is_refused_in_so_many_words() {
+    let told = refused(&file(Some(4), &[]));
+    assert!(
+        told.contains("There are no lines and arcs; the drawing has no entities."),
+        "{told}"
+    );
+}
+
+#[test]
 fn a_layer_is_chosen_by_its_name_whatever_its_case() {
     let corner = line([0.0, 50.0], [100.0, 50.0]) + &line([100.0, 50.0], [100.0, 60.0]);
     let other = corner.replace("8\nA\n", "8\nMitte\n");
@@ -355,7 +364,7 @@ fn a_layer_is_chosen_by_its_name_whatever_its_case() {
     assert!(on(&["A", "MITTE"]).is_err());
     let told = on(&["Holes"]).expect_err("no such layer").to_string();
     assert!(
-        told.contains("no lines and arcs on layer Holes; there is something on: A, Mitte."),
+        told.contains("no lines and arcs on layer Holes; entities are on: A, Mitte."),
         "{told}"
     );
     // Names of layers as older files have them.
@@ -420,6 +429,11 @@ fn circles_about_the_axis_are_the_bore_and_the_one_around_and_other_contours_the
     }
     let told = refused(&file(Some(4), &[circle(axis, 12.0)]));
     assert!(told.contains("none bounds an opening"), "{told}");
+    // An opening that does not close is told beside the bore, too.
+    let open = [circle(axis, 12.0), line([20.0, 0.0], [30.0, 0.0])];
+    let told = refused(&file(Some(4), &open));
+    assert!(told.contains("none bounds an opening"), "{told}");
+    assert!(told.contains("nothing goes on within"), "{told}");
 }
 
 #[test]
