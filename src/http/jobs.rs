@@ -16,7 +16,7 @@ use super::client::Client;
 use super::edge::Edge;
 use super::events::{Watch, WatchEvent};
 use super::page::{self, LARGEST_LIMIT, Page, USUAL_LIMIT};
-use super::parameters::{IfNoneMatch, JobId, Parameters, invalid};
+use super::parameters::{IfNoneMatch, JobId, Parameters, invalid, whole};
 use super::prefer::Wait;
 use super::problem::Refusal;
 use super::resource::{self, Shown};
@@ -59,6 +59,7 @@ pub(super) struct ListParameters {
     submitted_before: Option<String>,
     /// Maximum number of jobs.
     #[param(minimum = 1, maximum = 200, default = 50, example = 20)]
+    #[serde(default, deserialize_with = "whole")]
     limit: Option<u32>,
     /// Where to go on: `next` of the list before.
     #[param(pattern = "^c[1-9a-f][0-9a-f]{0,14}$")]

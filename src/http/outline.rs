@@ -15,7 +15,7 @@ use super::answer::json;
 use super::blocking::blocking;
 use super::body::OutlineBody;
 use super::client::Onlooker;
-use super::parameters::{Parameters, invalid};
+use super::parameters::{Parameters, invalid, number};
 use super::pictures;
 use super::problem::{Refusal, internal};
 
@@ -38,9 +38,11 @@ pub(super) struct DrawingParameters {
     center: Option<String>,
     /// Of a drawing: ends no farther apart than this are joined, in mm; 0.01 without it.
     #[param(example = 0.01, minimum = 0.0, maximum = 0.1)]
+    #[serde(default, deserialize_with = "number")]
     tolerance: Option<f64>,
     /// Of a drawing: the radius of the bore, in mm, where it is not drawn as a circle.
     #[param(example = 16.0, exclusive_minimum = 0.0)]
+    #[serde(default, deserialize_with = "number")]
     bore_radius_mm: Option<f64>,
 }
 

@@ -19,7 +19,7 @@ use super::body::JsonBody;
 use super::client::Client;
 use super::edge::Edge;
 use super::page::{self, Page, USUAL_LIMIT};
-use super::parameters::{IdempotencyKey, IfMatch, IfNoneMatch, Parameters, ProjectId, User};
+use super::parameters::{IdempotencyKey, IfMatch, IfNoneMatch, Parameters, ProjectId, User, whole};
 use super::problem::{Refusal, sentence};
 use crate::jobs::{MOST_PROJECT_BYTES, ProjectContent, ProjectError, ProjectRecord};
 
@@ -110,6 +110,7 @@ impl NewProject<'_> {
 pub(super) struct ProjectListParameters {
     /// So many projects at most.
     #[param(minimum = 1, maximum = 200, default = 50, example = 20)]
+    #[serde(default, deserialize_with = "whole")]
     limit: Option<u32>,
     /// Where to go on: `next` of the list before.
     #[param(pattern = "^c[1-9a-f][0-9a-f]{0,14}$")]

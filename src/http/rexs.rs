@@ -18,7 +18,7 @@ use super::answer::file;
 use super::blocking::blocking;
 use super::body::ModelBody;
 use super::client::{Client, Onlooker};
-use super::parameters::{JobId, Parameters};
+use super::parameters::{JobId, Parameters, number, whole};
 use super::problem::{Refusal, internal};
 use crate::jobs::{Job, JobError, Resource as _};
 
@@ -32,15 +32,18 @@ const MOST_STAGES: usize = 20;
 pub(super) struct ModelParameters {
     /// The id of one cylindrical stage; without it, all of them.
     #[param(example = 2)]
+    #[serde(default, deserialize_with = "whole")]
     stage: Option<i64>,
     /// The torque on the driven gear, in N m, instead of those of the model.
     #[param(example = 115.0, exclusive_minimum = 0.0)]
+    #[serde(default, deserialize_with = "number")]
     torque: Option<f64>,
     /// The method, instead of the flexible one or that of the model.
     #[param(example = "flexible")]
     method: Option<String>,
     /// The bore radius of both gears, in mm, instead of those of the model.
     #[param(example = 16.0, exclusive_minimum = 0.0)]
+    #[serde(default, deserialize_with = "number")]
     bore_radius_mm: Option<f64>,
     /// The flanks of both gears that are loaded, instead of those of the model.
     #[param(example = "left", inline)]

@@ -23,7 +23,7 @@ use super::app::App;
 use super::blocking::{blocking, goes_on};
 use super::campbell;
 use super::client::Client;
-use super::parameters::{IfNoneMatch, JobId, Parameters, invalid};
+use super::parameters::{IfNoneMatch, JobId, Parameters, invalid, number};
 use super::pictures::{self, Picture};
 use super::problem::{Refusal, internal, of_missing_results};
 use super::results::{self, TIMES_THE_RESULTS};
@@ -228,6 +228,7 @@ fn append<T: Clone>(column: &mut Option<Vec<T>>, cells: &[T]) {
 pub(super) struct TableParameters {
     /// The output torque of the curve, in N m; without it, all curves.
     #[param(example = 115.0)]
+    #[serde(default, deserialize_with = "number")]
     torque: Option<f64>,
     /// True puts the points between positions into a table over mesh positions, as into the results.
     #[param(default = false)]

@@ -9,7 +9,7 @@ use uuid::Uuid;
 use super::blocking::turn_to_read;
 use super::client::Administrator;
 use super::page::{self, USUAL_LIMIT};
-use super::parameters::Parameters;
+use super::parameters::{Parameters, whole};
 use super::problem::Refusal;
 use crate::jobs::{ClientUsage, UserUsage};
 
@@ -20,6 +20,7 @@ use crate::jobs::{ClientUsage, UserUsage};
 pub(super) struct UsageParameters {
     /// Maximum number of clients.
     #[param(minimum = 1, maximum = 200, default = 50, example = 20)]
+    #[serde(default, deserialize_with = "whole")]
     limit: Option<u32>,
     /// Where to go on: `next` of the list before.
     #[param(pattern = "^[^\\x00]*$")]

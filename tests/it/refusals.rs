@@ -185,3 +185,38 @@ async fn a_job_that_needs_more_memory_than_it_may_have_is_refused_wherever_it_co
         assert_eq!(row["problem"]["code"], "too_large", "{row}");
     }
 }
+
+#[tokio::test]
+async fn a_number_of_a_query_that_is_none_is_refused_with_the_one_that_would_do() {
+    let bench = Bench::quick().await;
+    let results = "/v1/jobs/none/results";
+    for (path, nearest) in [
+        (format!("{results}/edges.json?torque=115,5"), "115.5"),
+        (format!("{results}/edges.json?mesh_position=0,25"), "0.25"),
+        (
+            format!("{results}/fields.vtu?mesh_position=-1,5e-1"),
+            "-0.15",
+        ),
+        (format!("{results}/contact-pattern.json?torque=7,5"), "7.5"),
+        (format!("{results}/ste.csv?torque=7,5"), "7.5"),
+        ("/v1/jobs?limit=2,4".to_owned(), "2"),
+        ("/v1/studies?limit=10.0".to_owned(), "10"),
+        ("/v1/projects?limit=3,0".to_owned(), "3"),
+    ] {
+        let told = problem(bench.get(&path), 400, "invalid_parameter").await;
+        let detail = told["detail"].as_str().unwrap();
+        assert!(
+            detail.ends_with(&format!("{nearest} would do")),
+            "{path}: {detail}"
+        );
+    }
+    for name in ["tolerance", "bore_radius_mm"] {
+        let path = format!("/v1/outline?{name}=0,01");
+        let drawing = bench.send(&path).header("content-type", "image/vnd.dxf");
+        let told = problem(drawing.body("0\nEOF\n"), 400, "invalid_parameter").await;
+        let detail = told["detail"].as_str().unwrap();
+        assert!(detail.ends_with("0.01 would do"), "{detail}");
+    }
+    let path = format!("{results}/edges.json?torque=NaN");
+    problem(bench.get(&path), 400, "invalid_parameter").await;
+}

@@ -24,7 +24,7 @@ use super::body::JsonBody;
 use super::client::Client;
 use super::edge::Edge;
 use super::page::{self, Page, USUAL_LIMIT};
-use super::parameters::{IdempotencyKey, IfNoneMatch, Parameters, StudyId, User};
+use super::parameters::{IdempotencyKey, IfNoneMatch, Parameters, StudyId, User, whole};
 use super::prefer::Wait;
 use super::problem::Refusal;
 use super::reference::StudyEstimate;
@@ -117,6 +117,7 @@ pub(in crate::http) struct StudyListParameters {
     submitted_before: Option<String>,
     /// Maximum number of studies.
     #[param(minimum = 1, maximum = 200, default = 50, example = 20)]
+    #[serde(default, deserialize_with = "whole")]
     limit: Option<u32>,
     /// Where to go on: `next` of the list before.
     #[param(pattern = "^c[1-9a-f][0-9a-f]{0,14}$")]
