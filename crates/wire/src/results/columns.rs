@@ -1,81 +1,47 @@
 //! The lists of a curve over its positions as columns of a table.
 
+use serde_json::{Map, Value};
+
 use super::curve::CurveDocument;
-use super::stress::GearStressDocument;
+
+/// A list with its name.
+type Column = (String, Vec<Option<f64>>);
 
 impl CurveDocument {
-    /// Its lists over mesh positions with the names of their columns; `None` where a value has no limit. A list that a version did not write is left out.
+    /// Its lists of numbers over mesh positions with their names in the document: its own, then those of stresses, then the shares of pairs. `None` where a
+    /// value has no limit. A list that a version did not write is left out.
     pub fn columns(&self) -> Vec<(String, Vec<Option<f64>>)> {
-        let pairs: Vec<f64> = self
-            .pairs_in_contact
-            .iter()
-            .copied()
-            .map(f64::from)
-            .collect();
-        let numbers = [
-            ("mesh_position", &self.mesh_position),
-            ("driving_angle_deg", &self.driving_angle_deg),
-            ("driven_angle_deg", &self.driven_angle_deg),
-            ("transmission_error_um", &self.transmission_error_um),
-            (
-                "mesh_stiffness_tangent_n_per_m",
-                &self.mesh_stiffness_tangent_n_per_m,
-            ),
-            (
-                "mesh_stiffness_secant_n_per_m",
-                &self.mesh_stiffness_secant_n_per_m,
-            ),
-            ("driving_torque_n_m", &self.driving_torque_n_m),
-            ("pairs_in_contact", &pairs),
-        ];
-        let numbers = numbers.map(|(name, list)| (name.to_owned(), known(list)));
-        let pressures = self.peak_contact_pressure_mpa.clone();
-        let gears = self
-            .stress
-            .iter()
-            .flat_map(|stress| [("driving", &stress.driving), ("driven", &stress.driven)]);
-        let stresses = gears.flat_map(|(gear, stress)| {
-            let named =
-                |(name, list): (&str, &Vec<f64>)| (format!("stress.{gear}.{name}"), known(list));
-            stress.columns().map(named)
+        let count = self.mesh_position.len();
+        // The names are those of the declaration, which writes the document.
+        let document = serde_json::to_value(self).unwrap_or_default();
+        let lists = |of: &Value, name: &dyn Fn(&str) -> String| -> Vec<Column> {
+            let fields = of.as_object().into_iter().flat_map(Map::iter);
+            let lists = fields.filter_map(|(field, value)| {
+                Some((
+                    name(field),
+                    numbers(value).filter(|list| list.len() == count)?,
+                ))
+            });
+            lists.collect()
+        };
+        let mut columns = lists(&document, &str::to_owned);
+        for (gear, stresses) in document["stress"].as_object().into_iter().flatten() {
+            columns.extend(lists(stresses, &|field| format!("stress.{gear}.{field}")));
+        }
+        let shares = self.load_shares.iter().map(|share| {
+            let list = share.share.iter().copied().map(Some).collect();
+            (format!("load_share.{}", share.pair_offset), list)
         });
-        let shares = self.load_shares.iter();
-        let shares = shares.map(|share| {
-            (
-                format!("load_share.{}", share.pair_offset),
-                known(&share.share),
-            )
-        });
-        let pressures = [("peak_contact_pressure_mpa".to_owned(), pressures)];
-        let columns = numbers.into_iter().chain(pressures);
-        let columns = columns.chain(stresses).chain(shares);
-        columns.filter(|(_, list)| !list.is_empty()).collect()
+        columns.extend(shares);
+        columns
     }
 }
 
-impl GearStressDocument {
-    /// Its lists with their names.
-    fn columns(&self) -> [(&'static str, &Vec<f64>); 12] {
-        [
-            ("root_mpa", &self.root_mpa),
-            ("root_angle_deg", &self.root_angle_deg),
-            ("root_z_mm", &self.root_z_mm),
-            ("root_tension_mpa", &self.root_tension_mpa),
-            ("root_tension_angle_deg", &self.root_tension_angle_deg),
-            ("root_tension_z_mm", &self.root_tension_z_mm),
-            ("root_compression_mpa", &self.root_compression_mpa),
-            (
-                "root_compression_angle_deg",
-                &self.root_compression_angle_deg,
-            ),
-            ("root_compression_z_mm", &self.root_compression_z_mm),
-            ("hole_mpa", &self.hole_mpa),
-            ("hole_angle_deg", &self.hole_angle_deg),
-            ("hole_z_mm", &self.hole_z_mm),
-        ]
-    }
-}
-
-fn known(list: &[f64]) -> Vec<Option<f64>> {
-    list.iter().copied().map(Some).collect()
+/// A list of numbers.
+fn numbers(value: &Value) -> Option<Vec<Option<f64>>> {
+    let number = |item: &Value| match item {
+        Value::Null => Some(None),
+        item => item.as_f64().map(Some),
+    };
+    value.as_array()?.iter().map(number).collect()
 }
