@@ -6,7 +6,7 @@ use super::declare::{
 };
 use super::problem::Problem;
 use super::size::{MOST_VALUES, refuse_many_values};
-use super::submission::{Purpose, Submission, SubmissionDocument};
+use super::submission::{Purpose, Submission, SubmissionDocument, places};
 
 /// The field beside those of the submission.
 const PREVIEW_ID: Declared<Optional<Text>> = Declared::new(
@@ -63,7 +63,7 @@ impl Preview {
             })
         };
         let read = read();
-        errors.settle(read)
+        errors.mended(places::pointing).settle(read)
     }
 }
 

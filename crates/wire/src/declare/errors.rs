@@ -35,6 +35,12 @@ impl Errors {
         self.0.into_inner()
     }
 
+    /// The same errors, each as `mend` gives it.
+    pub fn mended(self, mend: impl Fn(FieldError) -> FieldError) -> Self {
+        let errors = self.into_errors().into_iter();
+        Self(RefCell::new(errors.map(mend).collect()))
+    }
+
     /// The value of `made`, if it could be made; else its faults are reported.
     pub fn report<T>(&self, made: Result<T, impl IntoIterator<Item = FieldError>>) -> Option<T> {
         made.map_err(|faults| faults.into_iter().for_each(|fault| self.push(fault)))

@@ -11,6 +11,7 @@ use meshwright_engine::gear::GearPair;
 
 mod checks;
 mod document;
+pub(crate) mod places;
 
 pub use checks::{MOST_POSITIONS, MOST_PROJECTED_POSITIONS};
 pub(super) use document::MOST_TAGS;
@@ -227,14 +228,14 @@ impl Submission {
             finish(&mut document.pair, document.method, &errors)?;
             document.checked(Purpose::Job, windows, &errors)
         });
-        errors.settle(read)
+        errors.mended(places::pointing).settle(read)
     }
 
     /// Faults of the fields of a submission, each by itself, without checks against each other.
     pub fn wrong_fields(node: &Node) -> Vec<FieldError> {
         let errors = Errors::default();
         SubmissionDocument::read(node, &Location::root(&errors), &EACH);
-        errors.into_errors()
+        errors.mended(places::pointing).into_errors()
     }
 
     /// Reads the remaining fields of `reader`, and checks them.

@@ -377,6 +377,23 @@ fn a_refusal_says_what_is_meant_and_proposes_no_other_pair() {
     assert!(detail.contains("Is flexible meant?"), "{detail}");
     let (detail, _) = said("/method", json!("boundary"), Code::WrongType);
     assert!(!detail.contains("meant"), "{detail}");
+    for (at, place) in [
+        ("/pair/driven/helix", "/pair/helix_angle_deg"),
+        ("/pair/driven/helix_angle_deg", "/pair/helix_angle_deg"),
+        (
+            "/pair/driven/bore_radius_mm",
+            "/pair/driven/blank/bore_radius_mm",
+        ),
+        (
+            "/positions_per_mesh_period",
+            "/resolution/positions_per_mesh_period",
+        ),
+    ] {
+        let (detail, _) = said(at, json!(9), Code::UnknownField);
+        assert!(detail.ends_with(&format!("Is {place} meant?")), "{detail}");
+    }
+    let (detail, _) = said("/pair/driven/unheard_of", json!(9), Code::UnknownField);
+    assert!(!detail.contains("meant"), "{detail}");
     let relief = json!({ "amount_um": 5 });
     let (detail, _) = said("/pair/driving/tip_relief", relief, Code::MissingField);
     for way in [
