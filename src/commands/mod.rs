@@ -8,6 +8,7 @@ mod health;
 mod keys;
 mod migrate;
 mod outline;
+mod progress;
 mod rexs;
 mod serve;
 mod solve;

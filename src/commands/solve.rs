@@ -6,7 +6,6 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use anyhow::Context as _;
-use indicatif::{ProgressBar, ProgressStyle};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use meshwright_exchange::rexs::is_model;
@@ -15,6 +14,7 @@ use meshwright_wire::results::{CurveDocument, GearPeakStress, PeakStressDocument
 use meshwright_wire::{Problem, Submission};
 
 use super::document::{EXIT_PROBLEM, is_dash, read, text_of, write};
+use super::progress::Progress;
 use super::rexs::ModelChoices;
 
 /// Limit of the memory of the substructures of one submission, in bytes; one pair never reaches it.
@@ -92,21 +92,13 @@ impl Solve {
     }
 }
 
-/// Computes `submission` behind a progress bar, which hides itself where there is no terminal.
+/// Computes `submission`, and shows how far it is.
 fn compute(submission: &Submission) -> Result<Results, Problem> {
-    let bar = ProgressBar::new(submission.positions_total());
-    if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} positions, {elapsed}") {
-        bar.set_style(style);
-    }
-    bar.enable_steady_tick(Duration::from_millis(100));
-    let watched = bar.clone();
+    let progress = Progress::of("positions");
     let run = Run::new(Arc::default(), move |done, total| {
-        watched.set_length(total);
-        watched.set_position(done);
+        progress.tell(done, total, "");
     });
-    let results = solve(submission, &Library::with_capacity(LIBRARY_BYTES), &run);
-    bar.finish_and_clear();
-    results
+    solve(submission, &Library::with_capacity(LIBRARY_BYTES), &run)
 }
 
 /// The statistics of every torque, the hole and mesh lines, warnings and the time.

@@ -4,7 +4,6 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use anyhow::{Context, anyhow};
-use indicatif::{ProgressBar, ProgressStyle};
 use meshwright_engine::library::Library;
 use meshwright_studies::solve;
 use meshwright_studies::{RowState, Study as StudyDocument};
@@ -14,6 +13,7 @@ use uuid::Uuid;
 
 use super::folder::ResultFolder;
 use super::tables::numbers;
+use crate::commands::progress::Progress;
 use crate::commands::serve::signal;
 use crate::compute::Cores;
 use crate::jobs::{
@@ -97,7 +97,8 @@ async fn follow(
         Some(_) => study.clone(),
         None => study.clone().keeping(Kept::Statistics),
     };
-    let bar = progress_bar(study.total());
+    let progress = Progress::of("designs");
+    let total = study.total() as u64;
     let member = Member::usual(CLIENT);
     let submitted = jobs.submit_study(&member, study, None).await?;
     let id = submitted.record.id;
@@ -109,12 +110,10 @@ async fn follow(
         if let Some(folder) = folder {
             written = write_results(jobs, id, written, rows.len(), folder).await?;
         }
-        bar.set_position(record.done());
-        if let Some(best) = search_state(&record).and_then(|search| search.best) {
-            bar.set_message(format!("best {}", numbers(&best.goals)));
-        }
+        let best = search_state(&record).and_then(|search| search.best);
+        let best = best.map(|best| format!("best {}", numbers(&best.goals)));
+        progress.tell(record.done(), total, &best.unwrap_or_default());
         if record.status().has_ended() {
-            bar.finish_and_clear();
             return Ok(Computed { record, rows });
         }
     }
@@ -159,15 +158,4 @@ async fn write_results(
             written = Some(line.position);
         }
     }
-}
-
-fn progress_bar(total: usize) -> ProgressBar {
-    let bar = ProgressBar::new(total as u64);
-    if let Ok(style) =
-        ProgressStyle::with_template("{bar:40} {pos}/{len} designs, {elapsed}, {eta} to go  {msg}")
-    {
-        bar.set_style(style);
-    }
-    bar.enable_steady_tick(Duration::from_millis(100));
-    bar
 }
