@@ -16,21 +16,10 @@ use serde_json::{Value, json};
 use tokio::sync::Mutex;
 
 use crate::bench::Asked;
+use crate::generated::Chance;
 use crate::process::Process;
 use crate::stores;
 use crate::submitters::{Bases, Submitters, Taken};
-
-/// A generator of chance: the same numbers for the same seed.
-struct Chance(u64);
-
-impl Chance {
-    fn below(&mut self, end: u64) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        self.0 % end
-    }
-}
 
 /// Jobs of a few milliseconds, each another one.
 fn job(number: u64) -> Value {
@@ -64,7 +53,7 @@ async fn round(seed: u64, jobs: u64, kills: u32, database: &DatabaseAddress) -> 
     let bases: Bases = Arc::new(Mutex::new(vec![process.base.clone()]));
     let submitters = Submitters::start(&client, &bases, jobs, job);
     for _ in 0..kills {
-        tokio::time::sleep(Duration::from_millis(30 + chance.below(400))).await;
+        tokio::time::sleep(Duration::from_millis(30 + chance.below(400) as u64)).await;
         process.kill();
         stores::pass_a_lease(database).await;
         tally.kills += 1;
