@@ -551,7 +551,7 @@ fn a_population_of_which_no_member_can_be_is_refused_with_the_reason() {
     let errors = refused(&json!({ "base": made, "population": population }));
     assert_eq!(
         (&*errors[0].pointer, errors[0].code),
-        ("/base/resolution/positions_per_mesh_period", Code::TooLarge)
+        ("/population/window", Code::TooLarge)
     );
     assert!(
         errors[0].detail.contains("None of 50 members") && errors[0].detail.contains("2465"),
@@ -573,7 +573,7 @@ fn a_population_of_which_no_member_can_be_is_refused_with_the_reason() {
     let errors = refused(&search(&relieved));
     assert_eq!(
         (&*errors[0].pointer, errors[0].code),
-        ("/base/resolution/positions_per_mesh_period", Code::TooLarge)
+        ("/search/population/window", Code::TooLarge)
     );
     relieved["resolution"]["span_mesh_periods"] = json!(29);
     assert_eq!(testing::study(&search(&relieved)).err(), None);

@@ -4,7 +4,7 @@ use meshwright_engine::run::Run;
 use meshwright_wire::declare::{Errors, Node};
 use meshwright_wire::pointer::Pointer;
 use meshwright_wire::problem::{Code, FieldError, Problem};
-use meshwright_wire::submission::Submission;
+use meshwright_wire::submission::{Submission, Windows};
 
 use super::faults::look_around;
 use super::{Plan, Study};
@@ -135,22 +135,28 @@ impl Study {
             }
         }
         let what = format!("None of {tried} members can be built");
-        let placed = |error| self.at_window(population, "/population", error);
+        let member = |population: &Population| {
+            let composed = self.composed(0)?;
+            Some(composed.design(Some((population, 0))).submission)
+        };
+        let placed = |error| self.at_window((population, "/population"), member, error);
         failures.report(&what, placed, errors);
         Ok(())
     }
 
-    /// The `error` at its place in the base; one of too many positions at the window of the `population` at `at`, with the longest window that would do, unless the base
-    /// has a span of its own.
-    fn at_window(&self, population: &Population, at: &str, error: FieldError) -> FieldError {
+    /// The `error` at its place in the base; one of too many positions at the window of the `population` at `at`, with the longest window over which `member` gives
+    /// one that can be built, unless the base has a span of its own.
+    fn at_window(
+        &self,
+        (population, at): (&Population, &str),
+        member: impl Fn(&Population) -> Option<Result<Submission, Problem>>,
+        error: FieldError,
+    ) -> FieldError {
         let is_of_span = error.code == Code::TooLarge && error.pointer.starts_with("/resolution/");
         let spans = self.base.at(&SPAN).is_some_and(|span| *span != Node::Null);
-        let longest = (is_of_span && !spans).then(|| self.longest_window(population));
+        let longest = (is_of_span && !spans).then(|| longest_window(population, member));
         let Some(longest) = longest.flatten() else {
-            return FieldError {
-                pointer: format!("/base{}", error.pointer),
-                ..error
-            };
+            return in_base(error);
         };
         let pointer = match population.windows {
             Some(_) => format!("{at}/window/mesh_periods"),
@@ -161,39 +167,6 @@ impl Study {
             error.detail
         );
         FieldError::new(pointer, Code::TooLarge, detail).nearest(f64::from(longest))
-    }
-
-    /// The mesh periods of the longest window over which the members of `population` have few enough positions, if there is one.
-    fn longest_window(&self, population: &Population) -> Option<u32> {
-        let places = population
-            .windows
-            .as_ref()
-            .map_or(1, |windows| windows.places);
-        let mut base = self.base.clone();
-        let mut fits = |mesh_periods: u32| {
-            let span = Node::Number(f64::from(mesh_periods * places));
-            let is_put = base.put(&SPAN, span).is_some();
-            let faults =
-                Submission::of_node(&base).map_or_else(|problem| problem.errors, |_| Vec::new());
-            is_put
-                && !faults
-                    .iter()
-                    .any(|error| error.pointer.starts_with("/resolution/"))
-        };
-        let (least, most) = WindowDocument::mesh_periods.spec.bounds;
-        let (mut least, mut most) = (least as u32, most as u32);
-        if !fits(least) {
-            return None;
-        }
-        while most - least > 1 {
-            let middle = u32::midpoint(least, most);
-            if fits(middle) {
-                least = middle;
-            } else {
-                most = middle;
-            }
-        }
-        Some(least)
     }
 
     /// Refuses a search none of whose designs, or none of whose members, can be built for a reason outside of the pair, and one that needs values that they do
@@ -229,18 +202,60 @@ impl Study {
             let mut paths = search.paths();
             pointer.starts_with("/pair/") || paths.any(|path| path.covers(pointer))
         };
+        let member = |population: &Population| {
+            let changes = search.trials(self.base()).next()?;
+            let (composed, _) = self.composed_of_search(Role::Member(1, 0), &changes);
+            Some(composed.design(Some((population, 0))).submission)
+        };
         let placed = |error| match search.population() {
-            Some(population) => self.at_window(population, "/search/population", error),
-            None => FieldError {
-                pointer: format!("/base{}", error.pointer),
-                ..error
-            },
+            Some(population) => self.at_window((population, "/search/population"), member, error),
+            None => in_base(error),
         };
         for (asked, what) in [(of_designs, "design"), (of_members, "member")] {
             asked.report(what, mends, placed, errors);
         }
         Ok(())
     }
+}
+
+/// The `error` of a submission at its place in the base.
+fn in_base(error: FieldError) -> FieldError {
+    let pointer = format!("/base{}", error.pointer);
+    FieldError { pointer, ..error }
+}
+
+/// The mesh periods of the longest window of `population` over which `member` gives one that has few enough positions, if there is one.
+fn longest_window(
+    population: &Population,
+    member: impl Fn(&Population) -> Option<Result<Submission, Problem>>,
+) -> Option<u32> {
+    let places = population
+        .windows
+        .as_ref()
+        .map_or(1, |windows| windows.places);
+    let fits = |mesh_periods: u32| {
+        let windows = Some(Windows {
+            mesh_periods,
+            places,
+        });
+        let mut over = population.clone();
+        over.windows = windows;
+        matches!(member(&over), Some(Ok(_)))
+    };
+    let (least, most) = WindowDocument::mesh_periods.spec.bounds;
+    let (mut least, mut most) = (least as u32, most as u32);
+    if !fits(least) {
+        return None;
+    }
+    while most - least > 1 {
+        let middle = u32::midpoint(least, most);
+        if fits(middle) {
+            least = middle;
+        } else {
+            most = middle;
+        }
+    }
+    Some(least)
 }
 
 /// A value that a search needs and that no design, or no member, has so far: the place of the request, and the reason of the first design that was built.
