@@ -6,6 +6,7 @@ use criterion::{BatchSize, Bencher, Criterion, criterion_group, criterion_main};
 use meshwright_benches::group;
 use meshwright_engine::analysis::at_speed::{DynamicsRequest, dynamics};
 use meshwright_engine::analysis::forces::{ForceTableRequest, force_table};
+use meshwright_engine::analysis::rotors::Blanks;
 use meshwright_engine::analysis::{Case, FaceHoles, Faces, Method, Model, analyze, pair_model};
 use meshwright_engine::assembly::FaceResolution;
 use meshwright_engine::assembly::{Parts, TeethSpec};
@@ -259,6 +260,7 @@ fn forces(criterion: &mut Criterion) {
         damping_ratio: 0.05,
         inertias: [None; 2],
         blank_modes: None,
+        all_directions: false,
         blank_damping_ratio: 0.02,
         mounts: Default::default(),
         sweeps: [true, true],
@@ -274,7 +276,7 @@ fn forces(criterion: &mut Criterion) {
                 &case,
                 &analysis.curves[0],
                 &table,
-                (&speeds, [None; 2]),
+                (&speeds, &Blanks::default()),
                 &run,
             ))
             .expect("nobody stops it")

@@ -2,14 +2,15 @@
 
 use std::f64::consts::PI;
 
+use meshwright_engine::dynamics::coupled::{CoupledMotion, Drift};
 use meshwright_engine::dynamics::orbit::{Repeating, Scale, multiplier};
 use meshwright_engine::dynamics::oscillator::Step;
 use meshwright_engine::dynamics::{
-    Body, BodyMode, Branch, Coupled, Damping, Excitation, FlankRows, ForceTable, Ladder, Laws,
-    Mount, Orbit, Order, Oscillator, RunUp, RunUpData, State, Support,
+    Body, BodyMode, BodyWave, Branch, Coupled, Damping, Excitation, FlankRows, ForceTable, Ladder,
+    Laws, Mount, Orbit, Order, Oscillator, RunUp, RunUpData, State, Support,
 };
 use meshwright_engine::run::Run;
-use nalgebra::{Cholesky, DMatrix, DVector, Matrix6, SMatrix};
+use nalgebra::{Cholesky, Complex, DMatrix, DVector, Matrix6, SMatrix};
 
 const AT_REST: Orbit = Orbit::REST;
 
@@ -213,6 +214,7 @@ fn data(speeds: Vec<f64>, load: f64, orders: &[f64]) -> RunUpData {
             inertia: 2.0,
             base_radius: 1.0,
             modes: Vec::new(),
+            waves: Vec::new(),
             mount: Mount::NONE,
         }),
         damping_ratio: 0.05,
@@ -517,6 +519,7 @@ fn hub_and_rim(hub: f64, rim: f64, web: f64) -> Body {
             at_mesh: 1.0 / rim.sqrt(),
             turn: rim.sqrt(),
         }],
+        waves: Vec::new(),
         mount: Mount::NONE,
     }
 }
@@ -626,7 +629,7 @@ fn a_linear_mesh_of_gears_on_webs_answers_by_its_direct_frequency_response() {
     assert_eq!(found.natural_frequencies, coupled.natural_frequencies());
     let amplitudes = at(&found, Order::new(1, 1));
     for (speed, amplitude) in speeds.iter().zip(amplitudes) {
-        let expected = 0.02 * coupled.gain(2.0 * PI * speed);
+        let expected = 0.02 * coupled.gain(2.0 * PI * speed, 0.0);
         assert!(
             (amplitude / expected - 1.0).abs() < 0.01,
             "{speed}: {amplitude} {expected}"
@@ -638,7 +641,7 @@ fn a_linear_mesh_of_gears_on_webs_answers_by_its_direct_frequency_response() {
     told.sort_by(f64::total_cmp);
     let gains: Vec<(f64, f64)> = (1..5320)
         .map(|i| 1e-3 * f64::from(i))
-        .map(|omega| (omega, coupled.gain(omega)))
+        .map(|omega| (omega, coupled.gain(omega, 0.0)))
         .collect();
     let peaks = gains
         .windows(3)
@@ -705,6 +708,7 @@ fn gears_on_their_shafts_vibrate_as_inertias_in_a_row() {
         inertia: inertias[i],
         base_radius: radii[i],
         modes: Vec::new(),
+        waves: Vec::new(),
         mount: Mount {
             shaft,
             support: None,
@@ -765,6 +769,7 @@ fn on_supports() -> [Body; 2] {
             inertia,
             base_radius: 1.0,
             modes: Vec::new(),
+            waves: Vec::new(),
             mount: Mount {
                 shaft,
                 support: Some(Support {
@@ -896,4 +901,276 @@ fn a_shaft_on_one_side_leaves_the_load_of_a_slow_mesh_and_two_shafts_share_its_e
     assert!((of([0.5, 0.0]) / 0.02 - 1.0).abs() < 1e-4);
     let c = 1.0 / 0.5 + 1.0 / 0.8;
     assert!((of([0.5, 0.8]) / (0.02 * c / (c + 1.0)) - 1.0).abs() < 1e-4);
+}
+
+/// Teeth of the gears whose bodies move in waves.
+const TEETH: u32 = 12;
+
+/// A mode of ω = 3 of two nodal diameters with Coriolis forces of a part 0.8, and one of ω = 5 without nodal diameters.
+const WAVES: [BodyWave; 2] = [
+    BodyWave {
+        frequency: 3.0,
+        at_mesh: 0.9,
+        diameters: 2,
+        split: 1.2,
+    },
+    BodyWave {
+        frequency: 5.0,
+        at_mesh: 1.1,
+        diameters: 0,
+        split: 0.0,
+    },
+];
+
+/// By how much the modes yield.
+const YIELD: f64 = 0.09 + 0.0484;
+
+/// The driving gear has these modes; both turn as fast.
+fn in_waves(speeds: Vec<f64>, orders: &[f64]) -> RunUpData {
+    let mut data = data(speeds, 1.0, orders);
+    data.tooth_count = TEETH;
+    data.bodies[0].waves = WAVES.to_vec();
+    data
+}
+
+#[test]
+fn gears_in_waves_move_as_a_plain_integrator_moves_them_in_the_frame_of_the_gear() {
+    // The classical Runge-Kutta method on the cosine and the sine of the first mode in the frame of the gear, past which the mesh runs: Q = q_c + i q_s obeys
+    // Q'' + 2 ζ ω Q' + 2 i c Ω Q' + (ω² − c² Ω²) Q = −F φ e^{−inΩt}, and the teeth move by φ Re(Q e^{inΩt}). The table is that of the teeth alone.
+    let wave = |eta: f64| 0.3 * (2.0 * PI * eta).cos() + 0.1 * (4.0 * PI * eta + 0.4).cos();
+    let whole = |eta: f64| 1.0 + 0.2 * (2.0 * PI * eta).cos();
+    let of_all = table(256, 4.0, wave, whole);
+    let of_teeth = table(256, 4.0, wave, |eta| whole(eta) - YIELD);
+    let omegas = [0.5, 0.9, 1.4, 2.9, 3.4];
+    let teeth = f64::from(TEETH);
+    let speeds = omegas.map(|w| w / (2.0 * PI * teeth)).to_vec();
+    let found = run_up(&in_waves(speeds, &[1.0]), &of_all)
+        .up
+        .expect("asked");
+    assert!(found.contact_lost.contains(&true) && found.contact_lost.contains(&false));
+    let [first, second] = WAVES;
+    for (place, omega) in omegas.into_iter().enumerate() {
+        let steps = 512;
+        let h = 2.0 * PI / omega / f64::from(steps);
+        let turn = omega / teeth;
+        let (n, c) = (2.0, 2.0 - first.split);
+        // Approach of the hubs, the two parts of Q and the second mode, then their rates.
+        let at_teeth = |t: f64, s: &[f64]| {
+            let (sin, cos) = (n * turn * t).sin_cos();
+            s[0] + first.at_mesh * (s[1] * cos - s[2] * sin) + second.at_mesh * s[3]
+        };
+        let rate = |t: f64, s: [f64; 8]| -> [f64; 8] {
+            let (x, v) = s.split_at(4);
+            let (sin, cos) = (n * turn * t).sin_cos();
+            // d/dt of Re(Q e^{inΩt}).
+            let carried = n * turn * first.at_mesh * (-x[1] * sin - x[2] * cos);
+            let nearer = at_teeth(t, v) + carried;
+            let force = of_teeth.load(omega * t / (2.0 * PI), at_teeth(t, x)) + 0.1 * nearer;
+            let own = first.frequency.powi(2) - (c * turn).powi(2);
+            let damping = 0.04 * first.frequency;
+            let pushed = force * first.at_mesh;
+            [
+                v[0],
+                v[1],
+                v[2],
+                v[3],
+                1.0 - force,
+                -damping * v[1] + 2.0 * c * turn * v[2] - own * x[1] - pushed * cos,
+                -damping * v[2] - 2.0 * c * turn * v[1] - own * x[2] + pushed * sin,
+                -0.04 * second.frequency * v[3]
+                    - second.frequency.powi(2) * x[3]
+                    - force * second.at_mesh,
+            ]
+        };
+        let rest = of_all.transmission_error(1.0)[0];
+        let pushed = |mode: &BodyWave| -mode.at_mesh / mode.frequency.powi(2);
+        let mut state = [
+            rest,
+            pushed(&first),
+            0.0,
+            pushed(&second),
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+        ];
+        let (mut n, mut sum, mut squares) = (0.0, 0.0, 0.0);
+        let (mut least, mut most, mut largest) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
+        let (periods, watched) = (160, 40);
+        for i in 0..periods * steps {
+            let t = f64::from(i) * h;
+            let on = |by: f64, k: [f64; 8]| std::array::from_fn(|j| state[j] + by * h * k[j]);
+            let k1 = rate(t, state);
+            let k2 = rate(t + h / 2.0, on(0.5, k1));
+            let k3 = rate(t + h / 2.0, on(0.5, k2));
+            let k4 = rate(t + h, on(1.0, k3));
+            for j in 0..8 {
+                state[j] += h / 6.0 * (k1[j] + 2.0 * k2[j] + 2.0 * k3[j] + k4[j]);
+            }
+            if i >= (periods - watched) * steps {
+                let x = state[0];
+                n += 1.0;
+                sum += x;
+                squares += x * x;
+                (least, most) = (least.min(x), most.max(x));
+                let eta = omega * (t + h) / (2.0 * PI);
+                largest = largest.max(of_teeth.load(eta, at_teeth(t + h, &state)));
+            }
+        }
+        let mean: f64 = sum / n;
+        let rms = (squares / n - mean * mean).sqrt();
+        within_a_percent(&found, place, [rms, most - least, largest]);
+    }
+}
+
+/// The amplitude of the hubs over that of the static curve at the circular frequency `omega` of the mesh, with the stiffness `k` of the teeth alone: the first of
+/// [`WAVES`] by its response in the frame of the gear at the frequencies ω ∓ nΩ.
+fn direct(omega: f64, k: f64) -> f64 {
+    let i = Complex::<f64>::i();
+    let turn = omega / f64::from(TEETH);
+    let [first, second] = WAVES;
+    let (n, c) = (2.0, 2.0 - first.split);
+    let answer = |lambda: f64| {
+        let own = first.frequency.powi(2) - (c * turn).powi(2);
+        1.0 / (own - lambda * lambda - 2.0 * c * turn * lambda
+            + i * 0.04 * first.frequency * lambda)
+    };
+    let around = 0.5 * (answer(omega - n * turn) + answer(-omega - n * turn).conj());
+    let alone =
+        1.0 / (second.frequency.powi(2) - omega * omega + i * 0.04 * second.frequency * omega);
+    let hubs = Complex::from(-1.0 / (omega * omega));
+    let teeth = hubs + first.at_mesh.powi(2) * around + second.at_mesh.powi(2) * alone;
+    (hubs * k / (1.0 + (k + i * 0.1 * omega) * teeth)).norm()
+}
+
+#[test]
+fn a_linear_mesh_of_gears_in_waves_answers_by_its_direct_frequency_response() {
+    // Constant stiffness, at 20 speeds, and the static curve at speed 0.
+    let curve = |eta: f64| 0.02 * (2.0 * PI * eta).cos();
+    let table = table(256, 2.0, curve, |_| 1.0);
+    let omegas: Vec<f64> = (0..=20).map(|i| 0.28 * f64::from(i)).collect();
+    let turns = |omega: &f64| omega / (2.0 * PI * f64::from(TEETH));
+    let found = run_up(
+        &in_waves(omegas.iter().map(turns).collect(), &[1.0]),
+        &table,
+    );
+    let amplitudes = at(&found, Order::new(1, 1));
+    assert!((amplitudes[0] / 0.02 - 1.0).abs() < 1e-6);
+    for (omega, amplitude) in omegas.iter().zip(amplitudes).skip(1) {
+        let expected = 0.02 * direct(*omega, 1.0 / (1.0 - YIELD));
+        assert!(
+            (amplitude / expected - 1.0).abs() < 0.01,
+            "{omega}: {amplitude} {expected}"
+        );
+    }
+    // Each largest answer is a resonance, and nothing else is.
+    let mut told: Vec<f64> = found.resonances.iter().map(|each| each.speed).collect();
+    told.sort_by(f64::total_cmp);
+    let answers: Vec<(f64, f64)> = (1..5600)
+        .map(|i| 1e-3 * f64::from(i))
+        .map(|omega| (omega, direct(omega, 1.0 / (1.0 - YIELD))))
+        .collect();
+    let peaks = answers
+        .windows(3)
+        .filter(|three| three[1].1 > three[0].1.max(three[2].1));
+    let peaks: Vec<f64> = peaks.map(|three| turns(&three[1].0)).collect();
+    assert_eq!(told.len(), peaks.len(), "{told:?} {peaks:?}");
+    assert!(peaks.len() >= 4, "{peaks:?}");
+    for (told, peak) in told.iter().zip(&peaks) {
+        assert!((told / peak - 1.0).abs() < 0.01, "{told} {peak}");
+    }
+}
+
+#[test]
+fn a_mesh_meets_a_mode_where_the_campbell_diagram_has_it() {
+    // A mode that hardly moves the teeth leaves its frequency f to itself. Order 1 of 12 teeth meets it at f/(z ± (n − c)): a thin ring that bends in its plane,
+    // c = 2n/(n² + 1), a disc out of it, c = 0, and at f/z alone the translation of a rigid rim, c = n = 1.
+    let table = table(256, 2.0, |eta| 0.02 * (2.0 * PI * eta).cos(), |_| 1.0);
+    for (n, coriolis) in [(3, 0.6), (2, 0.0), (1, 1.0)] {
+        let split = f64::from(n) - coriolis;
+        let frequency = 3.0;
+        let z = f64::from(TEETH);
+        let meets = |by: f64| frequency / (2.0 * PI * (z + by));
+        let speeds = (0..60).map(|i| meets(0.0) * (0.7 + 0.01 * f64::from(i)));
+        let mut data = in_waves(speeds.collect(), &[1.0]);
+        data.bodies[0].waves = vec![BodyWave {
+            frequency,
+            at_mesh: 0.12,
+            diameters: n,
+            split,
+        }];
+        data.body_damping_ratio = 1e-3;
+        let found = run_up(&data, &table);
+        let mut told: Vec<f64> = found.resonances.iter().map(|each| each.speed).collect();
+        told.sort_by(f64::total_cmp);
+        let mut expected = vec![meets(split), meets(-split)];
+        expected.dedup();
+        assert_eq!(told.len(), expected.len(), "{n}: {told:?} {expected:?}");
+        for (told, expected) in told.iter().zip(expected) {
+            assert!(
+                (told / expected - 1.0).abs() < 5e-3,
+                "{n}: {told} {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_slow_mesh_of_gears_in_waves_follows_its_static_curve() {
+    let wave = |eta: f64| 0.3 * (2.0 * PI * eta).cos() + 0.1 * (4.0 * PI * eta + 0.4).cos();
+    let table = table(64, 2.0, wave, |eta| 1.0 + 0.2 * (2.0 * PI * eta).cos());
+    let found = run_up(&in_waves(vec![0.0, 1e-8], &[1.0, 2.0]), &table);
+    let branch = found.up.expect("asked");
+    for [still, slow] in [
+        [branch.rms[0], branch.rms[1]],
+        [branch.peak_to_peak[0], branch.peak_to_peak[1]],
+        [branch.load_factor[0], branch.load_factor[1]],
+    ] {
+        assert!((slow / still - 1.0).abs() < 1e-6, "{slow} {still}");
+    }
+}
+
+#[test]
+fn without_damping_waves_of_gears_that_turn_neither_grow_nor_decay() {
+    // Coriolis forces do no work. Over a period all multipliers have the modulus 1: none is larger, and their product is 1.
+    let mut bodies = in_waves(vec![1.0], &[1.0]).bodies;
+    bodies[1].waves = vec![WAVES[0]];
+    let coupled = Coupled::new(&bodies, 1.5, UNDAMPED).expect("bodies");
+    let laws = Laws::new(vec![-3.0, 3.0], vec![-4.0 / 1.5, 2.0 / 1.5], 0);
+    let drift = Drift {
+        law: 0,
+        deflection: [0.0; 2],
+    };
+    for turn in [0.0, 0.1, 0.7] {
+        let motion = CoupledMotion::new((&laws, 1.0), (&coupled, turn), (0.13, 2), vec![drift; 64]);
+        let size = motion.size();
+        assert_eq!(size, 2 * coupled.count());
+        let mut derivative: Vec<Vec<f64>> = (0..size)
+            .map(|i| (0..size).map(|j| f64::from(u8::from(i == j))).collect())
+            .collect();
+        motion.over_period(&mut vec![0.0; size], Some(&mut derivative), &mut |_| ());
+        assert!((multiplier(&derivative) - 1.0).abs() < 1e-8);
+        let matrix = DMatrix::from_fn(size, size, |i, j| derivative[j][i]);
+        assert!((matrix.determinant() - 1.0).abs() < 1e-8);
+    }
+}
+
+#[test]
+fn of_more_modes_than_there_may_be_those_stay_by_which_a_body_yields_most() {
+    let wave = |at_mesh: f64, frequency: f64| BodyWave {
+        frequency,
+        at_mesh,
+        diameters: 2,
+        split: 2.0,
+    };
+    let [most, more, little, least] = [(3.0, 1.0), (2.0, 1.0), (1.0, 2.0), (1e-3, 1.0)];
+    let waves = [little, most, least, more].map(|(at_mesh, omega)| wave(at_mesh, omega));
+    let mut body = hub_and_rim(2e-4, 5e-4, 3e5);
+    body.add_waves(&waves, (1e-5, 8));
+    assert_eq!(body.waves, [waves[0], waves[1], waves[3]]);
+    // The first in torsion has its place whatever it yields.
+    body.add_waves(&waves, (1e-5, 3));
+    assert_eq!(body.waves, [waves[1], waves[3]]);
+    assert_eq!(body.modes.len(), 1);
+    assert!((body.compliance() - 13.0 - 1.0 / 3e5).abs() < 1e-12);
 }

@@ -15,7 +15,7 @@ use meshwright_engine::analysis::at_speed::{
 use meshwright_engine::analysis::forces::{
     ForceTableRequest, ForcesRequest, analyze_with_forces, force_table,
 };
-use meshwright_engine::analysis::rotors::{Twists, support, twists};
+use meshwright_engine::analysis::rotors::{Blanks, Twists, support, twists};
 use meshwright_engine::analysis::{
     Analysis, Case, Faces, Method, StiffnessRule, Warning, analyze, pair_model,
 };
@@ -23,13 +23,13 @@ use meshwright_engine::assembly::FaceResolution;
 use meshwright_engine::contact::{DeviatingPair, WarmStart};
 use meshwright_engine::dynamics::{Excitation, ForceTable};
 use meshwright_engine::gear::{
-    Alignment, Eccentricity, GearPair, Helix, LeadModification, Member, Normals, PairDeviations,
-    SolidGear, SolidPair, SpurGear, Tolerances, ToothDeviations, Web,
+    Alignment, Eccentricity, GearData, GearPair, Helix, LeadModification, Material, Member,
+    Normals, PairDeviations, SolidGear, SolidPair, SpurGear, Tolerances, ToothDeviations, Web,
 };
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
-use nalgebra::{Cholesky, DMatrix, DVector, Vector3};
+use nalgebra::{Cholesky, Complex, DMatrix, DVector, SMatrix, Vector3};
 
 const TWELVE: ForceTableRequest = ForceTableRequest {
     loads: 12,
@@ -527,6 +527,7 @@ fn run_up(case: &Case, to: f64, count: u32) -> CurveDynamics {
         damping_ratio: 0.05,
         inertias: [None; 2],
         blank_modes: None,
+        all_directions: false,
         blank_damping_ratio: 0.02,
         mounts: Default::default(),
         sweeps: [true, true],
@@ -535,7 +536,7 @@ fn run_up(case: &Case, to: f64, count: u32) -> CurveDynamics {
         case,
         &analysis.curves[0],
         &table(case),
-        (&request, twists_of(case)),
+        (&request, &blanks_of(case, &request)),
         &Run::unattended(),
     )
     .expect("nobody stops it")
@@ -654,6 +655,7 @@ fn told_at_speed(case: &Case, speeds: &[f64], largest: Option<f64>) -> (Analysis
             damping_ratio: 0.05,
             inertias: [None; 2],
             blank_modes: None,
+            all_directions: false,
             blank_damping_ratio: 0.02,
             mounts: Default::default(),
             sweeps: [true, true],
@@ -797,6 +799,16 @@ fn a_run_up_beyond_its_force_table_says_by_how_much() {
     assert_eq!(beyond(&analysis), None);
 }
 
+fn blanks_of(case: &Case, request: &DynamicsRequest) -> Blanks {
+    Blanks::of(
+        case,
+        request.highest_wave(case),
+        &*LIBRARY,
+        &Run::unattended(),
+    )
+    .expect("blanks")
+}
+
 fn twists_of(case: &Case) -> Twists {
     twists(case, &*LIBRARY, &Run::unattended()).expect("blanks")
 }
@@ -844,12 +856,24 @@ fn on_webs(thickness: f64) -> Case {
 
 /// A run-up of `case` at `speeds` in 1/min with so much inertia beside each gear, and so many modes of its bodies.
 fn vibrating(case: &Case, speeds: &[f64], beside: f64, modes: Option<u32>) -> CurveDynamics {
+    vibrating_in((false, 0.05), case, speeds, beside, modes)
+}
+
+/// The same with modes in `all_directions` or in torsion alone, and this damping ratio of the mesh.
+fn vibrating_in(
+    (all_directions, damping_ratio): (bool, f64),
+    case: &Case,
+    speeds: &[f64],
+    beside: f64,
+    modes: Option<u32>,
+) -> CurveDynamics {
     let inertia = |member| Some(case.pair.gear(member).polar_inertia() + beside);
     let request = DynamicsRequest {
         speeds: speeds.iter().map(|rpm| rpm / 60.0).collect(),
-        damping_ratio: 0.05,
+        damping_ratio,
         inertias: Member::BOTH.map(inertia),
         blank_modes: modes,
+        all_directions,
         blank_damping_ratio: 0.02,
         mounts: Default::default(),
         sweeps: [true, true],
@@ -859,7 +883,7 @@ fn vibrating(case: &Case, speeds: &[f64], beside: f64, modes: Option<u32>) -> Cu
         case,
         &analysis.curves[0],
         &table(case),
-        (&request, twists_of(case)),
+        (&request, &blanks_of(case, &request)),
         &Run::unattended(),
     );
     told.expect("nobody stops it")
@@ -886,6 +910,163 @@ fn rims_outside_their_webs_have_the_natural_frequencies_of_both_bodies_in_torsio
         let of_rims = heavy.natural_frequency_of_rims.expect("an estimate");
         assert!((of_rims / heavy.run_up.natural_frequencies[0] - 1.0).abs() < 1e-3);
     }
+}
+
+/// Plane-stress elements of a ring on one order n of its circumference, of two nodes each with U and V of u_r = U e^{inφ} and u_t = i V e^{inφ}: stiffness and
+/// mass over an angle of 1, from the bore outwards. The `teeth` are a mass on the outer edge in kg.
+fn ring_elements(n: f64, [bore, root]: [f64; 2], teeth: f64, data: &GearData) -> [DMatrix<f64>; 2] {
+    const ELEMENTS: usize = 24;
+    let Material {
+        youngs_modulus: e,
+        poisson_ratio: nu,
+        density,
+        ..
+    } = data.material;
+    let [plate, shear] = [e / (1.0 - nu * nu), e / (2.0 * (1.0 + nu))];
+    let size = 2 * (ELEMENTS + 1);
+    let mut stiffness = DMatrix::<f64>::zeros(size, size);
+    let mut mass = DMatrix::<f64>::zeros(size, size);
+    let depth = (root - bore) / ELEMENTS as f64;
+    for element in 0..ELEMENTS {
+        for gauss in [-1.0, 1.0] {
+            let part = 0.5 * (1.0 + gauss / 3.0_f64.sqrt());
+            let r = bore + depth * (element as f64 + part);
+            let weight = 0.5 * depth * r * data.face_width;
+            let (f, g) = ([1.0 - part, part], [-1.0 / depth, 1.0 / depth]);
+            // Rows: radial and tangential strain, shear over i.
+            let strains = SMatrix::<f64, 3, 4>::from_fn(|row, column| {
+                let (node, is_v) = (column / 2, column % 2 == 1);
+                match (row, is_v) {
+                    (0, false) => g[node],
+                    (1, false) => f[node] / r,
+                    (1, true) => -n * f[node] / r,
+                    (2, false) => n * f[node] / r,
+                    (2, true) => g[node] - f[node] / r,
+                    _ => 0.0,
+                }
+            });
+            let law = SMatrix::<f64, 3, 3>::new(
+                plate,
+                nu * plate,
+                0.0,
+                nu * plate,
+                plate,
+                0.0,
+                0.0,
+                0.0,
+                shear,
+            );
+            let own = strains.transpose() * law * strains * weight;
+            let first = 2 * element;
+            for i in 0..4 {
+                for j in 0..4 {
+                    stiffness[(first + i, first + j)] += own[(i, j)];
+                    if i % 2 == j % 2 {
+                        mass[(first + i, first + j)] += weight * density * f[i / 2] * f[j / 2];
+                    }
+                }
+            }
+        }
+    }
+    for i in [size - 2, size - 1] {
+        mass[(i, i)] += teeth / (2.0 * PI);
+    }
+    [stiffness, mass]
+}
+
+/// How far the teeth, and the hub, come nearer for a force of 1 that stands still in space, at the circular frequency `omega`, as the gear turns by `turn` rad/s:
+/// of the elements of a ring on the orders −6 to 6.
+fn ring_answers(case: &Case, omega: f64, turn: f64, is_held: bool) -> [Complex<f64>; 2] {
+    let gear = case.pair.driving();
+    let (data, root) = (gear.data(), gear.root_radius());
+    let bore = data.blank.bore_radius;
+    let area = PI * (root * root - bore * bore);
+    let teeth = gear.mass() - area * data.face_width * data.material.density;
+    let (sin, cos) = case.pair.working_pressure_angle().sin_cos();
+    let height = gear.reference_radius() - root;
+    let i = Complex::<f64>::i();
+    let mut sums = [Complex::from(0.0); 2];
+    for order in -6..=6 {
+        let n = f64::from(order);
+        let [stiffness, mass] = ring_elements(n, [bore, root], teeth, data);
+        let size = stiffness.nrows();
+        let lambda = omega + n * turn;
+        let loss = 1.0 + i * 0.04 * lambda.signum();
+        let mut dynamic = DMatrix::from_fn(size, size, |a, b| {
+            let other = if b % 2 == 0 { b + 1 } else { b - 1 };
+            let coriolis = if a % 2 == b % 2 {
+                0.0
+            } else {
+                2.0 * turn * lambda * mass[(a, other)]
+            };
+            loss * stiffness[(a, b)] - lambda * lambda * mass[(a, b)] + coriolis
+        });
+        // The bore is a rigid ring, which turns on the order 0 alone.
+        let held = if order == 0 && !is_held { 0..1 } else { 0..2 };
+        for bound in held {
+            dynamic.row_mut(bound).fill(Complex::from(0.0));
+            dynamic.column_mut(bound).fill(Complex::from(0.0));
+            dynamic[(bound, bound)] = Complex::from(1.0);
+        }
+        // A tooth stands square to its rim, where no shear is: V' = (V − n U)/r.
+        let mut along = DVector::from_element(size, Complex::from(0.0));
+        along[size - 2] = sin + i * cos * n * height / root;
+        along[size - 1] = -i * cos * (1.0 + height / root);
+        let moved = dynamic.lu().solve(&along).expect("springs");
+        let nearer: Complex<f64> = along.iter().zip(&moved).map(|(l, u)| l.conj() * u).sum();
+        sums[0] += nearer / (2.0 * PI);
+        if order == 0 && !is_held {
+            sums[1] += i * moved[1] / (2.0 * PI) * gear.base_radius() / bore;
+        }
+    }
+    sums
+}
+
+#[test]
+#[ignore = "./test all"]
+fn a_run_up_meets_a_rim_that_moves_in_the_plane_where_its_elements_do() {
+    // The direct frequency response of plane elements of a gear without a web, with their mass, on the mean stiffness of the mesh. The mesh is damped enough for
+    // its stiffness to excite no motion beside it.
+    const DAMPING: f64 = 0.07;
+    let case = on_webs(20e-3);
+    // The last speed takes in the modes up to 33 kHz.
+    let mut speeds: Vec<f64> = (0..36).map(|i| 8200.0 + 150.0 * f64::from(i)).collect();
+    speeds.push(20_000.0);
+    let told = vibrating_in((true, DAMPING), &case, &speeds, 0.0, None);
+    let torsion = vibrating_in((false, DAMPING), &case, &speeds, 0.0, None);
+    let analysis = analyze(&case, &*LIBRARY, &Run::unattended()).expect("curves");
+    let mean = analysis.curves[0].mesh_stiffness_tangent_statistics.mean;
+    let [blank, _] = ring_answers(&case, 0.0, 0.0, true);
+    let k = 1.0 / (1.0 / mean - 2.0 * blank.re);
+    let damping = 2.0 * DAMPING * (mean * told.equivalent_mass).sqrt();
+    let gain = |rpm: f64| {
+        let turn = 2.0 * PI * rpm / 60.0;
+        let omega = 100.0 * turn;
+        let [teeth, hub] = ring_answers(&case, omega, turn, false);
+        let mesh = k + Complex::i() * omega * damping;
+        (2.0 * hub * k / (1.0 + 2.0 * mesh * teeth)).norm()
+    };
+    let gains: Vec<(f64, f64)> = (0..80)
+        .map(|i| 8200.0 + 67.0 * f64::from(i))
+        .map(|rpm| (rpm, gain(rpm)))
+        .collect();
+    let peaks: Vec<f64> = gains
+        .windows(3)
+        .filter(|three| three[1].1 > three[0].1.max(three[2].1))
+        .map(|three| three[1].0)
+        .collect();
+    let of_second = |told: &CurveDynamics| -> Vec<f64> {
+        let second = told.resonances.iter().filter(|each| each.order == 100.0);
+        second.map(|each| 60.0 * each.resonance.speed).collect()
+    };
+    let [peak] = peaks[..] else {
+        panic!("{peaks:?}");
+    };
+    let met = of_second(&told);
+    let nearest = met.iter().map(|met| (met / peak - 1.0).abs());
+    assert!(nearest.fold(1.0, f64::min) < 0.02, "{met:?} {peak}");
+    // In torsion alone nothing is met there.
+    assert!(of_second(&torsion).is_empty());
 }
 
 /// The stiffness of a support that holds a gear alike along all directions, and about x and y.
@@ -987,6 +1168,7 @@ fn gears_on_isotropic_supports_vibrate_as_their_eigenproblem_has_them() {
         damping_ratio: 0.05,
         inertias: [None; 2],
         blank_modes: None,
+        all_directions: false,
         blank_damping_ratio: 0.02,
         mounts,
         sweeps: [true, false],
@@ -994,7 +1176,8 @@ fn gears_on_isotropic_supports_vibrate_as_their_eigenproblem_has_them() {
     let run = Run::unattended();
     let analysis = analyze(&case, &*LIBRARY, &run).expect("curves");
     let curve = &analysis.curves[0];
-    let asked = (&request, twists_of(&case));
+    let blanks = blanks_of(&case, &request);
+    let asked = (&request, &blanks);
     let told = dynamics(&case, curve, &table(&case), asked, &run).expect("nobody stops it");
     let k = curve.mesh_stiffness_tangent_statistics.mean;
     let (sin, cos) = case.pair.working_pressure_angle().sin_cos();

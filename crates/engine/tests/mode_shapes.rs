@@ -9,7 +9,7 @@ use cases::{gear, helical};
 use meshwright_engine::gear::{HolePattern, SolidGear};
 use meshwright_engine::run::Run;
 use meshwright_engine::vibration::{
-    BoreSupport, ModeShape, ModesAsked, mode_shape, modes, shape_size,
+    BoreSupport, Direction, Mode, ModeShape, ModesAsked, OrderShape, mode_shape, modes, shape_size,
 };
 use nalgebra::{Complex, Rotation3, Vector3};
 
@@ -127,4 +127,45 @@ fn shapes_on_the_grid_have_the_nodal_diameters_that_are_listed_and_are_not_torn(
         let beyond = mode_shape(&gear, asked(6), modes.len(), &run);
         assert!(beyond.expect("sound").is_none());
     }
+}
+
+#[test]
+fn around_the_gear_the_squares_of_cosine_and_sine_are_those_at_its_places_in_the_mean() {
+    let [u, v, w] = [
+        Complex::new(0.3, 0.1),
+        Complex::new(-0.2, 0.9),
+        Complex::new(0.4, 0.0),
+    ];
+    let of = |order: i64, at_pitch: [Complex<f64>; 3]| OrderShape {
+        order,
+        at_pitch,
+        on_rim: at_pitch,
+    };
+    let mut mode = Mode {
+        frequency: 1000.0,
+        is_double: true,
+        direction: Direction::InPlane,
+        nodal_diameters: 3,
+        nodal_circles: 0,
+        coriolis: 0.0,
+        residual: 0.0,
+        shape: vec![of(3, [u, v, w]), of(-3, [w, u, v])],
+    };
+    let along = [0.34, 0.94, -0.2];
+    let in_the_mean = |mode: &Mode| -> f64 {
+        let squares = (0..12).map(|i| {
+            let both = mode.at_pitch(f64::from(i) * std::f64::consts::TAU / 12.0);
+            let each = both.map(|u| u.iter().zip(along).map(|(u, a)| u * a).sum::<f64>());
+            each.iter().map(|u| u * u).sum::<f64>()
+        });
+        squares.sum::<f64>() / 12.0
+    };
+    assert!((mode.around(&along).powi(2) / in_the_mean(&mode) - 1.0).abs() < 1e-12);
+    // A single mode is half of it in each of two waves that are alike.
+    mode.is_double = false;
+    assert!((mode.around(&along).powi(2) / in_the_mean(&mode) - 1.0).abs() < 1e-12);
+    // Without nodal diameters it is the same at all places.
+    mode.nodal_diameters = 0;
+    mode.shape = vec![of(0, [u, v, w])];
+    assert!((mode.around(&along).powi(2) / in_the_mean(&mode) - 1.0).abs() < 1e-12);
 }

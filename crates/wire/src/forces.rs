@@ -56,8 +56,8 @@ impl ForceTableQuestion {
 }
 
 document! {
-    /// The motion of the gears over speed: torsion on the line of action, with backlash, of gears whose bodies turn in themselves; on shafts and supports where
-    /// these are given.
+    /// The motion of the gears over speed: torsion on the line of action, with backlash, of gears whose bodies turn in themselves; with all modes of the bodies
+    /// where the submission has `modes`, and on shafts and supports where these are given.
     pub struct DynamicsQuestion as "DynamicsRequest", "Dynamics request" {
         /// The speeds of the driving gear, or the only one.
         pub(super) driving_speed_rpm: Speeds = (),
@@ -73,8 +73,10 @@ document! {
             number("Driven inertia", "kg m^2", 1e-9, 1e6),
             "that of the gear as drawn",
         ),
-        /// The number of modes in which each gear body turns in itself between bore and teeth, which are outside its web. 0: rims and teeth turn with the hubs.
-        /// A gear that is to have less inertia than it has as drawn has none, and neither have gears by the method `load_distribution`.
+        /// The number of modes of each gear body between bore and teeth, which are outside its web. 0: rims and teeth turn with the hubs. The modes are those
+        /// in torsion. Where the submission has `modes`, those in the plane are among them, and along faces those out of the plane: of the modes below twice the
+        /// highest mesh frequency, those by which the body yields most. A gear that is to have less inertia than it has as drawn has none, and neither have gears by
+        /// the method `load_distribution`.
         blank_modes: Option<u32> = absent(
             number("Blank modes", "1", 0.0, MOST_MODES as f64),
             "as many as lie below twice the highest mesh frequency, and at least one",
@@ -246,7 +248,8 @@ impl Kind for Speeds {
 }
 
 impl DynamicsQuestion {
-    pub(super) fn data(&self) -> DynamicsRequest {
+    /// What the engine is asked; bodies vibrate in all directions where the submission asks for their natural modes.
+    pub(super) fn data(&self, all_directions: bool) -> DynamicsRequest {
         let shafts = self.shaft_stiffness_n_m_per_rad.as_ref();
         let shafts = shafts.map_or([None; 2], |shafts| [shafts.driving, shafts.driven]);
         let supports = self.support_stiffness.as_ref();
@@ -264,6 +267,7 @@ impl DynamicsQuestion {
             damping_ratio: self.damping_ratio,
             inertias: [self.driving_inertia_kg_m2, self.driven_inertia_kg_m2],
             blank_modes: self.blank_modes,
+            all_directions,
             blank_damping_ratio: self.blank_damping_ratio,
             mounts,
             sweeps: [self.sweep != Sweep::Down, self.sweep != Sweep::Up],

@@ -18,6 +18,7 @@ words! {
 
 document! {
     /// Natural frequencies and shapes of each gear at rest, teeth on it, in three dimensions whatever the method. Shafts, bearings and the mate are left out.
+    /// The run-up of a submission with `dynamics` takes in the modes of all directions with the bore held, by the number `dynamics.blank_modes`.
     pub struct ModesQuestion as "ModesRequest", "Modes request" {
         /// The most modes of each gear, the lowest first. Two modes of one frequency, a cosine and a sine, stand once. A gear has at most as many as its grid
         /// tells apart: 36 up to 36 teeth, one for each tooth up to 80.

@@ -2,13 +2,15 @@
 
 use std::f64::consts::PI;
 
+use super::blank_modes::blank_modes_estimate;
+use super::cost::Estimate;
 use super::curve::Curve;
 use super::orders::Orders;
-use super::rotors::{self, Twists};
+use super::rotors::{self, Blanks};
 use super::{AnalysisError, Case, OrderKind};
 use crate::dynamics::mount::Rows;
 use crate::dynamics::{
-    Body, Coupled, Damping, ForceTable, Mount, Order, Resonance, RunUp, RunUpData,
+    Body, BodyWave, Coupled, Damping, ForceTable, Mount, Order, Resonance, RunUp, RunUpData,
 };
 use crate::gear::{GearPair, Member};
 use crate::run::Run;
@@ -19,6 +21,9 @@ const ORDERS_A_PERIOD: usize = 12;
 
 /// Modes of a gear body, at most.
 pub const MOST_MODES: usize = 8;
+
+/// The part of the yield of a mesh by which a mode yields at least to be taken in. At its resonance it adds this over twice its damping ratio.
+const LEAST_YIELD: f64 = 1e-5;
 
 /// The stiffness of a mesh over E b of its softer gear, about: 0.03 with large holes under a heavy load, 0.04 in the paper's case 2.
 const STIFFNESS: f64 = 0.035;
@@ -32,14 +37,37 @@ pub struct DynamicsRequest {
     pub damping_ratio: f64,
     /// Polar inertias in kg m², driving and driven; `None` for the gear's own.
     pub inertias: [Option<f64>; 2],
-    /// The number of modes in which each gear body turns in itself; `None` for as many as lie below twice the highest mesh frequency, and at least one.
+    /// The number of modes of each gear body; `None` for as many as lie below twice the highest mesh frequency, and at least one in torsion.
     pub blank_modes: Option<u32>,
+    /// True if the modes are those in the plane, and out of it along faces, beside those in torsion. Of more than there may be, those by which the body yields
+    /// most to the mesh are taken in.
+    pub all_directions: bool,
     /// ζ of these modes, and of the gears on their shafts and supports.
     pub blank_damping_ratio: f64,
     /// Supports of the driving and the driven hub.
     pub mounts: [MountRequest; 2],
     /// Directions: run-up, and run-down.
     pub sweeps: [bool; 2],
+}
+
+impl DynamicsRequest {
+    /// The circular frequency up to which bodies have modes where no number is asked for: twice that of the mesh at the highest speed.
+    fn highest_mode(&self, case: &Case) -> f64 {
+        let fastest = self.speeds.last().copied().unwrap_or(0.0);
+        4.0 * PI * fastest * f64::from(case.pair.driving().tooth_count())
+    }
+
+    /// The circular frequency up to which modes other than in torsion are a part of the run-up of `case`, if they are.
+    pub fn highest_wave(&self, case: &Case) -> Option<f64> {
+        let highest = self.highest_mode(case);
+        let is_asked = self.all_directions && self.blank_modes != Some(0) && highest > 0.0;
+        let has_modes = |member: &Member| self.has_modes(case, *member);
+        (is_asked && Member::BOTH.iter().any(has_modes)).then_some(highest)
+    }
+
+    fn has_modes(&self, case: &Case, member: Member) -> bool {
+        rotors::has_modes(case, member, self.inertias[member.index()])
+    }
 }
 
 /// Shaft and support of a hub.
@@ -95,14 +123,13 @@ pub fn equivalent_mass(case: &Case, inertias: [Option<f64>; 2]) -> f64 {
 fn bodies(
     case: &Case,
     request: &DynamicsRequest,
-    (modes, twists): (Option<u32>, Twists),
+    (modes, blanks): (Option<u32>, &Blanks),
 ) -> [Body; 2] {
-    let fastest = request.speeds.last().copied().unwrap_or(0.0);
-    let mesh = 2.0 * PI * fastest * f64::from(case.pair.driving().tooth_count());
     let limits = match modes {
         Some(count) => (f64::INFINITY, count as usize),
-        None => (2.0 * mesh, MOST_MODES),
+        None => (request.highest_mode(case), MOST_MODES),
     };
+    let least = LEAST_YIELD / usual_stiffness(&case.pair);
     Member::BOTH.map(|member| {
         let inertia = request.inertias[member.index()];
         let MountRequest { shaft, support } = request.mounts[member.index()];
@@ -110,8 +137,12 @@ fn bodies(
             shaft: shaft.unwrap_or(0.0),
             support: support.map(|rows| rotors::support(case, member, &rows)),
         };
-        let twist = twists[member.index()];
-        rotors::body(case, member, inertia, twist, limits, mount)
+        let twist = blanks.twists[member.index()];
+        let mut body = rotors::body(case, member, inertia, twist, limits, mount);
+        if request.has_modes(case, member) {
+            body.add_waves(&blanks.waves[member.index()], (least, limits.1));
+        }
+        body
     })
 }
 
@@ -120,13 +151,13 @@ fn bodies(
 fn natural_frequency_of_rims(
     case: &Case,
     request: &DynamicsRequest,
-    twists: Twists,
+    blanks: &Blanks,
     stiffness: f64,
 ) -> Option<f64> {
     if request.blank_modes != Some(0) {
         return None;
     }
-    let bodies = bodies(case, request, (Some(MOST_MODES as u32), twists));
+    let bodies = bodies(case, request, (Some(MOST_MODES as u32), blanks));
     let yields: f64 = bodies.iter().map(Body::compliance).sum();
     let teeth = 1.0 / stiffness - yields;
     let undamped = Damping {
@@ -146,23 +177,36 @@ pub(super) fn usual_stiffness(pair: &GearPair) -> f64 {
 /// Seconds of one core that the run-ups of `case` take, about, as many as there are torques, and the bytes.
 pub(super) fn run_up_cost(case: &Case, request: &DynamicsRequest) -> (f64, u64) {
     let pair = &case.pair;
+    let mut blanks = Blanks::default();
+    let mut found = Estimate::default();
+    if let Some(frequency) = request.highest_wave(case) {
+        // Nobody knows yet how many there are: as many as there may be, which yield hardly more than they have to.
+        let wave = BodyWave {
+            frequency,
+            at_mesh: frequency * (2.0 * LEAST_YIELD / usual_stiffness(pair)).sqrt(),
+            diameters: 1,
+            split: 1.0,
+        };
+        let most = request
+            .blank_modes
+            .map_or(MOST_MODES, |count| count as usize);
+        blanks.waves = [(); 2].map(|()| vec![wave; most.saturating_sub(1)]);
+        found = blank_modes_estimate(case);
+    }
     let orders = known(pair).into_iter().map(|(_, order)| order).collect();
-    let data = data(
-        case,
-        request,
-        [None; 2],
-        (0.0, usual_stiffness(pair)),
-        orders,
-    );
+    let data = data(case, request, &blanks, (0.0, usual_stiffness(pair)), orders);
     let seconds = case.output_torques.len() as f64 * data.seconds(pair.period());
-    (seconds, data.memory(pair.period()))
+    (
+        found.seconds + seconds,
+        found.memory.max(data.memory(pair.period())),
+    )
 }
 
 /// The parameters of a run-up of `case` under a load, with a mean stiffness of the mesh.
 fn data(
     case: &Case,
     request: &DynamicsRequest,
-    twists: Twists,
+    blanks: &Blanks,
     (load, stiffness): (f64, f64),
     orders: Vec<f64>,
 ) -> RunUpData {
@@ -171,7 +215,7 @@ fn data(
         tooth_count: case.pair.driving().tooth_count(),
         load,
         mass: equivalent_mass(case, request.inertias),
-        bodies: bodies(case, request, (request.blank_modes, twists)),
+        bodies: bodies(case, request, (request.blank_modes, blanks)),
         damping_ratio: request.damping_ratio,
         body_damping_ratio: request.blank_damping_ratio,
         stiffness,
@@ -182,7 +226,7 @@ fn data(
 }
 
 /// The motion at speed in the mesh of `table`, which is that of `case`, under the load of `curve`, which spans whole periods and whose load is not 0.
-/// The blanks twist as [`twists`](super::rotors::twists) has it.
+/// The gears have these `blanks`.
 ///
 /// # Errors
 ///
@@ -191,14 +235,14 @@ pub fn dynamics(
     case: &Case,
     curve: &Curve,
     table: &ForceTable,
-    (request, twists): (&DynamicsRequest, Twists),
+    (request, blanks): (&DynamicsRequest, &Blanks),
     run: &Run,
 ) -> Result<CurveDynamics, AnalysisError> {
     let pair = &case.pair;
     let orders = orders_at_speed(pair, curve);
     let orders = orders.into_iter().map(|(_, order)| order).collect();
     let stiffness = curve.mesh_stiffness_tangent_statistics.mean;
-    let data = data(case, request, twists, (curve.load, stiffness), orders);
+    let data = data(case, request, blanks, (curve.load, stiffness), orders);
     let mut run_up = data.run_up(table, run)?;
     if data.speeds.first() == Some(&0.0) {
         // The curve as it stands in the results, at its own positions.
@@ -227,7 +271,7 @@ pub fn dynamics(
         equivalent_mass: data.mass,
         speeds: data.speeds.clone(),
         run_up,
-        natural_frequency_of_rims: natural_frequency_of_rims(case, request, twists, data.stiffness),
+        natural_frequency_of_rims: natural_frequency_of_rims(case, request, blanks, data.stiffness),
     })
 }
 

@@ -114,7 +114,7 @@ pub fn mode_shape(
 }
 
 /// A gear of `case` with its extent along the axis.
-fn solid(case: &Case, member: Member) -> Result<SolidGear, AnalysisError> {
+pub(super) fn solid(case: &Case, member: Member) -> Result<SolidGear, AnalysisError> {
     let gear = case.solid_gear(member);
     gear.map_err(|error| AnalysisError::Discretization {
         member,

@@ -5,7 +5,7 @@ use super::at_speed::{CurveDynamics, DynamicsRequest, dynamics};
 use super::case::Model;
 use super::curve::Curve;
 use super::plan::Plan;
-use super::rotors::twists;
+use super::rotors::Blanks;
 use super::warning::warn_of_motions;
 use super::{Analysis, AnalysisError, Case, StiffnessRule};
 use crate::assembly::Parts;
@@ -77,12 +77,12 @@ pub fn analyze_with_forces(
         let curves = analysis.curves.iter();
         curves.map(move |curve| (dynamics, curve))
     });
-    let twists = match &request.dynamics {
-        Some(_) => twists(case, parts, run)?,
-        None => [None; 2],
+    let blanks = match &request.dynamics {
+        Some(dynamics) => Blanks::of(case, dynamics.highest_wave(case), parts, run)?,
+        None => Blanks::default(),
     };
     let dynamics = curves
-        .map(|(request, curve)| dynamics(case, curve, &table, (request, twists), run))
+        .map(|(request, curve)| dynamics(case, curve, &table, (request, &blanks), run))
         .collect::<Result<Vec<_>, _>>()?;
     let driven = case.pair.driven().base_radius();
     warn_of_motions(&mut analysis.warnings, &dynamics, (&table, driven));

@@ -1,22 +1,24 @@
-//! Gear bodies in torsion, from their drawings and their elements.
+//! Gear bodies that vibrate, from their drawings and their elements.
 
 use std::f64::consts::PI;
 
 use nalgebra::{Matrix6, SMatrix};
 
+use super::blank_modes::{of_modes, solid};
 use super::case::Model;
 use super::{AnalysisError, Case};
 use crate::assembly::interface::interface_radius;
 use crate::assembly::{BlankSpec, PartError, Parts};
 use crate::dynamics::mount::{self, MOTIONS, Rows};
 use crate::dynamics::torsion::{Ring, Rotor};
-use crate::dynamics::{Body, Mount, Support};
+use crate::dynamics::{Body, BodyWave, Mount, Support};
 use crate::fem::FemError;
 use crate::fem::dense::Cholesky;
 use crate::gear::{BlankRegion, Member, SolidGear, Web};
 use crate::ring::blank::BlankSubstructure;
 use crate::ring::cyclic::Component;
 use crate::run::Run;
+use crate::vibration::{self, BoreSupport, Direction, Mode, ModesAsked};
 
 /// Rings into which the band of a hole is divided.
 const BANDS: u32 = 8;
@@ -35,6 +37,75 @@ pub struct Twist {
 
 /// The twists of the driving and of the driven blank; `None` where the blank is the same all around.
 pub type Twists = [Option<Twist>; 2];
+
+/// Both blanks of a case as the run-up has them, by elements.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Blanks {
+    /// How far they twist.
+    pub twists: Twists,
+    /// Their modes other than in torsion, the lowest first; none where they are not asked for.
+    pub waves: [Vec<BodyWave>; 2],
+}
+
+impl Blanks {
+    /// The blanks of `case`, with their modes other than in torsion up to the circular frequency `highest` if there is one.
+    ///
+    /// # Errors
+    ///
+    /// As for [`analyze`](super::analyze()).
+    pub fn of(
+        case: &Case,
+        highest: Option<f64>,
+        parts: &dyn Parts,
+        run: &Run,
+    ) -> Result<Self, AnalysisError> {
+        let mut waves = [Vec::new(), Vec::new()];
+        if let Some(highest) = highest {
+            waves[0] = self::waves(case, Member::Driving, highest, run)?;
+            // Equal gears vibrate alike.
+            let gears = Member::BOTH.map(|member| case.solid_gear(member));
+            waves[1] = if gears[0] == gears[1] {
+                waves[0].clone()
+            } else {
+                self::waves(case, Member::Driven, highest, run)?
+            };
+        }
+        Ok(Self {
+            twists: twists(case, parts, run)?,
+            waves,
+        })
+    }
+}
+
+/// The modes other than in torsion of a gear of `case` up to the circular frequency `highest` with its bore held: in the plane, and out of it where the model
+/// has a face.
+fn waves(
+    case: &Case,
+    member: Member,
+    highest: f64,
+    run: &Run,
+) -> Result<Vec<BodyWave>, AnalysisError> {
+    let gear = solid(case, member)?;
+    let asked = ModesAsked {
+        count: vibration::most_modes(gear.section().tooth_count()),
+        highest: Some(highest / (2.0 * PI)),
+        bore: BoreSupport::Held,
+    };
+    let found = vibration::modes(&gear, asked, run).map_err(|error| of_modes(error, member))?;
+    let [radial, tangential, axial, ..] = at_mesh(case, member);
+    let is_seen = |mode: &&Mode| match mode.direction {
+        Direction::Torsion => false,
+        Direction::InPlane => true,
+        Direction::OutOfPlane => case.faces().is_some(),
+    };
+    let wave = |mode: &Mode| BodyWave {
+        frequency: 2.0 * PI * mode.frequency,
+        at_mesh: mode.around(&[radial, tangential, axial]),
+        diameters: mode.nodal_diameters,
+        split: mode.split(),
+    };
+    Ok(found.iter().filter(is_seen).map(wave).collect())
+}
 
 /// The twists of the blanks of `case`.
 ///
@@ -78,7 +149,7 @@ fn twist(blank: &BlankSubstructure) -> Result<Twist, FemError> {
 }
 
 /// The body of a gear of `case` with this inertia or its own, which twists by `twist`, with its modes up to the circular frequency and the number of
-/// `limits`, on its `mount`. A body that is to have less inertia than the gear as drawn has none, and neither have bodies whose compliance comes from formulas.
+/// `limits`, on its `mount`.
 pub(super) fn body(
     case: &Case,
     member: Member,
@@ -88,20 +159,26 @@ pub(super) fn body(
     mount: Mount,
 ) -> Body {
     let own = own_inertia(case, member);
-    let inertia = inertia.unwrap_or(own);
     let base_radius = case.pair.gear(member).base_radius();
-    let is_seen = inertia >= own && !matches!(case.model, Model::Formulas(_));
-    let modes = if is_seen {
+    let modes = if has_modes(case, member, inertia) {
         rotor(case, member, own, twist).modes(base_radius, highest, most)
     } else {
         Vec::new()
     };
     Body {
-        inertia,
+        inertia: inertia.unwrap_or(own),
         base_radius,
         modes,
+        waves: Vec::new(),
         mount,
     }
+}
+
+/// True if a gear of `case` with this inertia has modes: with less than that of its drawing it has none, and neither has it where its compliance comes from
+/// formulas.
+pub(super) fn has_modes(case: &Case, member: Member, inertia: Option<f64>) -> bool {
+    let is_enough = inertia.is_none_or(|inertia| inertia >= own_inertia(case, member));
+    is_enough && !matches!(case.model, Model::Formulas(_))
 }
 
 /// The polar inertia of a gear as drawn, in kg m².

@@ -7,10 +7,19 @@
 //!
 //! where the teeth move by r_b θ + Σ φ_i q_i. The table of force has Σ φ_i²/ω_i² in it, by which the modes yield to a force that stands still; the
 //! teeth alone yield by so much less. The table knows no shafts and no supports ([`Mount`]): they add springs, and motions of the whole body.
+//!
+//! Other modes have n nodal diameters, and no part in a turn. The body turns by Ω, while the mesh stands still in space. There the two modes of one frequency
+//! ([`BodyWave`]) have the coordinates P_1, which the mesh moves, and P_2, a quarter of a wave beside it:
+//!
+//! P_1'' + 2 ζ ω P_1' + 2 m P_2' + (ω² − m²) P_1 + 2 ζ ω n Ω P_2 = φ F,
+//! P_2'' + 2 ζ ω P_2' − 2 m P_1' + (ω² − m²) P_2 − 2 ζ ω n Ω P_1 = 0,
+//!
+//! with m = (n − c) Ω. Their free motions are waves of the frequencies ω ± m. In the frame of the body these are the modes with Coriolis forces, to first order
+//! in Ω/ω: of the terms with Ω² those are kept that make the waves of a rigid translation, c = n = 1, exact. Without a turn P_2 is at rest.
 
 use std::f64::consts::PI;
 
-use nalgebra::{Cholesky, Complex, DMatrix, DVector, SymmetricEigen};
+use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 
 use super::mount::Mount;
 
@@ -35,6 +44,27 @@ pub struct BodyMode {
     pub turn: f64,
 }
 
+/// Natural modes of a body whose bore is held, with modal masses of 1 kg and without a part in a turn: a cosine and a sine of one frequency, or one mode without
+/// nodal diameters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BodyWave {
+    /// ω in rad/s, of the body at rest.
+    pub frequency: f64,
+    /// φ in kg^(−1/2): the displacement of the teeth along the line of action where it is largest around the gear.
+    pub at_mesh: f64,
+    /// n.
+    pub diameters: u32,
+    /// n − c.
+    pub split: f64,
+}
+
+impl BodyWave {
+    /// The number of its coordinates.
+    fn count(&self) -> usize {
+        if self.diameters == 0 { 1 } else { 2 }
+    }
+}
+
 /// A gear body on its bore.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Body {
@@ -42,8 +72,10 @@ pub struct Body {
     pub inertia: f64,
     /// The base radius in m.
     pub base_radius: f64,
-    /// Its modes.
+    /// The modes in which it turns in itself.
     pub modes: Vec<BodyMode>,
+    /// Its other modes.
+    pub waves: Vec<BodyWave>,
     /// How its hub is carried.
     pub mount: Mount,
 }
@@ -51,9 +83,66 @@ pub struct Body {
 impl Body {
     /// The displacement over the force by which its modes yield, in m/N.
     pub fn compliance(&self) -> f64 {
-        let each = self.modes.iter();
-        each.map(|mode| (mode.at_mesh / mode.frequency).powi(2))
+        self.each_mode()
+            .map(|(frequency, at_mesh)| (at_mesh / frequency).powi(2))
             .sum()
+    }
+
+    /// Takes in those of `waves` by which it yields by `least` in m/N. Of more than `most` modes in all those by which it yields most stay, and the first in which
+    /// it turns in itself.
+    pub fn add_waves(&mut self, waves: &[BodyWave], (least, most): (f64, usize)) {
+        let yielded = |frequency: f64, at_mesh: f64| (at_mesh / frequency).powi(2);
+        let yields = |wave: &&BodyWave| yielded(wave.frequency, wave.at_mesh) >= least;
+        self.waves = waves.iter().filter(yields).copied().collect();
+        if self.waves.is_empty() {
+            return;
+        }
+        let first = self.modes.first().copied();
+        let beside = self.each_mode().skip(usize::from(first.is_some()));
+        let mut all: Vec<f64> = beside.map(|(omega, phi)| yielded(omega, phi)).collect();
+        all.sort_by(|one, other| other.total_cmp(one));
+        let room = most.saturating_sub(usize::from(first.is_some()));
+        if all.len() <= room {
+            return;
+        }
+        // Those that yield as much as the first one that has no room go with it.
+        let beyond = all[room];
+        self.waves
+            .retain(|wave| yielded(wave.frequency, wave.at_mesh) > beyond);
+        self.modes.retain(|mode| {
+            first.as_ref() == Some(mode) || yielded(mode.frequency, mode.at_mesh) > beyond
+        });
+    }
+
+    /// ω and φ of each of its modes.
+    fn each_mode(&self) -> impl Iterator<Item = (f64, f64)> {
+        let modes = self.modes.iter();
+        let waves = self.waves.iter();
+        modes
+            .map(|mode| (mode.frequency, mode.at_mesh))
+            .chain(waves.map(|wave| (wave.frequency, wave.at_mesh)))
+    }
+
+    /// True if it is one mass that turns, and nothing else.
+    pub(super) fn is_one_mass(&self) -> bool {
+        self.modes.is_empty() && self.waves.is_empty() && !self.mount.is_elastic()
+    }
+
+    /// ω of the highest of its modes, 0 without any.
+    pub(super) fn highest(&self) -> f64 {
+        self.each_mode().map(|(omega, _)| omega).fold(0.0, f64::max)
+    }
+
+    /// Leaves out its modes from the circular frequency `limit` on.
+    pub(super) fn keep_below(&mut self, limit: f64) {
+        self.modes.retain(|mode| mode.frequency < limit);
+        self.waves.retain(|wave| wave.frequency < limit);
+    }
+
+    /// The number of its coordinates.
+    fn count(&self) -> usize {
+        let waves: usize = self.waves.iter().map(BodyWave::count).sum();
+        1 + self.modes.len() + waves + self.mount.motions()
     }
 }
 
@@ -81,8 +170,21 @@ pub struct Coupled {
     pub(super) hubs: Vec<f64>,
     /// The stiffness of the spring in N/m.
     pub(super) stiffness: f64,
+    /// What rotation adds.
+    turning: Option<Turning>,
     /// Ω in rad/s of motions on supports that leave the teeth where they are and that damping does not reach: nothing excites them.
     idle: Vec<f64>,
+}
+
+/// Forces on the common modes that rotation adds, while the driving gear turns by 1 rad/s.
+#[derive(Debug, Clone, PartialEq)]
+struct Turning {
+    /// Over velocities, in proportion to the speed.
+    gyroscopic: DMatrix<f64>,
+    /// Over displacements, in proportion to the speed: damping that turns with the bodies.
+    circulatory: DMatrix<f64>,
+    /// Over displacements, in proportion to the square of the speed.
+    softening: DMatrix<f64>,
 }
 
 impl Coupled {
@@ -90,13 +192,17 @@ impl Coupled {
     ///
     /// Nothing where a body has less inertia than its modes move.
     pub fn new(bodies: &[Body; 2], stiffness: f64, damping: Damping) -> Option<Self> {
-        let of_body = |body: &Body| 1 + body.modes.len() + body.mount.motions();
-        let count = of_body(&bodies[0]) + of_body(&bodies[1]);
+        let count = bodies[0].count() + bodies[1].count();
         let mut mass = DMatrix::<f64>::identity(count, count);
         let mut spring = DMatrix::<f64>::zeros(count, count);
         let mut damper = DMatrix::<f64>::zeros(count, count);
         let mut teeth = DVector::<f64>::zeros(count);
         let mut hubs = DVector::<f64>::zeros(count);
+        let mut turning = Turning {
+            gyroscopic: DMatrix::zeros(count, count),
+            circulatory: DMatrix::zeros(count, count),
+            softening: DMatrix::zeros(count, count),
+        };
         let mut place = 2;
         for (body, (turn, sign)) in bodies.iter().zip([(0, 1.0), (1, -1.0)]) {
             mass[(turn, turn)] = body.inertia;
@@ -109,6 +215,28 @@ impl Coupled {
                 damper[(place, place)] = 2.0 * damping.bodies * mode.frequency;
                 teeth[place] = sign * mode.at_mesh;
                 place += 1;
+            }
+            // Teeth of both gears have the same speed on their pitch circles.
+            let turns = bodies[0].base_radius / body.base_radius;
+            for wave in &body.waves {
+                let [first, second] = [place, place + 1];
+                teeth[first] = sign * wave.at_mesh;
+                for i in first..first + wave.count() {
+                    spring[(i, i)] = wave.frequency.powi(2);
+                    damper[(i, i)] = 2.0 * damping.bodies * wave.frequency;
+                }
+                if wave.count() == 2 {
+                    let split = wave.split * turns;
+                    let carried =
+                        2.0 * damping.bodies * wave.frequency * f64::from(wave.diameters) * turns;
+                    turning.gyroscopic[(first, second)] = 2.0 * split;
+                    turning.gyroscopic[(second, first)] = -2.0 * split;
+                    turning.circulatory[(first, second)] = carried;
+                    turning.circulatory[(second, first)] = -carried;
+                    turning.softening[(first, first)] = -split * split;
+                    turning.softening[(second, second)] = -split * split;
+                }
+                place += wave.count();
             }
             if body.mount.is_elastic() {
                 // The driven gear turns against z.
@@ -148,7 +276,8 @@ impl Coupled {
         if bodies.iter().any(|body| body.mount.support.is_some()) {
             let moved = (shapes.transpose() * &teeth).abs();
             let most = moved.max();
-            let damped = shapes.transpose() * &damper * &shapes;
+            let beside = &damper + turning.gyroscopic.abs() + turning.circulatory.abs();
+            let damped = shapes.transpose() * beside * &shapes;
             let is_alone = |j: usize| {
                 let beside = (0..count).filter(|i| *i != j).map(|i| damped[(i, j)].abs());
                 beside.fold(0.0, f64::max) <= IDLE * damped[(j, j)]
@@ -163,12 +292,19 @@ impl Coupled {
         }
         let shapes = shapes.select_columns(&order);
         let along = |vector: &DVector<f64>| (shapes.transpose() * vector).as_slice().to_vec();
+        let between = |matrix: DMatrix<f64>| shapes.transpose() * matrix * &shapes;
+        let has_waves = bodies.iter().any(|body| !body.waves.is_empty());
         Some(Self {
             frequencies: order.iter().map(|&j| eigen.eigenvalues[j].sqrt()).collect(),
-            damping: shapes.transpose() * damper * &shapes,
+            damping: between(damper),
             teeth: along(&teeth),
             hubs: along(&hubs),
             stiffness,
+            turning: has_waves.then(|| Turning {
+                gyroscopic: between(turning.gyroscopic),
+                circulatory: between(turning.circulatory),
+                softening: between(turning.softening),
+            }),
             idle,
         })
     }
@@ -208,46 +344,40 @@ impl Coupled {
         excited.map(|(omega, _)| omega / (2.0 * PI)).collect()
     }
 
-    /// The amplitude at the hubs over that of the static curve, at the circular frequency `omega`, of a mesh with a constant stiffness.
-    pub fn gain(&self, omega: f64) -> f64 {
-        let count = self.count();
-        let dynamic = DMatrix::from_fn(count, count, |i, j| {
-            let spring = if i == j {
-                self.frequencies[i].powi(2) - omega * omega
-            } else {
-                0.0
-            };
-            Complex::new(spring, omega * self.damping[(i, j)])
-        });
-        let force = DVector::from_fn(count, |i, _| {
-            Complex::new(self.stiffness * self.teeth[i], 0.0)
-        });
-        let moved = dynamic.lu().solve(&force);
-        moved.map_or(f64::INFINITY, |moved| {
-            let hubs = moved.iter().zip(&self.hubs);
-            hubs.map(|(p, h)| p * *h).sum::<Complex<f64>>().norm()
-        })
+    /// True if its free motions depend on the speed.
+    pub(super) fn depends_on_speed(&self) -> bool {
+        self.turning.is_some()
     }
 
-    /// The matrix of p' and p'' over p and p', row by row.
-    pub(super) fn rate(&self) -> DMatrix<f64> {
+    /// The matrix of p' and p'' over p and p', while the driving gear turns by `turn` rad/s.
+    pub(super) fn rate(&self, turn: f64) -> DMatrix<f64> {
         let count = self.count();
+        let mut velocities = self.damping.clone();
+        let squares = self.frequencies.iter().map(|omega| omega * omega);
+        let mut displacements = DMatrix::from_diagonal(&DVector::from_iterator(count, squares));
+        if let Some(turning) = &self.turning {
+            velocities += turn * &turning.gyroscopic;
+            displacements += turn * &turning.circulatory + turn * turn * &turning.softening;
+        }
         let mut rate = DMatrix::zeros(2 * count, 2 * count);
         for i in 0..count {
             rate[(i, count + i)] = 1.0;
-            rate[(count + i, i)] = -self.frequencies[i].powi(2);
             for j in 0..count {
-                rate[(count + i, count + j)] = -self.damping[(i, j)];
+                rate[(count + i, j)] = -displacements[(i, j)];
+                rate[(count + i, count + j)] = -velocities[(i, j)];
             }
         }
         rate
     }
 
-    /// The natural frequencies in Hz, rising.
+    /// The natural frequencies in Hz, rising, of bodies at rest. Equal ones of waves that the mesh does not move stand once.
     pub fn natural_frequencies(&self) -> Vec<f64> {
         let all = self.frequencies.iter().chain(&self.idle);
         let mut all: Vec<f64> = all.map(|omega| omega / (2.0 * PI)).collect();
         all.sort_by(f64::total_cmp);
+        if self.depends_on_speed() {
+            all.dedup_by(|next, one| *next - *one < IDLE * *one);
+        }
         all
     }
 }
@@ -272,6 +402,7 @@ mod tests {
                 at_mesh: radius / rim.sqrt(),
                 turn: rim.sqrt(),
             }],
+            waves: Vec::new(),
             mount: Mount::NONE,
         }
     }
@@ -305,6 +436,7 @@ mod tests {
             inertia: 1e12,
             base_radius: r,
             modes: Vec::new(),
+            waves: Vec::new(),
             mount: Mount::NONE,
         };
         let body = hub_and_rim(hub, rim, web, r);
@@ -314,7 +446,7 @@ mod tests {
             // Rows of hub and rim: c − ω² J, −c; −c, c − ω² I + k r²; force k r w on the rim.
             let (a, b) = (web - square * hub, web - square * rim + teeth * r * r);
             let expected = r * (teeth * r * web / (a * b - web * web)).abs();
-            let found = coupled.gain(omega);
+            let found = coupled.gain(omega, 0.0);
             assert!(
                 (found / expected - 1.0).abs() < 1e-6,
                 "{omega}: {found} {expected}"

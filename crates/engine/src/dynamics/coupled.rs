@@ -2,12 +2,11 @@
 //!
 //! About the static deflection under F_0 the state s = (p, p') of the common modes obeys s' = A s + B f. The matrix A has the spring of the mesh at
 //! its mean stiffness k, and f = k Z·p − G(u) is the rest of the law of force: u = Z·p − w, with w the fluctuation of the static curve. In a look f is
-//! linear in time, which the exponential of A takes exactly. The end of f depends on u there, by a piecewise linear equation. A stiffness that is
-//! constant is met exactly; one that varies, and flanks that part, to second order.
-
-use nalgebra::DMatrix;
+//! linear in time, which the exponential of A takes exactly, free motion by free motion (`free`). The end of f depends on u there, by a piecewise
+//! linear equation. A stiffness that is constant is met exactly; one that varies, and flanks that part, to second order.
 
 use super::bodies::Coupled;
+use super::free::{Complexes, FreeMotions};
 use super::law::Laws;
 use super::oscillator::Seen;
 
@@ -36,10 +35,11 @@ pub struct CoupledMotion<'a> {
     pub(super) looks: u32,
     /// The steps of a period.
     pub(super) steps: Vec<Drift>,
-    /// e^{A h}, row by row.
-    carried: Vec<f64>,
+    free: FreeMotions,
+    /// e^{λ h}.
+    carried: Complexes,
     /// The shares of f at the beginning and at the end of a look.
-    pushed: [Vec<f64>; 2],
+    pushed: [Complexes; 2],
 }
 
 /// A place on a law.
@@ -56,27 +56,15 @@ struct Touch {
 }
 
 impl<'a> CoupledMotion<'a> {
-    /// `steps` of `duration` with so many `looks` in each, of `bodies` on `laws` under the load `load`.
+    /// `steps` of `duration` with so many `looks` in each, of `bodies` on `laws` under the load `load`, while the driving gear turns by `turn` rad/s.
     pub fn new(
         (laws, load): (&'a Laws, f64),
-        bodies: &'a Coupled,
+        (bodies, turn): (&'a Coupled, f64),
         (duration, looks): (f64, u32),
         steps: Vec<Drift>,
     ) -> Self {
-        let size = 2 * bodies.count();
-        let look = duration / f64::from(looks);
-        // The exponential of (A B 0; 0 0 1/h; 0 0 0) h has ∫ e^{A(h − t)} B dt and the same with t/h beside e^{A h}.
-        let mut whole = DMatrix::zeros(size + 2, size + 2);
-        whole
-            .view_mut((0, 0), (size, size))
-            .copy_from(&(look * bodies.rate()));
-        for (j, z) in bodies.teeth.iter().enumerate() {
-            whole[(size / 2 + j, size)] = look * z;
-        }
-        whole[(size, size + 1)] = 1.0;
-        let whole = whole.exp();
-        let rising: Vec<f64> = (0..size).map(|i| whole[(i, size + 1)]).collect();
-        let falling = (0..size).map(|i| whole[(i, size)] - rising[i]).collect();
+        let free = FreeMotions::of(bodies, turn);
+        let [carried, falling, rising] = free.over(duration / f64::from(looks));
         Self {
             laws,
             bodies,
@@ -84,20 +72,14 @@ impl<'a> CoupledMotion<'a> {
             duration,
             looks,
             steps,
-            carried: (0..size * size)
-                .map(|k| whole[(k / size, k % size)])
-                .collect(),
+            free,
+            carried,
             pushed: [falling, rising],
         }
     }
 
     pub(super) fn bodies(&self) -> &Coupled {
         self.bodies
-    }
-
-    fn nearer(&self, state: &[f64]) -> f64 {
-        let teeth = self.bodies.teeth.iter().zip(state);
-        teeth.map(|(z, p)| z * p).sum()
     }
 
     /// The rest of `law` where the teeth are nearer by `nearer` than at rest and w is `deflection`.
@@ -144,43 +126,55 @@ impl<'a> CoupledMotion<'a> {
     /// Carries `state` and, where asked for, its `derivative`, whose columns are carried alike, over a period.
     pub(super) fn carry_over_period(
         &self,
-        state: &mut Vec<f64>,
-        mut derivative: Option<&mut Vec<Vec<f64>>>,
+        state: &mut [f64],
+        derivative: Option<&mut Vec<Vec<f64>>>,
         see: &mut dyn FnMut(Seen),
     ) {
-        let size = state.len();
-        let half = size / 2;
-        let rising = &self.pushed[1];
-        let share = self.nearer(rising);
-        let mut next = vec![0.0; size];
+        let [falling, rising] = &self.pushed;
+        let teeth = &self.free.teeth;
+        let share = rising.real_of_product(teeth);
+        let mut own = self.free.own(state);
+        let mut columns: Vec<Column> = derivative
+            .iter()
+            .flat_map(|columns| columns.iter())
+            .map(|column| {
+                let own = self.free.own(column);
+                let nearer = own.real_of_product(teeth);
+                Column { own, nearer }
+            })
+            .collect();
+        // The share of f at the end of a look comes to the columns with the next one: both are in proportion to how much the teeth have come nearer.
+        let later = self.carried.times(rising);
+        let mut slope_before = 0.0;
+        let mut nearer = own.real_of_product(teeth);
+        let mut push = Complexes::zeros(2 * self.bodies.count());
         let mut place = 0;
         for (index, step) in self.steps.iter().enumerate() {
             let [from, to] = step.deflection;
-            let mut touch = self.touch(step.law, self.nearer(state), from, place);
+            let mut touch = self.touch(step.law, nearer, from, place);
             for looked in 1..=self.looks {
                 let part = f64::from(looked) / f64::from(self.looks);
                 let deflection = from + part * (to - from);
-                self.carry(state, touch.rest, &mut next);
-                let free = self.nearer(&next);
+                own.carry(&self.carried, touch.rest, falling);
+                let free = own.real_of_product(teeth);
                 let end = self.end(step.law, (free, share), deflection, touch.place);
-                for (value, rising) in next.iter_mut().zip(rising) {
-                    *value += rising * end.rest;
-                }
-                std::mem::swap(state, &mut next);
-                for column in derivative.iter_mut().flat_map(|columns| columns.iter_mut()) {
-                    let begin = touch.slope * self.nearer(column);
-                    self.carry(column, begin, &mut next);
-                    let moved = self.nearer(&next) / (1.0 - share * end.slope);
-                    for (value, rising) in next.iter_mut().zip(rising) {
-                        *value += rising * end.slope * moved;
+                own.add(end.rest, rising);
+                nearer = free + share * end.rest;
+                if !columns.is_empty() {
+                    push.clone_from(falling);
+                    push.scale(touch.slope);
+                    push.add(slope_before, &later);
+                    let follows = 1.0 / (1.0 - share * end.slope);
+                    for column in &mut columns {
+                        column.own.carry(&self.carried, column.nearer, &push);
+                        column.nearer = follows * column.own.real_of_product(teeth);
                     }
-                    std::mem::swap(column, &mut next);
+                    slope_before = end.slope;
                 }
-                let hubs = self.bodies.hubs.iter().zip(&state[..half]);
                 see(Seen {
                     step: index,
                     part,
-                    u: hubs.map(|(h, p)| h * p).sum::<f64>() - deflection,
+                    u: own.real_of_product(&self.free.hubs) - deflection,
                     force: end.force,
                     apart: self.laws.is_apart(touch.place.min(end.place)),
                 });
@@ -188,16 +182,19 @@ impl<'a> CoupledMotion<'a> {
             }
             place = touch.place;
         }
-    }
-
-    /// e^{A h} `state` and the share of `rest` at the beginning.
-    fn carry(&self, state: &[f64], rest: f64, next: &mut [f64]) {
-        let rows = self.carried.chunks_exact(state.len());
-        for ((value, row), falling) in next.iter_mut().zip(rows).zip(&self.pushed[0]) {
-            let sum: f64 = row.iter().zip(state).map(|(a, s)| a * s).sum();
-            *value = sum + falling * rest;
+        self.free.to_state(&own, state);
+        for (told, mut column) in derivative.into_iter().flatten().zip(columns) {
+            column.own.add(slope_before * column.nearer, rising);
+            self.free.to_state(&column.own, told);
         }
     }
+}
+
+/// A small difference of the state, without the share of f at the end of the last look.
+struct Column {
+    own: Complexes,
+    /// By how much the teeth come nearer in it.
+    nearer: f64,
 }
 
 #[cfg(test)]
@@ -217,6 +214,7 @@ mod tests {
             inertia: 2.0,
             base_radius: 1.0,
             modes: vec![mode],
+            waves: Vec::new(),
             mount: Mount::NONE,
         };
         Coupled::new(&[body.clone(), body], stiffness, damping).expect("bodies")
@@ -241,7 +239,7 @@ mod tests {
             each.map(|((p, v), omega)| 0.5 * (v * v + (omega * p).powi(2)))
                 .sum()
         };
-        let motion = CoupledMotion::new((&laws, 1.0), &bodies, (0.13, 2), vec![drift; 64]);
+        let motion = CoupledMotion::new((&laws, 1.0), (&bodies, 0.0), (0.13, 2), vec![drift; 64]);
         let mut state: Vec<f64> = (1..=2 * bodies.count()).map(|i| 0.1 / i as f64).collect();
         let before = energy(&state);
         motion.carry_over_period(&mut state, None, &mut |_| ());
@@ -261,7 +259,7 @@ mod tests {
             law: 0,
             deflection: [wave(i), wave(i + 1)],
         });
-        let motion = CoupledMotion::new((&laws, 0.3), &bodies, (0.2, 3), steps.collect());
+        let motion = CoupledMotion::new((&laws, 0.3), (&bodies, 0.0), (0.2, 3), steps.collect());
         let size = 2 * bodies.count();
         let start: Vec<f64> = (0..size).map(|i| 0.3 * (1.0 + i as f64).sin()).collect();
         let mut derivative: Vec<Vec<f64>> = (0..size)

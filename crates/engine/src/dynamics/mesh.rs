@@ -69,6 +69,14 @@ impl RunUpData {
         2.0 * self.damping_ratio * (self.stiffness * self.mass).sqrt()
     }
 
+    /// The amplitude over that of the static curve of one mass at the circular frequency `omega`, with the mean stiffness at every position and flanks that
+    /// do not part.
+    pub(super) fn gain(&self, omega: f64) -> f64 {
+        let ratio = omega / self.natural();
+        let damping = 2.0 * self.damping_ratio * ratio;
+        1.0 / (1.0 - ratio * ratio).hypot(damping)
+    }
+
     /// The orders in the results whatever their amplitude, of a mesh that repeats after `period` mesh periods.
     pub(super) fn known(&self, period: u32) -> impl Iterator<Item = Order> {
         let times = move |order: &f64| (order * f64::from(period)).round() as u32;
@@ -83,9 +91,7 @@ impl RunUpData {
     pub(super) fn coupled(&self, least: f64) -> Option<Coupled> {
         let mut bodies = self.bodies.clone();
         loop {
-            let modes = || bodies.iter().flat_map(|body| &body.modes);
-            let is_one_mass = |body: &Body| body.modes.is_empty() && !body.mount.is_elastic();
-            if bodies.iter().all(is_one_mass) {
+            if bodies.iter().all(Body::is_one_mass) {
                 return None;
             }
             let yields: f64 = bodies.iter().map(Body::compliance).sum();
@@ -97,9 +103,9 @@ impl RunUpData {
                 let teeth = 1.0 / (1.0 / self.stiffness - yields);
                 return Coupled::new(&bodies, teeth, damping);
             }
-            let highest = modes().map(|mode| mode.frequency).fold(0.0, f64::max);
+            let highest = bodies.iter().map(Body::highest).fold(0.0, f64::max);
             for body in &mut bodies {
-                body.modes.retain(|mode| mode.frequency < highest);
+                body.keep_below(highest);
             }
         }
     }
@@ -230,6 +236,20 @@ impl<'a> Mesh<'a> {
         Lines::of(&samples, 1)
     }
 
+    /// The bodies, where they have modes, shafts or supports.
+    pub(super) fn coupled(&self) -> Option<&Coupled> {
+        self.coupled.as_deref()
+    }
+
+    /// The least damping ratio of resonances that are sought: that of the mesh, or of modes of the bodies other than in torsion where it is less.
+    pub(super) fn least_damping(&self) -> f64 {
+        let has_waves = self.coupled().is_some_and(Coupled::depends_on_speed);
+        let of_bodies = has_waves.then_some(self.data.body_damping_ratio);
+        of_bodies.map_or(self.data.damping_ratio, |ratio| {
+            ratio.min(self.data.damping_ratio)
+        })
+    }
+
     /// The natural frequencies in Hz, rising.
     pub(super) fn natural_frequencies(&self) -> Vec<f64> {
         match &self.coupled {
@@ -238,7 +258,7 @@ impl<'a> Mesh<'a> {
         }
     }
 
-    /// Frequencies in Hz that the mesh excites.
+    /// Frequencies in Hz that the mesh excites, of bodies at rest.
     pub(super) fn excited_frequencies(&self) -> Vec<f64> {
         match &self.coupled {
             Some(coupled) => coupled.excited_frequencies(),
@@ -246,26 +266,10 @@ impl<'a> Mesh<'a> {
         }
     }
 
-    /// The amplitude over that of the static curve at a `frequency` in Hz, with the mean stiffness at every position and flanks that do not part.
-    pub(super) fn gain(&self, frequency: f64) -> f64 {
-        let omega = 2.0 * PI * frequency;
-        if let Some(coupled) = &self.coupled {
-            return coupled.gain(omega);
-        }
-        let ratio = omega / self.data.natural();
-        let damping = 2.0 * self.data.damping_ratio * ratio;
-        1.0 / (1.0 - ratio * ratio).hypot(damping)
-    }
-
     /// The frequency of `order` in Hz at `speed`.
     pub(super) fn frequency(&self, order: Order, speed: f64) -> f64 {
         let turns = speed * f64::from(self.data.tooth_count) / f64::from(self.period);
         order.per_true_period() * turns
-    }
-
-    /// The speed at which `order` has this `frequency` in Hz.
-    pub(super) fn meets(&self, order: Order, frequency: f64) -> f64 {
-        frequency / self.frequency(order, 1.0)
     }
 
     /// δ_s' at `speed`, step by step.
@@ -299,7 +303,7 @@ impl<'a> Mesh<'a> {
         let looks = self.data.looks(speed, self.per_period, coupled.at_teeth());
         CoupledMotion::new(
             (&self.laws, self.data.load),
-            coupled,
+            (coupled, 2.0 * PI * speed),
             (self.step(speed), looks as u32),
             (0..count).map(drift).collect(),
         )

@@ -13,10 +13,12 @@
 //! - [`orbit`]: periodic motions by Newton's method on that derivative, their multipliers, and where a motion settles,
 //! - [`order`]: orders of a motion, and its amplitudes at them,
 //! - `mesh`: a table at the steps of a run-up, and the motion in it at any speed,
+//! - `natural`: the natural frequencies over speed,
 //! - [`resonance`]: where orders of the motion resonate, and what excites them,
 //! - [`run_up`]: both branches over speed, and their amplitudes,
 //! - [`torsion`]: bodies that turn in themselves, and their lowest natural frequency on the mesh,
-//! - [`bodies`], [`mount`]: bodies with modes on their mesh, their shafts and their supports.
+//! - [`bodies`], [`mount`]: bodies with modes on their mesh, their shafts and their supports; `free`: their free motions at a speed,
+//! - [`coupled`]: the motion of such bodies over a period.
 //!
 //! Time is divided into steps. In each the shape of F is that of the middle of the step, and the static deflection δ_s(θ) under F_0, about which it stands,
 //! moves on evenly: u = x − δ_s obeys m u'' + c u' + G(u) = F_0 − c δ_s' with a law G that is piecewise linear and constant in time. From step to step u' takes
@@ -24,9 +26,11 @@
 
 pub mod bodies;
 pub mod coupled;
+mod free;
 pub mod law;
 mod mesh;
 pub mod mount;
+mod natural;
 pub mod orbit;
 pub mod order;
 pub mod oscillator;
@@ -35,7 +39,7 @@ pub mod run_up;
 pub mod table;
 pub mod torsion;
 
-pub use bodies::{Body, BodyMode, Coupled, Damping};
+pub use bodies::{Body, BodyMode, BodyWave, Coupled, Damping};
 pub use law::Laws;
 pub use mesh::RunUpData;
 pub use mount::{Mount, Support};

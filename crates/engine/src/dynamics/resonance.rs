@@ -6,6 +6,7 @@ use std::f64::consts::SQRT_2;
 use rayon::prelude::*;
 
 use super::mesh::{CARRIES, Mesh, Motion};
+use super::natural::Naturals;
 use super::orbit::Orbit;
 use super::order::Order;
 use crate::run::{Run, Stopped};
@@ -29,7 +30,7 @@ const EXPECTED: f64 = 0.5 * CARRIES;
 /// Steps of the search for the largest amplitude near a meeting.
 const MOST_STEPS: u32 = 6;
 
-/// The first step over the speed, in damping ratios and within these bounds.
+/// The first step over the speed, in least damping ratios and within these bounds.
 const FIRST_STEP: (f64, [f64; 2]) = (0.5, [1e-3, 0.02]);
 
 /// How far from the meeting, over its speed, the largest amplitude may stand: above it, below it, and below it where flanks part and the mesh is softer.
@@ -126,47 +127,55 @@ fn meetings(mesh: &Mesh<'_>, passes: &[Option<Pass>; 2]) -> Vec<Meeting> {
     let data = mesh.data;
     let speeds = &data.speeds;
     let statics = mesh.standing().lines;
+    let naturals = Naturals::of(mesh);
     let mut found: HashMap<(Order, usize), Meeting> = HashMap::new();
-    let mut add = |(natural, frequency): (usize, f64), order: Order, expected: f64| {
-        let speed = mesh.meets(order, frequency);
-        if data.reaches(speed) {
-            let meeting = Meeting {
-                order,
-                natural,
-                speed,
-                expected,
-            };
-            found.entry((order, natural)).or_insert(meeting);
-        }
+    let mut add = |natural: usize, order: Order, speed: f64, expected: f64| {
+        let meeting = Meeting {
+            order,
+            natural,
+            speed,
+            expected,
+        };
+        found.entry((order, natural)).or_insert(meeting);
     };
     let mut lines: Vec<(Order, f64)> = statics.all().collect();
     lines.sort_by(|a, b| b.1.total_cmp(&a.1));
     lines.truncate(MOST_LINES);
     let parametric = mesh.stiffness_lines();
-    for natural in mesh.excited_frequencies().into_iter().enumerate() {
-        let frequency = natural.1;
-        let resonant = mesh.gain(frequency);
+    for natural in 0..naturals.count() {
+        let meets = |order: Order| naturals.meets(natural, order);
+        let resonant =
+            |order: Order, speed: f64| naturals.gain(mesh.frequency(order, speed), speed);
         for order in data.known(mesh.period) {
-            add(natural, order, resonant * statics.at(order));
+            if let Some(speed) = meets(order) {
+                add(
+                    natural,
+                    order,
+                    speed,
+                    resonant(order, speed) * statics.at(order),
+                );
+            }
         }
         // Mathieu's equation is unstable at twice the natural frequency from 4 ζ on.
         let parametric = parametric
             .all()
             .filter(|(_, part)| *part > 2.0 * data.damping_ratio);
         for (order, _) in parametric {
-            add(natural, order.half(), f64::INFINITY);
+            if let Some(speed) = meets(order.half()) {
+                add(natural, order.half(), speed, f64::INFINITY);
+            }
         }
         for &(order, amplitude) in &lines {
-            let speed = mesh.meets(order, frequency);
-            if !data.reaches(speed) {
+            let Some(speed) = meets(order) else {
                 continue;
-            }
+            };
             let response = |&(other, amplitude): &(Order, f64)| {
-                (amplitude * mesh.gain(mesh.frequency(other, speed))).powi(2)
+                (amplitude * naturals.gain(mesh.frequency(other, speed), speed)).powi(2)
             };
             let all: f64 = lines.iter().take(MOST_BESIDE).map(response).sum();
-            if resonant * amplitude > EXPECTED * all.sqrt() {
-                add(natural, order, resonant * amplitude);
+            let expected = resonant(order, speed) * amplitude;
+            if expected > EXPECTED * all.sqrt() {
+                add(natural, order, speed, expected);
             }
         }
         for pass in passes.iter().flatten() {
@@ -175,8 +184,10 @@ fn meetings(mesh: &Mesh<'_>, passes: &[Option<Pass>; 2]) -> Vec<Meeting> {
                 let high = speeds[(i + 1).min(speeds.len() - 1)];
                 let whole = SQRT_2 * motion.rms;
                 for (order, part) in motion.carriers() {
-                    if (low..=high).contains(&mesh.meets(order, frequency)) {
-                        add(natural, order, part * whole);
+                    if let Some(speed) = meets(order)
+                        && (low..=high).contains(&speed)
+                    {
+                        add(natural, order, speed, part * whole);
                     }
                 }
             }
@@ -366,7 +377,7 @@ impl<'a> Trail<'a> {
             return None;
         }
         let (in_damping, [least, most]) = FIRST_STEP;
-        let step = (in_damping * self.mesh.data.damping_ratio).clamp(least, most) * best.speed;
+        let step = (in_damping * self.mesh.least_damping()).clamp(least, most) * best.speed;
         let mut seen = vec![best.clone()];
         let mut wanted = vec![best.speed - step, best.speed + step];
         for _ in 0..MOST_STEPS {

@@ -61,6 +61,28 @@ impl Mode {
         self.at(angle, |order| order.on_rim)
     }
 
+    /// The displacement in kg^(−1/2) of the loaded flank on the reference circle along `direction` (radial, tangential, axial), by the nodal diameters of the mode
+    /// alone: the root of the mean square over its places around the gear of the cosine and the sine together. Without nodal diameters that is the displacement.
+    /// A single mode with nodal diameters has half of its mean square in each of the two waves that make it.
+    pub fn around(&self, direction: &[f64; COMPONENTS]) -> f64 {
+        let n = i64::from(self.nodal_diameters);
+        let of_order = |order: i64| -> c64 {
+            let own = self.shape.iter().filter(|of| of.order == order);
+            own.flat_map(|of| of.at_pitch.iter().zip(direction))
+                .map(|(u, along)| u * *along)
+                .sum()
+        };
+        if n == 0 {
+            return of_order(0).re.abs();
+        }
+        let [ahead, back] = [of_order(n), of_order(-n)];
+        if self.is_double {
+            ahead.norm().hypot(back.norm())
+        } else {
+            (ahead + back.conj()).norm() / std::f64::consts::SQRT_2
+        }
+    }
+
     /// Takes `other`, a single mode with as many nodal diameters and nearly the same frequency, as its sine: both have the Coriolis forces of the wave
     /// that they make. `coupled` is x₁ᵀ M J x₂ of their vectors, J the turn by a right angle. They become one double mode if they `are_equal`. Returns the
     /// sign of `other` in the wave.

@@ -75,10 +75,18 @@ fn forces_do_not_see(forces: Option<&ForcesRequest>) -> Vec<&'static str> {
     if let Some(dynamics) = forces.and_then(|forces| forces.dynamics.as_ref()) {
         let is_mounted = dynamics.mounts != [MountRequest::default(); 2];
         unseen.push(if is_mounted {
-            "in the dynamics, of shafts and supports their mass, the machines beyond them, gyroscopic moments and what displaced axes do to the contact; and vibrations of the gear bodies other than in torsion"
+            "in the dynamics, of shafts and supports their mass, the machines beyond them, gyroscopic moments and what displaced axes do to the contact"
         } else {
-            "in the dynamics, shafts, bearings and housing, and vibrations of the gear bodies other than in torsion"
+            "in the dynamics, shafts, bearings and housing"
         });
+        if !dynamics.all_directions || dynamics.blank_modes == Some(0) {
+            unseen.push("in the dynamics, vibrations of the gear bodies other than in torsion: with `modes` and without `blank_modes` 0 they are a part of it");
+        } else {
+            unseen.push("in the dynamics, that modes vary around a gear with holes: each is taken by its nodal diameters and its mean over a turn; and that spinning stiffens a gear");
+            if is_mounted {
+                unseen.push("in the dynamics, that the modes of the gear bodies push on the supports and are moved by them, beside the turn");
+            }
+        }
         unseen.push("in the dynamics, that the gears turn unevenly: the mesh position follows the mean speed; the damping is one number, in contact and out of it");
     }
     unseen

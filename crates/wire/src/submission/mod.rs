@@ -26,7 +26,6 @@ pub(super) use document::{Purpose, SubmissionDocument};
 use super::declare::{
     Choice, EACH, Errors, Kind, Location, Node, Object as _, ObjectReader, utoipa_schema, word,
 };
-use super::forces::DynamicsQuestion;
 use super::pair::PairDocument;
 use super::problem::{FieldError, Problem};
 use super::resolution::ResolutionDocument;
@@ -183,7 +182,10 @@ impl SubmissionDocument {
         };
         let forces = self.force_table.as_ref().map(|table| ForcesRequest {
             table: table.data(largest, bearable),
-            dynamics: self.dynamics.as_ref().map(DynamicsQuestion::data),
+            dynamics: self
+                .dynamics
+                .as_ref()
+                .map(|dynamics| dynamics.data(self.modes.is_some())),
         });
         let modes = self.modes.as_ref();
         let modes = modes.map(|modes| modes.data(self.dynamics.as_ref()));
