@@ -10,12 +10,13 @@ use std::sync::Arc;
 pub use shelf::ShelfUsage;
 
 use crate::assembly::{
-    AssemblyError, BlankSpec, ContactsSpec, FaceHoles, FaceRoots, FaceYield, FaceYieldSpec,
-    FlanksSpec, Gear, GearSpec, PairSpec, PartError, Parts, PlainFace, Spun, SpunSpec, Stack,
-    Teeth, TeethSpec, WantedGear, make_gears,
+    AssemblyError, BlankSpec, ContactsSpec, FaceContactsSpec, FaceHoles, FaceRoots, FaceYield,
+    FaceYieldSpec, FlanksSpec, Gear, GearSpec, PairSpec, PartError, Parts, PlainFace, Spun,
+    SpunSpec, Stack, Teeth, TeethSpec, WantedGear, make_gears,
 };
 use crate::contact::compliances::Compliances;
 use crate::contact::drawn::DrawnFlanks;
+use crate::contact::face::drawn::DrawnFaces;
 use crate::contact::positions::{PositionsError, contacts};
 use crate::contact::{MeshContact, PairModel};
 use crate::ring::blank::BlankSubstructure;
@@ -33,6 +34,7 @@ struct Shelves {
     gears: Shelf<GearSpec, Gear>,
     spun: Shelf<SpunSpec, Spun>,
     flanks: Shelf<FlanksSpec, DrawnFlanks>,
+    drawn_faces: Shelf<FaceContactsSpec, DrawnFaces>,
     compliances: Shelf<PairSpec, Compliances>,
     contacts: Shelf<ContactsSpec, Vec<MeshContact>>,
     faces: Shelf<Stack, PlainFace>,
@@ -53,12 +55,13 @@ impl Library {
     pub fn with_capacity(bytes: usize) -> Self {
         Self(Arc::new(Shelves {
             teeth: Shelf::new(bytes / 8, bytes_of_teeth),
-            blanks: Shelf::new(bytes / 8, bytes_of_blank),
+            blanks: Shelf::new(bytes / 16, bytes_of_blank),
             gears: Shelf::new(bytes / 8, bytes_of_gear),
             spun: Shelf::new(bytes / 32, |_, spun| size_of::<f64>() * spun.entries()),
             flanks: Shelf::new(bytes / 8, |_, flanks| flanks.bytes()),
+            drawn_faces: Shelf::new(bytes / 8, |_, faces| faces.bytes()),
             compliances: Shelf::new(bytes / 8, |_, compliances| compliances.bytes()),
-            contacts: Shelf::new(bytes / 8, |spec, contacts| {
+            contacts: Shelf::new(bytes / 16, |spec, contacts| {
                 bytes_of_contacts(spec, contacts)
             }),
             faces: Shelf::new(bytes / 16, |_, face| size_of::<f64>() * face.entries()),
@@ -69,13 +72,14 @@ impl Library {
     }
 
     /// Use of each of its shelves, by name.
-    pub fn usage(&self) -> [(&'static str, ShelfUsage); 11] {
+    pub fn usage(&self) -> [(&'static str, ShelfUsage); 12] {
         let Shelves {
             teeth,
             blanks,
             gears,
             spun,
             flanks,
+            drawn_faces,
             compliances,
             contacts,
             faces,
@@ -89,6 +93,7 @@ impl Library {
             ("gears", gears.usage()),
             ("spun", spun.usage()),
             ("flanks", flanks.usage()),
+            ("drawn_faces", drawn_faces.usage()),
             ("compliances", compliances.usage()),
             ("contacts", contacts.usage()),
             ("faces", faces.usage()),
@@ -174,6 +179,13 @@ impl Parts for Library {
         let flanks = shelf.find(spec).unwrap_or_default();
         shelf.keep_growing(spec, &flanks);
         flanks
+    }
+
+    fn drawn_faces(&self, spec: &FaceContactsSpec) -> Arc<DrawnFaces> {
+        let shelf = &self.0.drawn_faces;
+        let faces = shelf.find(spec).unwrap_or_default();
+        shelf.keep_growing(spec, &faces);
+        faces
     }
 
     fn compliances(&self, spec: &PairSpec) -> Arc<Compliances> {

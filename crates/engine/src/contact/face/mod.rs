@@ -15,6 +15,7 @@
 
 mod balance;
 mod compliance;
+pub mod drawn;
 pub mod even;
 mod flanks;
 mod model;
