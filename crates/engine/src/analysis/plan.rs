@@ -85,8 +85,9 @@ pub(super) struct Further {
     lattice: Option<u32>,
 }
 
-/// The lattice of further positions where all fractions of the mesh period are kept, for other deviations too.
-const LATTICE: u32 = 4;
+/// The lattices of further positions where teeth deviate, so that pairs made to one drawing have the same fractions of the mesh period: in the plane as fine as an
+/// extreme at an event is believed, and on the slices of a drawn pair, which take longest to make.
+const LATTICES: [u32; 2] = [8, 4];
 
 impl Further {
     const NONE: Self = Self {
@@ -183,7 +184,11 @@ impl Pass {
         let curve = Sweep {
             further: Further {
                 for_peaks,
-                lattice: is_solved_as_drawn.then_some(LATTICE),
+                lattice: match &case.model {
+                    Model::Section(_) if !case.pair.is_as_drawn() => Some(LATTICES[0]),
+                    Model::Faces(..) if is_solved_as_drawn => Some(LATTICES[1]),
+                    Model::Section(_) | Model::Faces(..) | Model::Formulas(_) => None,
+                },
                 ..curve.further
             },
             ..curve
