@@ -2,8 +2,12 @@
 
 mod cases;
 
-use cases::{case, gear, holed, pair, relieved};
-use meshwright_engine::analysis::{analyze, pair_model};
+use cases::{
+    along_faces, case, gear, helical_pair, helical_pair_with, holed, model_by, pair, relieved,
+};
+use meshwright_engine::analysis::{Analysis, Case, Method, analyze, pair_model};
+use meshwright_engine::assembly::FaceResolution;
+use meshwright_engine::contact::face::SLICES;
 use meshwright_engine::contact::positions::contacts;
 use meshwright_engine::contact::{ContactProblem, WarmStart, solve_active_set};
 use meshwright_engine::gear::{
@@ -86,6 +90,104 @@ fn a_pair_among_others_is_the_pair_that_it_is_alone() {
                 }
             }
         }
+    }
+}
+
+/// A helical pair drawn at random whose teeth, slopes of leads among them, are `part` of those of class 6.
+fn helical_as_made(seed: u64, part: f64) -> Case {
+    const CLASS: u32 = 6;
+    let (drawn, torque) = helical_pair(seed);
+    let teeth = teeth(drawn.section(), CLASS, seed);
+    let (made, _) = helical_pair_with(seed, |member, data| {
+        let gear = drawn.section().gear(member);
+        let own = &teeth[member.index()];
+        let normals = Normals::new(seed, 2 + member.index() as u64);
+        let tolerances = Tolerances::of(gear, CLASS);
+        let slopes = tolerances.draw_lead_slopes(gear.tooth_count(), 1.33, normals);
+        let of = |values: &[f64]| values.iter().map(|value| part * value).collect();
+        data.deviations = ToothDeviations {
+            cumulative_pitch: of(&own.cumulative_pitch),
+            profile_slope: of(&own.profile_slope),
+            lead_slope: of(&slopes),
+            eccentricity: own.eccentricity.map(|of| Eccentricity {
+                amount: part * of.amount,
+                ..of
+            }),
+            ..ToothDeviations::default()
+        };
+    });
+    along_faces(made, (FaceResolution::DRAFT, SLICES / 2), &[torque])
+}
+
+/// By how much f_i' of `case` differs by both methods along faces, as a part of it; and the results of the first-order one.
+fn first_order_beside_whole(case: &Case) -> (f64, Analysis) {
+    let [projected, whole] =
+        [Method::ThreeDimensionalProjected, Method::ThreeDimensional].map(|method| {
+            let case = Case {
+                model: model_by(method, &case.model),
+                ..case.clone()
+            };
+            analyze(&case, &Library::default(), &Run::unattended()).expect("a solution")
+        });
+    let of = |analysis: &Analysis| analysis.curves[0].single_flank.tooth_to_tooth;
+    println!(
+        "f_i' {:.3} um, {:.3} um by the whole contact; told {:?}, {:?}",
+        1e6 * of(&projected),
+        1e6 * of(&whole),
+        projected.evidence.projection_error,
+        projected.warnings
+    );
+    (of(&projected) / of(&whole) - 1.0, projected)
+}
+
+#[test]
+fn helical_teeth_as_made_are_near_to_their_whole_contact_on_the_slices_of_the_drawing() {
+    for seed in [3, 8] {
+        let mut case = helical_as_made(seed, 1.0);
+        case.resolution.positions_per_mesh_period = 6;
+        case.resolution.span_mesh_periods = Some(4);
+        let (apart, projected) = first_order_beside_whole(&case);
+        assert!(apart.abs() < 0.03, "{seed}: {apart}");
+        assert!(projected.evidence.projection_error.is_some());
+    }
+}
+
+#[test]
+fn helical_members_share_the_slices_of_their_drawing_and_each_is_what_it_is_alone() {
+    let member = |part: f64| {
+        let mut case = helical_as_made(3, part);
+        case.resolution.positions_per_mesh_period = 6;
+        case.resolution.span_mesh_periods = Some(2);
+        Case {
+            model: model_by(Method::ThreeDimensionalProjected, &case.model),
+            ..case
+        }
+    };
+    let (run, library) = (Run::unattended(), Library::default());
+    let used = || {
+        let uses = library.usage();
+        let shelf = uses.into_iter().find(|(name, _)| *name == "drawn_faces");
+        shelf.expect("a shelf").1
+    };
+    analyze(&member(0.9), &library, &run).expect("a solution");
+    let before = used();
+    let among = analyze(&member(1.0), &library, &run).expect("a solution");
+    let after = used();
+    assert_eq!((before.entries, after.entries), (1, 1));
+    assert!(after.hits > before.hits);
+    let alone = analyze(&member(1.0), &Library::default(), &run).expect("a solution");
+    assert_eq!(among.curves, alone.curves);
+}
+
+#[test]
+#[ignore = "./test all"]
+fn twenty_helical_pairs_as_made_are_within_three_percent_of_their_whole_contact() {
+    for seed in 0..20 {
+        let mut case = helical_as_made(seed, 1.0);
+        case.resolution.positions_per_mesh_period = 8;
+        case.resolution.span_mesh_periods = Some(12);
+        let (apart, _) = first_order_beside_whole(&case);
+        assert!(apart.abs() < 0.03, "{seed}: {apart}");
     }
 }
 

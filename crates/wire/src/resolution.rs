@@ -43,7 +43,7 @@ words! {
         ThreeDimensional = "three_dimensional":
             "both whole gears flexible along their faces too: helical gears, thin webs, uneven leads, misalignment",
         ThreeDimensionalProjected = "three_dimensional_projected":
-            "along their faces, the contact of blanks that are alike all around, plus the first-order term of what the holes change around them",
+            "along their faces, the contact of blanks that are alike all around, plus the first-order term of what the holes change around them; teeth that deviate are solved on the slices of the drawn pair",
         LoadDistribution = "load_distribution":
             "closed-form compliances on the theoretical lines of contact (eqs. 4 and 5); does not see holes",
     }

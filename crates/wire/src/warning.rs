@@ -349,7 +349,7 @@ impl WarningDocument {
                 None,
                 Some((to_um(error), "um")),
                 format!(
-                    "Where the holes let teeth touch earlier or later the projected decomposition is up to {} um off the exact transmission error, {} % of its mean and {} % of its peak-to-peak; the flexible method is exact.",
+                    "Where holes or deviations let teeth touch earlier or later the projected method is up to {} um off the exact transmission error, {} % of its mean and {} % of its peak-to-peak; flexible and three_dimensional are exact.",
                     plain(significant(to_um(error), 3)),
                     plain(significant(100.0 * part_of_mean, 2)),
                     plain(significant(100.0 * part_of_peak_to_peak, 2))

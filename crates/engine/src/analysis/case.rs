@@ -1,7 +1,7 @@
 //! The request: a pair, torques and the way to compute.
 
 use super::running::{RotationSpeed, Running};
-use crate::assembly::FaceResolution;
+use crate::assembly::{FaceContactsSpec, FaceResolution};
 use crate::contact::ContactSolver;
 use crate::gear::{GearPair, Member, SolidPair};
 use crate::grid::GridLevel;
@@ -185,6 +185,15 @@ pub(super) struct PositionInCurve {
 }
 
 impl Faces {
+    /// Specification of the contacts of the pair as drawn.
+    pub(super) fn drawn_contacts(&self) -> FaceContactsSpec {
+        FaceContactsSpec {
+            pair: self.pair.as_drawn(),
+            resolution: self.resolution,
+            slices: self.slices,
+        }
+    }
+
     /// The same at a grid `level`, of which the standard one has the counts that these are: orders, sections and slices go together.
     pub(super) fn at(&self, level: GridLevel) -> Self {
         Self {
@@ -364,6 +373,14 @@ impl Case {
     fn flanks_are_equal(&self) -> bool {
         let grow_equally = |running: &Running| self.holed().is_empty() || running.grows_evenly();
         self.pair.is_as_drawn() && self.runs().is_none_or(grow_equally)
+    }
+
+    /// True if teeth that deviate are solved on the slices of the drawn pair: along faces by the first-order method, at rest. Rotation and heat may move flanks
+    /// by far more than teeth deviate.
+    pub fn is_solved_as_drawn(&self) -> bool {
+        self.method() == Method::ThreeDimensionalProjected
+            && !self.pair.is_as_drawn()
+            && self.runs().is_none()
     }
 
     /// The mesh positions after which contact on axisymmetric blanks repeats: those of one mesh period, or of the whole

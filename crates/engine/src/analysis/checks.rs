@@ -9,6 +9,9 @@ use super::case::Case;
 /// all of the largest difference; positions at which the term itself is largest contain nothing of it.
 const CHECKED: [usize; 2] = [4, 6];
 
+/// The same where teeth that deviate are solved on the slices of the drawn pair: an exact solution takes as long as a hundred of these.
+const CHECKED_AS_DRAWN: [usize; 2] = [2, 3];
+
 /// Exact solutions to which the projection is held: how many are known before where.
 #[derive(Clone, Copy)]
 pub(super) struct Checks {
@@ -24,13 +27,15 @@ impl Checks {
 
     /// Checks of `case`: none where nothing is projected.
     pub(super) fn of(case: &Case) -> Self {
-        if case.holed().is_empty() {
-            return Self::NONE;
-        }
+        let [most_fractions, most_periods] = match case.is_solved_as_drawn() {
+            true => CHECKED_AS_DRAWN,
+            false if case.holed().is_empty() => return Self::NONE,
+            false => CHECKED,
+        };
         let fractions = case.resolution.positions_per_mesh_period as usize;
         Self {
-            fractions: fractions.min(CHECKED[0]),
-            periods: (case.span() as usize).min(CHECKED[1]),
+            fractions: fractions.min(most_fractions),
+            periods: (case.span() as usize).min(most_periods),
         }
     }
 

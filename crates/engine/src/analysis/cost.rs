@@ -1,6 +1,6 @@
 //! Cost of a case: memory, time, and the parts that other designs share.
 
-use crate::assembly::{FaceYieldSpec, GearSpec, TeethSpec};
+use crate::assembly::{FaceContactsSpec, FaceYieldSpec, GearSpec, TeethSpec};
 
 /// Cost of a case.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -29,6 +29,7 @@ pub(super) enum PartSpec {
     Teeth(Box<TeethSpec>),
     Gear(Box<GearSpec>),
     Face(Box<FaceYieldSpec>),
+    DrawnFaces(Box<FaceContactsSpec>),
 }
 
 impl PartCost {

@@ -95,6 +95,7 @@ fn add_contacts(estimate: &mut Estimate, plan: &Plan) {
         Model::Formulas(_) => SECONDS[0] / 10.0 * plan.solutions() as f64,
         Model::Faces(faces, _) => {
             estimate.memory += 8 * (positions * faces.slices as u64);
+            add_drawn(estimate, plan, faces);
             let of_phase = plan.hole_phase.as_ref().map_or(0.0, |phase| {
                 let solutions = [phase.solutions(), phase.first_solutions()];
                 of_slices(case, faces, case.resolution.grid, solutions)
@@ -169,6 +170,12 @@ const FACE_GROWTH: f64 = 3.4;
 /// Seconds of one core for the contact of a slice: the first at its fraction of the mesh period, a further one there, and one where teeth deviate. Measured as
 /// [`SECONDS`].
 const SLICE_SECONDS: [f64; 3] = [80e-6, 40e-6, 120e-6];
+
+/// The same of a slice as drawn on which teeth that deviate are solved, and of each solution on it.
+const DRAWN_SLICE_SECONDS: [f64; 2] = [160e-6, 2e-6];
+
+/// Limit of the memory of such slices in bytes.
+const DRAWN_MEMORY: u64 = 24 << 20;
 
 /// Seconds of one core for the rows that lead to the edges of the holes of one gear. Measured as [`SECONDS`].
 const EDGE_SECONDS: f64 = 1.0;
@@ -272,12 +279,42 @@ fn coupling([set, all]: [f64; 2], functions: f64) -> f64 {
     all / set.max(1.0) * set * set * (set / 3.0 + 2.0 * functions)
 }
 
+/// Adds the cost of the slices of the drawn pair on which `plan` solves teeth that deviate. Pairs made to one drawing share them.
+fn add_drawn(estimate: &mut Estimate, plan: &Plan, faces: &Faces) {
+    if !plan.case.is_solved_as_drawn() {
+        return;
+    }
+    let torques = plan.case.loaded_torques().count() as u64;
+    for pass in &plan.passes {
+        let faces = faces.at(pass.level);
+        let fractions = torques * pass.curve.lattice_fractions();
+        let seconds = DRAWN_SLICE_SECONDS[0] * slices_together(&faces) * fractions as f64;
+        estimate.memory += DRAWN_MEMORY;
+        estimate.add_part(
+            PartSpec::DrawnFaces(Box::new(faces.drawn_contacts())),
+            seconds,
+        );
+    }
+}
+
+/// Slices that come together at a position, about: two pairs or more carry along all of the face.
+fn slices_together(faces: &Faces) -> f64 {
+    faces.slices as f64 * (1.0 + faces.pair.total_contact_ratio())
+}
+
 /// Seconds that the contacts of `plan` take along the faces.
 fn along_faces(plan: &Plan, faces: &Faces) -> f64 {
     let torques = plan.case.loaded_torques().count() as f64;
     let of_pass = |pass: &Pass| {
-        let firsts = pass.first_solutions();
         let evened = EVENING * pass.evened.len() as u64;
+        if plan.case.is_solved_as_drawn() {
+            let solved = (pass.solutions() - pass.checks.solutions()) as f64;
+            let on_drawn = slices_together(&faces.at(pass.level)) * solved;
+            let exact = pass.checks.solutions() + evened;
+            let exact = of_slices(&plan.case, faces, pass.level, [exact, exact]);
+            return torques * (DRAWN_SLICE_SECONDS[1] * on_drawn + exact);
+        }
+        let firsts = pass.first_solutions();
         let solutions = [pass.solutions() + evened, firsts + evened];
         torques * of_slices(&plan.case, faces, pass.level, solutions)
     };
@@ -292,11 +329,9 @@ fn of_slices(case: &Case, faces: &Faces, level: GridLevel, [solutions, firsts]: 
     } else {
         deviating
     };
-    // Two pairs or more carry along all of the face.
-    let lines = 1.0 + faces.pair.total_contact_ratio();
     let further = (solutions - firsts) as f64;
     let each = per_first * firsts as f64 + per_further * further;
-    faces.at(level).slices as f64 * lines * each
+    slices_together(&faces.at(level)) * each
 }
 
 /// Seconds that contacts of `case` under a torque take in the plane: their number, and how many of them are the first at their fraction of the mesh period.

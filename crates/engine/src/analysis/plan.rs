@@ -80,13 +80,21 @@ pub(super) struct Further {
     pub(super) for_peaks: usize,
     /// The mesh periods after which the contacts at them repeat.
     pub(super) repeats_after: u32,
+    /// The parts of a step of which they are whole multiples; `None` where they stand anywhere. What positions whole mesh periods apart share is then made for a
+    /// few fractions of the mesh period.
+    lattice: Option<u32>,
 }
+
+/// The lattices of further positions where teeth deviate, so that pairs made to one drawing have the same fractions of the mesh period: in the plane as fine as an
+/// extreme at an event is believed, and on the slices of a drawn pair, which take longest to make.
+const LATTICES: [u32; 2] = [8, 4];
 
 impl Further {
     const NONE: Self = Self {
         most: 0,
         for_peaks: 0,
         repeats_after: 1,
+        lattice: None,
     };
 
     /// The sweep of a curve with this number of positions, whose contacts repeat after this number of mesh periods.
@@ -95,6 +103,7 @@ impl Further {
             most: most_further(positions, repeats_after),
             for_peaks: MOST_FOR_PEAKS,
             repeats_after,
+            lattice: None,
         }
     }
 
@@ -150,7 +159,13 @@ impl Pass {
     fn of(case: &Case, level: GridLevel) -> Self {
         let answers = level == case.resolution.grid;
         // A pass beside that of the answer is asked for statistics of δ and k.
-        let for_peaks = if answers { MOST_FOR_PEAKS } else { 0 };
+        let is_solved_as_drawn = case.is_solved_as_drawn();
+        // Each of them would have slices of its own.
+        let for_peaks = if answers && !is_solved_as_drawn {
+            MOST_FOR_PEAKS
+        } else {
+            0
+        };
         let by_rule = match case.resolution.stiffness {
             StiffnessRule::Tangent => None,
             StiffnessRule::TorqueStep { fraction } => Some(fraction),
@@ -169,6 +184,11 @@ impl Pass {
         let curve = Sweep {
             further: Further {
                 for_peaks,
+                lattice: match &case.model {
+                    Model::Section(_) if !case.pair.is_as_drawn() => Some(LATTICES[0]),
+                    Model::Faces(..) if is_solved_as_drawn => Some(LATTICES[1]),
+                    Model::Section(_) | Model::Faces(..) | Model::Formulas(_) => None,
+                },
                 ..curve.further
             },
             ..curve
@@ -278,6 +298,12 @@ impl Sweep {
         self.at_each() * (stages(&self.positions).len() + self.further.count()) as u64
     }
 
+    /// Number of fractions of the mesh period, with those of further positions at most, where these stand on a lattice.
+    pub(super) fn lattice_fractions(&self) -> u64 {
+        let parts = u64::from(self.further.lattice.unwrap_or(1));
+        self.at_each() * parts * stages(&self.positions).len() as u64
+    }
+
     /// The same at `positions` between these.
     pub(super) fn at(&self, positions: &[f64]) -> Self {
         Self {
@@ -297,7 +323,12 @@ impl Sweep {
         run: &Run,
         mut solve: impl FnMut(&Self) -> Result<Vec<Sample>, AnalysisError>,
     ) -> Result<Sections, AnalysisError> {
-        let refinement = Refinement::of(case, self.further.repeats_after, self.positions.len());
+        let Further {
+            repeats_after,
+            lattice,
+            ..
+        } = self.further;
+        let refinement = Refinement::of(case, repeats_after, self.positions.len()).on(lattice);
         let mut left = self.further.most;
         let sections = refinement.sections(samples, |positions| {
             left -= positions.len();

@@ -18,8 +18,10 @@ use super::under_load::curves;
 use super::warning::warn_of_corner;
 use super::{Analysis, AnalysisError};
 use crate::assembly::{FaceYield, FaceYieldSpec, Parts};
+use crate::contact::face::drawn::DrawnFaces;
 use crate::contact::face::even::{STRIPS, face_load_factor};
 use crate::contact::face::{FaceContact, FaceModel, FlankYield};
+use crate::contact::positions::PositionsError;
 use crate::contact::{MeshContact, PairLoads};
 use crate::gear::{Member, PairDeviations};
 use crate::run::Run;
@@ -42,7 +44,7 @@ pub(super) fn solve(
         .stress
         .then(|| FaceStressModel::new(faces, &yields, parts, run));
     let stress = stress.transpose()?;
-    let pair = OfFaces::new((case, faces, deviations), &yields, run);
+    let pair = OfFaces::new((case, faces, deviations), &yields, parts, run);
     let find = |load: f64, sweep: &Sweep| {
         let found = match holes {
             FaceHoles::FirstOrder => pair.projected(load, sweep),
@@ -133,12 +135,22 @@ struct OfFaces<'a> {
     round: FaceModel,
     /// Gears that are not rotationally symmetric.
     uneven: Vec<Member>,
+    /// Where flanks are unlike: what the first-order method solves them on.
+    on_drawn: Option<OnDrawn<'a>>,
+}
+
+/// Rotationally symmetric gears as drawn, on whose slices teeth that deviate are solved.
+struct OnDrawn<'a> {
+    model: FaceModel,
+    store: Arc<DrawnFaces>,
+    deviations: &'a PairDeviations,
 }
 
 impl<'a> OfFaces<'a> {
     fn new(
-        (case, faces, deviations): (&'a Case, &Faces, &PairDeviations),
+        (case, faces, deviations): (&'a Case, &Faces, &'a PairDeviations),
         yields: &[Arc<FaceYield>; 2],
+        parts: &dyn Parts,
         run: &'a Run,
     ) -> Self {
         let round = yields.each_ref().map(|of| Arc::new(of.round_average()));
@@ -149,12 +161,19 @@ impl<'a> OfFaces<'a> {
             whole: face_model(faces, yields).deviating(deviations.clone()),
             round: face_model(faces, &round).deviating(deviations.clone()),
             uneven: Member::BOTH.into_iter().filter(uneven).collect(),
+            on_drawn: case.is_solved_as_drawn().then(|| OnDrawn {
+                model: face_model(faces, &round).deviating(PairDeviations::NONE),
+                store: parts.drawn_faces(&faces.drawn_contacts()),
+                deviations,
+            }),
         }
     }
 
     /// By a contact of the whole gears at every position.
     fn whole(&self, load: f64, sweep: &Sweep) -> Result<Found<FaceContact>, AnalysisError> {
-        let solved = self.contacts(&self.whole, load, sweep)?;
+        let solved = self.solved(load, sweep, |load| {
+            self.whole.contacts(load, &sweep.positions, self.run)
+        })?;
         let (contacts, faces, stiffness) = solved;
         let task = (self.case, sweep);
         Ok(Found::of_contacts(task, contacts, &stiffness).keeping(faces))
@@ -162,7 +181,12 @@ impl<'a> OfFaces<'a> {
 
     /// Results from the contacts of rotationally symmetric gears, and the first-order effect of holes on them.
     fn projected(&self, load: f64, sweep: &Sweep) -> Result<Found<FaceContact>, AnalysisError> {
-        let (contacts, faces, stiffness) = self.contacts(&self.round, load, sweep)?;
+        let positions = &sweep.positions;
+        let (contacts, faces, stiffness) =
+            self.solved(load, sweep, |load| match &self.on_drawn {
+                Some(drawn) => drawn.contacts(load, positions, self.run),
+                None => self.round.contacts(load, positions, self.run),
+            })?;
         let loads: Vec<_> = faces.iter().map(|each| self.round.loads(each)).collect();
         let yielded = |model: &FaceModel, loads: &[PairLoads], periods: i64| {
             let of = self.uneven.iter();
@@ -179,14 +203,13 @@ impl<'a> OfFaces<'a> {
         Ok(found.keeping(faces))
     }
 
-    /// The contacts of `model` at the positions of `sweep`, their slices, and the stiffness there.
-    fn contacts(
+    /// The contacts `at` a load at the positions of `sweep`, their slices, and the stiffness there.
+    fn solved(
         &self,
-        model: &FaceModel,
         load: f64,
         sweep: &Sweep,
+        at: impl Fn(f64) -> Result<Vec<FaceContact>, PositionsError>,
     ) -> Result<Solved<FaceContact>, AnalysisError> {
-        let at = |load: f64| model.contacts(load, &sweep.positions, self.run);
         let meshes = |faces: &[FaceContact]| -> Vec<MeshContact> {
             faces.iter().map(|contact| contact.mesh.clone()).collect()
         };
@@ -194,6 +217,18 @@ impl<'a> OfFaces<'a> {
         let contacts = meshes(&faces);
         let stiffness = sweep.stiffness(load, &contacts, |load| Ok(meshes(&at(load)?)))?;
         Ok((contacts, faces, stiffness))
+    }
+}
+
+impl OnDrawn<'_> {
+    fn contacts(
+        &self,
+        load: f64,
+        positions: &[f64],
+        run: &Run,
+    ) -> Result<Vec<FaceContact>, PositionsError> {
+        let made = (&*self.store, self.deviations);
+        self.model.contacts_on_drawn(made, load, positions, run)
     }
 }
 

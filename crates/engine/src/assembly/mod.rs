@@ -43,7 +43,7 @@ pub use face_yield::{FaceYield, FaceYieldSpec, PlainFace};
 pub use flank_forces::FlankForces;
 pub use gear::{BlankUnderTeeth, Gear, GearGrids, GearSpec, PlainGearSpec, WantedGear};
 pub use inside::Inside;
-pub use pair_spec::{Blanks, ContactsSpec, FlanksSpec, Modeling, PairSpec};
+pub use pair_spec::{Blanks, ContactsSpec, FaceContactsSpec, FlanksSpec, Modeling, PairSpec};
 pub use parts::{MakeAll, Parts, make_gears, make_spun};
 pub use probes::Probes;
 pub use spun::{InnerLoad, Spun, SpunSpec};

@@ -1,10 +1,11 @@
 //! Specification of a pair of gears ready for contact.
 
+use super::FaceResolution;
 use super::gear::GearSpec;
 use super::interface::interface_radius;
 use super::teeth::TeethSpec;
 use crate::contact::ContactSolver;
-use crate::gear::{GearPair, Member, PairDeviations};
+use crate::gear::{GearPair, Member, PairDeviations, SolidPair};
 use crate::grid::GridLevel;
 
 /// The blanks that take part in a model.
@@ -93,6 +94,17 @@ pub struct FlanksSpec {
     pub pair: GearPair,
     /// The teeth of the driving and of the driven gear.
     pub teeth: [TeethSpec; 2],
+}
+
+/// Specification of the contact along faces of a pair as drawn, for any deviations of its teeth.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FaceContactsSpec {
+    /// The pair as drawn.
+    pub pair: SolidPair,
+    /// How finely its gears are resolved along their faces.
+    pub resolution: FaceResolution,
+    /// Slices into which the common face is cut.
+    pub slices: usize,
 }
 
 /// Specification of the contacts of a pair at some positions.

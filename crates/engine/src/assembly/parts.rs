@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::face_holes::FaceHoles;
 use super::face_roots::FaceRoots;
 use super::face_yield::{FaceYield, FaceYieldSpec, PlainFace};
-use super::pair_spec::{ContactsSpec, FlanksSpec, PairSpec};
+use super::pair_spec::{ContactsSpec, FaceContactsSpec, FlanksSpec, PairSpec};
 use super::spun::{Spun, SpunSpec};
 use super::stack::Stack;
 use super::{
@@ -16,6 +16,7 @@ use super::{
 
 use crate::contact::compliances::Compliances;
 use crate::contact::drawn::DrawnFlanks;
+use crate::contact::face::drawn::DrawnFaces;
 use crate::contact::positions::{PositionsError, contacts};
 use crate::contact::{MeshContact, PairModel};
 use crate::gear::Member;
@@ -125,6 +126,11 @@ pub trait Parts: Sync {
 
     /// Store of the flanks of `spec`: an empty one, if nothing is known.
     fn flanks(&self, _spec: &FlanksSpec) -> Arc<DrawnFlanks> {
+        Arc::default()
+    }
+
+    /// Store of the drawn contacts along faces of `spec`: an empty one, if nothing is known.
+    fn drawn_faces(&self, _spec: &FaceContactsSpec) -> Arc<DrawnFaces> {
         Arc::default()
     }
 

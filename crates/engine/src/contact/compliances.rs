@@ -44,15 +44,17 @@ pub(super) struct CachedCompliance {
     cores: Arc<Cores>,
 }
 
+fn bytes_of_core(core: &Option<Core>) -> usize {
+    size_of::<Core>() + core.as_ref().map_or(0, Core::bytes)
+}
+
 impl Default for Compliances {
     fn default() -> Self {
         Self {
             assembled: Memo::new(MOST_BYTES, |known| {
                 size_of::<CachedCompliance>() + size_of::<f64>() * entries(&known.compliance)
             }),
-            cores: Arc::new(Memo::new(MOST_CORE_BYTES, |core| {
-                size_of::<Core>() + core.as_ref().map_or(0, Core::bytes)
-            })),
+            cores: Arc::new(Memo::new(MOST_CORE_BYTES, bytes_of_core)),
             count: AtomicU64::new(0),
         }
     }
@@ -80,6 +82,20 @@ impl Compliances {
 }
 
 impl CachedCompliance {
+    /// A `compliance` by itself, whose cores take so many bytes at most.
+    pub(super) fn alone(compliance: Mat<f64>, most_bytes: usize) -> Self {
+        Self {
+            compliance: Arc::new(compliance),
+            number: 0,
+            cores: Arc::new(Memo::new(most_bytes, bytes_of_core)),
+        }
+    }
+
+    /// About how much memory is used, in bytes.
+    pub(super) fn bytes(&self) -> usize {
+        size_of::<f64>() * entries(&self.compliance) + self.cores.bytes()
+    }
+
     /// The factor of its part at the rising points of `set`; `None` where that is not positive definite.
     pub(super) fn factor(&self, set: &[usize]) -> Option<Factor> {
         let blocks = core_of(set);

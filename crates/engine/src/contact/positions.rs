@@ -13,6 +13,9 @@ const CHUNK: usize = 5;
 /// Fractions of the mesh period that differ by less are one: far above their rounding, far below any step.
 const SAME_FRACTION: f64 = 1e-9;
 
+/// Fractions are multiples of this, so that one has the same bits in all mesh periods and for all pairs that share their flanks. It moves δ by 1e-15 m at most.
+const GRID: f64 = 1.0 / (1_u64 << 36) as f64;
+
 /// A fraction of the mesh period, and the places of the positions that have it.
 type Places = (f64, Vec<usize>);
 
@@ -120,7 +123,10 @@ fn chunk_of(
 
 /// Positions by their fraction of the mesh period, rising, with the places of those that have it.
 pub(crate) fn stages(positions: &[f64]) -> Vec<Places> {
-    let fraction = |place: usize| positions[place] - positions[place].floor();
+    let fraction = |place: usize| {
+        let fraction = positions[place] - positions[place].floor();
+        (fraction / GRID).round() * GRID
+    };
     let mut places: Vec<usize> = (0..positions.len()).collect();
     places.sort_by(|&a, &b| fraction(a).total_cmp(&fraction(b)));
     let mut stages: Vec<Places> = Vec::new();
@@ -136,4 +142,26 @@ pub(crate) fn stages(positions: &[f64]) -> Vec<Places> {
         places.sort_unstable();
     }
     stages
+}
+
+#[cfg(test)]
+mod tests {
+    use super::stages;
+
+    #[test]
+    fn a_fraction_has_the_same_bits_in_all_mesh_periods() {
+        for count in [7_u32, 20, 24, 160, 400] {
+            for i in 0..count {
+                let fraction = f64::from(i) / f64::from(count);
+                let [first, others @ ..] = [0.0, 1.0, 37.0, 1234.0].map(|period| {
+                    let stages = stages(&[period + fraction]);
+                    stages[0].0
+                });
+                assert!((first - fraction).abs() < 1e-11);
+                for other in others {
+                    assert_eq!(first.to_bits(), other.to_bits(), "{i} of {count}");
+                }
+            }
+        }
+    }
 }

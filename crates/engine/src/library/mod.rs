@@ -10,12 +10,13 @@ use std::sync::Arc;
 pub use shelf::ShelfUsage;
 
 use crate::assembly::{
-    AssemblyError, BlankSpec, ContactsSpec, FaceHoles, FaceRoots, FaceYield, FaceYieldSpec,
+    AssemblyError, BlankSpec, ContactsSpec, FaceContactsSpec, FaceHoles, FaceRoots, FaceYield, FaceYieldSpec,
     FlanksSpec, Gear, GearSpec, PairSpec, PartError, Parts, PlainFace, PlainGearSpec, Spun,
     SpunSpec, Stack, Teeth, TeethSpec, WantedGear, make_gears, make_spun,
 };
 use crate::contact::compliances::Compliances;
 use crate::contact::drawn::DrawnFlanks;
+use crate::contact::face::drawn::DrawnFaces;
 use crate::contact::positions::{PositionsError, contacts};
 use crate::contact::{MeshContact, PairModel};
 use crate::ring::blank::BlankSubstructure;
@@ -35,6 +36,7 @@ struct Shelves {
     gears: Shelf<GearSpec, Gear>,
     spun: Shelf<SpunSpec, Spun>,
     flanks: Shelf<FlanksSpec, DrawnFlanks>,
+    drawn_faces: Shelf<FaceContactsSpec, DrawnFaces>,
     compliances: Shelf<PairSpec, Compliances>,
     contacts: Shelf<ContactsSpec, Vec<MeshContact>>,
     faces: Shelf<Stack, PlainFace>,
@@ -55,13 +57,14 @@ impl Library {
     pub fn with_capacity(bytes: usize) -> Self {
         Self(Arc::new(Shelves {
             teeth: Shelf::new(bytes / 8, bytes_of_teeth),
-            blanks: Shelf::new(bytes / 8, bytes_of_blank),
+            blanks: Shelf::new(bytes / 16, bytes_of_blank),
             plain: Shelf::new(bytes / 64, |_, plain| size_of::<f64>() * plain.entries()),
             gears: Shelf::new(bytes / 8, bytes_of_gear),
             spun: Shelf::new(bytes / 64, |_, spun| size_of::<f64>() * spun.entries()),
             flanks: Shelf::new(bytes / 8, |_, flanks| flanks.bytes()),
+            drawn_faces: Shelf::new(3 * bytes / 32, |_, faces| faces.bytes()),
             compliances: Shelf::new(bytes / 8, |_, compliances| compliances.bytes()),
-            contacts: Shelf::new(bytes / 8, |spec, contacts| {
+            contacts: Shelf::new(bytes / 16, |spec, contacts| {
                 bytes_of_contacts(spec, contacts)
             }),
             faces: Shelf::new(bytes / 16, |_, face| size_of::<f64>() * face.entries()),
@@ -72,7 +75,7 @@ impl Library {
     }
 
     /// Use of each of its shelves, by name.
-    pub fn usage(&self) -> [(&'static str, ShelfUsage); 12] {
+    pub fn usage(&self) -> [(&'static str, ShelfUsage); 13] {
         let Shelves {
             teeth,
             blanks,
@@ -80,6 +83,7 @@ impl Library {
             gears,
             spun,
             flanks,
+            drawn_faces,
             compliances,
             contacts,
             faces,
@@ -94,6 +98,7 @@ impl Library {
             ("gears", gears.usage()),
             ("spun", spun.usage()),
             ("flanks", flanks.usage()),
+            ("drawn_faces", drawn_faces.usage()),
             ("compliances", compliances.usage()),
             ("contacts", contacts.usage()),
             ("faces", faces.usage()),
@@ -185,6 +190,13 @@ impl Parts for Library {
         let flanks = shelf.find(spec).unwrap_or_default();
         shelf.keep_growing(spec, &flanks);
         flanks
+    }
+
+    fn drawn_faces(&self, spec: &FaceContactsSpec) -> Arc<DrawnFaces> {
+        let shelf = &self.0.drawn_faces;
+        let faces = shelf.find(spec).unwrap_or_default();
+        shelf.keep_growing(spec, &faces);
+        faces
     }
 
     fn compliances(&self, spec: &PairSpec) -> Arc<Compliances> {

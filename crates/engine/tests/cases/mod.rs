@@ -285,11 +285,20 @@ pub(crate) fn above_the_tenth_harmonic(values: &[f64]) -> f64 {
 
 /// A helical pair drawn at random and its output torque: 10 to 30 degrees, tip reliefs of both shapes, crowned and sloped leads.
 pub(crate) fn helical_pair(seed: u64) -> (SolidPair, f64) {
+    helical_pair_with(seed, |_, _| ())
+}
+
+/// The same with a `change` of the data of each gear.
+pub(crate) fn helical_pair_with(
+    seed: u64,
+    change: impl Fn(Member, &mut GearData),
+) -> (SolidPair, f64) {
     let mut draw = drawn(seed + 1);
     let mut between = |low: f64, high: f64| low + (high - low) * draw();
     let beta = between(10.0, 30.0).to_radians();
     let width = between(12e-3, 28e-3);
-    let gears = [beta, -beta].map(|beta| {
+    let gears = Member::BOTH.map(|member| {
+        let beta = [beta, -beta][member.index()];
         let mut data = gear(between(19.0, 60.0) as u32, 8e-3);
         data.face_width = width;
         data.modifications = vec![ModificationData::TipRelief(ReliefData {
@@ -301,6 +310,7 @@ pub(crate) fn helical_pair(seed: u64) -> (SolidPair, f64) {
             },
             start: ReliefStart::RadialLength(between(0.6e-3, 1.4e-3)),
         })];
+        change(member, &mut data);
         helical(data, beta, 0.0)
     });
     let leads = [

@@ -22,6 +22,7 @@ pub(super) fn does_not_see(case: &Case, forces: Option<&ForcesRequest>) -> Vec<&
         "how far shafts and bearings bend under the load: misalignment is what the submission says",
     ];
     const BEYOND_FIRST_ORDER: &str = "what the fluctuation of the holed blanks changes in the load sharing between pairs, beyond first order";
+    const ON_DRAWN_SLICES: &str = "that teeth which deviate touch at other places of their flanks: gaps change on the slices of the drawn pair, whose springs are as stiff as under its own contact";
     let plane = case.faces().is_none().then_some(PLANE);
     let plane = plane.into_iter().flatten();
     let own: Vec<&str> = match &case.model {
@@ -30,6 +31,7 @@ pub(super) fn does_not_see(case: &Case, forces: Option<&ForcesRequest>) -> Vec<&
         Model::Faces(_, FaceHoles::FirstOrder) => ALONG_FACES
             .into_iter()
             .chain([BEYOND_FIRST_ORDER])
+            .chain(case.is_solved_as_drawn().then_some(ON_DRAWN_SLICES))
             .collect(),
         Model::Section(SectionHoles::Fitted) => vec![
             "sidebands of the holes about the mesh orders in the transmission error: each blank's rotation is fitted by its mean and one harmonic",

@@ -130,6 +130,14 @@ impl Span {
         1.0 / f64::from(self.per_period)
     }
 
+    /// The multiple of a part of a step that is nearest to `place`; itself without a `lattice`.
+    fn on_lattice(&self, place: f64, lattice: Option<u32>) -> f64 {
+        lattice.map_or(place, |parts| {
+            let nodes = f64::from(self.per_period * parts);
+            (place * nodes).round() / nodes
+        })
+    }
+
     fn end(&self) -> f64 {
         self.first + f64::from(self.periods)
     }

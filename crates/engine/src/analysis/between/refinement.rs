@@ -35,6 +35,8 @@ pub(in crate::analysis) struct Refinement {
     most: usize,
     /// The mesh periods after which contact repeats: a position solved in the first of them is solved in all later ones.
     repeats_after: u32,
+    /// The parts of a step of which further positions are whole multiples, if they are.
+    lattice: Option<u32>,
 }
 
 /// Largest number of further positions solved for a curve with a given number, over the mesh `periods` after which contact repeats.
@@ -57,7 +59,13 @@ impl Refinement {
             span: Span::of(case),
             most: most_further(positions, repeats_after),
             repeats_after,
+            lattice: None,
         }
+    }
+
+    /// The same with further positions at whole multiples of a part of a step.
+    pub(in crate::analysis) fn on(self, lattice: Option<u32>) -> Self {
+        Self { lattice, ..self }
     }
 
     /// The sections of the curve through `samples`, and through the further positions that `solve` computes. These lie in the first of the mesh periods after
@@ -115,7 +123,8 @@ impl Refinement {
             let known = fractions.iter().find(near).copied();
             let shared = known.map_or(0.0, |known| known - fraction);
             let repeats_after = f64::from(self.repeats_after);
-            let place = first + (position + shared - first).rem_euclid(repeats_after);
+            let place = (position + shared - first).rem_euclid(repeats_after);
+            let place = first + self.span.on_lattice(place, self.lattice);
             let beside = |other: f64| (other - place).abs() < NEAREST * step;
             let i = samples.partition_point(|sample| sample.position < place);
             let neighbors = samples[i.saturating_sub(1)..].iter().take(2);
@@ -309,6 +318,29 @@ mod tests {
         }
     }
 
+    #[test]
+    fn further_positions_stand_on_the_lattice_that_is_asked_for() {
+        const PARTS: u32 = 4;
+        let span = span(10, 3, true);
+        let refinement = Refinement {
+            span,
+            most: most_further(30, 3),
+            repeats_after: 3,
+            lattice: Some(PARTS),
+        };
+        let samples = (0..30).map(|i| sample(f64::from(i) / 10.0)).collect();
+        let mut solved = 0;
+        let sections = refinement.sections(samples, |further| {
+            solved += further.len();
+            for position in further {
+                let node = f64::from(10 * PARTS) * position;
+                assert!((node - node.round()).abs() < 1e-9, "{position}");
+            }
+            Ok::<_, Infallible>(further.iter().copied().map(sample).collect())
+        });
+        assert!(sections.is_ok() && solved > 0);
+    }
+
     fn span(per_period: u32, periods: u32, closes: bool) -> Span {
         Span {
             first: 0.0,
@@ -323,6 +355,7 @@ mod tests {
             span,
             most,
             repeats_after: span.periods,
+            lattice: None,
         };
         let count = span.per_period * span.periods;
         let positions = (0..count).map(|i| f64::from(i) * span.step());
@@ -402,6 +435,7 @@ mod tests {
             span,
             most: most_further(20 * PERIODS as usize, PERIODS),
             repeats_after: PERIODS,
+            lattice: None,
         };
         let samples = (0..20 * PERIODS)
             .map(|i| on_wave(f64::from(i) / 20.0))
@@ -482,6 +516,7 @@ mod tests {
             span,
             most: most_further(10, 1),
             repeats_after: 1,
+            lattice: None,
         };
         let samples = (0..10).map(|i| sample(f64::from(i) / 10.0)).collect();
         let sections = refinement.sections(samples, |further| {

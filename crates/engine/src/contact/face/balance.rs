@@ -504,6 +504,11 @@ impl Balance {
         }
     }
 
+    /// How fast the force on each slice grows as its flanks are pressed together, in N/m.
+    pub(super) fn growth(&self) -> Vec<f64> {
+        in_middles(&self.points, self.forces.len(), |point| point.growth)
+    }
+
     /// How far flanks are pressed together at a place of slice `i`.
     pub(super) fn depth(&self, slices: &[Slice], i: usize, within: &Within) -> f64 {
         let beside = beside(slices, i, usize::from(within.at > 0.0));

@@ -15,6 +15,7 @@
 
 mod balance;
 mod compliance;
+pub mod drawn;
 pub mod even;
 mod flanks;
 mod model;
@@ -36,7 +37,8 @@ pub use flanks::FaceFlanks;
 use model::FirstReach;
 pub use model::{FaceModel, FlankYield};
 use slice::Place;
-use stage::{Balanced, Sliced, Stage};
+use spring::Pressed;
+use stage::{Balanced, Stage};
 
 /// How many slices the whole face is cut into, unless a case says otherwise.
 pub const SLICES: usize = 40;
@@ -51,12 +53,12 @@ impl Balanced<'_> {
     /// The largest pressure on slice `i`: that `in_middle` of its loaded part, or one where a kink stands in the middle of the contact.
     fn peak_of(&self, i: usize, in_middle: Peak) -> Peak {
         let (part, half_width) = (self.balance.carried[i].part, in_middle.place.half_width);
-        let Sliced { slicer, slices, .. } = &*self.sliced;
-        let kinks = slicer.at_kinks(&slices[i], part, half_width);
-        let at_kinks = kinks.iter().filter_map(|within| {
+        let slices = &self.sliced.slices;
+        let mut largest = in_middle;
+        self.sliced.each_kink(i, part, half_width, |within| {
             let depth = self.balance.depth(slices, i, within);
             if depth <= 0.0 {
-                return None;
+                return;
             }
             let Place {
                 roll_lengths,
@@ -64,17 +66,18 @@ impl Balanced<'_> {
                 ..
             } = &within.place;
             let pressed = spring.pressed(spring.load(depth)[0]);
-            Some(Peak {
-                pressure: pressed.pressure?,
-                place: PeakPlace {
-                    roll_lengths: *roll_lengths,
-                    z: Some(within.z),
-                    half_width: pressed.half_width,
-                    ..in_middle.place
-                },
-            })
+            let Some(pressure) = pressed.pressure else {
+                return;
+            };
+            let place = PeakPlace {
+                roll_lengths: *roll_lengths,
+                z: Some(within.z),
+                half_width: pressed.half_width,
+                ..in_middle.place
+            };
+            largest = largest.larger(Peak { pressure, place });
         });
-        at_kinks.fold(in_middle, Peak::larger)
+        largest
     }
 }
 
@@ -342,17 +345,10 @@ impl FaceModel {
             ..
         } = balanced;
         let slices = &sliced.slices;
-        let mut pairs: Vec<PairContact> = Vec::new();
-        let mut peak: Option<Peak> = None;
-        let mut at_sharp_edge = false;
-        let mut smooth_pressure = 0.0_f64;
-        let mut corner_shares = [0.0; 2];
-        let mut loads = Vec::new();
+        let mut gathered = Gathered::default();
         for (i, (slice, carried)) in slices.iter().zip(&balance.carried).enumerate() {
             let pair = slice.pair + period;
-            if pairs.last().is_none_or(|last| last.pair != pair) {
-                pairs.push(PairContact::of_share(pair, 0.0));
-            }
+            gathered.meet(pair);
             if carried.force <= 0.0 {
                 continue;
             }
@@ -362,44 +358,24 @@ impl FaceModel {
                 .middle
                 .spring
                 .pressed(carried.force / (part * slice.along));
-            if let Some(last) = pairs.last_mut() {
-                last.share += carried.weighed / load;
-                last.fillet = last.fillet.or(pressed.fillet);
-            }
-            if let Some(member) = pressed.tip_corner {
-                corner_shares[member.index()] += carried.weighed / load;
-            }
-            at_sharp_edge |= pressed.at_sharp_edge;
-            smooth_pressure = smooth_pressure.max(pressed.smooth);
             let edge = &slice.ends[usize::from(middle > 0.0)].roll_lengths;
-            let z = slice.z + 0.5 * middle * slice.length;
-            let roll_lengths = [0, 1].map(|g| {
-                let at = slice.middle.roll_lengths[g];
-                at + (edge[g] - at) * middle.abs()
-            });
-            let place = PeakPlace {
+            let slice_load = SliceLoad {
                 pair,
-                roll_lengths,
-                z: Some(z),
-                half_width: pressed.half_width,
-            };
-            let largest = pressed.pressure.map(|pressure| Peak { pressure, place });
-            let largest = largest.map(|in_middle| balanced.peak_of(i, in_middle));
-            peak = match (peak, largest) {
-                (Some(one), Some(other)) => Some(one.larger(other)),
-                (one, other) => one.or(other),
-            };
-            loads.push(SliceLoad {
-                pair,
-                z,
+                z: slice.z + 0.5 * middle * slice.length,
                 length: part * slice.length,
                 force: carried.weighed,
-                roll_lengths,
-                pressure: largest.map(|peak| peak.pressure),
+                roll_lengths: [0, 1].map(|g| {
+                    let at = slice.middle.roll_lengths[g];
+                    at + (edge[g] - at) * middle.abs()
+                }),
+                pressure: pressed.pressure,
                 at_sharp_edge: pressed.at_sharp_edge,
                 half_width: pressed.half_width,
                 normal: [carried.force, carried.rise],
-            });
+            };
+            let largest = slice_load.peak();
+            let largest = largest.map(|in_middle| balanced.peak_of(i, in_middle));
+            gathered.add(slice_load, &pressed, largest, load);
         }
         let forces = balance.forces.iter().zip(&balance.load_derivative);
         let middles = slices
@@ -423,20 +399,90 @@ impl FaceModel {
             let places = slice.ends.iter().chain([&slice.middle]);
             places.map(|place| place.gap / place.weights[1])
         });
+        let mesh = MeshContact {
+            transmission_error: balance.transmission_error,
+            touch: touches.fold(f64::INFINITY, f64::min),
+            stiffness: balance.stiffness,
+            penetration: balance.penetration(slices),
+            iterations: balance.iterations,
+            ..MeshContact::of_spots(load, spots, gathered.peak())
+        };
+        gathered.contact(mesh, middles.collect())
+    }
+}
+
+impl SliceLoad {
+    /// Its largest pressure, in the middle of its loaded part, and the place of it.
+    fn peak(&self) -> Option<Peak> {
+        Some(Peak {
+            pressure: self.pressure?,
+            place: PeakPlace {
+                pair: self.pair,
+                roll_lengths: self.roll_lengths,
+                z: Some(self.z),
+                half_width: self.half_width,
+            },
+        })
+    }
+}
+
+/// Loads on slices, summed up pair by pair.
+#[derive(Default)]
+struct Gathered {
+    pairs: Vec<PairContact>,
+    slices: Vec<SliceLoad>,
+    largest: Option<Peak>,
+    at_sharp_edge: bool,
+    smooth_pressure: f64,
+    corner_shares: [f64; 2],
+}
+
+impl Gathered {
+    /// Notes that `pair` has slices, whether they carry or not.
+    fn meet(&mut self, pair: i64) {
+        if self.pairs.last().is_none_or(|last| last.pair != pair) {
+            self.pairs.push(PairContact::of_share(pair, 0.0));
+        }
+    }
+
+    /// Adds a loaded `slice` of the pair that was met last, its response, and its `largest` pressure, under a mesh `load`.
+    fn add(&mut self, slice: SliceLoad, pressed: &Pressed, largest: Option<Peak>, load: f64) {
+        let share = slice.force / load;
+        if let Some(last) = self.pairs.last_mut() {
+            last.share += share;
+            last.fillet = last.fillet.or(pressed.fillet);
+        }
+        if let Some(member) = pressed.tip_corner {
+            self.corner_shares[member.index()] += share;
+        }
+        self.at_sharp_edge |= pressed.at_sharp_edge;
+        self.smooth_pressure = self.smooth_pressure.max(pressed.smooth);
+        self.largest = match (self.largest, largest) {
+            (Some(one), Some(other)) => Some(one.larger(other)),
+            (one, other) => one.or(other),
+        };
+        self.slices.push(SliceLoad {
+            pressure: largest.map(|peak| peak.pressure),
+            ..slice
+        });
+    }
+
+    /// The largest pressure; `None` where a sharp edge carries.
+    fn peak(&self) -> Option<Peak> {
+        self.largest.filter(|_| !self.at_sharp_edge)
+    }
+
+    /// The contact of these slices with what is known of the `mesh`, and with the forces in the middles of its slices.
+    fn contact(self, mesh: MeshContact, middles: Vec<MiddleLoad>) -> FaceContact {
         FaceContact {
             mesh: MeshContact {
-                transmission_error: balance.transmission_error,
-                touch: touches.fold(f64::INFINITY, f64::min),
-                stiffness: balance.stiffness,
-                pairs,
-                smooth_pressure,
-                penetration: balance.penetration(slices),
-                iterations: balance.iterations,
-                ..MeshContact::of_spots(load, spots, peak.filter(|_| !at_sharp_edge))
+                pairs: self.pairs,
+                smooth_pressure: self.smooth_pressure,
+                ..mesh
             },
-            slices: loads,
-            middles: middles.collect(),
-            corner_shares,
+            slices: self.slices,
+            middles,
+            corner_shares: self.corner_shares,
         }
     }
 }
@@ -468,7 +514,7 @@ mod tests {
 
     use super::balance::balance;
     use super::slice::{Loading, Slicer, Stretches};
-    use super::stage::HEAVIER;
+    use super::stage::{HEAVIER, Sliced};
     use super::*;
     use crate::assembly::{FaceResolution, FaceYield, FaceYieldSpec, MakeAll, Parts};
     use crate::gear::spur::tests::paper_gear;

@@ -41,6 +41,16 @@ pub(super) struct Place {
     pub(super) spring: Arc<Spring>,
 }
 
+/// A kink near the loaded part of a slice.
+pub(super) struct NearKink {
+    /// Which kink of the model it is.
+    pub(super) number: usize,
+    /// Where it stands in the middle of the contact, from the beginning of the slice (−1) to its end (1) or beside it.
+    pub(super) stands: f64,
+    /// The nearest place of the loaded part.
+    pub(super) nearest: f64,
+}
+
 /// A place within a slice, from its beginning (−1) to its end (1).
 pub(super) struct Within {
     pub(super) at: f64,
@@ -250,32 +260,45 @@ impl<'a> Slicer<'a> {
         place
     }
 
-    /// The places in the loaded part, from one place to another, of `slice` that are nearest to those at which a kink stands in the middle of the contact, if that
-    /// is nearer than the contact, of this `half_width`, is wide.
-    pub(super) fn at_kinks(
+    /// The kinks that stand nearer to the loaded part, from one place to another, of `slice` than the contact, of this `half_width`, is wide.
+    pub(super) fn near_kinks(
         &self,
         slice: &Slice,
         [from, to]: [f64; 2],
         half_width: f64,
-    ) -> Vec<Within> {
+    ) -> Vec<NearKink> {
         let (pair, half) = (self.model.pair(), 0.5 * slice.length);
         let section = self.section(slice.pair, slice.z);
         let phase = section.phase + self.model.flanks.ahead(section);
         let across = pair.advance() * half;
-        let places = self.model.kinks.iter().filter_map(|kink| {
-            let at = (kink.phase - phase) / across;
+        let kinks = self.model.kinks.iter().enumerate();
+        let near = kinks.filter_map(|(number, kink)| {
+            let stands = (kink.phase - phase) / across;
             let step = kink.along * across * pair.section().base_pitch();
             let beside = (2.0 * half_width / step).abs();
-            if across == 0.0 || at < from - beside || at > to + beside {
+            if across == 0.0 || stands < from - beside || stands > to + beside {
                 return None;
             }
-            let at = at.clamp(from, to);
-            let z = slice.z + at * half;
-            let place = self.place(self.section(slice.pair, z), slice.along)?;
-            let place = self.standing(place, z);
-            Some(Within { at, z, place })
+            Some(NearKink {
+                number,
+                stands,
+                nearest: stands.clamp(from, to),
+            })
         });
-        places.collect()
+        near.collect()
+    }
+
+    /// The number of kinks that may be near.
+    pub(super) fn kink_count(&self) -> usize {
+        self.model.kinks.len()
+    }
+
+    /// A place of `slice`, from its beginning (−1) to its end (1); `None` where flanks do not face each other there.
+    pub(super) fn within(&self, slice: &Slice, at: f64) -> Option<Within> {
+        let z = slice.z + at * 0.5 * slice.length;
+        let place = self.place(self.section(slice.pair, z), slice.along)?;
+        let place = self.standing(place, z);
+        Some(Within { at, z, place })
     }
 
     /// The place of a line in a `section`, on a slice so long `along` the line; `None` where flanks do not face each other.

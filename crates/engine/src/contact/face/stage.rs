@@ -4,14 +4,14 @@
 //! and the compliance at the ends of flanks are computed once, and each period adds the common compliance of its teeth. Where teeth deviate, every position is
 //! a stage by itself.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use faer::Mat;
 
 use super::FaceModel;
 use super::balance::{Balance, Start, balance, softened_balance};
 use super::compliance::SliceCompliance;
-use super::slice::{Loading, Slice, Slicer, Stretches};
+use super::slice::{Loading, NearKink, Slice, Slicer, Stretches, Within};
 use crate::contact::positions::stages;
 use crate::contact::{ContactError, PositionError};
 
@@ -28,6 +28,8 @@ pub(super) struct Sliced<'a> {
     /// Of pairs counted from the mesh period.
     pub(super) slices: Vec<Slice>,
     compliance: SliceCompliance,
+    /// Where kinks stand in the middle of the contact on each slice: slice by slice. A kink is near in all mesh periods if it is in one.
+    at_kinks: Vec<OnceLock<Option<Within>>>,
 }
 
 /// Slices in balance.
@@ -194,11 +196,41 @@ impl<'a> Sliced<'a> {
         stretches: &Stretches,
     ) -> Option<Self> {
         let slices = slicer.slices(stretches);
+        let kinks = slices.len() * slicer.kink_count();
         (!slices.is_empty()).then(|| Self {
             compliance: SliceCompliance::new(model, &slices),
+            at_kinks: std::iter::repeat_with(OnceLock::new).take(kinks).collect(),
             slicer,
             slices,
         })
+    }
+
+    /// Calls `each` with the places of the loaded `part` of slice `i` that are nearest to kinks beside which a contact of this `half_width` reaches.
+    pub(super) fn each_kink(
+        &self,
+        i: usize,
+        part: [f64; 2],
+        half_width: f64,
+        mut each: impl FnMut(&Within),
+    ) {
+        let slice = &self.slices[i];
+        for NearKink {
+            number,
+            stands,
+            nearest,
+        } in self.slicer.near_kinks(slice, part, half_width)
+        {
+            let within = || self.slicer.within(slice, nearest);
+            let ends;
+            let within = if stands == nearest {
+                let known = &self.at_kinks[i * self.slicer.kink_count() + number];
+                known.get_or_init(within)
+            } else {
+                ends = within();
+                &ends
+            };
+            within.iter().for_each(&mut each);
+        }
     }
 
     /// The compliance of the slices without springs, so many mesh `period`s on.
