@@ -48,6 +48,9 @@ impl Times {
             webhook,
             body,
             request,
+            file,
+            keep_file,
+            look_at_jobs,
             look_at_keys,
             shutdown,
         } = self;
@@ -58,6 +61,12 @@ impl Times {
             ),
             (request, "a request, until the head of its answer"),
             (
+                file,
+                "a request for a file that is computed, until it is told to come back",
+            ),
+            (keep_file, "a file that somebody was told to come back for"),
+            (look_at_jobs, "between two looks at the jobs of such a file"),
+            (
                 look_at_keys,
                 "between two looks at the key of an open stream",
             ),
@@ -65,7 +74,7 @@ impl Times {
             (webhook, "one attempt to send a message to a webhook"),
             (shutdown, "running work and open answers at a shutdown"),
         ];
-        let lines = lines.map(|(time, what)| format!("\n  {:>2} s  {what}", time.as_secs_f64()));
+        let lines = lines.map(|(time, what)| format!("\n  {:>3} s  {what}", time.as_secs_f64()));
         format!("Timeouts without an option:{}", lines.concat())
     }
 }

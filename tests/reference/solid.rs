@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use faer::linalg::solvers::Solve as _;
 use faer::{Mat, Side, c64};
-use meshwright_engine::assembly::{FaceResolution, FaceYield};
+use meshwright_engine::assembly::{FaceResolution, FaceCompliance};
 use meshwright_engine::gear::{
     BlankRegion, GearData, Helix, HolePattern, Material, Rack, SolidGear, TipEdge, ToolDepth,
     ToothDeviations,
@@ -75,7 +75,7 @@ fn a_helical_tooth_yields_under_oblique_lines_as_in_calculix() {
     let (from, to) = (section.form_roll_length(), section.tip_roll_length());
     assert!((from - 9.6626e-3).abs() < 1e-6 && (to - 20.264e-3).abs() < 1e-6);
     let inner = section.root_radius() - 4e-3;
-    let face = FaceYield::of_sector(&gear, inner, FaceResolution::STANDARD).expect("definite");
+    let face = FaceCompliance::of_sector(&gear, inner, FaceResolution::STANDARD).expect("definite");
     let (tau, r_b, cos) = (
         gear.twist(),
         section.base_radius(),

@@ -14,7 +14,7 @@ use meshwright_engine::grid::{BlankGrid, GridLevel, ToothGrid};
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use meshwright_engine::substructures::{
-    BlankSubstructure, Coupling, Facing, FlankTable, Harmonics, InterfaceMotion, PlainGear,
+    BlankSubstructure, Coupling, FlankTable, GapProfile, Harmonics, InterfaceMotion, PlainGear,
     TeethRing, ToothSubstructure, blank_grid, default_interface_radius, harmonics, orders_of_blank,
 };
 
@@ -115,9 +115,9 @@ fn whole_blank(criterion: &mut Criterion) {
 }
 
 /// The pairs to either side of position `eta` that may touch.
-fn facings(case: &Case, eta: f64) -> Vec<Facing> {
+fn facings(case: &Case, eta: f64) -> Vec<GapProfile> {
     (-3..=4)
-        .filter_map(|n| Facing::drawn(&case.pair, eta - f64::from(n)))
+        .filter_map(|n| GapProfile::drawn(&case.pair, eta - f64::from(n)))
         .collect()
 }
 

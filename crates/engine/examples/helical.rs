@@ -5,8 +5,8 @@
 
 use std::sync::Arc;
 
-use meshwright_engine::assembly::{FaceResolution, FaceYield};
-use meshwright_engine::contact::face::{FaceModel, FlankYield, SLICES};
+use meshwright_engine::assembly::{FaceCompliance, FaceResolution};
+use meshwright_engine::contact::face::{FaceModel, FlankCompliance, SLICES};
 use meshwright_engine::gear::{
     Alignment, BlankRegion, GearData, Helix, LeadModification, Material, Member, Rack, SolidGear,
     SolidPair, TipEdge, ToolDepth, ToothDeviations, Web,
@@ -66,7 +66,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let run = Run::unattended();
     let resolution = FaceResolution::DRAFT.at(GridLevel::Coarse);
     let [first, second] =
-        Member::BOTH.map(|member| FaceYield::of(pair.gear(member), resolution, &run));
+        Member::BOTH.map(|member| FaceCompliance::of(pair.gear(member), resolution, &run));
     let yields = [Arc::new(first?), Arc::new(second?)];
     let coupled = yields.each_ref().map(|of| of.coupled());
     println!(
@@ -79,7 +79,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     //    spring: Hertz's. With the depth p to which the springs are pressed, their gaps g, and H of both gears,
     //
     //        p = δ w − g − H N,   N = ∫ q(p) dz,   ∫ w q(p) dz = F
-    let yields = yields.map(|of| of as Arc<dyn FlankYield>);
+    let yields = yields.map(|of| of as Arc<dyn FlankCompliance>);
     let model = FaceModel::new(pair, yields, SLICES, coupled[0].min(coupled[1]));
     let load = model.pair().section().load(150.0);
     let positions: Vec<f64> = (0..8).map(|i| f64::from(i) / 8.0).collect();

@@ -12,7 +12,7 @@
 //!
 //! 1. **Geometry** ([`gear`]). An involute point at roll length s stands at r_b e_r(t) + s e_t(t), t = ψ_b − s/r_b. Gaps
 //!    between flanks follow in closed form: the normal of an involute through any point is a tangent of its base circle
-//!    (`touch::facing`, `contact::patch`).
+//!    (`touch::gap_profile`, `contact::patch`).
 //! 2. **Substructures** ([`grid`], `fem`). One tooth sector is condensed exactly to its loaded flank and its interface:
 //!    H_0 is the flank's compliance with the interface held, Ψ its answer to the interface (`ring::tooth`). The blank
 //!    between bore and R_w is any plane region with a thickness by region ([`gear::BlankRegion`]), condensed as a whole or, where
@@ -45,7 +45,7 @@
 //!    frame that turns with the helix. Teeth, rim, web and hub are condensed part by part, order by order around the circle; where parts of unlike
 //!    width meet, the displacements of the narrower one are those of the wider (`ring::solid::joint`). A web with holes takes its sector or its whole grid,
 //!    as in the plane (`ring::solid::web`).
-//! 3. **Compliance of flanks** ([`contact::face::FlankYield`], [`assembly::FaceYield`]). On a flank are functions of roll length and z; between
+//! 3. **Compliance of flanks** ([`contact::face::FlankCompliance`], [`assembly::FaceCompliance`]). On a flank are functions of roll length and z; between
 //!    them stands the smooth compliance of the gear, of each tooth and of its neighbors. Singular parts are left out of it and added in closed form: a
 //!    half space under each line of contact, and the difference of a flank from one at its tip and at both ends of its face.
 //! 4. **Contact** ([`contact::face`]). Lines are cut into slices. A slice is a contact of the plane: a nonlinear spring between the flanks, whose

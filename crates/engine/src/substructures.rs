@@ -29,4 +29,4 @@ pub use crate::ring::solid::web::HoledRing;
 pub use crate::ring::teeth::{FARTHEST_COUPLED, TeethRing};
 pub use crate::ring::teeth_recovery::TeethRecovery;
 pub use crate::ring::tooth::{ToothSubstructure, modal_loads};
-pub use crate::touch::facing::Facing;
+pub use crate::touch::gap_profile::GapProfile;

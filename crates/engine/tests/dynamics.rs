@@ -6,8 +6,8 @@ use meshwright_engine::dynamics::coupled::{CoupledMotion, Drift};
 use meshwright_engine::dynamics::orbit::{Repeating, Scale, multiplier};
 use meshwright_engine::dynamics::oscillator::Step;
 use meshwright_engine::dynamics::{
-    Body, BodyMode, BodyWave, Branch, Coupled, Damping, Excitation, FlankRows, ForceTable, Ladder,
-    Laws, Mount, Orbit, Order, Oscillator, RunUp, RunUpData, State, Support,
+    Body, BodyMode, BodyWave, Branch, Coupled, Damping, Excitation, FlankRows, ForceTable, Laws,
+    LoadSteps, Mount, Orbit, Order, Oscillator, RunUp, RunUpData, State, Support,
 };
 use meshwright_engine::run::Run;
 use nalgebra::{Cholesky, Complex, DMatrix, DVector, Matrix6, SMatrix};
@@ -185,7 +185,7 @@ fn with_backlash_of(
     wave: impl Fn(f64) -> f64,
     compliance: impl Fn(f64) -> f64,
 ) -> ForceTable {
-    let ladder = Ladder { count: 5, largest };
+    let ladder = LoadSteps { count: 5, largest };
     let rows = |from: f64, sign: f64| {
         ladder
             .loads()

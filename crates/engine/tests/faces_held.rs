@@ -11,8 +11,10 @@ use cases::{
 };
 use meshwright_engine::analysis::stress::PeakStress;
 use meshwright_engine::analysis::{Analysis, Case, analyze};
-use meshwright_engine::assembly::{FaceResolution, FaceYield};
-use meshwright_engine::contact::face::{FaceContact, FaceModel, FlankYield, SLICES, SliceLoad};
+use meshwright_engine::assembly::{FaceCompliance, FaceResolution};
+use meshwright_engine::contact::face::{
+    FaceContact, FaceModel, FlankCompliance, SLICES, SliceLoad,
+};
 use meshwright_engine::gear::{
     Alignment, BlankRegion, GearData, Hole, HolePattern, LeadModification, Member,
     ModificationData, ReliefData, ReliefShape, ReliefStart, SolidGear, SolidPair, Web,
@@ -98,8 +100,8 @@ fn askew(seed: u64, image: bool, positions: &[f64]) -> Vec<FaceContact> {
             face_order: 4,
             ..FaceResolution::DRAFT
         };
-        let made = FaceYield::of(gear, resolution, &Run::unattended());
-        Arc::new(made.expect("can be condensed")) as Arc<dyn FlankYield>
+        let made = FaceCompliance::of(gear, resolution, &Run::unattended());
+        Arc::new(made.expect("can be condensed")) as Arc<dyn FlankCompliance>
     });
     let [one, other] = gears
         .each_ref()
@@ -154,8 +156,8 @@ fn one_position_of_one_pair_is_that_of_calculix() {
     let yields = Member::BOTH.map(|member| {
         let gear = pair.gear(member);
         let inner = gear.section().root_radius() - 4e-3;
-        let made = FaceYield::of_sector(gear, inner, FaceResolution::STANDARD);
-        Arc::new(made.expect("can be condensed")) as Arc<dyn FlankYield>
+        let made = FaceCompliance::of_sector(gear, inner, FaceResolution::STANDARD);
+        Arc::new(made.expect("can be condensed")) as Arc<dyn FlankCompliance>
     });
     let model = FaceModel::new(pair, yields, SLICES, 16);
     let contact = model.contacts(16_000.0, &[0.0], &Run::unattended());
@@ -236,8 +238,8 @@ fn a_few_slices_that_carry_all_of_the_load_press_as_one_line() {
             face_order: 4,
             ..FaceResolution::DRAFT
         };
-        let made = FaceYield::of(gear, resolution, &Run::unattended());
-        Arc::new(made.expect("can be condensed")) as Arc<dyn FlankYield>
+        let made = FaceCompliance::of(gear, resolution, &Run::unattended());
+        Arc::new(made.expect("can be condensed")) as Arc<dyn FlankCompliance>
     });
     let alignment = Alignment {
         in_plane: 14e-6,

@@ -324,13 +324,13 @@ end MeshwrightMesh;
 
 #[cfg(test)]
 pub(crate) mod tests {
-    use meshwright_engine::dynamics::{FlankRows, Ladder};
+    use meshwright_engine::dynamics::{FlankRows, LoadSteps};
 
     use super::*;
 
     /// Two positions a period, δ = F/k with k = 1e8 and 2e8 N/m, 100 um of backlash.
     pub(crate) fn forces() -> MeshForces {
-        let ladder = Ladder {
+        let ladder = LoadSteps {
             count: 4,
             largest: 1000.0,
         };

@@ -1,6 +1,6 @@
 //! Cost of a case: memory, time, and the parts that other designs share.
 
-use crate::assembly::{FaceContactsSpec, FaceYieldSpec, GearSpec, TeethSpec};
+use crate::assembly::{FaceComplianceSpec, FaceContactsSpec, GearSpec, TeethSpec};
 
 /// Cost of a case.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -28,7 +28,7 @@ pub struct PartCost {
 pub(super) enum PartSpec {
     Teeth(Box<TeethSpec>),
     Gear(Box<GearSpec>),
-    Face(Box<FaceYieldSpec>),
+    Face(Box<FaceComplianceSpec>),
     DrawnFaces(Box<FaceContactsSpec>),
 }
 

@@ -10,12 +10,12 @@ use super::running::Running;
 use crate::assembly::blank::blank_grid;
 use crate::assembly::interface::{harmonics, interface_radius, orders_of_blank};
 use crate::assembly::pair_spec::cells_per_patch;
-use crate::assembly::{FaceYieldSpec, GearSpec};
+use crate::assembly::{FaceComplianceSpec, GearSpec};
 use crate::contact::{ContactSolver, default_penalty};
 use crate::gear::{Member, SpurGear, gcd};
 use crate::grid::{BlankGrid, GridLevel, ToothGrid};
 use crate::ring::shaft::orders_of_edge;
-use crate::touch::facing::Facing;
+use crate::touch::gap_profile::GapProfile;
 use crate::vibration::rotation;
 
 /// Seconds of one core for the first contact solution at a fraction of the mesh period, for each further one there, and for a linear
@@ -211,7 +211,7 @@ fn add_faces(estimate: &mut Estimate, plan: &Plan, faces: &Faces) {
             GridLevel::Fine => 3.5,
         };
         for member in Member::BOTH {
-            let spec = FaceYieldSpec::new(faces.pair.gear(member), resolution);
+            let spec = FaceComplianceSpec::new(faces.pair.gear(member), resolution);
             let gear = case.pair.gear(member);
             // Once more with each turn of its blank, and in the mirror.
             let again = plan.hole_phase.as_ref().filter(|_| number == 0);
@@ -359,7 +359,7 @@ fn pairs_together(case: &Case, output_torque: f64) -> usize {
     let pair = &case.pair;
     let delta = pair.load(output_torque) / usual_stiffness(pair);
     let within = |n: &i64| {
-        Facing::drawn(pair, 0.5 - *n as f64).is_some_and(|facing| facing.touch() <= delta)
+        GapProfile::drawn(pair, 0.5 - *n as f64).is_some_and(|facing| facing.touch() <= delta)
     };
     let near = (-FARTHEST_PAIR..=FARTHEST_PAIR).filter(within).count();
     near.max(pair.contact_ratio().ceil() as usize)

@@ -7,7 +7,7 @@ use super::fields::{Fields, GearField, free_edges};
 use super::three_dimensional::{running_model, yields};
 use super::{AnalysisError, Case};
 use crate::assembly::face_inside::MovedParts;
-use crate::assembly::{FaceInside, FaceYield, FaceYieldSpec, Parts};
+use crate::assembly::{FaceCompliance, FaceComplianceSpec, FaceInside, Parts};
 use crate::contact::face::FaceContact;
 use crate::fem::volume::{Frame, Volume, von_mises};
 use crate::gear::{Member, Vector};
@@ -106,13 +106,13 @@ fn of_gears<T: Send>(
 }
 
 fn moved(
-    (faces, yields): (&Faces, &[Arc<FaceYield>; 2]),
+    (faces, yields): (&Faces, &[Arc<FaceCompliance>; 2]),
     member: Member,
     contact: &FaceContact,
     parts: &dyn Parts,
     run: &Run,
 ) -> Result<Vec<MovedParts>, AnalysisError> {
-    let spec = FaceYieldSpec::new(faces.pair.gear(member), faces.resolution);
+    let spec = FaceComplianceSpec::new(faces.pair.gear(member), faces.resolution);
     let yields = yields[member.index()].clone();
     let inside = FaceInside::new(spec, yields, parts, run).map_err(|error| error.of(member))?;
     let loads: Vec<_> = contact

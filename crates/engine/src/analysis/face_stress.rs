@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::AnalysisError;
 use super::case::Faces;
 use super::stress::{GearPeaks, PeakStress, PositionPeaks, REACH, RootStress, largest, teeth_away};
-use crate::assembly::{FaceHoles, FaceRoots, FaceYield, FaceYieldSpec, PartError, Parts};
+use crate::assembly::{FaceCompliance, FaceComplianceSpec, FaceHoles, FaceRoots, PartError, Parts};
 use crate::contact::face::FaceContact;
 use crate::fem::surface::SurfaceStress;
 use crate::gear::{Member, SolidPair};
@@ -17,7 +17,7 @@ use crate::run::Run;
 /// Both gears of a pair, to be asked for the stresses at their roots and holes under a contact.
 pub(super) struct FaceStressModel<'a> {
     pair: &'a SolidPair,
-    yields: &'a [Arc<FaceYield>; 2],
+    yields: &'a [Arc<FaceCompliance>; 2],
     gears: [StressedFace; 2],
 }
 
@@ -31,12 +31,12 @@ impl<'a> FaceStressModel<'a> {
     /// Stresses of the pair of `faces`, with the compliances `yields` of the `specs`.
     pub(super) fn new(
         faces: &'a Faces,
-        yields: &'a [Arc<FaceYield>; 2],
+        yields: &'a [Arc<FaceCompliance>; 2],
         parts: &dyn Parts,
         run: &Run,
     ) -> Result<Self, AnalysisError> {
         let of = |member: Member| {
-            let spec = FaceYieldSpec::new(faces.pair.gear(member), faces.resolution);
+            let spec = FaceComplianceSpec::new(faces.pair.gear(member), faces.resolution);
             let made = || {
                 Ok(StressedFace {
                     roots: parts.face_roots(&spec.stack(), run)?,

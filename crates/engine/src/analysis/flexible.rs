@@ -49,7 +49,7 @@ mod tests {
     use crate::grid::GridLevel;
     use crate::library::Library;
     use crate::run::Run;
-    use crate::touch::facing::tests::undercut_pair;
+    use crate::touch::gap_profile::tests::undercut_pair;
 
     #[test]
     fn the_corner_of_an_undercut_flank_takes_up_load_before_its_path_of_contact_begins() {

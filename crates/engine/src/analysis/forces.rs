@@ -9,7 +9,7 @@ use super::rotors::Blanks;
 use super::warning::warn_of_motions;
 use super::{Analysis, AnalysisError, Case, StiffnessRule};
 use crate::assembly::Parts;
-use crate::dynamics::{FlankRows, ForceTable, Ladder};
+use crate::dynamics::{FlankRows, ForceTable, LoadSteps};
 use crate::run::Run;
 
 /// How many times as many positions a table has as the curves: pairs that begin and cease to carry make kinks, and two of them in
@@ -26,8 +26,8 @@ pub struct ForceTableRequest {
 }
 
 impl ForceTableRequest {
-    fn ladder(&self, case: &Case) -> Ladder {
-        Ladder {
+    fn ladder(&self, case: &Case) -> LoadSteps {
+        LoadSteps {
             count: self.loads as usize,
             largest: case.pair.load(self.largest(case)),
         }

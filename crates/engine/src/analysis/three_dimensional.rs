@@ -17,10 +17,10 @@ use super::stress::{GearStresses, PositionPeaks};
 use super::under_load::curves;
 use super::warning::warn_of_corner;
 use super::{Analysis, AnalysisError};
-use crate::assembly::{FaceYield, FaceYieldSpec, Parts};
+use crate::assembly::{FaceCompliance, FaceComplianceSpec, Parts};
 use crate::contact::face::drawn::DrawnFaces;
 use crate::contact::face::even::{STRIPS, face_load_factor};
-use crate::contact::face::{FaceContact, FaceModel, FlankYield};
+use crate::contact::face::{FaceContact, FaceModel, FlankCompliance};
 use crate::contact::positions::PositionsError;
 use crate::contact::{MeshContact, PairLoads};
 use crate::gear::{Member, PairDeviations};
@@ -149,7 +149,7 @@ struct OnDrawn<'a> {
 impl<'a> OfFaces<'a> {
     fn new(
         (case, faces, deviations): (&'a Case, &Faces, &'a PairDeviations),
-        yields: &[Arc<FaceYield>; 2],
+        yields: &[Arc<FaceCompliance>; 2],
         parts: &dyn Parts,
         run: &'a Run,
     ) -> Self {
@@ -237,10 +237,10 @@ pub(super) fn yields(
     faces: &Faces,
     parts: &dyn Parts,
     run: &Run,
-) -> Result<[Arc<FaceYield>; 2], AnalysisError> {
+) -> Result<[Arc<FaceCompliance>; 2], AnalysisError> {
     let of = |member: Member| {
-        let spec = FaceYieldSpec::new(faces.pair.gear(member), faces.resolution);
-        let made = parts.face_yield(&spec, run);
+        let spec = FaceComplianceSpec::new(faces.pair.gear(member), faces.resolution);
+        let made = parts.face_compliance(&spec, run);
         made.map_err(|error| error.of(member))
     };
     let (driving, driven) = rayon::join(|| of(Member::Driving), || of(Member::Driven));
@@ -248,18 +248,18 @@ pub(super) fn yields(
 }
 
 /// The pair whose flanks yield as `yields`.
-pub(super) fn face_model(faces: &Faces, yields: &[Arc<FaceYield>; 2]) -> FaceModel {
+pub(super) fn face_model(faces: &Faces, yields: &[Arc<FaceCompliance>; 2]) -> FaceModel {
     let [one, other] = yields.each_ref().map(|of| of.coupled());
     let yields = yields
         .each_ref()
-        .map(|of| Arc::clone(of) as Arc<dyn FlankYield>);
+        .map(|of| Arc::clone(of) as Arc<dyn FlankCompliance>);
     FaceModel::new(faces.pair.clone(), yields, faces.slices, one.min(other))
 }
 
 /// The pair of `case` along its `faces`, whose flanks yield as `yields`, as it runs.
 pub(super) fn running_model(
     (case, faces): (&Case, &Faces),
-    yields: &[Arc<FaceYield>; 2],
+    yields: &[Arc<FaceCompliance>; 2],
     parts: &dyn Parts,
     run: &Run,
 ) -> Result<FaceModel, AnalysisError> {
@@ -272,7 +272,7 @@ pub(super) fn running_model(
     )
 }
 
-impl FlankYield for FaceYield {
+impl FlankCompliance for FaceCompliance {
     fn basis_len(&self) -> usize {
         self.basis_len()
     }

@@ -1,6 +1,6 @@
 //! Stresses at the edges of the holes of a solid gear under loads on its flanks.
 //!
-//! Loads move the outer circle of the web ([`super::face_yield`]), and that moves the nodes along the holes, sector by sector; the strain along their surface
+//! Loads move the outer circle of the web ([`super::face_compliance`]), and that moves the nodes along the holes, sector by sector; the strain along their surface
 //! gives the stress ([`crate::fem::surface`]).
 
 use std::f64::consts::TAU;
@@ -10,7 +10,7 @@ use faer::c64;
 use super::amplitudes::block;
 use super::flank_forces::FlankForces;
 use super::holed::HoledSection;
-use super::{FaceYield, FaceYieldSpec, PartError};
+use super::{FaceCompliance, FaceComplianceSpec, PartError};
 use crate::fem::surface::{Surface, SurfaceStress};
 use crate::ring::solid::sector::SolidSector;
 use crate::ring::solid::web::ClassRows;
@@ -41,7 +41,7 @@ impl FaceHoles {
     /// # Errors
     ///
     /// [`PartError`].
-    pub fn new(spec: &FaceYieldSpec, largest: usize, run: &Run) -> Result<Self, PartError> {
+    pub fn new(spec: &FaceComplianceSpec, largest: usize, run: &Run) -> Result<Self, PartError> {
         let holed = HoledSection::new(&spec.stack(), spec.gear().section(), largest)?;
         run.check()?;
         let edges: Vec<&[u32]> = holed.grid.hole_edges.iter().map(Vec::as_slice).collect();
@@ -55,7 +55,7 @@ impl FaceHoles {
     }
 
     /// The edges under `loads` on the flanks of the same gear, which yield as `yields`.
-    pub fn under<'a>(&'a self, yields: &FaceYield, loads: &[FlankForces]) -> HoleAnswer<'a> {
+    pub fn under<'a>(&'a self, yields: &FaceCompliance, loads: &[FlankForces]) -> HoleAnswer<'a> {
         let loads: Vec<_> = loads
             .iter()
             .map(|load| (load.tooth, &load.smooth[..]))
@@ -264,10 +264,10 @@ pub(super) mod tests {
 
     /// The stresses along the holes of such a gear, or of its image where `sign` is negative.
     fn stressed(beta: f64, sign: f64, offset: f64, larger: f64) -> Vec<SurfaceStress> {
-        let spec = FaceYieldSpec::new(&webbed(sign * beta, sign * offset, larger), COARSE);
+        let spec = FaceComplianceSpec::new(&webbed(sign * beta, sign * offset, larger), COARSE);
         let run = Run::unattended();
         let roots = MakeAll.face_roots(&spec.stack(), &run).expect("sound");
-        let yields = MakeAll.face_yield(&spec, &run).expect("sound");
+        let yields = MakeAll.face_compliance(&spec, &run).expect("sound");
         let holes = MakeAll.face_holes(&spec, &run).expect("sound");
         let loads = [(7, 3e-3), (8, -6e-3)].map(|(tooth, z)| {
             roots.forces(
@@ -338,7 +338,7 @@ pub(super) mod tests {
     #[test]
     fn a_gear_without_holes_has_no_edges() {
         let gear = SolidGear::new(paper_gear(30), Helix::STRAIGHT, 0.0, None);
-        let spec = FaceYieldSpec::new(&gear.expect("can be made"), COARSE);
+        let spec = FaceComplianceSpec::new(&gear.expect("can be made"), COARSE);
         let run = Run::unattended();
         assert!(MakeAll.face_holes(&spec, &run).expect("sound").is_none());
     }

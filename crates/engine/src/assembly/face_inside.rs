@@ -14,7 +14,7 @@ use super::amplitudes::block;
 use super::flank_forces::{FlankForces, PressedFlank};
 use super::holed::HoledSection;
 use super::stack::Stack;
-use super::{FaceYield, FaceYieldSpec, PartError, Parts, PlainFace};
+use super::{FaceCompliance, FaceComplianceSpec, PartError, Parts, PlainFace};
 use crate::contact::face::NormalForce;
 use crate::fem::FemError;
 use crate::fem::axial::AxialBasis;
@@ -37,10 +37,10 @@ const RECOVERED_ORDERS: [f64; 2] = [0.75, 0.25];
 
 /// A solid gear that can be asked how all of it moves.
 pub struct FaceInside {
-    spec: FaceYieldSpec,
+    spec: FaceComplianceSpec,
     stack: Stack,
     plain: Arc<PlainFace>,
-    yields: Arc<FaceYield>,
+    yields: Arc<FaceCompliance>,
     grid: ToothGrid,
     pressed: PressedFlank,
 }
@@ -72,8 +72,8 @@ impl FaceInside {
     ///
     /// [`PartError`].
     pub fn new(
-        spec: FaceYieldSpec,
-        yields: Arc<FaceYield>,
+        spec: FaceComplianceSpec,
+        yields: Arc<FaceCompliance>,
         parts: &dyn Parts,
         run: &Run,
     ) -> Result<Self, PartError> {
@@ -493,9 +493,9 @@ mod tests {
     }
 
     fn inside(gear: &SolidGear) -> FaceInside {
-        let spec = FaceYieldSpec::new(gear, RESOLUTION);
+        let spec = FaceComplianceSpec::new(gear, RESOLUTION);
         let run = Run::unattended();
-        let yields = MakeAll.face_yield(&spec, &run).expect("sound");
+        let yields = MakeAll.face_compliance(&spec, &run).expect("sound");
         FaceInside::new(spec, yields, &MakeAll, &run).expect("sound")
     }
 
@@ -679,7 +679,7 @@ mod tests {
         let run = Run::unattended();
         let (gear, inside, moved) = &MADE[1];
         let loads = loads(inside);
-        let spec = FaceYieldSpec::new(gear, RESOLUTION);
+        let spec = FaceComplianceSpec::new(gear, RESOLUTION);
         let roots = MakeAll.face_roots(&spec.stack(), &run).expect("sound");
         let holes = MakeAll.face_holes(&spec, &run).expect("sound");
         let holes = holes

@@ -8,7 +8,7 @@ use faer::Mat;
 use super::flank_fit::{FlankFit, smoothed_rows};
 use super::flank_forces::{FlankForces, PressedFlank};
 use super::stack::Stack;
-use super::{FaceResolution, FaceYield, PartError, PlainFace};
+use super::{FaceCompliance, FaceResolution, PartError, PlainFace};
 use crate::contact::face::NormalForce;
 use crate::fem::axial::AxialBasis;
 use crate::fem::dense::entries;
@@ -49,7 +49,7 @@ pub struct FaceRoots {
 /// Response of the roots to loads.
 pub struct RootAnswer<'a> {
     roots: &'a FaceRoots,
-    yields: Option<&'a FaceYield>,
+    yields: Option<&'a FaceCompliance>,
     loads: &'a [FlankForces],
     on_web: Option<Vec<f64>>,
 }
@@ -133,7 +133,7 @@ impl FaceRoots {
         })
     }
 
-    /// The root of one tooth alone: that of [`FaceYield::of_sector`].
+    /// The root of one tooth alone: that of [`FaceCompliance::of_sector`].
     ///
     /// # Errors
     ///
@@ -175,10 +175,10 @@ impl FaceRoots {
     /// The roots under `loads`; `yields` are the flanks' compliances of the same gear, with the effect of holes.
     pub fn under<'a>(
         &'a self,
-        yields: Option<&'a FaceYield>,
+        yields: Option<&'a FaceCompliance>,
         loads: &'a [FlankForces],
     ) -> RootAnswer<'a> {
-        let holes = yields.and_then(FaceYield::holes);
+        let holes = yields.and_then(FaceCompliance::holes);
         let on_web = holes.map(|holes| {
             let loads = loads.iter();
             let smooth: Vec<_> = loads.map(|load| (load.tooth, &load.smooth[..])).collect();
@@ -248,7 +248,7 @@ impl RootAnswer<'_> {
                 add(rows, &load.smooth);
             }
         }
-        let holes = self.yields.and_then(FaceYield::holes);
+        let holes = self.yields.and_then(FaceCompliance::holes);
         let on_web = self.on_web.as_ref().zip(holes).zip(roots.by_web.as_ref());
         if let Some(((forces, holes), by_web)) = on_web {
             let seen = holes.seen_from(tooth, forces);
@@ -299,7 +299,7 @@ impl Nearness {
 mod tests {
     use super::*;
     use crate::assembly::face_holes::tests::webbed;
-    use crate::assembly::{FaceYieldSpec, MakeAll, Parts as _};
+    use crate::assembly::{FaceComplianceSpec, MakeAll, Parts as _};
     use crate::fem::prescribed::{Load, displacements};
     use crate::fem::recovery::{Functional, edge_stresses};
     use crate::gear::spur::tests::paper_gear;
@@ -433,10 +433,10 @@ mod tests {
             }
             let gear = SolidGear::new(data, Helix::STRAIGHT, 0.0, None).expect("can be made");
             let section = gear.section();
-            let spec = FaceYieldSpec::new(&gear, of_order(2));
+            let spec = FaceComplianceSpec::new(&gear, of_order(2));
             let stack = spec.stack();
             let roots = MakeAll.face_roots(&stack, &run).expect("sound");
-            let yields = MakeAll.face_yield(&spec, &run).expect("sound");
+            let yields = MakeAll.face_compliance(&spec, &run).expect("sound");
 
             // The same grid in the plane.
             let radius = stack.interface_radius;
@@ -480,7 +480,7 @@ mod tests {
     fn places_under_a_contact_are_left_out_on_the_tooth_that_it_presses() {
         let gear = gear(0.3, 10e-3);
         let run = Run::unattended();
-        let stack = FaceYieldSpec::new(&gear, of_order(4)).stack();
+        let stack = FaceComplianceSpec::new(&gear, of_order(4)).stack();
         let roots = MakeAll.face_roots(&stack, &run).expect("sound");
         let foot = roots.pressed.roll_lengths[0];
         let loads = [roots.forces(
@@ -516,10 +516,10 @@ mod tests {
     fn a_gear_and_its_image_in_the_plane_of_its_face_have_equal_stresses() {
         let of = |beta: f64, sign: f64| {
             let gear = webbed(sign * beta, sign * 4e-3, 0.0);
-            let spec = FaceYieldSpec::new(&gear, of_order(4));
+            let spec = FaceComplianceSpec::new(&gear, of_order(4));
             let run = Run::unattended();
             let roots = MakeAll.face_roots(&spec.stack(), &run).expect("sound");
-            let yields = MakeAll.face_yield(&spec, &run).expect("sound");
+            let yields = MakeAll.face_compliance(&spec, &run).expect("sound");
             let s = roots.pressed.roll_lengths[9];
             let loads = [(7, 3e-3), (8, -6e-3)].map(|(tooth, z)| {
                 roots.forces(

@@ -1,7 +1,7 @@
 //! From the drawings of two gears to a pair that is ready for contact.
 //!
 //! In reading order: `interface` (the circle on which teeth and blank meet), `teeth` (all teeth of a gear down to it), `blank` (their support), `gear`
-//! (both joined), `pair_spec` and `pair` (two gears and the rules of their contact); along faces `face_yield` (the parts under the teeth, and the effect of
+//! (both joined), `pair_spec` and `pair` (two gears and the rules of their contact); along faces `face_compliance` (the parts under the teeth, and the effect of
 //! holes: `stack`, `holed`, in the real amplitudes of a circle: `amplitudes`; fit of polynomials: `flank_fit`), `face_roots` and `face_holes` (stresses at
 //! its roots and at its holes), `face_inside` (motion of all of it); beside them `cut` (a gear parted at that circle again), `inside` (the inside of a
 //! gear whose flanks are loaded) and `spun` (of one that rotates).
@@ -13,11 +13,11 @@ mod amplitudes;
 pub(crate) mod blank;
 pub(crate) mod cut;
 mod error;
+pub(crate) mod face_compliance;
 pub(crate) mod face_holes;
 pub(crate) mod face_inside;
 mod face_resolution;
 pub(crate) mod face_roots;
-pub(crate) mod face_yield;
 mod flank_fit;
 mod flank_forces;
 pub(crate) mod gear;
@@ -35,11 +35,11 @@ pub(crate) mod teeth;
 pub use blank::BlankSpec;
 pub use cut::CutGear;
 pub use error::{AssemblyError, PartError};
+pub use face_compliance::{FaceCompliance, FaceComplianceSpec, PlainFace};
 pub use face_holes::FaceHoles;
 pub use face_inside::FaceInside;
 pub use face_resolution::FaceResolution;
 pub use face_roots::FaceRoots;
-pub use face_yield::{FaceYield, FaceYieldSpec, PlainFace};
 pub use flank_forces::FlankForces;
 pub use gear::{BlankUnderTeeth, Gear, GearGrids, GearSpec, PlainGearSpec, WantedGear};
 pub use inside::Inside;

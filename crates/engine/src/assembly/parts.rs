@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use super::face_compliance::{FaceCompliance, FaceComplianceSpec, PlainFace};
 use super::face_holes::FaceHoles;
 use super::face_roots::FaceRoots;
-use super::face_yield::{FaceYield, FaceYieldSpec, PlainFace};
 use super::pair_spec::{ContactsSpec, FaceContactsSpec, FlanksSpec, PairSpec};
 use super::spun::{Spun, SpunSpec};
 use super::stack::Stack;
@@ -93,7 +93,11 @@ pub trait Parts: Sync {
     /// # Errors
     ///
     /// [`PartError`].
-    fn face_yield(&self, spec: &FaceYieldSpec, run: &Run) -> Result<Arc<FaceYield>, PartError> {
+    fn face_compliance(
+        &self,
+        spec: &FaceComplianceSpec,
+        run: &Run,
+    ) -> Result<Arc<FaceCompliance>, PartError> {
         let plain = self.plain_face(&spec.stack(), run)?;
         spec.make(plain, run).map(Arc::new)
     }
@@ -115,7 +119,7 @@ pub trait Parts: Sync {
     /// [`PartError`].
     fn face_holes(
         &self,
-        spec: &FaceYieldSpec,
+        spec: &FaceComplianceSpec,
         run: &Run,
     ) -> Result<Option<Arc<FaceHoles>>, PartError> {
         let made = spec

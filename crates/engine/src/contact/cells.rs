@@ -309,7 +309,7 @@ impl<'a> ContactCells<'a> {
             };
             Ok(PairContact {
                 clearance: (share <= 0.0).then(|| clearance.fold(f64::INFINITY, f64::min)),
-                tip_corner: (patch.off_path && share > 0.0).then_some(patch.seat),
+                tip_corner: (patch.off_path && share > 0.0).then_some(patch.primary),
                 fillet: patch
                     .reached_fillet(active)
                     .or_else(|| pressed().map(|(_, gear)| *gear)),

@@ -9,7 +9,7 @@ use super::pair_cells::{PairCells, PairFlanks, compliance};
 use super::patch::{Cell, Patch, Stretch};
 use crate::flank::half_plane::Entries;
 use crate::gear::Member;
-use crate::touch::facing::{Facing, FlankRange, RangeEnd};
+use crate::touch::gap_profile::{FlankRange, GapProfile, RangeEnd};
 use crate::touch::meeting::FlankPoints;
 use crate::touch::placement::Pose;
 
@@ -43,12 +43,12 @@ pub(super) enum CheckedKind {
 }
 
 impl CheckedKind {
-    /// The gear from whose flank its gap is found in a pair with cells on `seat`; `None` where that is known from cells.
-    pub(super) fn seen_from(self, seat: Member) -> Option<Member> {
+    /// The gear from whose flank its gap is found in a pair with cells on `primary`; `None` where that is known from cells.
+    pub(super) fn seen_from(self, primary: Member) -> Option<Member> {
         match self {
             Self::Across { .. } => None,
             Self::Fillet(member) => Some(member.other()),
-            Self::Kink | Self::Beside => Some(seat),
+            Self::Kink | Self::Beside => Some(primary),
         }
     }
 }
@@ -65,7 +65,7 @@ pub(super) struct CheckedStretch {
 #[derive(Debug)]
 pub(super) struct CheckedStretches {
     pub(super) stretches: Vec<CheckedStretch>,
-    /// Points of those stretches that have one on a flank: those on the flank of the seat of the pair, and those on the other flank.
+    /// Points of those stretches that have one on a flank: those on the flank of the primary of the pair, and those on the other flank.
     pub(super) flank_points: [FlankPoints; 2],
     /// Displacements of each by unit forces on the cells of the pair, row by row with the interfaces held, and W V of each gear.
     pub(super) yields: Vec<f64>,
@@ -103,7 +103,7 @@ impl CheckedStretches {
     pub(super) fn new(
         flanks: &PairFlanks<'_>,
         view: &Pose<'_>,
-        facing: &Facing,
+        facing: &GapProfile,
         (cells, carrying): (&PairCells, Carrying),
         reach: f64,
     ) -> Self {
@@ -158,14 +158,14 @@ impl CheckedStretches {
             }));
         }
         // A tip stands in a fillet where the other flank ends there.
-        let mate = view.seen_from_mate();
-        let mates = (range.ends[0] == RangeEnd::Fillet)
-            .then(|| mate.range())
+        let secondary = view.seen_from_secondary();
+        let of_secondary = (range.ends[0] == RangeEnd::Fillet)
+            .then(|| secondary.range())
             .flatten();
-        for (view, range) in [(*view, Some(*range)), (mate, mates)] {
+        for (view, range) in [(*view, Some(*range)), (secondary, of_secondary)] {
             let tip = range.and_then(|range| tip_in_fillet(&view, &range, patch, half));
             checked.extend(tip.filter(|(_, gap)| *gap <= reach).map(|(stretch, gap)| {
-                let place = CheckedKind::Fillet(view.seat.other());
+                let place = CheckedKind::Fillet(view.primary.other());
                 let more = gap - (stretch.cell.gap - stretch.more);
                 (stretch, CheckedStretch { place, more })
             }));
@@ -194,8 +194,8 @@ impl CheckedStretches {
         }
         let mut flank_points = [FlankPoints::default(), FlankPoints::default()];
         for (stretch, of) in &checked {
-            if let Some(from) = of.place.seen_from(cells.patch.seat) {
-                flank_points[usize::from(from != cells.patch.seat)].push(&stretch.flank_point);
+            if let Some(from) = of.place.seen_from(cells.patch.primary) {
+                flank_points[usize::from(from != cells.patch.primary)].push(&stretch.flank_point);
             }
         }
         Self {
@@ -215,7 +215,7 @@ impl CheckedStretches {
     }
 }
 
-/// The tip of the seat of `view` where it stands in the fillet of the other gear, and the gap there: it gives way about as the highest
+/// The tip of the primary of `view` where it stands in the fillet of the other gear, and the gap there: it gives way about as the highest
 /// place that faces the flank does.
 fn tip_in_fillet(
     view: &Pose<'_>,

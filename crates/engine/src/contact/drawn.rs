@@ -10,7 +10,7 @@ use super::memo::Memo;
 use super::pair_cells::{CellsSpec, PairCells, PairFlanks};
 use super::patch::Extent;
 use crate::gear::Member;
-use crate::touch::facing::{Facing, nearer_tip};
+use crate::touch::gap_profile::{GapProfile, nearer_tip};
 use crate::touch::placement::Pose;
 
 /// Limit of cells, and of the stretches that are checked beside them, in bytes each: two loads at forty positions a mesh period.
@@ -29,7 +29,7 @@ const LEAST_REACH: f64 = 1e-9;
 /// The flanks of one pair as drawn, with their computed data; shared between threads.
 #[derive(Debug)]
 pub struct DrawnFlanks {
-    facings: Memo<(u64, Member), Option<Facing>>,
+    facings: Memo<(u64, Member), Option<GapProfile>>,
     cells: Memo<CellsSpec, Option<PairCells>>,
     checked: Memo<(CellsSpec, i32, Carrying), CheckedStretches>,
 }
@@ -38,7 +38,7 @@ impl Default for DrawnFlanks {
     fn default() -> Self {
         Self {
             facings: Memo::new(MOST_FACING_BYTES, |facing| {
-                size_of::<Facing>() + facing.as_ref().map_or(0, Facing::bytes)
+                size_of::<GapProfile>() + facing.as_ref().map_or(0, GapProfile::bytes)
             }),
             cells: Memo::new(MOST_BYTES, |cells| {
                 size_of::<PairCells>() + cells.as_ref().map_or(0, PairCells::bytes)
@@ -54,13 +54,13 @@ pub(super) struct DrawnPair {
     /// How many mesh periods ago it passed the pitch point.
     pub(super) phase: f64,
     /// The gear from whose flank it is seen.
-    pub(super) seat: Member,
-    facing: Arc<Option<Facing>>,
+    pub(super) primary: Member,
+    facing: Arc<Option<GapProfile>>,
 }
 
 impl DrawnPair {
     /// How its flanks face each other; `None` where they do not.
-    pub(super) fn facing(&self) -> Option<&Facing> {
+    pub(super) fn facing(&self) -> Option<&GapProfile> {
         Option::as_ref(&self.facing)
     }
 }
@@ -76,14 +76,19 @@ impl DrawnFlanks {
         self.pair_on(flanks, phase, nearer_tip(flanks.pair, phase))
     }
 
-    /// The pair of `flanks` at `phase`, seen from the flank of `seat`.
-    pub(super) fn pair_on(&self, flanks: &PairFlanks<'_>, phase: f64, seat: Member) -> DrawnPair {
-        let facing = self.facings.get((phase.to_bits(), seat), |_| {
-            Facing::drawn_on(flanks.pair, phase, seat)
+    /// The pair of `flanks` at `phase`, seen from the flank of `primary`.
+    pub(super) fn pair_on(
+        &self,
+        flanks: &PairFlanks<'_>,
+        phase: f64,
+        primary: Member,
+    ) -> DrawnPair {
+        let facing = self.facings.get((phase.to_bits(), primary), |_| {
+            GapProfile::drawn_on(flanks.pair, phase, primary)
         });
         DrawnPair {
             phase,
-            seat,
+            primary,
             facing,
         }
     }
@@ -98,7 +103,7 @@ impl DrawnFlanks {
     ) -> Arc<Option<PairCells>> {
         let spec = CellsSpec {
             phase: pair.phase.to_bits(),
-            seat: pair.seat,
+            primary: pair.primary,
             load: load.to_bits(),
             cells_per_patch: flanks.cells_per_patch,
             extent,
@@ -131,6 +136,6 @@ impl DrawnFlanks {
     }
 }
 
-fn view<'a>(flanks: &PairFlanks<'a>, phase: f64, facing: &Facing) -> Pose<'a> {
-    Pose::drawn(flanks.pair, phase, facing.seat)
+fn view<'a>(flanks: &PairFlanks<'a>, phase: f64, facing: &GapProfile) -> Pose<'a> {
+    Pose::drawn(flanks.pair, phase, facing.primary)
 }

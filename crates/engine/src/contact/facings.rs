@@ -4,8 +4,8 @@ use super::drawn::DrawnPair;
 use super::model::{DeviatingPair, MeshPosition};
 use super::patch::Extent;
 use crate::gear::Member;
-use crate::touch::facing::{
-    Facing, GapMinimum, MOST_TURNS, ROUNDING, RangeEnd, Touching, nearer_tip,
+use crate::touch::gap_profile::{
+    FirstContact, GapMinimum, GapProfile, MOST_TURNS, ROUNDING, RangeEnd, nearer_tip,
 };
 use crate::touch::placement::{self, Pose, Section};
 
@@ -52,7 +52,7 @@ pub(super) struct PairGap {
     pub(super) drawn: DrawnPair,
     /// How many mesh periods it is ahead of the drawn phase.
     ahead: f64,
-    /// The distance from its first drawn minimum to that of the displaced flanks, towards the seat's tip; `None` if it was not searched.
+    /// The distance from its first drawn minimum to that of the displaced flanks, towards the primary gear's tip; `None` if it was not searched.
     away: Option<f64>,
     /// The δ at which each of its minima touches.
     touches: Vec<f64>,
@@ -84,9 +84,14 @@ impl PairGap {
         Extent::moved(pair, minimum, load, (along, inclined))
     }
 
-    /// Where the flanks touch in mesh period `period` of `deviating`, as a distance along the drawn `facing` towards the seat's tip, and the inclination
+    /// Where the flanks touch in mesh period `period` of `deviating`, as a distance along the drawn `facing` towards the primary gear's tip, and the inclination
     /// that the slopes of its teeth add for each length along it.
-    fn displaced(&self, deviating: DeviatingPair<'_>, period: i64, facing: &Facing) -> (f64, f64) {
+    fn displaced(
+        &self,
+        deviating: DeviatingPair<'_>,
+        period: i64,
+        facing: &GapProfile,
+    ) -> (f64, f64) {
         let pair = &deviating.model.pair;
         let teeth = pair.teeth(period + self.pair);
         let minimum = &facing.minima[0];
@@ -103,17 +108,17 @@ impl PairGap {
                 .slope(teeth[member.index()], minimum.roll_lengths[member.index()]);
             slope / growth(member)
         };
-        let (seat, mate) = (facing.seat, facing.seat.other());
-        let ahead = match seat {
+        let (primary, secondary) = (facing.primary, facing.primary.other());
+        let ahead = match primary {
             Member::Driving => self.ahead,
             Member::Driven => -self.ahead,
         };
-        let along = ahead * pair.base_pitch() * growth(seat);
-        (along, inclination(seat) - inclination(mate))
+        let along = ahead * pair.base_pitch() * growth(primary);
+        (along, inclination(primary) - inclination(secondary))
     }
 
-    /// True if the slopes of its teeth in mesh period `period` of `deviating` take the contact as far as the tip of the seat's mate.
-    fn is_inclined_to_mate_tip(&self, deviating: DeviatingPair<'_>, period: i64) -> bool {
+    /// True if the slopes of its teeth in mesh period `period` of `deviating` take the contact as far as the tip of the secondary gear.
+    fn is_inclined_to_secondary_tip(&self, deviating: DeviatingPair<'_>, period: i64) -> bool {
         let Some(facing) = self.drawn.facing() else {
             return false;
         };
@@ -122,7 +127,7 @@ impl PairGap {
         let [s_1, s_2] = minimum.roll_lengths;
         // An angle moves the least place of a parabola by its radius.
         let arc = minimum.arc + along + inclined * s_1 * s_2 / (s_1 + s_2);
-        inclined != 0.0 && arc < facing.range.from && facing.range.ends[0] == RangeEnd::MateTip
+        inclined != 0.0 && arc < facing.range.from && facing.range.ends[0] == RangeEnd::SecondaryTip
     }
 
     /// Its pose at a mesh position of `deviating`, with a driven gear that lags by `lag`.
@@ -133,8 +138,8 @@ impl PairGap {
         lag: f64,
     ) -> Option<Pose<'a>> {
         let n = at.period + self.pair;
-        let seat = self.drawn.facing()?.seat;
-        Some(deviating.pose(at.eta(), n, lag, (seat, self.drawn.phase)))
+        let primary = self.drawn.facing()?.primary;
+        Some(deviating.pose(at.eta(), n, lag, (primary, self.drawn.phase)))
     }
 }
 
@@ -183,7 +188,7 @@ impl<'a> PairsInReach<'a> {
     fn add(&mut self, n: i64) -> f64 {
         let model = self.deviating.model;
         let drawn = model.drawn_pair(self.fraction - n as f64);
-        let touch = drawn.facing().map_or(f64::INFINITY, Facing::touch);
+        let touch = drawn.facing().map_or(f64::INFINITY, GapProfile::touch);
         if touch < f64::INFINITY {
             self.found.push((n, touch));
         }
@@ -261,24 +266,24 @@ impl<'a> PairsInReach<'a> {
         }
         let shifts = Shifts::of(self.deviating, phase, period + n);
         // Along a curve a tooth keeps its own deviation, and so its drawn phase. With a large eccentricity the phase is another at every position.
-        let (seat, shift, drawn) = if MOST_RUNOUT * self.runout > 1.0 {
-            let seat = shifts.nearer_tip;
-            let shift = shifts.on_flanks[seat.index()];
-            (seat, shift, shift)
+        let (primary, shift, drawn) = if MOST_RUNOUT * self.runout > 1.0 {
+            let primary = shifts.nearer_tip;
+            let shift = shifts.on_flanks[primary.index()];
+            (primary, shift, shift)
         } else {
             let drawn = (shifts.by_tooth * PHASES).round() / PHASES;
-            let seat = nearer_tip(&model.pair, phase + drawn);
-            (seat, shifts.on_flanks[0], drawn)
+            let primary = nearer_tip(&model.pair, phase + drawn);
+            (primary, shifts.on_flanks[0], drawn)
         };
         let mut near = PairGap {
             pair: n,
             ahead: shift - drawn,
             away: None,
             touches: Vec::new(),
-            drawn: model.drawn_pair_on(phase + drawn, seat),
+            drawn: model.drawn_pair_on(phase + drawn, primary),
         };
         self.find_touches(&mut near, period)?;
-        if self.runout > DISPLACED || near.is_inclined_to_mate_tip(self.deviating, period) {
+        if self.runout > DISPLACED || near.is_inclined_to_secondary_tip(self.deviating, period) {
             self.find_on_displaced(&mut near, period);
         }
         Some(near)
@@ -311,12 +316,12 @@ impl<'a> PairsInReach<'a> {
     /// Finds where and when the displaced flanks of `near` touch first in mesh period `period`.
     fn find_on_displaced(&self, near: &mut PairGap, period: i64) -> Option<()> {
         let mut real = self.real(near, period)?;
-        if real.facing.is_at_mate_tip() {
+        if real.facing.is_at_secondary_tip() {
             // On its own flank a gear's tip is where cells end, however the gears stand.
             let model = self.deviating.model;
-            let seat = near.drawn.seat.other();
+            let primary = near.drawn.primary.other();
             let mut on_other = PairGap {
-                drawn: model.drawn_pair_on(near.drawn.phase, seat),
+                drawn: model.drawn_pair_on(near.drawn.phase, primary),
                 ..near.clone()
             };
             if self.find_touches(&mut on_other, period).is_some()
@@ -340,10 +345,10 @@ impl<'a> PairsInReach<'a> {
     }
 
     /// The flanks of `near` where they touch first in mesh period `period`.
-    fn real(&self, near: &PairGap, period: i64) -> Option<Touching<'a>> {
+    fn real(&self, near: &PairGap, period: i64) -> Option<FirstContact<'a>> {
         let pair = (&self.deviating.model.pair, self.deviating.deviations);
         let section = Section::straight(self.at(period).eta(), period + near.pair);
-        Touching::of(pair, section, near.drawn.seat, 0.0, ROUNDING)
+        FirstContact::of(pair, section, near.drawn.primary, 0.0, ROUNDING)
     }
 
     /// Finds the pairs that touch as drawn before δ is `reach`.

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use super::mesh_contact::{MeshContact, PairContact};
 use super::model::PositionError;
 use crate::gear::{GearPair, Member, PairDeviations};
-use crate::touch::facing::Facing;
+use crate::touch::gap_profile::GapProfile;
 
 /// Gaps that differ by less than this part of the module are taken as equal, which is the rounding of coordinates. It decides which pairs count as
 /// touching; δ moves by less.
@@ -27,11 +27,11 @@ pub(super) struct FirstTouch {
 
 impl FirstTouch {
     /// First contact of the flanks of `pair` in a transverse section, at the δ `delta`.
-    pub(super) fn of(pair: i64, facing: &Facing, delta: f64) -> Self {
+    pub(super) fn of(pair: i64, facing: &GapProfile, delta: f64) -> Self {
         Self {
             pair,
             delta,
-            tip_corner: facing.off_path.then_some(facing.seat),
+            tip_corner: facing.off_path.then_some(facing.primary),
         }
     }
 }
@@ -52,7 +52,7 @@ pub fn light_contact(
 ) -> Result<MeshContact, PositionError> {
     let rounding = TOGETHER * pair.driving().data().rack.module;
     let touch = |n: i64, lag: f64| {
-        let facing = Facing::real(pair, deviations, eta, n, lag)?;
+        let facing = GapProfile::real(pair, deviations, eta, n, lag)?;
         Some(FirstTouch::of(n, &facing, facing.touch()))
     };
     let apart = 2.0 * deviations.nearest() + rounding;

@@ -128,7 +128,7 @@ pub struct DeviatingPair<'a> {
 }
 
 impl<'a> DeviatingPair<'a> {
-    /// The pose of its pair `n` at the mesh position `eta`, the driven gear lagging by `lag`, for points that were placed on a seat at a phase.
+    /// The pose of its pair `n` at the mesh position `eta`, the driven gear lagging by `lag`, for points that were placed on a primary at a phase.
     pub(super) fn pose(self, eta: f64, n: i64, lag: f64, placed: (Member, f64)) -> Pose<'a> {
         let made = (&self.model.pair, self.deviations);
         Pose::real(made, Section::straight(eta, n), lag, placed)
@@ -180,9 +180,9 @@ impl PairModel {
         self.drawn.pair(&self.flanks(), phase)
     }
 
-    /// Its pair at `phase`, seen from the flank of `seat`.
-    pub(super) fn drawn_pair_on(&self, phase: f64, seat: Member) -> DrawnPair {
-        self.drawn.pair_on(&self.flanks(), phase, seat)
+    /// Its pair at `phase`, seen from the flank of `primary`.
+    pub(super) fn drawn_pair_on(&self, phase: f64, primary: Member) -> DrawnPair {
+        self.drawn.pair_on(&self.flanks(), phase, primary)
     }
 
     /// X between the teeth of `member` in two pairs, which are numbered from the reference pair of the mesh period `period`.

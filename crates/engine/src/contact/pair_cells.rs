@@ -8,7 +8,7 @@ use crate::fem::dense;
 use crate::flank::half_plane::{Entries, near_compliance};
 use crate::flank::table::{FlankPoint, FlankTable};
 use crate::gear::{GearPair, Member};
-use crate::touch::facing::Facing;
+use crate::touch::gap_profile::GapProfile;
 use crate::touch::placement::Pose;
 
 /// The flanks of a pair as drawn, on which cells are placed.
@@ -26,7 +26,7 @@ pub(super) struct PairFlanks<'a> {
 pub(super) struct CellsSpec {
     pub(super) phase: u64,
     /// The gear on whose flank they lie.
-    pub(super) seat: Member,
+    pub(super) primary: Member,
     pub(super) load: u64,
     pub(super) cells_per_patch: usize,
     pub(super) extent: Extent,
@@ -49,7 +49,7 @@ impl PairCells {
     pub(super) fn new(
         flanks: &PairFlanks<'_>,
         view: &Pose<'_>,
-        facing: &Facing,
+        facing: &GapProfile,
         spec: CellsSpec,
     ) -> Option<Self> {
         let (load, count) = (f64::from_bits(spec.load), spec.cells_per_patch);

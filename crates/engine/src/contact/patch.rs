@@ -1,6 +1,6 @@
 //! Patches of contact cells about the places where flanks are nearest.
 //!
-//! The cells lie on the flank of the seat, the gear whose tip is nearer. On the line of action of unmodified flanks a cell presses along the
+//! The cells lie on the flank of the primary, the gear whose tip is nearer. On the line of action of unmodified flanks a cell presses along the
 //! theoretical normal; elsewhere, where a relief inclines a flank or a tip corner digs into the other one, the normal is tilted and its
 //! arms about the centers are not the base radii.
 
@@ -9,7 +9,7 @@ use std::ops::Range;
 use crate::flank::half_plane::{NearField, logarithm_factor};
 use crate::gear::{GearPair, Member, Vector};
 use crate::root_finding::crossing;
-use crate::touch::facing::{Facing, GapMinimum, RangeEnd};
+use crate::touch::gap_profile::{GapMinimum, GapProfile, RangeEnd};
 use crate::touch::meeting::{FlankPoint, FlankPoints};
 use crate::touch::placement::Pose;
 
@@ -57,20 +57,20 @@ pub struct Cell {
 #[derive(Debug, Clone)]
 pub struct Patch {
     /// The gear on whose flank the cells lie.
-    pub seat: Member,
-    /// The cells, towards the seat's tip.
+    pub primary: Member,
+    /// The cells, towards the primary gear's tip.
     pub cells: Vec<Cell>,
-    /// Where cells begin and end, by arc length on the seat's involute, and along the flank as it is.
+    /// Where cells begin and end, by arc length on the primary gear's involute, and along the flank as it is.
     pub(super) ends_along: Vec<[f64; 2]>,
     /// The ends of the flanks that the first and the last cell reach.
     pub ends: [Option<RangeEnd>; 2],
-    /// Where a flank has a kink, by arc length on the seat's involute, rising.
+    /// Where a flank has a kink, by arc length on the primary gear's involute, rising.
     kinks: Vec<f64>,
     /// Places at which a flank ends in the corner of its undercut.
     corners: Vec<f64>,
     /// How each gear gives way near the contact.
     pub near_fields: [NearField; 2],
-    /// True if the nominal contact lies past the seat's tip, off the path of contact.
+    /// True if the nominal contact lies past the primary gear's tip, off the path of contact.
     pub off_path: bool,
     /// The middle of each cell, to be followed.
     pub(super) flank_points: FlankPoints,
@@ -99,7 +99,7 @@ pub(super) struct Extent {
     pub(super) widened: usize,
     /// How often all cells were halved.
     pub(super) halved: u32,
-    /// How far deviations that incline the flanks move the contact towards the seat's tip, in halves of [`half_width`].
+    /// How far deviations that incline the flanks move the contact towards the primary gear's tip, in halves of [`half_width`].
     pub(super) moved: i32,
 }
 
@@ -131,7 +131,7 @@ impl Patch {
     /// and at kinks. The cells of a patch are among those of the same patch widened: where contact does not reach beyond the core nothing changes.
     pub(super) fn new(
         view: &Pose<'_>,
-        facing: &Facing,
+        facing: &GapProfile,
         load: f64,
         count: usize,
         extent: Extent,
@@ -141,7 +141,7 @@ impl Patch {
         let covered = &facing.minima[..extent.minima.min(facing.minima.len())];
         let chains = chains(view, facing, covered, load, count, extent);
         let mut patch = Self {
-            seat: facing.seat,
+            primary: facing.primary,
             cells: Vec::new(),
             ends_along: Vec::new(),
             ends: [
@@ -178,7 +178,7 @@ impl Patch {
     }
 
     /// Places the cell between the last two ends.
-    fn place(&mut self, view: &Pose<'_>, facing: &Facing) {
+    fn place(&mut self, view: &Pose<'_>, facing: &GapProfile) {
         let place = self.ends_along.len() - 2;
         let ([from, _], [to, _]) = (self.ends_along[place], self.ends_along[place + 1]);
         if let Some(stretch) = self.stretch_between(view, &facing.kinks, from, to) {
@@ -191,7 +191,7 @@ impl Patch {
         }
     }
 
-    /// The flank of the seat of `view`, this one's or the other gear, between its arcs `from` and `to`; `None` inside the other base circle.
+    /// The flank of the primary of `view`, this one's or the other gear, between its arcs `from` and `to`; `None` inside the other base circle.
     pub(super) fn stretch_between(
         &self,
         view: &Pose<'_>,
@@ -208,13 +208,13 @@ impl Patch {
             let across = Vector::new(-radial.y, radial.x);
             [normal.dot(&across), normal.dot(&radial)]
         };
-        let (on_seat, on_mate) = (on(place.radial).map(|each| -each), on(opposite.radial));
+        let (on_primary, on_secondary) = (on(place.radial).map(|each| -each), on(opposite.radial));
         let roll_lengths = view.on_both(middle.roll_length, opposite.roll_length);
-        let along = if view.seat == self.seat {
+        let along = if view.primary == self.primary {
             [from, to].map(|arc| self.along(arc))
         } else {
-            let flank = view.pair.gear(self.seat).flank();
-            let at = self.along(flank.arc_length(roll_lengths[self.seat.index()]));
+            let flank = view.pair.gear(self.primary).flank();
+            let at = self.along(flank.arc_length(roll_lengths[self.primary.index()]));
             [at - 0.5 * (to - from), at + 0.5 * (to - from)]
         };
         Some(Stretch {
@@ -222,7 +222,7 @@ impl Patch {
                 stretch: 0,
                 width: along[1] - along[0],
                 roll_lengths,
-                directions: view.on_both(on_seat, on_mate),
+                directions: view.on_both(on_primary, on_secondary),
                 gap,
                 arms: met.arms,
             },
@@ -349,7 +349,7 @@ impl Patch {
         0.5 * cells.iter().map(|cell| cell.width).sum::<f64>()
     }
 
-    /// Where the cells from the first to the last of `contact` begin and end, by arc length on the seat's involute.
+    /// Where the cells from the first to the last of `contact` begin and end, by arc length on the primary gear's involute.
     fn reach(&self, contact: &Range<usize>) -> [f64; 2] {
         let [first, last] = [contact.start, contact.end - 1].map(|i| self.cells[i].stretch);
         [self.ends_along[first][0], self.ends_along[last + 1][0]]
@@ -387,9 +387,9 @@ impl Patch {
     /// True if the contact of the `active` cells reaches a corner: the tip edge of a gear whose edge is `sharp`, or that of an undercut flank.
     pub(super) fn corner_carries(&self, active: &[bool], sharp: [bool; 2]) -> bool {
         let at_tip = self.ended_by(active).any(|end| match end {
-            RangeEnd::Tip => sharp[self.seat.index()],
-            RangeEnd::MateTip => sharp[self.seat.other().index()],
-            RangeEnd::Fillet | RangeEnd::MateFillet => false,
+            RangeEnd::Tip => sharp[self.primary.index()],
+            RangeEnd::SecondaryTip => sharp[self.primary.other().index()],
+            RangeEnd::Fillet | RangeEnd::SecondaryFillet => false,
         });
         let cells = self.cells.iter().zip(active);
         let mut carrying = cells.filter(|(_, active)| **active);
@@ -404,9 +404,9 @@ impl Patch {
     /// The gear whose fillet the contact of the `active` cells reaches.
     pub(super) fn reached_fillet(&self, active: &[bool]) -> Option<Member> {
         self.ended_by(active).find_map(|end| match end {
-            RangeEnd::Fillet => Some(self.seat),
-            RangeEnd::MateFillet => Some(self.seat.other()),
-            RangeEnd::Tip | RangeEnd::MateTip => None,
+            RangeEnd::Fillet => Some(self.primary),
+            RangeEnd::SecondaryFillet => Some(self.primary.other()),
+            RangeEnd::Tip | RangeEnd::SecondaryTip => None,
         })
     }
 
@@ -436,7 +436,7 @@ fn mean_gap(view: &Pose<'_>, kinks: &[f64], from: f64, to: f64) -> Option<f64> {
 /// Rising ends of cells: chains of them, apart from each other.
 fn chains(
     view: &Pose<'_>,
-    facing: &Facing,
+    facing: &GapProfile,
     covered: &[GapMinimum],
     load: f64,
     count: usize,
@@ -509,8 +509,8 @@ fn covered_by(cores: &[[f64; 2]]) -> f64 {
 }
 
 /// The stretch about `minimum` that the contact may take under the whole load, and a quarter beside it.
-fn core(view: &Pose<'_>, minimum: &GapMinimum, load: f64, facing: &Facing) -> [f64; 2] {
-    let Facing { range, kinks, .. } = facing;
+fn core(view: &Pose<'_>, minimum: &GapMinimum, load: f64, facing: &GapProfile) -> [f64; 2] {
+    let GapProfile { range, kinks, .. } = facing;
     let (indentation, radius) = indentation(view.pair, minimum, load);
     let ways = minimum
         .openings
@@ -574,13 +574,13 @@ const AT_CORNER: u32 = 4;
 
 /// The ends of cells of about `width` over a stretch of the flank of `facing`. A kink ends one and stands among narrower cells, at distances from it
 /// that do not depend on the other ends: nothing steps as cells move over it.
-fn ending_at_kinks([from, to]: [f64; 2], width: f64, facing: &Facing) -> Vec<f64> {
-    let Facing { range, kinks, .. } = facing;
+fn ending_at_kinks([from, to]: [f64; 2], width: f64, facing: &GapProfile) -> Vec<f64> {
+    let GapProfile { range, kinks, .. } = facing;
     let count = ((to - from) / width).round().max(1.0) as usize;
     let width = (to - from) / count as f64;
 
     // Places towards which cells become narrower, and the number of halvings.
-    let is_tip = |end: RangeEnd| matches!(end, RangeEnd::Tip | RangeEnd::MateTip);
+    let is_tip = |end: RangeEnd| matches!(end, RangeEnd::Tip | RangeEnd::SecondaryTip);
     let mut towards: Vec<(f64, u32)> = Vec::new();
     if from == range.from && is_tip(range.ends[0]) {
         towards.push((from, AT_CORNER));
@@ -648,11 +648,11 @@ fn halved_about(place: f64, width: f64, times: u32) -> impl Iterator<Item = f64>
 }
 
 /// Adds cells that grow away from the `chains` on all their open sides, until they meet.
-fn widen(chains: &mut Vec<Vec<f64>>, facing: &Facing, width: f64, times: usize) {
+fn widen(chains: &mut Vec<Vec<f64>>, facing: &GapProfile, width: f64, times: usize) {
     if times == 0 {
         return;
     }
-    let Facing { range, kinks, .. } = facing;
+    let GapProfile { range, kinks, .. } = facing;
     let firsts: Vec<f64> = chains.iter().map(|chain| chain[0]).collect();
     let lasts: Vec<f64> = chains.iter().map(|chain| chain[chain.len() - 1]).collect();
     let mut joined: Vec<Vec<f64>> = Vec::new();
@@ -786,8 +786,8 @@ mod tests {
     }
 
     fn patch(pair: &GearPair, phase: f64, count: usize) -> Patch {
-        let facing = Facing::drawn(pair, phase).expect("flanks that face each other");
-        let view = Pose::drawn(pair, phase, facing.seat);
+        let facing = GapProfile::drawn(pair, phase).expect("flanks that face each other");
+        let view = Pose::drawn(pair, phase, facing.primary);
         let extent = Extent {
             minima: 1,
             widened: 0,
@@ -809,10 +809,10 @@ mod tests {
         let pair = GearPair::new(gear(), gear(), 100.5e-3).expect("meshes");
         for i in 0..2000 {
             let phase = -0.8 + 8e-4 * f64::from(i);
-            let Some(facing) = Facing::drawn(&pair, phase) else {
+            let Some(facing) = GapProfile::drawn(&pair, phase) else {
                 continue;
             };
-            let view = Pose::drawn(&pair, phase, facing.seat);
+            let view = Pose::drawn(&pair, phase, facing.primary);
             let extent = Extent {
                 minima: facing.minima.len(),
                 widened: 1,
@@ -873,12 +873,12 @@ mod tests {
         let pair = pair();
         let (s_a, s_e) = pair.path_of_contact();
         let periods = |s: f64| (s - pair.pitch_roll_length()) / pair.base_pitch();
-        for (eta, seat) in [
+        for (eta, primary) in [
             (periods(s_a) - 0.1, Member::Driven),
             (periods(s_e) + 0.1, Member::Driving),
         ] {
             let patch = patch(&pair, eta, 40);
-            assert!(patch.off_path && patch.seat == seat);
+            assert!(patch.off_path && patch.primary == primary);
             assert_eq!(patch.ends, [None, Some(RangeEnd::Tip)]);
             let last = patch.cells.last().expect("cells");
             assert!(patch.cells.iter().all(|cell| cell.gap >= last.gap));

@@ -28,9 +28,9 @@ impl PlacedStretches {
         deviating: DeviatingPair<'_>,
         at: MeshPosition,
     ) -> Self {
-        let seat = placed.cells().patch.seat;
-        let met = [seat, seat.other()].map(|from| {
-            let flank_points = &checked.flank_points[usize::from(from != seat)];
+        let primary = placed.cells().patch.primary;
+        let met = [primary, primary.other()].map(|from| {
+            let flank_points = &checked.flank_points[usize::from(from != primary)];
             if flank_points.is_empty() {
                 return Vec::new();
             }
@@ -65,7 +65,7 @@ impl PlacedStretches {
                 })
             }
             place => {
-                let from_mate = place.seen_from(patch.seat) != Some(patch.seat);
+                let from_mate = place.seen_from(patch.primary) != Some(patch.primary);
                 let at = met[usize::from(from_mate)].next()?;
                 Some((at.gap + placed.lag * at.arms[1], at.arms[1]))
             }

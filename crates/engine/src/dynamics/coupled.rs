@@ -8,7 +8,7 @@
 use super::bodies::Coupled;
 use super::free::{Complexes, FreeMotions};
 use super::law::Laws;
-use super::oscillator::Seen;
+use super::oscillator::PeriodExtremes;
 
 /// Pieces of a law that are tried for the end of a look before it is taken to lie at a knot.
 const MOST_PIECES: usize = 256;
@@ -128,7 +128,7 @@ impl<'a> CoupledMotion<'a> {
         &self,
         state: &mut [f64],
         derivative: Option<&mut Vec<Vec<f64>>>,
-        see: &mut dyn FnMut(Seen),
+        see: &mut dyn FnMut(PeriodExtremes),
     ) {
         let [falling, rising] = &self.pushed;
         let teeth = &self.free.teeth;
@@ -171,7 +171,7 @@ impl<'a> CoupledMotion<'a> {
                     }
                     slope_before = end.slope;
                 }
-                see(Seen {
+                see(PeriodExtremes {
                     step: index,
                     part,
                     u: own.real_of_product(&self.free.hubs) - deflection,

@@ -48,4 +48,4 @@ pub use order::Order;
 pub use oscillator::{Oscillator, State};
 pub use resonance::{Excitation, Resonance};
 pub use run_up::{Branch, RunUp};
-pub use table::{FallingRow, FlankRows, ForceTable, Ladder};
+pub use table::{FallingRow, FlankRows, ForceTable, LoadSteps};

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector, Schur};
 
 use super::coupled::CoupledMotion;
-use super::oscillator::{Oscillator, Seen, State};
+use super::oscillator::{Oscillator, PeriodExtremes, State};
 
 /// Newton steps before there is taken to be no periodic motion near.
 const MOST_STEPS: u32 = 16;
@@ -126,7 +126,7 @@ pub trait Repeating {
         &self,
         state: &mut Vec<f64>,
         derivative: Option<&mut Derivative>,
-        see: &mut dyn FnMut(Seen),
+        see: &mut dyn FnMut(PeriodExtremes),
     );
 
     /// The motion near `start` that repeats after `repeats` periods, stable or not.
@@ -288,7 +288,7 @@ impl Repeating for Oscillator<'_> {
         &self,
         state: &mut Vec<f64>,
         derivative: Option<&mut Derivative>,
-        see: &mut dyn FnMut(Seen),
+        see: &mut dyn FnMut(PeriodExtremes),
     ) {
         let begin = State {
             u: state[0],
@@ -324,7 +324,7 @@ impl Repeating for CoupledMotion<'_> {
         &self,
         state: &mut Vec<f64>,
         derivative: Option<&mut Derivative>,
-        see: &mut dyn FnMut(Seen),
+        see: &mut dyn FnMut(PeriodExtremes),
     ) {
         self.carry_over_period(state, derivative, see);
     }

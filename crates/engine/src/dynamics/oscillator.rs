@@ -50,7 +50,7 @@ pub struct Oscillator<'a> {
 
 /// State at the end of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Seen {
+pub struct PeriodExtremes {
     /// The step.
     pub step: usize,
     /// How much of it has passed.
@@ -65,7 +65,11 @@ pub struct Seen {
 
 impl Oscillator<'_> {
     /// The state a period after `state`, and its derivative to it; `see` gets the states on the way.
-    pub fn after_period(&self, state: State, mut see: impl FnMut(Seen)) -> (State, Monodromy) {
+    pub fn after_period(
+        &self,
+        state: State,
+        mut see: impl FnMut(PeriodExtremes),
+    ) -> (State, Monodromy) {
         let State { mut u, mut v } = state;
         let mut derivative = [[1.0, 0.0], [0.0, 1.0]];
         let mut place = 0;
@@ -85,7 +89,7 @@ impl Oscillator<'_> {
                 };
                 moving.advance(look, &mut whole, &mut derivative);
                 (u, v, place) = (moving.u, moving.v, moving.place);
-                see(Seen {
+                see(PeriodExtremes {
                     step: index,
                     part: f64::from(looked) / f64::from(self.looks),
                     u,

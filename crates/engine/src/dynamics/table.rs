@@ -33,14 +33,14 @@ pub struct FallingRow {
 
 /// The loads of a table: 0 and so many more, up to the largest.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ladder {
+pub struct LoadSteps {
     /// The number of loads, the first of which is 0.
     pub count: usize,
     /// The largest load in N.
     pub largest: f64,
 }
 
-impl Ladder {
+impl LoadSteps {
     /// The loads in N, rising from 0.
     pub fn loads(&self) -> Vec<f64> {
         let (light, few) = LIGHT;
@@ -677,7 +677,7 @@ pub(super) mod tests {
 
     #[test]
     fn a_row_that_falls_is_told_and_one_that_rounding_moved_is_set_apart() {
-        let ladder = Ladder {
+        let ladder = LoadSteps {
             count: 3,
             largest: 4.0,
         };
@@ -752,7 +752,7 @@ pub(super) mod tests {
     #[test]
     fn loads_of_a_table_rise_however_many_there_are() {
         for count in 2..400 {
-            let loads = Ladder {
+            let loads = LoadSteps {
                 count,
                 largest: 3.0,
             }
@@ -881,7 +881,7 @@ pub(super) mod tests {
     #[test]
     fn a_kink_is_found_of_what_stands_beside_it() {
         // A line contact, to which another comes at a load between two of the table.
-        let ladder = Ladder {
+        let ladder = LoadSteps {
             count: 12,
             largest: 1000.0,
         };

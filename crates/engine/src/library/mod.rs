@@ -10,9 +10,9 @@ use std::sync::Arc;
 pub use shelf::ShelfUsage;
 
 use crate::assembly::{
-    AssemblyError, BlankSpec, ContactsSpec, FaceContactsSpec, FaceHoles, FaceRoots, FaceYield, FaceYieldSpec,
-    FlanksSpec, Gear, GearSpec, PairSpec, PartError, Parts, PlainFace, PlainGearSpec, Spun,
-    SpunSpec, Stack, Teeth, TeethSpec, WantedGear, make_gears, make_spun,
+    AssemblyError, BlankSpec, ContactsSpec, FaceCompliance, FaceComplianceSpec, FaceContactsSpec,
+    FaceHoles, FaceRoots, FlanksSpec, Gear, GearSpec, PairSpec, PartError, Parts, PlainFace,
+    PlainGearSpec, Spun, SpunSpec, Stack, Teeth, TeethSpec, WantedGear, make_gears, make_spun,
 };
 use crate::contact::compliances::Compliances;
 use crate::contact::drawn::DrawnFlanks;
@@ -40,9 +40,9 @@ struct Shelves {
     compliances: Shelf<PairSpec, Compliances>,
     contacts: Shelf<ContactsSpec, Vec<MeshContact>>,
     faces: Shelf<Stack, PlainFace>,
-    yields: Shelf<FaceYieldSpec, FaceYield>,
+    yields: Shelf<FaceComplianceSpec, FaceCompliance>,
     roots: Shelf<Stack, FaceRoots>,
-    holes: Shelf<FaceYieldSpec, FaceHoles>,
+    holes: Shelf<FaceComplianceSpec, FaceHoles>,
 }
 
 impl Default for Library {
@@ -161,7 +161,11 @@ impl Parts for Library {
         self.0.faces.made(spec, || PlainFace::new(spec, run))
     }
 
-    fn face_yield(&self, spec: &FaceYieldSpec, run: &Run) -> Result<Arc<FaceYield>, PartError> {
+    fn face_compliance(
+        &self,
+        spec: &FaceComplianceSpec,
+        run: &Run,
+    ) -> Result<Arc<FaceCompliance>, PartError> {
         self.0.yields.made(spec, || {
             spec.make(self.plain_face(&spec.stack(), run)?, run)
         })
@@ -175,7 +179,7 @@ impl Parts for Library {
 
     fn face_holes(
         &self,
-        spec: &FaceYieldSpec,
+        spec: &FaceComplianceSpec,
         run: &Run,
     ) -> Result<Option<Arc<FaceHoles>>, PartError> {
         let made = spec.hole_orders().map(|orders| {
@@ -287,8 +291,8 @@ mod tests {
             sections: crate::grid::GridLevel::Standard,
         };
         let made_by = |parts: &dyn Parts, radius: f64| {
-            let spec = FaceYieldSpec::new(&holed(radius), resolution);
-            let yields = parts.face_yield(&spec, &run).expect("definite");
+            let spec = FaceComplianceSpec::new(&holed(radius), resolution);
+            let yields = parts.face_compliance(&spec, &run).expect("definite");
             let roots = parts.face_roots(&spec.stack(), &run).expect("definite");
             let holes = parts.face_holes(&spec, &run).expect("definite");
             let holes = holes.expect("it has holes");

@@ -18,13 +18,13 @@ pub(crate) struct GapAndArms<T = f64> {
     pub(crate) arms: [T; 2],
 }
 
-/// A point of the seat's flank as drawn and as placed, to be evaluated at many positions: both gears may have turned on a little since, and their teeth may
+/// A point of the primary flank as drawn and as placed, to be evaluated at many positions: both gears may have turned on a little since, and their teeth may
 /// deviate. No angle is to be taken for that.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FlankPoint<T = f64> {
-    /// The roll length on the seat, as placed.
+    /// The roll length on the primary, as placed.
     roll_length: T,
-    /// Position from the center of the seat.
+    /// Position from the center of the primary.
     point: Vector2<T>,
     normal: Vector2<T>,
     radial: Vector2<T>,
@@ -138,8 +138,8 @@ impl Pose<'_> {
     #[inline(always)]
     pub(crate) fn gap_and_arms_of<T: Numbers>(&self, point: &FlankPoint<T>) -> GapAndArms<T> {
         let number = T::splat;
-        let (seat, mate) = (self.seat.index(), self.seat.other().index());
-        let (own, other) = (&self.flanks[seat], &self.flanks[mate]);
+        let (primary, secondary) = (self.primary.index(), self.primary.other().index());
+        let (own, other) = (&self.flanks[primary], &self.flanks[secondary]);
         // A slope deviation, or a trace, turns each point by itself and inclines the flank.
         let (mut place, mut normal) = (point.point, point.normal);
         if !own.is_drawn() {
@@ -148,13 +148,13 @@ impl Pose<'_> {
             place = turned(turn(height, r_b), place);
             normal -= point.radial * (inclination * number(r_b) / s.simd_max(number(1e-9 * r_b)));
         }
-        let rotation = self.rotations[seat].map(number);
-        let place = self.centers[seat].map(number) + turned(rotation, place);
-        let on_seat = turned(rotation, normal);
+        let rotation = self.rotations[primary].map(number);
+        let place = self.centers[primary].map(number) + turned(rotation, place);
+        let on_primary = turned(rotation, normal);
 
         // As the other gear sees it in the frame in which it was placed.
-        let [cosine, sine] = self.rotations[mate].map(number);
-        let d = turned([cosine, -sine], place - self.centers[mate].map(number));
+        let [cosine, sine] = self.rotations[secondary].map(number);
+        let d = turned([cosine, -sine], place - self.centers[secondary].map(number));
         let (s, radial) = tangent(d, other.base_radius());
         // An arc of a few thousandths, to the last digit.
         let chord = point.opposite.x * radial.y - point.opposite.y * radial.x;
@@ -163,21 +163,21 @@ impl Pose<'_> {
             chord * (number(1.0) + square * (number(1.0 / 6.0) + square * number(3.0 / 40.0)));
         let foot = point.foot - number(other.base_radius()) * turn;
         let RotationGap { gap, normal, .. } = other.rotation_gap((s, radial), foot);
-        let normal = self.common_normal(on_seat, turned([cosine, sine], normal));
+        let normal = self.common_normal(on_primary, turned([cosine, sine], normal));
         self.gap_along(normal, place, gap)
     }
 
-    /// The direction in which flanks with the outward normals `on_seat` and `on_mate` push, outward from that of the other gear.
+    /// The direction in which flanks with the outward normals `on_primary` and `on_secondary` push, outward from that of the other gear.
     ///
     /// Pressed together both turn to a common normal between their own, but for a corner ([`placement::weights`]).
     #[inline(always)]
     pub(crate) fn common_normal<T: Numbers>(
         &self,
-        on_seat: Vector2<T>,
-        on_mate: Vector2<T>,
+        on_primary: Vector2<T>,
+        on_secondary: Vector2<T>,
     ) -> Vector2<T> {
         let weight = |member: Member| T::splat(self.weights[member.index()]);
-        unit(on_mate * weight(self.seat.other()) - on_seat * weight(self.seat))
+        unit(on_secondary * weight(self.primary.other()) - on_primary * weight(self.primary))
     }
 
     /// Gap and arms at `point`, where the flanks push along `normal`: that of the other gear passes through it once turned by the length `rotation` on its base
@@ -197,7 +197,7 @@ impl Pose<'_> {
             self.arms(normal, point, self.centers)
         };
         GapAndArms {
-            gap: rotation * closing[self.seat.other().index()],
+            gap: rotation * closing[self.primary.other().index()],
             arms,
         }
     }
@@ -211,7 +211,7 @@ impl Pose<'_> {
         centers: [Vector; 2],
     ) -> [T; 2] {
         // On the driven gear; it stands on the other side of the flank.
-        let push = match self.seat {
+        let push = match self.primary {
             Member::Driving => -normal,
             Member::Driven => normal,
         };
@@ -258,7 +258,7 @@ mod tests {
         Eccentricity, GearPair, ModificationData, PairDeviations, ReliefData, ReliefShape,
         ReliefStart, SpurGear, ToothDeviations,
     };
-    use crate::touch::facing::Facing;
+    use crate::touch::gap_profile::GapProfile;
     use crate::touch::placement::Section;
 
     #[test]
@@ -287,8 +287,8 @@ mod tests {
         for teeth in [[&straight, &inclined], [&inclined, &straight]] {
             let deviations = PairDeviations::new(&pair, teeth).expect("small deviations");
             for phase in [-0.45, 0.1, 0.62] {
-                let facing = Facing::drawn(&pair, phase).expect("flanks that face each other");
-                let view = Pose::drawn(&pair, phase, facing.seat);
+                let facing = GapProfile::drawn(&pair, phase).expect("flanks that face each other");
+                let view = Pose::drawn(&pair, phase, facing.primary);
                 let (from, to) = (facing.range.from, facing.range.to);
                 let arcs = || (1..40).map(|i| from + (to - from) * f64::from(i) / 40.0);
                 let points = arcs().filter_map(|arc| view.point(arc));
@@ -297,7 +297,8 @@ mod tests {
                 let mut points = FlankPoints::default();
                 alone.iter().for_each(|point| points.push(point));
 
-                let (section, placed) = (Section::straight(3.0 + phase, 3), (facing.seat, phase));
+                let (section, placed) =
+                    (Section::straight(3.0 + phase, 3), (facing.primary, phase));
                 let pose = Pose::real((&pair, &deviations), section, 2e-6, placed);
                 let each = alone.iter();
                 let expected: Vec<GapAndArms> =

@@ -4,6 +4,6 @@
 //! - [`facing`]: places where two flanks that face each other are nearest, and the lag at which they touch.
 //! - `meeting`: forces where they meet.
 
-pub(crate) mod facing;
+pub(crate) mod gap_profile;
 pub(crate) mod meeting;
 pub(crate) mod placement;

@@ -24,7 +24,7 @@ pub(crate) struct Pose<'a> {
     /// The gears.
     pub(crate) pair: &'a GearPair,
     /// The gear on whose flank points are given.
-    pub(crate) seat: Member,
+    pub(crate) primary: Member,
     pub(super) flanks: [RealFlank<'a>; 2],
     /// Positions of the gears' own axes: beside the axes of rotation where they are eccentric.
     pub(super) centers: [Vector; 2],
@@ -98,7 +98,7 @@ pub(crate) struct RotationGap<T: Numbers = f64> {
     pub(crate) radial: Vector2<T>,
 }
 
-/// A point of the seat's flank, and its gap to the other flank.
+/// A point of the primary flank, and its gap to the other flank.
 pub(crate) struct FacingPoint {
     pub(crate) roll_length: f64,
     pub(crate) place: FlankPlace,
@@ -317,11 +317,11 @@ fn at_each<T: Numbers>(s: T, of: impl Fn(f64) -> (f64, f64)) -> (T, T) {
 }
 
 impl<'a> Pose<'a> {
-    /// The teeth of a pair as drawn, `phase` mesh periods after it passed the pitch point, with points on the flank of `seat`.
-    pub(crate) fn drawn(pair: &'a GearPair, phase: f64, seat: Member) -> Self {
+    /// The teeth of a pair as drawn, `phase` mesh periods after it passed the pitch point, with points on the flank of `primary`.
+    pub(crate) fn drawn(pair: &'a GearPair, phase: f64, primary: Member) -> Self {
         Self {
             pair,
-            seat,
+            primary,
             flanks: Member::BOTH.map(|member| RealFlank::drawn(pair.gear(member))),
             centers: axes(pair),
             angles: angles(pair, phase),
@@ -330,13 +330,13 @@ impl<'a> Pose<'a> {
         }
     }
 
-    /// The teeth of `pair` with these `deviations` in a `section`, the driven gear lagging by `lag` on its base circle. Points on the flank of `seat` are placed on
+    /// The teeth of `pair` with these `deviations` in a `section`, the driven gear lagging by `lag` on its base circle. Points on the flank of `primary` are placed on
     /// the pair as drawn at the phase `placed_at`.
     pub(crate) fn real(
         (pair, deviations): (&'a GearPair, &'a PairDeviations),
         section: Section,
         lag: f64,
-        (seat, placed_at): (Member, f64),
+        (primary, placed_at): (Member, f64),
     ) -> Self {
         let teeth = pair.teeth(section.pair);
         let flanks = Member::BOTH.map(|member| {
@@ -350,7 +350,7 @@ impl<'a> Pose<'a> {
         let advance = [ahead, lag - ahead];
         Self {
             pair,
-            seat,
+            primary,
             flanks,
             centers: centers(pair, deviations, section.pair, in_middle),
             angles: [0, 1].map(|g| angles[g] - section.removed[g] / flanks[g].base_radius()),
@@ -363,9 +363,9 @@ impl<'a> Pose<'a> {
     }
 
     /// The same flanks, with points on the other one.
-    pub(crate) fn seen_from_mate(&self) -> Self {
+    pub(crate) fn seen_from_secondary(&self) -> Self {
         Self {
-            seat: self.seat.other(),
+            primary: self.primary.other(),
             ..*self
         }
     }
@@ -375,7 +375,7 @@ impl<'a> Pose<'a> {
         (self.centers[member.index()], self.angles[member.index()])
     }
 
-    /// The point of the seat's flank at the roll length `s`, and its gap; `None` inside the other base circle.
+    /// The point of the primary flank at the roll length `s`, and its gap; `None` inside the other base circle.
     pub(crate) fn point_at(&self, s: f64) -> Option<FacingPoint> {
         let place = self.place(s);
         Some(FacingPoint {
@@ -385,9 +385,9 @@ impl<'a> Pose<'a> {
         })
     }
 
-    /// The place on the seat's flank at roll length `s`.
+    /// The place on the primary flank at roll length `s`.
     pub(crate) fn place(&self, s: f64) -> FlankPlace {
-        let (g, flank) = (self.seat.index(), &self.flanks[self.seat.index()]);
+        let (g, flank) = (self.primary.index(), &self.flanks[self.primary.index()]);
         let r_b = flank.base_radius();
         let (removed, inclination) = flank.removed_and_inclination(s);
         let t = self.angles[g] + flank.gear.flank().tangent_angle(s) - (removed - flank.turn) / r_b;
@@ -403,9 +403,9 @@ impl<'a> Pose<'a> {
         }
     }
 
-    /// Position of `point` against the flank opposite to the seat's; `None` from inside its base circle.
+    /// Position of `point` against the flank opposite to the primary gear's; `None` from inside its base circle.
     fn rotation_gap(&self, point: Vector) -> Option<RotationGap> {
-        let g = self.seat.other().index();
+        let g = self.primary.other().index();
         let flank = &self.flanks[g];
         let r_b = flank.base_radius();
         let (s, e_r) = tangent(point - self.centers[g], r_b);
@@ -425,17 +425,17 @@ impl<'a> Pose<'a> {
     /// How the rotation gap of `point` and its roll length on the other flank change as it moves along its own flank, by its arc.
     pub(crate) fn change(&self, point: &FacingPoint) -> (f64, f64) {
         let (way, gap) = (point.place.way, &point.gap);
-        let flank = &self.flanks[self.seat.other().index()];
+        let flank = &self.flanks[self.primary.other().index()];
         // The point stands at r_b e_r(t) + s e_t(t) of the center: dt = −way·e_r/s, and s less the foot changes as way·e_t.
         let out = way.dot(&quarter_turned(gap.radial));
         let growth = out + flank.base_radius() / gap.roll_length * way.dot(&gap.radial);
         (out + flank.removed_slope(gap.roll_length) * growth, growth)
     }
 
-    /// The distance of `point` from the fillet on the loaded side of the tooth opposite to the seat's, positive outside.
+    /// The distance of `point` from the fillet on the loaded side of the tooth opposite to the primary gear's, positive outside.
     pub(crate) fn fillet_distance(&self, point: Vector) -> f64 {
         const POINTS: u32 = 64;
-        let member = self.seat.other();
+        let member = self.primary.other();
         let d = point - self.centers[member.index()];
         let (e_x, e_y) = (
             radial(self.angles[member.index()]),

@@ -11,8 +11,8 @@ use meshwright_engine::analysis::{
     BodyFormula, Case, ContactSolver, Curve, FaceHoles, Faces, Formulas, Method, Model, PlaneState,
     Resolution, SectionHoles, StiffnessRule, ToothFormula, analyze,
 };
-use meshwright_engine::assembly::{FaceResolution, FaceYield};
-use meshwright_engine::contact::face::{FaceModel, FlankYield, SLICES};
+use meshwright_engine::assembly::{FaceCompliance, FaceResolution};
+use meshwright_engine::contact::face::{FaceModel, FlankCompliance, SLICES};
 use meshwright_engine::contact::{MeshContact, PairModel, PositionError, WarmStart};
 use meshwright_engine::gear::{
     Alignment, BlankRegion, FaceEnds, GearData, GearPair, Helix, HolePattern, LeadModification,
@@ -199,10 +199,10 @@ pub(crate) fn along_faces(
 pub(crate) fn face_yields(
     pair: &SolidPair,
     resolution: FaceResolution,
-) -> [Arc<dyn FlankYield>; 2] {
+) -> [Arc<dyn FlankCompliance>; 2] {
     Member::BOTH.map(|member| {
-        let made = FaceYield::of(pair.gear(member), resolution, &Run::unattended());
-        Arc::new(made.expect("can be condensed")) as Arc<dyn FlankYield>
+        let made = FaceCompliance::of(pair.gear(member), resolution, &Run::unattended());
+        Arc::new(made.expect("can be condensed")) as Arc<dyn FlankCompliance>
     })
 }
 

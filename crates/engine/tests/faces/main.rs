@@ -8,7 +8,9 @@ use std::sync::Arc;
 use cases::{above_the_tenth_harmonic, drawn};
 
 use faer::Mat;
-use meshwright_engine::contact::face::{FaceContact, FaceModel, FlankYield, SLICES, SliceLoad};
+use meshwright_engine::contact::face::{
+    FaceContact, FaceModel, FlankCompliance, SLICES, SliceLoad,
+};
 use meshwright_engine::gear::{
     Alignment, BlankRegion, FaceEnds, GearData, Helix, LeadModification, Material, Member,
     ModificationData, Rack, ReliefData, ReliefShape, ReliefStart, SolidGear, SolidPair, TipEdge,
@@ -41,7 +43,7 @@ impl Manufactured {
     }
 }
 
-impl FlankYield for Manufactured {
+impl FlankCompliance for Manufactured {
     fn basis_len(&self) -> usize {
         2 * ACROSS
     }
@@ -165,8 +167,9 @@ impl Drawing {
 
     fn model_of(&self, slices: usize) -> FaceModel {
         let pair = self.pair();
-        let yields = Member::BOTH
-            .map(|member| Arc::new(Manufactured::of(pair.gear(member))) as Arc<dyn FlankYield>);
+        let yields = Member::BOTH.map(|member| {
+            Arc::new(Manufactured::of(pair.gear(member))) as Arc<dyn FlankCompliance>
+        });
         FaceModel::new(pair, yields, slices, 20)
     }
 }
@@ -760,7 +763,7 @@ fn crowned_flanks_press_on_each_other_as_hertzs_ellipse() {
                 compliance: 0.0,
                 ..Manufactured::of(pair.gear(member))
             };
-            Arc::new(rigid) as Arc<dyn FlankYield>
+            Arc::new(rigid) as Arc<dyn FlankCompliance>
         });
         let model = FaceModel::new(pair, yields, SLICES, 20);
         let contact = contacts(&model, load, &[0.0]).remove(0);

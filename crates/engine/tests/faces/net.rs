@@ -6,7 +6,7 @@
 //! of its contact is left out: there the flanks are pressed together.
 
 use faer::Mat;
-use meshwright_engine::contact::face::{FaceContact, FaceModel, FlankYield, SliceLoad};
+use meshwright_engine::contact::face::{FaceContact, FaceModel, FlankCompliance, SliceLoad};
 use meshwright_engine::gear::{Member, SolidPair};
 use nalgebra::Vector2;
 
@@ -25,7 +25,7 @@ pub(crate) struct Net<'a> {
     contact: &'a FaceContact,
     /// The pairs that are loaded, the functions on the flanks of each gear, and what they are moved by.
     pairs: Vec<i64>,
-    yields: [Box<dyn FlankYield>; 2],
+    yields: [Box<dyn FlankCompliance>; 2],
     moved: [Mat<f64>; 2],
 }
 
@@ -39,7 +39,7 @@ pub(crate) struct Deepest {
 }
 
 impl<'a> Net<'a> {
-    pub(crate) fn new<Y: FlankYield + 'static>(
+    pub(crate) fn new<Y: FlankCompliance + 'static>(
         model: &'a FaceModel,
         contact: &'a FaceContact,
         yields: impl Fn(Member) -> Y,
@@ -49,7 +49,8 @@ impl<'a> Net<'a> {
         let slices = &contact.slices;
         let (first, last) = (slices[0].pair, slices[slices.len() - 1].pair);
         let pairs: Vec<i64> = (first - reach..=last + reach).collect();
-        let yields = Member::BOTH.map(|member| Box::new(yields(member)) as Box<dyn FlankYield>);
+        let yields =
+            Member::BOTH.map(|member| Box::new(yields(member)) as Box<dyn FlankCompliance>);
         let moved = Member::BOTH.map(|member| {
             let of = &yields[member.index()];
             let size = of.basis_len();
@@ -84,8 +85,8 @@ impl<'a> Net<'a> {
         for &n in &self.pairs {
             for i in 0..ACROSS {
                 let z = half * (2.0 * i as f64 / (ACROSS - 1) as f64 - 1.0);
-                for (seat, s) in self.points() {
-                    if let Some((depth, roll_lengths)) = self.depth(eta, (n, z), seat, s)
+                for (primary, s) in self.points() {
+                    if let Some((depth, roll_lengths)) = self.depth(eta, (n, z), primary, s)
                         && depth > deepest.depth
                     {
                         deepest = Deepest {
@@ -110,16 +111,22 @@ impl<'a> Net<'a> {
 
     /// The points up both flanks.
     fn points(&self) -> impl Iterator<Item = (Member, f64)> {
-        Member::BOTH.into_iter().flat_map(|seat| {
-            let gear = self.pair.section().gear(seat);
+        Member::BOTH.into_iter().flat_map(|primary| {
+            let gear = self.pair.section().gear(primary);
             let (from, to) = (gear.form_roll_length(), gear.tip_form_roll_length());
-            (0..=UP).map(move |i| (seat, from + (to - from) * i as f64 / UP as f64))
+            (0..=UP).map(move |i| (primary, from + (to - from) * i as f64 / UP as f64))
         })
     }
 
-    /// How deep the point at the roll length `s` of the flank of `seat` stands in the other flank, and where on both; `None` if it meets
+    /// How deep the point at the roll length `s` of the flank of `primary` stands in the other flank, and where on both; `None` if it meets
     /// no flank there, or is pressed.
-    fn depth(&self, eta: f64, (n, z): (i64, f64), seat: Member, s: f64) -> Option<(f64, [f64; 2])> {
+    fn depth(
+        &self,
+        eta: f64,
+        (n, z): (i64, f64),
+        primary: Member,
+        s: f64,
+    ) -> Option<(f64, [f64; 2])> {
         let section = self.pair.section();
         let at = section.roll_length_of(self.pair.phase(eta, n, z));
         let alpha = section.working_pressure_angle();
@@ -137,8 +144,8 @@ impl<'a> Net<'a> {
             let (tangent, along) = (Vector2::new(cos, sin), Vector2::new(sin, -cos));
             (r_b * tangent + s * along, along)
         };
-        let mate = seat.other();
-        let (here, normal) = point(seat, s);
+        let mate = primary.other();
+        let (here, normal) = point(primary, s);
         // The half turn about the middle between the axes takes each gear to the other.
         let seen = Vector2::new(section.center_distance(), 0.0) - here;
         let other = section.gear(mate);

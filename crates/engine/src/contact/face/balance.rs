@@ -76,7 +76,7 @@ pub(super) struct Balance {
     pub(super) stiffness: f64,
     pub(super) iterations: u32,
     /// True if springs carry more than the load of their table.
-    pub(super) is_strained: bool,
+    pub(super) is_beyond_range: bool,
     /// By how much the linear yield opens their middles.
     opened: Vec<f64>,
     points: Vec<Point>,
@@ -466,11 +466,11 @@ impl Problem<'_> {
                     slice.middle.gap + opened - state.delta * slice.middle.weights[1]
                 })
                 .collect(),
-            is_strained: points.iter().any(|point| {
+            is_beyond_range: points.iter().any(|point| {
                 let slice = &self.slices[point.slice];
                 let carried = &carried[point.slice];
                 let long = 0.5 * (carried.part[1] - carried.part[0]) * slice.along;
-                !slice.middle.spring.knows(carried.force / long)
+                !slice.middle.spring.covers(carried.force / long)
             }),
             load_derivative: in_middles(&points, size, grown),
             carried,

@@ -8,7 +8,7 @@ use crate::contact::memo::Memo;
 use crate::contact::{MeshContact, PositionError};
 use crate::gear::{GearPair, Member, PairDeviations, SolidPair};
 use crate::root_finding::{crossing, least_places};
-use crate::touch::facing::{Facing, Touching, nearer_tip};
+use crate::touch::gap_profile::{FirstContact, GapProfile, nearer_tip};
 use crate::touch::placement::Section;
 
 /// The flanks of a pair along their faces.
@@ -118,7 +118,7 @@ impl FaceFlanks {
     }
 
     /// The flanks in a `section` where they just touch; `None` where they do not face each other.
-    pub(super) fn touching(&self, section: Section) -> Option<Touching<'_>> {
+    pub(super) fn touching(&self, section: Section) -> Option<FirstContact<'_>> {
         // In modules: 20 nm at 2 mm. So short a way is straight to 0.1 nm.
         const NEAR: f64 = 1e-5;
         let (gears, deviations) = (&self.plane_strain, &self.deviations);
@@ -131,10 +131,10 @@ impl FaceFlanks {
             let (tooth, twist) = (gears.tooth(member, section.pair), section.twists[g]);
             section.removed[g] + deviations.of_gear(member).missing(gear, tooth, s, twist)
         });
-        let seat = nearer_tip(gears, section.phase);
+        let primary = nearer_tip(gears, section.phase);
         let within = NEAR * gears.driving().data().rack.module;
         let from = missing[0] + missing[1];
-        Touching::of((gears, deviations), section, seat, from, within)
+        FirstContact::of((gears, deviations), section, primary, from, within)
     }
 
     /// How far the driving tooth of a `section` stands ahead of the drawing, in mesh periods.
@@ -217,7 +217,7 @@ impl FaceFlanks {
 
     /// The δ at which sections at `phase` as drawn touch, seen from where they are drawn; infinite where they do not face each other.
     fn drawn_touch(&self, phase: f64) -> f64 {
-        let facing = Facing::drawn(&self.plane_strain, phase);
+        let facing = GapProfile::drawn(&self.plane_strain, phase);
         facing.map_or(f64::INFINITY, |facing| facing.touch())
     }
 

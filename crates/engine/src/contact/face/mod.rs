@@ -1,10 +1,10 @@
 //! Contact along faces: lines that cross the flanks, cut into slices.
 //!
 //! Every transverse section of the pair is a plane pair at another phase: the plane's code says where its flanks touch first, how far they are apart, and
-//! in which direction they push (`touch::facing`). Along a slice stand nonlinear springs between
+//! in which direction they push (`touch::gap_profile`). Along a slice stand nonlinear springs between
 //! the flanks ([`spring`]): Hertz's, or the plane's patches of cells where a tip edge, a fillet or a kink is near. The line load is
 //! integrated over the loaded part of the slice, so that it is continuous where the contact ends.
-//! The rest of the compliance is linear: the smooth yield of both gears ([`FlankYield`]), and the half space between
+//! The rest of the compliance is linear: the smooth yield of both gears ([`FlankCompliance`]), and the half space between
 //! the slices of one line (`compliance`). `balance` finds the depths to which the springs are pressed.
 //!
 //! ```text
@@ -35,7 +35,7 @@ use crate::gear::{Member, SolidPair};
 use crate::run::Run;
 pub use flanks::FaceFlanks;
 use model::FirstReach;
-pub use model::{FaceModel, FlankYield};
+pub use model::{FaceModel, FlankCompliance};
 use slice::Place;
 use spring::Pressed;
 use stage::{Balanced, Stage};
@@ -516,7 +516,7 @@ mod tests {
     use super::slice::{Loading, Slicer, Stretches};
     use super::stage::{HEAVIER, Sliced};
     use super::*;
-    use crate::assembly::{FaceResolution, FaceYield, FaceYieldSpec, MakeAll, Parts};
+    use crate::assembly::{FaceCompliance, FaceComplianceSpec, FaceResolution, MakeAll, Parts};
     use crate::gear::spur::tests::paper_gear;
     use crate::gear::{
         Alignment, Core, FaceEnds, Helix, HolePattern, LeadModification, SolidGear, Web,
@@ -538,8 +538,8 @@ mod tests {
         };
         let gears = [gear(20.0), gear(-20.0)];
         let yields = gears.each_ref().map(|gear| {
-            let made = FaceYield::of(gear, FaceResolution::STANDARD, &Run::unattended());
-            Arc::new(made.expect("can be condensed")) as Arc<dyn FlankYield>
+            let made = FaceCompliance::of(gear, FaceResolution::STANDARD, &Run::unattended());
+            Arc::new(made.expect("can be condensed")) as Arc<dyn FlankCompliance>
         });
         for (amount, mean, factor) in [(0.0, 6.522e-6, 1.042), (10e-6, 11.471e-6, 1.847)] {
             let leads = [vec![LeadModification::Slope { amount }], Vec::new()];
@@ -604,12 +604,13 @@ mod tests {
             ..FaceResolution::DRAFT
         };
         let wheel = gear(60, 30e-3, Core::Bore);
-        let yields =
-            |gear: &SolidGear| Arc::new(FaceYield::of(gear, resolution, &run).expect("definite"));
+        let yields = |gear: &SolidGear| {
+            Arc::new(FaceCompliance::of(gear, resolution, &run).expect("definite"))
+        };
         let of_wheel = yields(&wheel);
         let solved = [FaceEnds::Both, FaceEnds::Minus, FaceEnds::Plus].map(|torque_at| {
             let pinion = gear(20, radius, Core::Shaft { torque_at });
-            let yields: [Arc<dyn FlankYield>; 2] = [yields(&pinion), of_wheel.clone()];
+            let yields: [Arc<dyn FlankCompliance>; 2] = [yields(&pinion), of_wheel.clone()];
             let leads = [Vec::new(), Vec::new()];
             let sections = [&pinion, &wheel].map(|gear| gear.section().reference_radius());
             let a = sections[0] + sections[1];
@@ -664,11 +665,11 @@ mod tests {
 
     /// A gear somewhere between two others.
     struct Mixed {
-        of: [Arc<FaceYield>; 2],
+        of: [Arc<FaceCompliance>; 2],
         share: f64,
     }
 
-    impl FlankYield for Mixed {
+    impl FlankCompliance for Mixed {
         fn basis_len(&self) -> usize {
             self.of[0].basis_len()
         }
@@ -724,13 +725,13 @@ mod tests {
         };
         let (run, load) = (Run::unattended(), pair.section().load(60.0));
         let yields = Member::BOTH.map(|member| {
-            let spec = FaceYieldSpec::new(pair.gear(member), resolution);
-            MakeAll.face_yield(&spec, &run).expect("definite")
+            let spec = FaceComplianceSpec::new(pair.gear(member), resolution);
+            MakeAll.face_compliance(&spec, &run).expect("definite")
         });
         let model = |share: f64| {
             let yields = yields.each_ref().map(|whole| {
                 let of = [Arc::new(whole.round_average()), Arc::clone(whole)];
-                Arc::new(Mixed { of, share }) as Arc<dyn FlankYield>
+                Arc::new(Mixed { of, share }) as Arc<dyn FlankCompliance>
             });
             FaceModel::new(pair.clone(), yields, SLICES / 2, FARTHEST_COUPLED)
         };

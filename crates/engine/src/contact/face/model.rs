@@ -14,7 +14,7 @@ use crate::gear::{Member, PairDeviations, SolidPair};
 ///
 /// z runs from the middle of the gear's own face. The displacement of tooth i at (s, z) into the tooth, under the force N on tooth j at (s', z'), is basis(s,
 /// z)ᵀ smooth_ij basis(s', z') N, and of one tooth also that of a half space, which the contact adds, and the further compliance at its ends.
-pub trait FlankYield: Send + Sync {
+pub trait FlankCompliance: Send + Sync {
     /// The number of functions over a flank.
     fn basis_len(&self) -> usize;
 
@@ -41,7 +41,7 @@ const LEAST_TURN: f64 = 1e-6;
 /// Two gears with an extent along their axes, ready for contact.
 pub struct FaceModel {
     pub(super) flanks: FaceFlanks,
-    pub(super) yields: [Arc<dyn FlankYield>; 2],
+    pub(super) yields: [Arc<dyn FlankCompliance>; 2],
     /// How far apart teeth may stand that are loaded together.
     pub(super) coupled: usize,
     /// The kinks of both profiles at which flanks press harder than beside them.
@@ -114,7 +114,7 @@ impl FaceModel {
     /// `coupled` apart.
     pub fn new(
         pair: SolidPair,
-        yields: [Arc<dyn FlankYield>; 2],
+        yields: [Arc<dyn FlankCompliance>; 2],
         slices: usize,
         coupled: usize,
     ) -> Self {

@@ -6,7 +6,7 @@ use super::FaceModel;
 use super::spring::{Line, Spring};
 use crate::flank::half_plane::{hertz, logarithm_factor};
 use crate::gear::ContactLine;
-use crate::touch::facing::Facing;
+use crate::touch::gap_profile::GapProfile;
 use crate::touch::placement::Section;
 
 /// No slice is shorter than so many half-widths of its contact: a line that short is none.
@@ -316,7 +316,7 @@ impl<'a> Slicer<'a> {
             radius,
             factor: self.factor,
         };
-        let (spring, gap) = if self.is_crowded(facing, self.densities[1], radius) {
+        let (spring, gap) = if self.needs_cells(facing, self.densities[1], radius) {
             Spring::patch(view, facing, self.cosine, of, self.densities)
         } else {
             let spring = Spring::hertz(of, self.densities);
@@ -331,7 +331,7 @@ impl<'a> Slicer<'a> {
     }
 
     /// True if a contact under `density` may reach an end of the flanks or a kink, or is not that of two parabolas.
-    fn is_crowded(&self, facing: &Facing, density: f64, radius: f64) -> bool {
+    fn needs_cells(&self, facing: &GapProfile, density: f64, radius: f64) -> bool {
         const BESIDE: f64 = 1.1;
         const COMMON_TANGENT: f64 = 0.02;
         let (half_width, _) = hertz(density, radius, self.factor, 1.0);

@@ -11,7 +11,7 @@ use crate::contact::{ContactProblem, ContactSolution, solve_active_set};
 use crate::fem::dense::mirror_lower;
 use crate::flank::half_plane::{Entries, hertz, near_compliance};
 use crate::gear::{Member, TipEdge};
-use crate::touch::facing::Facing;
+use crate::touch::gap_profile::GapProfile;
 use crate::touch::placement::Pose;
 
 /// Cells on the core of a patch.
@@ -116,7 +116,7 @@ impl Spring {
     /// As [`Spring::hertz`], of the flanks of `facing` as `view` sees them, of slices one meter long; and the normal gap between them.
     pub(super) fn patch(
         view: &Pose<'_>,
-        facing: &Facing,
+        facing: &GapProfile,
         cosine: f64,
         of: Line,
         densities: [f64; 2],
@@ -163,7 +163,7 @@ impl Spring {
     }
 
     /// True if its table covers the load `q` a length; beyond, it is extrapolated.
-    pub(super) fn knows(&self, q: f64) -> bool {
+    pub(super) fn covers(&self, q: f64) -> bool {
         q <= self.most
     }
 
@@ -324,7 +324,7 @@ impl Cells {
             smooth: if at_corner { 0.0 } else { smooth() },
             at_sharp_edge: at_corner,
             half_width: 0.5 * width,
-            tip_corner: patch.off_path.then_some(patch.seat),
+            tip_corner: patch.off_path.then_some(patch.primary),
             fillet: patch.reached_fillet(&solution.active),
         }
     }
@@ -349,8 +349,8 @@ mod tests {
 
     fn patch(phase: f64, along: f64) -> (Spring, f64) {
         let (pair, factor) = pair();
-        let facing = Facing::drawn(&pair, phase).expect("they face each other");
-        let view = Pose::drawn(&pair, phase, facing.seat);
+        let facing = GapProfile::drawn(&pair, phase).expect("they face each other");
+        let view = Pose::drawn(&pair, phase, facing.primary);
         let [s, other] = facing.minima[0].roll_lengths.map(|s| s / COSINE);
         let of = Line {
             along,
@@ -431,7 +431,7 @@ mod tests {
                     (spring.load(depth + step)[0] - spring.load(depth - step)[0]) / (2.0 * step);
                 let beyond = [depth - step, depth + step].map(|depth| spring.load(depth)[0]);
                 let turns = beyond.iter().any(|q| *q < 2.0 * spring.least)
-                    || spring.knows(beyond[0]) != spring.knows(beyond[1]);
+                    || spring.covers(beyond[0]) != spring.covers(beyond[1]);
                 assert!(
                     turns || (growth / slope - 1.0).abs() < 1e-5,
                     "{i}: {slope} {growth}"

@@ -142,7 +142,7 @@ impl<'a> Stage<'a> {
             }
             let start = made.last.clone();
             match balance(&compliance, &sliced.slices, self.load, start.as_ref()) {
-                Ok(balance) if !balance.is_strained => {
+                Ok(balance) if !balance.is_beyond_range => {
                     self.made(stretches, heavier).last = Some(balance.start());
                     return Ok(Balanced {
                         sliced,

@@ -28,9 +28,9 @@ pub enum RangeEnd {
     /// Its own tip.
     Tip,
     /// The fillet of the other gear begins.
-    MateFillet,
+    SecondaryFillet,
     /// The tip of the other gear.
-    MateTip,
+    SecondaryTip,
 }
 
 /// A stretch of flank, by arc length from the base circle, and its ends on either side.
@@ -47,7 +47,7 @@ pub struct FlankRange {
 /// A place at which the gap is less than on either side of it.
 #[derive(Debug, Clone, Copy)]
 pub struct GapMinimum {
-    /// By arc length on the seat's flank.
+    /// By arc length on the primary flank.
     pub arc: f64,
     /// The δ at which the flanks touch there.
     pub touch: f64,
@@ -63,12 +63,12 @@ pub struct GapMinimum {
 
 /// Two flanks that face each other.
 ///
-/// One of them is seen from the other: points are given by their arc length on the flank of `seat`, the gear whose
+/// One of them is seen from the other: points are given by their arc length on the flank of `primary`, the gear whose
 /// tip is nearer to the contact, so that the stretch may end at its tip corner.
 #[derive(Debug, Clone)]
-pub struct Facing {
+pub struct GapProfile {
     /// The gear on whose flank points are given.
-    pub seat: Member,
+    pub primary: Member,
     /// The part of its flank that faces the other.
     pub range: FlankRange,
     /// Where the gap is least, the first to touch first; never empty.
@@ -77,20 +77,20 @@ pub struct Facing {
     pub kinks: Vec<f64>,
     /// Places at which a flank ends in the corner of its undercut.
     pub corners: Vec<f64>,
-    /// True if the nominal contact lies past the seat's tip, off the path of contact, and the corner of an undercut flank is not the one that touches.
+    /// True if the nominal contact lies past the primary gear's tip, off the path of contact, and the corner of an undercut flank is not the one that touches.
     pub off_path: bool,
 }
 
-impl Facing {
+impl GapProfile {
     /// How the flanks of a pair of `gears` as drawn face each other, `phase` mesh periods after it passed the pitch point, seen from the gear
     /// whose tip is nearer; `None` where they do not.
     pub fn drawn(gears: &GearPair, phase: f64) -> Option<Self> {
         Self::drawn_on(gears, phase, nearer_tip(gears, phase))
     }
 
-    /// As [`Facing::drawn`], seen from the flank of `seat`.
-    pub fn drawn_on(gears: &GearPair, phase: f64, seat: Member) -> Option<Self> {
-        Pose::drawn(gears, phase, seat).facing(phase)
+    /// As [`GapProfile::drawn`], seen from the flank of `primary`.
+    pub fn drawn_on(gears: &GearPair, phase: f64, primary: Member) -> Option<Self> {
+        Pose::drawn(gears, phase, primary).facing(phase)
     }
 
     /// How the flanks of pair `n` of `gears` with these `deviations` face each other at the mesh position `eta`, the driven gear lagging by
@@ -103,8 +103,8 @@ impl Facing {
         lag: f64,
     ) -> Option<Self> {
         let section = Section::straight(eta, n);
-        let seat = nearer_tip(gears, section.phase);
-        let placed = (seat, section.phase);
+        let primary = nearer_tip(gears, section.phase);
+        let placed = (primary, section.phase);
         Pose::real((gears, deviations), section, lag, placed).facing(section.phase)
     }
 
@@ -121,13 +121,13 @@ impl Facing {
     }
 
     /// True if the tip corner of the other gear touches first.
-    pub(crate) fn is_at_mate_tip(&self) -> bool {
+    pub(crate) fn is_at_secondary_tip(&self) -> bool {
         let arc = self.minima[0].arc;
         let FlankRange { from, to, ends } = self.range;
         [from, to]
             .into_iter()
             .zip(ends)
-            .any(|(end, by)| end == arc && by == RangeEnd::MateTip)
+            .any(|(end, by)| end == arc && by == RangeEnd::SecondaryTip)
     }
 }
 
@@ -146,25 +146,25 @@ pub(crate) fn nearer_tip(gears: &GearPair, phase: f64) -> Member {
 
 /// Two flanks as they face each other where they just touch.
 #[derive(Debug, Clone)]
-pub(crate) struct Touching<'a> {
+pub(crate) struct FirstContact<'a> {
     pub(crate) view: Pose<'a>,
-    pub(crate) facing: Facing,
-    /// How far the driven gear lags there. The rest of the way, [`Facing::touch`], is so short that it is straight.
+    pub(crate) facing: GapProfile,
+    /// How far the driven gear lags there. The rest of the way, [`GapProfile::touch`], is so short that it is straight.
     pub(crate) lag: f64,
 }
 
-impl<'a> Touching<'a> {
-    /// The flanks of `pair` with these `deviations` in a `section`, seen from that of `seat`: turned on from the lag `from` until they touch `within`
+impl<'a> FirstContact<'a> {
+    /// The flanks of `pair` with these `deviations` in a `section`, seen from that of `primary`: turned on from the lag `from` until they touch `within`
     /// so long a way.
     pub(crate) fn of(
         made: (&'a GearPair, &'a PairDeviations),
         section: Section,
-        seat: Member,
+        primary: Member,
         from: f64,
         within: f64,
     ) -> Option<Self> {
         let at = |lag: f64| {
-            let view = Pose::real(made, section, lag, (seat, section.phase));
+            let view = Pose::real(made, section, lag, (primary, section.phase));
             let facing = view.facing(section.phase)?;
             Some(Self { view, facing, lag })
         };
@@ -190,16 +190,16 @@ impl<'a> Touching<'a> {
 }
 
 impl Pose<'_> {
-    /// Values of the seat and of the other gear, as driving and driven.
-    pub(crate) fn on_both<T: Copy>(&self, seat: T, other: T) -> [T; 2] {
-        match self.seat {
-            Member::Driving => [seat, other],
-            Member::Driven => [other, seat],
+    /// Values of the primary and of the other gear, as driving and driven.
+    pub(crate) fn on_both<T: Copy>(&self, primary: T, other: T) -> [T; 2] {
+        match self.primary {
+            Member::Driving => [primary, other],
+            Member::Driven => [other, primary],
         }
     }
 
     /// How they face each other, `phase` mesh periods after they passed the pitch point.
-    pub(crate) fn facing(&self, phase: f64) -> Option<Facing> {
+    pub(crate) fn facing(&self, phase: f64) -> Option<GapProfile> {
         let gears = self.pair;
         let s_1 = gears.roll_length_of(phase);
         let [nominal, _] = self.on_both(s_1, gears.line_of_action() - s_1);
@@ -210,10 +210,10 @@ impl Pose<'_> {
             places.filter_map(|arc| self.minimum(arc, &range)).collect();
         minima.sort_by(|a, b| a.touch.total_cmp(&b.touch));
         let first = minima.first()?.arc;
-        Some(Facing {
-            seat: self.seat,
+        Some(GapProfile {
+            primary: self.primary,
             range,
-            off_path: nominal > gears.gear(self.seat).tip_form_roll_length()
+            off_path: nominal > gears.gear(self.primary).tip_form_roll_length()
                 && !corners.contains(&first),
             minima,
             kinks,
@@ -221,26 +221,26 @@ impl Pose<'_> {
         })
     }
 
-    /// The point at `arc` of the seat's flank; `None` inside the other base circle.
+    /// The point at `arc` of the primary flank; `None` inside the other base circle.
     pub(crate) fn point(&self, arc: f64) -> Option<FacingPoint> {
-        let flank = self.pair.gear(self.seat).flank();
+        let flank = self.pair.gear(self.primary).flank();
         self.point_at(flank.roll_length_at_arc(arc))
     }
 
     /// `point`, to be evaluated at many positions.
     pub(crate) fn flank_point(&self, point: &FacingPoint) -> FlankPoint {
-        let opposite = self.pair.gear(self.seat.other());
-        let (center, _) = self.frame(self.seat);
+        let opposite = self.pair.gear(self.primary.other());
+        let (center, _) = self.frame(self.primary);
         FlankPoint::new(point, opposite.removed(point.gap.roll_length), center)
     }
 
-    /// The roll length that `arc` sees on the other flank; it falls towards the seat's tip.
+    /// The roll length that `arc` sees on the other flank; it falls towards the primary gear's tip.
     fn seen_from(&self, arc: f64) -> f64 {
         self.point(arc)
             .map_or(f64::NEG_INFINITY, |point| point.gap.roll_length)
     }
 
-    /// The part of the seat's flank that sees the other flank between its form circle, or somewhat below the corner of its undercut, and its tip, as far as
+    /// The part of the primary flank that sees the other flank between its form circle, or somewhat below the corner of its undercut, and its tip, as far as
     /// a force between both drives the driven gear ([`LEAST_ARM`]).
     pub(crate) fn range(&self) -> Option<FlankRange> {
         let range = self.seen_range()?;
@@ -269,17 +269,22 @@ impl Pose<'_> {
         (from < to).then_some(FlankRange { from, to, ..range })
     }
 
-    /// The part of the seat's flank that sees the other flank, whether a force there drives or not.
+    /// The part of the primary flank that sees the other flank, whether a force there drives or not.
     fn seen_range(&self) -> Option<FlankRange> {
-        let (gear, mate) = (self.pair.gear(self.seat), self.pair.gear(self.seat.other()));
+        let (gear, secondary) = (
+            self.pair.gear(self.primary),
+            self.pair.gear(self.primary.other()),
+        );
         // The face of a chamfer is far from the other flank; its edge is the corner that touches.
         let (_, high) = gear.flank_arcs();
         let low = gear.flank().arc_length(gear.lowest_roll_length());
         let high = gear
             .chamfer_edge()
             .map_or(high, |s| gear.flank().arc_length(s));
-        let form = mate.lowest_roll_length();
-        let tip = mate.chamfer_edge().unwrap_or(mate.tip_roll_length());
+        let form = secondary.lowest_roll_length();
+        let tip = secondary
+            .chamfer_edge()
+            .unwrap_or(secondary.tip_roll_length());
         let (mut from, mut to) = ((low, RangeEnd::Fillet), (high, RangeEnd::Tip));
         let [seen_low, seen_high] = [low, high].map(|arc| self.seen_from(arc));
         if seen_high > tip || seen_low < form {
@@ -288,12 +293,15 @@ impl Pose<'_> {
         if seen_low > tip {
             let ends = [(high, tip - seen_high), (low, tip - seen_low)];
             let sought = |arc: f64| tip - self.seen_from(arc);
-            from = (crossing(ends[0], ends[1], sought), RangeEnd::MateTip);
+            from = (crossing(ends[0], ends[1], sought), RangeEnd::SecondaryTip);
         }
         if seen_high < form {
             let ends = [(low, seen_low - form), (high, seen_high - form)];
             let sought = |arc: f64| self.seen_from(arc) - form;
-            to = (crossing(ends[0], ends[1], sought), RangeEnd::MateFillet);
+            to = (
+                crossing(ends[0], ends[1], sought),
+                RangeEnd::SecondaryFillet,
+            );
         }
         (from.0 < to.0).then_some(FlankRange {
             from: from.0,
@@ -318,10 +326,11 @@ impl Pose<'_> {
 
     /// The rising places within `range` of the roll lengths `of` either gear.
     fn places_of(&self, of: impl Fn(&SpurGear) -> Vec<f64>, range: &FlankRange) -> Vec<f64> {
-        let [gear, mate] = [self.seat, self.seat.other()].map(|member| self.pair.gear(member));
+        let [gear, secondary] =
+            [self.primary, self.primary.other()].map(|member| self.pair.gear(member));
         let own = of(gear).into_iter();
         let own = own.map(|s| gear.flank().arc_length(s));
-        let seen = of(mate).into_iter();
+        let seen = of(secondary).into_iter();
         let mut places: Vec<f64> = own
             .chain(seen.filter_map(|s| self.arc_that_sees(s, range)))
             .filter(|arc| range.from < *arc && *arc < range.to)
@@ -334,9 +343,12 @@ impl Pose<'_> {
     /// The arc that sees the roll length `sought` of the other flank, within `range` where that is undercut.
     fn arc_that_sees(&self, sought: f64, range: &FlankRange) -> Option<f64> {
         const STEPS: u32 = 12;
-        let (gear, mate) = (self.pair.gear(self.seat), self.pair.gear(self.seat.other()));
-        // The corner of an undercut flank touches far off the line of action, and beside it the mate passes the base circle.
-        if mate.is_undercut() {
+        let (gear, secondary) = (
+            self.pair.gear(self.primary),
+            self.pair.gear(self.primary.other()),
+        );
+        // The corner of an undercut flank touches far off the line of action, and beside it the secondary passes the base circle.
+        if secondary.is_undercut() {
             let beyond = |arc: f64| self.seen_from(arc) - sought;
             let [from, to] = [range.from, range.to].map(|arc| (arc, beyond(arc)));
             let within = from.1 >= 0.0 && to.1 < 0.0;
@@ -348,7 +360,7 @@ impl Pose<'_> {
         for _ in 0..STEPS {
             let point = self.point(arc)?;
             let missed = sought - point.gap.roll_length;
-            if missed.abs() <= 1e-15 * mate.base_radius() {
+            if missed.abs() <= 1e-15 * secondary.base_radius() {
                 break;
             }
             let (_, growth) = self.change(&point);
@@ -418,7 +430,7 @@ impl Pose<'_> {
         crossing(from, to, |arc| self.fall(arc))
     }
 
-    /// How fast the gap falls along the seat's flank, towards its tip.
+    /// How fast the gap falls along the primary flank, towards its tip.
     fn fall(&self, arc: f64) -> f64 {
         -self.slope(arc)
     }
@@ -444,14 +456,14 @@ impl Pose<'_> {
         })
     }
 
-    /// The least distance between the tip of the seat, as far as it stands below the flank of the other gear within `range`, and the
+    /// The least distance between the tip of the primary, as far as it stands below the flank of the other gear within `range`, and the
     /// fillet there; `None` where the tip does not reach below that flank.
     pub(crate) fn tip_to_fillet(&self, range: &FlankRange) -> Option<f64> {
         const TIP_POINTS: u32 = 8;
-        if range.ends[1] != RangeEnd::MateFillet {
+        if range.ends[1] != RangeEnd::SecondaryFillet {
             return None;
         }
-        let gear = self.pair.gear(self.seat);
+        let gear = self.pair.gear(self.primary);
         let (_, tip) = gear.flank_arcs();
         let tip = gear
             .chamfer_edge()
@@ -464,7 +476,7 @@ impl Pose<'_> {
         gaps.reduce(f64::min)
     }
 
-    /// The slope of the gap along the seat's flank, towards its tip.
+    /// The slope of the gap along the primary flank, towards its tip.
     fn slope(&self, arc: f64) -> f64 {
         self.point(arc).map_or(0.0, |point| self.change(&point).0)
     }
@@ -507,29 +519,29 @@ pub(crate) mod tests {
             for i in 0..=40 {
                 let s = s_a + (s_e - s_a) * f64::from(i) / 40.0;
                 let eta = (s - pair.pitch_roll_length()) / pair.base_pitch();
-                for seat in Member::BOTH {
-                    let facing = Facing::drawn_on(&pair, eta, seat).expect("they touch");
+                for primary in Member::BOTH {
+                    let facing = GapProfile::drawn_on(&pair, eta, primary).expect("they touch");
                     let touch = facing.touch();
-                    assert!(touch.abs() < 1e-15, "{seat} at {s}: {touch}");
+                    assert!(touch.abs() < 1e-15, "{primary} at {s}: {touch}");
                 }
             }
         }
     }
 
     #[test]
-    fn the_gear_whose_tip_is_nearer_is_the_seat() {
+    fn the_gear_whose_tip_is_nearer_is_the_primary_one() {
         let pair = recess_pair();
         let (s_a, s_e) = pair.path_of_contact();
         assert!(s_a > pair.pitch_roll_length(), "all of the path is recess");
         let periods = |s: f64| (s - pair.pitch_roll_length()) / pair.base_pitch();
-        for (s, seat, off_path) in [
+        for (s, primary, off_path) in [
             (s_a - 0.2e-3, Member::Driven, true),
             (s_a + 0.2e-3, Member::Driven, false),
             (s_e - 0.2e-3, Member::Driving, false),
             (s_e + 0.2e-3, Member::Driving, true),
         ] {
-            let facing = Facing::drawn(&pair, periods(s)).expect("they face each other");
-            assert_eq!((facing.seat, facing.off_path), (seat, off_path));
+            let facing = GapProfile::drawn(&pair, periods(s)).expect("they face each other");
+            assert_eq!((facing.primary, facing.off_path), (primary, off_path));
             assert_eq!(
                 facing.minima[0].arc == facing.range.to,
                 off_path,
@@ -546,7 +558,7 @@ pub(crate) mod tests {
                 let (_, s_e) = pair.path_of_contact();
                 let s = s_e + 0.2e-3 * f64::from(*i);
                 let eta = (s - pair.pitch_roll_length()) / pair.base_pitch();
-                Facing::drawn(&pair, eta).is_some_and(|facing| {
+                GapProfile::drawn(&pair, eta).is_some_and(|facing| {
                     assert!(facing.touch() >= last);
                     last = facing.touch();
                     true
@@ -588,8 +600,8 @@ pub(crate) mod tests {
             let pair = GearPair::new(gear(20, radius), gear(40, radius), 60.2e-3).expect("meshes");
             for i in -100..100 {
                 let phase = 0.02 * f64::from(i);
-                let seat = nearer_tip(&pair, phase);
-                let view = Pose::drawn(&pair, phase, seat);
+                let primary = nearer_tip(&pair, phase);
+                let view = Pose::drawn(&pair, phase, primary);
                 let (Some(range), Some(seen)) = (view.range(), view.seen_range()) else {
                     // Both tips turn away from the line of action, if they face each other at all.
                     last_ones += i32::from(view.seen_range().is_some());
@@ -606,7 +618,7 @@ pub(crate) mod tests {
                     assert!(arms.iter().all(|arm| *arm > 0.499), "{phase} {k}: {arms:?}");
                 }
                 // The part that one involute faces is not cut, and no flank touches beside the rest.
-                let tips = [(seat, range.to), (seat.other(), range.from)];
+                let tips = [(primary, range.to), (primary.other(), range.from)];
                 let first = view.facing(phase).expect("they face each other").minima[0];
                 for (member, arc) in tips {
                     let place = view.point(arc).expect("outside the base circle");
@@ -635,7 +647,7 @@ pub(crate) mod tests {
             (0.2, 0.872),
         ] {
             let phase = (s * 1e-3 - pair.pitch_roll_length()) / pair.base_pitch();
-            let facing = Facing::drawn(&pair, phase).expect("they face each other");
+            let facing = GapProfile::drawn(&pair, phase).expect("they face each other");
             let first = &facing.minima[0];
             assert!(
                 (first.touch * 1e6 - gap).abs() < 0.01 * gap,
@@ -646,7 +658,7 @@ pub(crate) mod tests {
                 facing.corners.contains(&first.arc) && !facing.off_path,
                 "{s}"
             );
-            // The mate leans over the corner on both sides.
+            // The secondary leans over the corner on both sides.
             assert!(first.openings.iter().all(|angle| *angle > 0.01), "{s}");
         }
         // On the path that is left flanks touch as ever.
@@ -654,7 +666,7 @@ pub(crate) mod tests {
         for part in [0.05, 0.4, 0.95] {
             let s = s_a + part * (s_e - s_a);
             let phase = (s - pair.pitch_roll_length()) / pair.base_pitch();
-            let touch = Facing::drawn(&pair, phase).expect("they touch").touch();
+            let touch = GapProfile::drawn(&pair, phase).expect("they touch").touch();
             assert!(touch.abs() < 1e-14, "{s}: {touch}");
         }
     }
@@ -662,7 +674,7 @@ pub(crate) mod tests {
     #[test]
     fn reliefs_add_to_the_gap() {
         let (plain, relieved) = (pair(None), pair(Some(ReliefShape::Linear)));
-        let gap = |pair: &GearPair| Facing::drawn(pair, 0.5).expect("near").touch();
+        let gap = |pair: &GearPair| GapProfile::drawn(pair, 0.5).expect("near").touch();
         let s = plain.roll_length_of(0.5);
         let radius = relieved.driving().flank().radius(s);
         let depth = relieved.driving().removed(s);
@@ -683,10 +695,10 @@ pub(crate) mod tests {
             let pair = pair(Some(shape));
             for i in 0..60 {
                 let eta = -0.9 + 0.03 * f64::from(i);
-                let Some(facing) = Facing::drawn(&pair, eta) else {
+                let Some(facing) = GapProfile::drawn(&pair, eta) else {
                     continue;
                 };
-                let view = Pose::drawn(&pair, eta, facing.seat);
+                let view = Pose::drawn(&pair, eta, facing.primary);
                 let FlankRange { from, to, .. } = facing.range;
                 let least = (0..=2000)
                     .filter_map(|k| view.point(from + (to - from) * f64::from(k) / 2000.0))

@@ -22,7 +22,7 @@ use crate::run::Run;
 
 /// Specification of a face's compliance.
 #[derive(Debug, Clone, PartialEq)]
-pub struct FaceYieldSpec {
+pub struct FaceComplianceSpec {
     gear: SolidGear,
     resolution: FaceResolution,
 }
@@ -54,7 +54,7 @@ pub struct PlainFace {
 ///
 /// with the bore held. The basis has products of Legendre polynomials in s², over the flank, and of functions across the face.
 #[derive(Debug, Clone)]
-pub struct FaceYield {
+pub struct FaceCompliance {
     axial: AxialBasis,
     tooth_count: usize,
     plain: Arc<PlainFace>,
@@ -62,7 +62,7 @@ pub struct FaceYield {
     holes: Option<HoledChange>,
 }
 
-impl FaceYieldSpec {
+impl FaceComplianceSpec {
     /// The gear.
     pub(super) fn gear(&self) -> &SolidGear {
         &self.gear
@@ -110,15 +110,15 @@ impl FaceYieldSpec {
     ///
     /// # Errors
     ///
-    /// As [`FaceYield::of`].
-    pub fn make(&self, plain: Arc<PlainFace>, run: &Run) -> Result<FaceYield, PartError> {
+    /// As [`FaceCompliance::of`].
+    pub fn make(&self, plain: Arc<PlainFace>, run: &Run) -> Result<FaceCompliance, PartError> {
         let stack = self.stack();
         let section = self.gear.section();
         let holes = match &plain.web {
             Some(web) => Some(HoledChange::new(&stack, section, web, run)?),
             None => None,
         };
-        Ok(FaceYield {
+        Ok(FaceCompliance {
             tooth_count: section.tooth_count() as usize,
             plain,
             holes,
@@ -132,7 +132,7 @@ impl PlainFace {
     ///
     /// # Errors
     ///
-    /// As [`FaceYield::of`].
+    /// As [`FaceCompliance::of`].
     pub fn new(stack: &Stack, run: &Run) -> Result<Self, PartError> {
         let gear = &stack.gear;
         let section = gear.section().without_blank();
@@ -190,14 +190,14 @@ impl PlainFace {
     }
 }
 
-impl FaceYield {
+impl FaceCompliance {
     /// Compliance of the flanks of `gear`, with every part made anew.
     ///
     /// # Errors
     ///
     /// [`PartError`] if a part cannot be divided or condensed, or if the work is stopped.
     pub fn of(gear: &SolidGear, resolution: FaceResolution, run: &Run) -> Result<Self, PartError> {
-        let spec = FaceYieldSpec::new(gear, resolution);
+        let spec = FaceComplianceSpec::new(gear, resolution);
         spec.make(Arc::new(PlainFace::new(&spec.stack(), run)?), run)
     }
 
@@ -206,7 +206,7 @@ impl FaceYield {
     ///
     /// # Errors
     ///
-    /// As [`FaceYield::of`].
+    /// As [`FaceCompliance::of`].
     pub fn of_sector(
         gear: &SolidGear,
         inner_radius: f64,
@@ -243,7 +243,7 @@ impl FaceYield {
     ///
     /// # Panics
     ///
-    /// If `row` has not [`FaceYield::basis_len`] places.
+    /// If `row` has not [`FaceCompliance::basis_len`] places.
     pub fn basis(&self, roll_length: f64, z: f64, row: &mut [f64]) {
         assert_eq!(row.len(), self.basis_len());
         let (up, _) = up_the_flank(self.plain.squares, roll_length, OWN_DEGREE);
@@ -265,7 +265,7 @@ impl FaceYield {
     ///
     /// # Panics
     ///
-    /// If two teeth are farther apart than [`FaceYield::coupled`].
+    /// If two teeth are farther apart than [`FaceCompliance::coupled`].
     pub fn smooth(&self, teeth: &[usize]) -> Mat<f64> {
         let (size, z) = (self.basis_len(), self.tooth_count);
         let mut smooth = Mat::zeros(teeth.len() * size, teeth.len() * size);
@@ -399,13 +399,13 @@ mod tests {
         SolidGear::new(data, Helix::right(beta), offset, hub).expect("can be made")
     }
 
-    fn yields(gear: &SolidGear) -> FaceYield {
-        FaceYield::of(gear, COARSE, &Run::unattended()).expect("definite")
+    fn yields(gear: &SolidGear) -> FaceCompliance {
+        FaceCompliance::of(gear, COARSE, &Run::unattended()).expect("definite")
     }
 
     /// Displacement at (s, z) of tooth `i` by a unit force at (s', z') of tooth `j`, without the half space.
     fn between(
-        face: &FaceYield,
+        face: &FaceCompliance,
         (i, s, z): (usize, f64, f64),
         (j, t, y): (usize, f64, f64),
     ) -> f64 {
@@ -529,7 +529,7 @@ mod tests {
             face_order: 6,
             ..COARSE
         };
-        let face = FaceYield::of(&solid, resolution, &Run::unattended()).expect("definite");
+        let face = FaceCompliance::of(&solid, resolution, &Run::unattended()).expect("definite");
         let section = solid.section();
         let s = f64::midpoint(section.form_roll_length(), section.tip_roll_length());
         let rule = face.axial.rule(12);
@@ -683,7 +683,7 @@ mod tests {
             let (mut apart, mut change) = (0.0_f64, 0.0_f64);
             for (s, z) in places(&gear(0.3, None, None)).into_iter().step_by(2) {
                 for (i, j) in [(0, 0), (5, 4), (11, 12), (2, 23)] {
-                    let of = |face: &FaceYield| between(face, (i, s, z), (j, s, -z));
+                    let of = |face: &FaceCompliance| between(face, (i, s, z), (j, s, -z));
                     apart = apart.max((of(&pattern) - of(&whole)).abs());
                     change = change.max((of(&pattern) - of(&plain)).abs());
                 }
