@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use faer::linalg::solvers::Solve as _;
 use faer::{Mat, Side, c64};
-use meshwright_engine::assembly::{FaceResolution, FaceCompliance};
+use meshwright_engine::assembly::{FaceCompliance, FaceResolution};
 use meshwright_engine::gear::{
     BlankRegion, GearData, Helix, HolePattern, Material, Rack, SolidGear, TipEdge, ToolDepth,
     ToothDeviations,
