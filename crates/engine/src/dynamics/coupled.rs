@@ -9,6 +9,7 @@ use super::bodies::Coupled;
 use super::free::{Complexes, FreeMotions};
 use super::law::Laws;
 use super::oscillator::PeriodExtremes;
+use crate::wide::{Loops, wide};
 
 /// Pieces of a law that are tried for the end of a look before it is taken to lie at a knot.
 const MOST_PIECES: usize = 256;
@@ -165,10 +166,13 @@ impl<'a> CoupledMotion<'a> {
                     push.scale(touch.slope);
                     push.add(slope_before, &later);
                     let follows = 1.0 / (1.0 - share * end.slope);
-                    for column in &mut columns {
-                        column.own.carry(&self.carried, column.nearer, &push);
-                        column.nearer = follows * column.own.real_of_product(teeth);
-                    }
+                    wide(Carried {
+                        columns: &mut columns,
+                        by: &self.carried,
+                        push: &push,
+                        teeth,
+                        follows,
+                    });
                     slope_before = end.slope;
                 }
                 see(PeriodExtremes {
@@ -195,6 +199,28 @@ struct Column {
     own: Complexes,
     /// By how much the teeth come nearer in it.
     nearer: f64,
+}
+
+/// Small differences that are carried over a look: by e^{λ h}, and by what pushes each as far as its teeth have come nearer.
+struct Carried<'a> {
+    columns: &'a mut [Column],
+    by: &'a Complexes,
+    push: &'a Complexes,
+    teeth: &'a Complexes,
+    /// How much nearer the teeth come at the end for each part that they would without the force there.
+    follows: f64,
+}
+
+impl Loops for Carried<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        for column in self.columns {
+            column.own.carry(self.by, column.nearer, self.push);
+            column.nearer = self.follows * column.own.real_of_product(self.teeth);
+        }
+    }
 }
 
 #[cfg(test)]

@@ -66,6 +66,7 @@ impl Complexes {
     }
 
     /// Σ Re(`self` `other`).
+    #[inline(always)]
     pub(super) fn real_of_product(&self, other: &Self) -> f64 {
         let mut sums = [0.0; LANES];
         let own = self.re.iter().zip(&self.im);
@@ -97,6 +98,7 @@ impl Complexes {
     }
 
     /// Becomes itself times `factor`, and `by` times `other` more.
+    #[inline(always)]
     pub(super) fn carry(&mut self, factor: &Self, by: f64, other: &Self) {
         let own = self.re.iter_mut().zip(&mut self.im);
         let factors = factor.re.iter().zip(&factor.im);

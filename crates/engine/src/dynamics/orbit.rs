@@ -1,12 +1,18 @@
 //! Periodic motions: Newton's method on the state after a period, stability by multipliers, and where a motion settles.
 
-use nalgebra::{DMatrix, DVector, Schur};
+use nalgebra::{DMatrix, DVector, Dyn, LU, Schur};
 
 use super::coupled::CoupledMotion;
 use super::oscillator::{Oscillator, PeriodExtremes, State};
 
 /// Newton steps before there is taken to be no periodic motion near.
 const MOST_STEPS: u32 = 16;
+
+/// Displacements and velocities of a system whose derivative costs little beside its motion.
+const FEW: usize = 2;
+
+/// The part of its last step by which a derivative has to shorten the next one to serve again.
+const SERVES: f64 = 0.1;
 
 /// Largest difference between the end and the beginning of a periodic motion, over the scale of the motion.
 const CLOSED: f64 = 1e-11;
@@ -145,27 +151,37 @@ pub trait Repeating {
         let size = self.size();
         let scales = self.scales(scale);
         let mut state = start.to_vec();
+        // The derivative, factorized, of an earlier state, and the size of the step that it gave last.
+        let mut known: Option<(LU<f64, Dyn, Dyn>, f64)> = None;
         for _ in 0..MOST_STEPS {
             let mut end = state.clone();
-            let mut derivative = identity(size);
+            let mut derivative = known.is_none().then(|| identity(size));
             for _ in 0..repeats {
-                self.over_period(&mut end, Some(&mut derivative), &mut |_| ());
+                self.over_period(&mut end, derivative.as_mut(), &mut |_| ());
             }
             let missed = DVector::from_fn(size, |i, _| end[i] - state[i]);
-            // (1 − M) step = the remaining difference.
-            let matrix = DMatrix::from_fn(size, size, |i, j| {
-                f64::from(u8::from(i == j)) - derivative[j][i]
-            });
-            let step = matrix.lu().solve(&missed)?;
+            let (factor, before) = match known.take() {
+                Some(known) => known,
+                // (1 − M) step = the remaining difference.
+                None => {
+                    let m = derivative.as_ref()?;
+                    let at = |i: usize, j: usize| f64::from(u8::from(i == j)) - m[j][i];
+                    (DMatrix::from_fn(size, size, at).lu(), f64::INFINITY)
+                }
+            };
+            let step = factor.solve(&missed)?;
             if !step.iter().all(|value| value.is_finite()) {
                 return None;
             }
-            if farthest(step.iter().copied(), &scales) < CLOSED {
+            let size_of_step = farthest(step.iter().copied(), &scales);
+            if size_of_step < CLOSED
+                && let Some(derivative) = &derivative
+            {
                 return Some(Orbit {
                     state,
                     repeats: Some(repeats),
                     periods: repeats,
-                    multiplier: multiplier(&derivative),
+                    multiplier: multiplier(derivative),
                     runs_away: false,
                 });
             }
@@ -175,6 +191,9 @@ pub trait Repeating {
             if distance(&state, start, &scales) > reach {
                 return None;
             }
+            // A derivative takes as long as the motion of as many systems. It serves again while it brings the end of a period much nearer to its beginning.
+            let serves = size > FEW && CLOSED <= size_of_step && size_of_step < SERVES * before;
+            known = serves.then_some((factor, size_of_step));
         }
         None
     }
