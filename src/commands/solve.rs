@@ -20,6 +20,9 @@ use super::rexs::ModelChoices;
 /// Limit of the memory of the substructures of one submission, in bytes; one pair never reaches it.
 const LIBRARY_BYTES: usize = 512 << 20;
 
+/// Bytes of a warning that a terminal shows, about, where it is a list.
+const LONGEST_LIST: usize = 600;
+
 /// Compute one submission, or one pair of a REXS model.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Solve {
@@ -159,7 +162,7 @@ fn table(results: &Results, elapsed: Duration) -> String {
         text.push_str(&stresses(curve));
     }
     for warning in &results.warnings {
-        text.push_str(&format!("Warning: {}\n", warning.detail));
+        text.push_str(&format!("Warning: {}\n", for_a_terminal(&warning.detail)));
     }
     text.push_str(&format!(
         "{} over {} positions in {:.2} s, {} degrees of freedom.\n",
@@ -201,6 +204,25 @@ fn amplitude(curve: &CurveDocument, label: &str) -> Option<f64> {
         .map(|line| line.transmission_error_um)
 }
 
+/// A sentence as a terminal shows it: of a long list, whose parts end with semicolons, the first parts and the number of the others, which the results have.
+fn for_a_terminal(detail: &str) -> String {
+    let mut parts = detail.split("; ");
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    let mut left = 0;
+    for part in parts {
+        if left > 0 || text.len() + part.len() > LONGEST_LIST {
+            left += 1;
+        } else {
+            text.push_str("; ");
+            text.push_str(part);
+        }
+    }
+    if left > 0 {
+        text.push_str(&format!("; {left} more stand in the results."));
+    }
+    text
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -216,5 +238,15 @@ mod tests {
         ] {
             assert!(text.contains(part), "{text}");
         }
+    }
+
+    #[test]
+    fn a_long_list_is_told_by_its_first_parts_and_the_number_of_the_others() {
+        let parts: Vec<String> = (0..100).map(|i| format!("H_Z2 at {i} 1/min")).collect();
+        let told = for_a_terminal(&parts.join("; "));
+        assert!(told.len() < LONGEST_LIST + 50 && told.starts_with("H_Z2 at 0 1/min; "));
+        let shown = told.matches("1/min").count();
+        assert!(told.ends_with(&format!("; {} more stand in the results.", 100 - shown)));
+        assert_eq!(for_a_terminal("one; two."), "one; two.");
     }
 }
