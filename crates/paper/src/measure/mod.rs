@@ -27,7 +27,7 @@ pub(crate) struct Measure {
     #[arg(long, default_value = "target/criterion", value_name = "DIR")]
     criterion: PathBuf,
     /// The folder to write measured.md and the figures to.
-    #[arg(long, short, default_value = "docs/performance", value_name = "DIR")]
+    #[arg(long, short, default_value = "target/performance", value_name = "DIR")]
     output: PathBuf,
 }
 

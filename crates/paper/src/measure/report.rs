@@ -33,7 +33,7 @@ pub(super) fn text(measured: &Measured) -> String {
 
 fn opening(machine: &Machine) -> String {
     format!(
-        "By `meshwright-paper measure` of version {}, {}, on {} with {} threads; [what it means](../performance.md). Jobs and their parts are \
+        "By `meshwright-paper measure` of version {}, {}, on {} with {} threads; [what it means](../../docs/performance.md). Jobs and their parts are \
          the least of criterion's samples. All other times are the least of up to {RUNS} runs in one process (as many as begin within \
          {PATIENCE} s), nothing computed before, without the time to start the process.",
         machine.version, machine.compiler, machine.processor, machine.threads
