@@ -30,6 +30,8 @@ pub(crate) const PROBE: Words = Some(
           no_summaries as (update summaries set body = body where false),
           no_messages as (update messages set next_at = next_at where false),
           no_webhooks as (update webhooks set url = url where false),
+          no_projects as (update projects set name = name where false),
+          no_links as (update links set ends_at = ends_at where false),
           no_keys as (select 1 from keys where false)
      update probed set number = number + 1",
 );
@@ -220,3 +222,35 @@ pub(crate) const TAKE_PINGS: Words = Some(take_messages!(
 ));
 
 pub(crate) const TAKE_MESSAGES: Words = Some(take_messages!("", "for update skip locked"));
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn readiness_looks_at_every_table_that_a_request_writes() {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../migrations/postgres");
+        let files = std::fs::read_dir(folder).expect("the migrations");
+        let texts = files.map(|file| {
+            let path = file.expect("a migration").path();
+            std::fs::read_to_string(path).expect("a text")
+        });
+        let texts: Vec<String> = texts.collect();
+        let tables = texts.iter().flat_map(|text| {
+            let begun = text
+                .lines()
+                .filter_map(|line| line.strip_prefix("create table "));
+            begun.filter_map(|rest| rest.split([' ', '(']).next())
+        });
+        // `compatibility` is read when a process begins.
+        let tables: Vec<&str> = tables.filter(|table| *table != "compatibility").collect();
+        assert!(tables.len() > 15, "{tables:?}");
+        let words = PROBE.expect("words");
+        for table in tables {
+            let is_named = ["update", "from"]
+                .iter()
+                .any(|verb| words.contains(&format!("{verb} {table} ")));
+            assert!(is_named, "{table}");
+        }
+    }
+}
