@@ -15,9 +15,9 @@ pub struct Times {
     pub body: Duration,
     /// Time for a request until the head of its answer. Longer than the longest wait that a client may ask for.
     pub request: Duration,
-    /// Time that a request waits for a file that is computed anew, before its client is told to come back for it.
+    /// Time that a request waits for a file that is computed anew, before it is answered 202.
     pub file: Duration,
-    /// Time that such a file is kept, once a client was told to come back for it.
+    /// Time that such a file is kept, once a client was answered 202.
     pub keep_file: Duration,
     /// Time between two looks at the jobs of such a file, which ends with the last of them.
     pub look_at_jobs: Duration,
@@ -62,9 +62,12 @@ impl Times {
             (request, "a request, until the head of its answer"),
             (
                 file,
-                "a request for a file that is computed, until it is told to come back",
+                "a request for a file that is computed, until it is answered 202",
             ),
-            (keep_file, "a file that somebody was told to come back for"),
+            (
+                keep_file,
+                "a file that was answered with 202, until it is removed",
+            ),
             (look_at_jobs, "between two looks at the jobs of such a file"),
             (
                 look_at_keys,

@@ -1,17 +1,16 @@
 //! Files that are computed anew from a job: made once for all who ask for them, and kept for a while.
 //!
-//! A request waits for its file. Where that takes longer than it may wait, its client is told to come back; from then on the file is made to its end and kept,
-//! whether somebody waits or not. A file is given up when nobody waits for it and nobody was told to come back, when all jobs of which it was asked are
-//! removed, and at a shutdown.
+//! A request waits for its file, and is answered 202 where that takes longer than it may wait. From then on the file is made to its end and kept, whether
+//! somebody waits or not. Its computation is cancelled when nobody waits for it and nobody was answered 202, when all jobs of which it was asked are removed,
+//! and at a shutdown.
 
 use std::collections::{HashMap, HashSet};
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
 
 use bytes::Bytes;
 use futures_util::future::BoxFuture;
-use meshwright_connections::{Budget, Part, spawn};
+use meshwright_connections::{Budget, Part, StopOnDrop, spawn};
 use meshwright_engine::run::Run;
 use meshwright_wire::Problem;
 use tokio::sync::{oneshot, watch};
@@ -38,7 +37,7 @@ pub struct FileRules {
     pub at_once: usize,
     /// Time that a request waits for its file.
     pub wait: Duration,
-    /// Time that a file is kept once its client was told to come back.
+    /// Time that a file is kept once its client was answered 202.
     pub keep: Duration,
     /// Time between two looks at the jobs of a file.
     pub look: Duration,
@@ -122,7 +121,7 @@ struct File {
     client: Arc<str>,
     askers: Vec<Asker>,
     waiting: usize,
-    /// Clients that were told to come back and have not yet.
+    /// Clients that were answered 202 and have not asked again.
     expected: HashSet<Arc<str>>,
     was_late: bool,
     outcome: watch::Sender<Option<Outcome>>,
@@ -418,7 +417,7 @@ impl File {
         self.waiting > 0
             || match &*self.outcome.borrow() {
                 None | Some(Ok(_)) => self.was_late,
-                // Whoever was told to come back hears why there is none, once.
+                // Whoever was answered 202 gets the reason why there is none, once.
                 Some(Err(_)) => !self.expected.is_empty(),
             }
     }
@@ -433,7 +432,7 @@ impl File {
 }
 
 impl Asked {
-    /// The file; `None` if it is not made in time, so that the client has to come back.
+    /// The file; `None` if it is not made in time, so that the answer is 202.
     ///
     /// # Errors
     ///
@@ -468,19 +467,9 @@ impl Drop for Asked {
     }
 }
 
-/// The stop of a computation, which comes when this is dropped.
-#[derive(Default)]
-struct StopOnDrop(Arc<AtomicBool>);
-
-impl Drop for StopOnDrop {
-    fn drop(&mut self) {
-        self.0.store(true, Ordering::Relaxed);
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use std::sync::atomic::AtomicUsize;
+    use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
     use std::sync::mpsc as blocking;
 
     use meshwright_wire::Code;
@@ -562,7 +551,7 @@ mod tests {
         }
     }
 
-    /// Waits for the end of a file without being told to come back.
+    /// Waits for the end of a file without an answer 202.
     async fn ended(asked: &Asked) -> Outcome {
         let mut outcome = asked.outcome.clone();
         let made = outcome.wait_for(Option::is_some).await.unwrap();

@@ -1,8 +1,13 @@
 //! Threads that run the engine, and computations outside of jobs.
 //!
-//! In reading order: the [`Cores`] of the machine and the threads on them; the rooms in which one computation at a time has them; [`Previews`], for each of
-//! which a request waits, and of which nothing is kept; and [`Files`], which are computed anew from a job and kept for a while. Jobs are computed by their
-//! workers in the same way.
+//! In reading order:
+//!
+//! - the [`Cores`] of the machine and the threads on them;
+//! - the rooms, which have threads for one computation at a time;
+//! - [`Previews`]: a request waits for each of them, and nothing of it is kept;
+//! - [`Files`], which are computed anew from a job and kept for a while.
+//!
+//! Jobs are computed by their workers in the same way.
 
 #![warn(clippy::disallowed_methods)]
 

@@ -696,7 +696,8 @@ export async function benchSteps(service) {
     async (page) => {
       // What is warned of here is made up: a service of this version warns of it where hubs carry no rims.
       const detail = "The blanks twist: about 4413 Hz.";
-      await page.route("**/v1/preview", async (route) => {
+      // A run-up is a preview or, where that would take too long, a job.
+      await page.route(/\/v1\/(preview|jobs\/[^/]+\/results)(\?|$)/, async (route) => {
         const response = await route.fetch();
         const results = await response.json();
         if (results.curves?.[0].dynamics) results.warnings.push({ code: "rim_inertia_on_hub", detail });

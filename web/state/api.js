@@ -108,8 +108,15 @@ export async function request(path, { method = "GET", body, headers = {}, signal
     .json()
     .catch(() => ({ status: response.status, title: response.statusText, code: "unknown" }));
   if (response.status === 401 && !quiet) for (const listener of listeners) listener(problem);
-  throw new ProblemError(problem, Math.max(AGAIN, 1000 * Number(response.headers.get("retry-after"))));
+  throw new ProblemError(problem, pauseOf(response));
 }
+
+/**
+ * The milliseconds after which a service that asks to be asked again is.
+ *
+ * @type {(response: Response) => number}
+ */
+const pauseOf = (response) => Math.max(AGAIN, 1000 * Number(response.headers.get("retry-after")));
 
 /**
  * Whether an error goes away by itself: the service does not answer, starts, or has too much to do.
@@ -152,7 +159,7 @@ export async function made(path, options) {
   for (;;) {
     const response = await request(path, options);
     if (response.status !== 202) return response;
-    await rest(1000 * Number(response.headers.get("retry-after")));
+    await rest(pauseOf(response));
     options?.signal?.throwIfAborted();
   }
 }

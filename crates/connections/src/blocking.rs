@@ -35,9 +35,9 @@ pub async fn blocking<T: Send + 'static>(
     done.await
 }
 
-/// Tells work to stop when the request that wanted it ends, however it ends.
-#[derive(Default)]
-struct StopOnDrop(Arc<AtomicBool>);
+/// The stop of work, which comes when this is dropped: when the request that wanted the work ends, however it ends.
+#[derive(Debug, Default)]
+pub struct StopOnDrop(pub Arc<AtomicBool>);
 
 impl Drop for StopOnDrop {
     fn drop(&mut self) {

@@ -22,7 +22,7 @@ mod unauthenticated;
 
 pub use accepts::takes_gzip;
 pub use active_request::ActiveRequest;
-pub use blocking::blocking;
+pub use blocking::{StopOnDrop, blocking};
 pub use budget::{Budget, Part};
 pub use connection::{Address, Connection};
 pub use limit::Overloaded;

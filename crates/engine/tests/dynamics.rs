@@ -347,6 +347,41 @@ fn a_very_slow_mesh_follows_its_static_curve() {
     }
 }
 
+/// A motion by the classical Runge-Kutta method at tight steps, from `state` on: the root mean square and the peak-to-peak of the first number that `see` tells of
+/// a state, and the largest second one, over the last periods. Counts are those of steps in a `period`, of periods, and of the last ones that are looked at.
+fn settled_by_runge_kutta<const N: usize>(
+    period: f64,
+    [steps, periods, watched]: [u32; 3],
+    mut state: [f64; N],
+    rate: impl Fn(f64, [f64; N]) -> [f64; N],
+    see: impl Fn(f64, [f64; N]) -> (f64, f64),
+) -> [f64; 3] {
+    let h = period / f64::from(steps);
+    let (mut n, mut sum, mut squares) = (0.0, 0.0, 0.0);
+    let (mut least, mut most, mut largest) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
+    for i in 0..periods * steps {
+        let t = f64::from(i) * h;
+        let on = |by: f64, k: [f64; N]| std::array::from_fn(|j| state[j] + by * h * k[j]);
+        let k1 = rate(t, state);
+        let k2 = rate(t + h / 2.0, on(0.5, k1));
+        let k3 = rate(t + h / 2.0, on(0.5, k2));
+        let k4 = rate(t + h, on(1.0, k3));
+        for j in 0..N {
+            state[j] += h / 6.0 * (k1[j] + 2.0 * k2[j] + 2.0 * k3[j] + k4[j]);
+        }
+        if i >= (periods - watched) * steps {
+            let (x, force) = see(t + h, state);
+            n += 1.0;
+            sum += x;
+            squares += x * x;
+            (least, most) = (least.min(x), most.max(x));
+            largest = largest.max(force);
+        }
+    }
+    let mean: f64 = sum / n;
+    [(squares / n - mean * mean).sqrt(), most - least, largest]
+}
+
 #[test]
 fn a_nonlinear_mesh_moves_as_a_plain_integrator_has_it() {
     // The classical Runge-Kutta method at tight steps on m x'' + c x' + F(θ, x) = F_0 and the very table that is run through.
@@ -356,32 +391,12 @@ fn a_nonlinear_mesh_moves_as_a_plain_integrator_has_it() {
     for omega in [0.45, 0.7, 1.1, 1.9] {
         let data = data(vec![omega / (2.0 * PI)], 1.0, &[1.0]);
         let found = run_up(&data, &table).up.expect("asked");
-        let steps = 2048;
-        let h = 2.0 * PI / omega / f64::from(steps);
-        let rate = |t: f64, x: f64, v: f64| {
-            let force = table.load(omega * t / (2.0 * PI), x);
-            (v, 1.0 - 0.1 * v - force)
-        };
-        let (mut x, mut v) = (table.transmission_error(1.0)[0], 0.0);
-        let (mut n, mut sum, mut squares, mut most) = (0.0, 0.0, 0.0, 0.0_f64);
-        let (periods, watched) = (400, 80);
-        for i in 0..periods * steps {
-            let t = f64::from(i) * h;
-            let k1 = rate(t, x, v);
-            let k2 = rate(t + h / 2.0, x + h / 2.0 * k1.0, v + h / 2.0 * k1.1);
-            let k3 = rate(t + h / 2.0, x + h / 2.0 * k2.0, v + h / 2.0 * k2.1);
-            let k4 = rate(t + h, x + h * k3.0, v + h * k3.1);
-            x += h / 6.0 * (k1.0 + 2.0 * k2.0 + 2.0 * k3.0 + k4.0);
-            v += h / 6.0 * (k1.1 + 2.0 * k2.1 + 2.0 * k3.1 + k4.1);
-            if i >= (periods - watched) * steps {
-                n += 1.0;
-                sum += x;
-                squares += x * x;
-                most = most.max(table.load(omega * (t + h) / (2.0 * PI), x));
-            }
-        }
-        let mean: f64 = sum / n;
-        let rms = (squares / n - mean * mean).sqrt();
+        let load = |t: f64, x: f64| table.load(omega * t / (2.0 * PI), x);
+        let rate = |t: f64, [x, v]: [f64; 2]| [v, 1.0 - 0.1 * v - load(t, x)];
+        let rest = [table.transmission_error(1.0)[0], 0.0];
+        let see = |t: f64, [x, _]: [f64; 2]| (x, load(t, x));
+        let [rms, _, most] =
+            settled_by_runge_kutta(2.0 * PI / omega, [2048, 400, 80], rest, rate, see);
         let repeats = found.repeats[0];
         assert!(
             (found.rms[0] / rms - 1.0).abs() < 2e-3,
@@ -559,8 +574,6 @@ fn gears_on_webs_move_as_hubs_and_rims_that_a_plain_integrator_moves() {
     let found = run_up(&on_webs(speeds, &[1.0]), &of_all).up.expect("asked");
     assert!(found.contact_lost.contains(&true) && found.contact_lost.contains(&false));
     for (place, omega) in omegas.into_iter().enumerate() {
-        let steps = 512;
-        let h = 2.0 * PI / omega / f64::from(steps);
         let rate = |t: f64, state: [f64; 8]| -> [f64; 8] {
             let (angles, speeds) = state.split_at(4);
             let nearer = speeds[1] - speeds[3];
@@ -584,32 +597,12 @@ fn gears_on_webs_move_as_hubs_and_rims_that_a_plain_integrator_moves() {
         let mut state = [0.0; 8];
         (state[0], state[1]) = (rest, rest - 1.0 / GEARS[0][2]);
         state[3] = 1.0 / GEARS[1][2];
-        let (mut n, mut sum, mut squares) = (0.0, 0.0, 0.0);
-        let (mut least, mut most, mut largest) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
-        let (periods, watched) = (160, 40);
-        for i in 0..periods * steps {
-            let t = f64::from(i) * h;
-            let on = |by: f64, k: [f64; 8]| std::array::from_fn(|j| state[j] + by * h * k[j]);
-            let k1 = rate(t, state);
-            let k2 = rate(t + h / 2.0, on(0.5, k1));
-            let k3 = rate(t + h / 2.0, on(0.5, k2));
-            let k4 = rate(t + h, on(1.0, k3));
-            for j in 0..8 {
-                state[j] += h / 6.0 * (k1[j] + 2.0 * k2[j] + 2.0 * k3[j] + k4[j]);
-            }
-            if i >= (periods - watched) * steps {
-                let x = state[0] - state[2];
-                n += 1.0;
-                sum += x;
-                squares += x * x;
-                (least, most) = (least.min(x), most.max(x));
-                let force = of_teeth.load(omega * (t + h) / (2.0 * PI), state[1] - state[3]);
-                largest = largest.max(force);
-            }
-        }
-        let mean: f64 = sum / n;
-        let rms = (squares / n - mean * mean).sqrt();
-        within_a_percent(&found, place, [rms, most - least, largest]);
+        let see = |t: f64, s: [f64; 8]| {
+            let force = of_teeth.load(omega * t / (2.0 * PI), s[1] - s[3]);
+            (s[0] - s[2], force)
+        };
+        let moved = settled_by_runge_kutta(2.0 * PI / omega, [512, 160, 40], state, rate, see);
+        within_a_percent(&found, place, moved);
     }
 }
 
@@ -829,8 +822,6 @@ fn gears_on_shafts_and_supports_move_as_a_plain_integrator_moves_them() {
     let lost = &found.contact_lost;
     assert!(lost.contains(&true) && lost.contains(&false), "{lost:?}");
     for (place, omega) in omegas.into_iter().enumerate() {
-        let steps = 256;
-        let h = 2.0 * PI / omega / f64::from(steps);
         let approach = |q: &[f64]| LINE[0] * (q[0] - q[3]) + LINE[1] * (q[1] - q[4]) + q[2] - q[5];
         let rate = |t: f64, state: [f64; 12]| -> [f64; 12] {
             let (q, v) = state.split_at(6);
@@ -854,33 +845,12 @@ fn gears_on_shafts_and_supports_move_as_a_plain_integrator_moves_them() {
             }
             rates
         };
-        let mut state = [0.0; 12];
-        let (mut n, mut sum, mut squares) = (0.0, 0.0, 0.0);
-        let (mut least, mut most, mut largest) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
-        let (periods, watched) = (160, 40);
-        for i in 0..periods * steps {
-            let t = f64::from(i) * h;
-            let on = |by: f64, k: [f64; 12]| std::array::from_fn(|j| state[j] + by * h * k[j]);
-            let k1 = rate(t, state);
-            let k2 = rate(t + h / 2.0, on(0.5, k1));
-            let k3 = rate(t + h / 2.0, on(0.5, k2));
-            let k4 = rate(t + h, on(1.0, k3));
-            for j in 0..12 {
-                state[j] += h / 6.0 * (k1[j] + 2.0 * k2[j] + 2.0 * k3[j] + k4[j]);
-            }
-            if i >= (periods - watched) * steps {
-                let x = state[2] - state[5];
-                n += 1.0;
-                sum += x;
-                squares += x * x;
-                (least, most) = (least.min(x), most.max(x));
-                let eta = omega * (t + h) / (2.0 * PI);
-                largest = largest.max(table.load(eta, rest + approach(&state[..6])));
-            }
-        }
-        let mean: f64 = sum / n;
-        let rms = (squares / n - mean * mean).sqrt();
-        within_a_percent(&found, place, [rms, most - least, largest]);
+        let see = |t: f64, s: [f64; 12]| {
+            let eta = omega * t / (2.0 * PI);
+            (s[2] - s[5], table.load(eta, rest + approach(&s[..6])))
+        };
+        let moved = settled_by_runge_kutta(2.0 * PI / omega, [256, 160, 40], [0.0; 12], rate, see);
+        within_a_percent(&found, place, moved);
     }
 }
 
@@ -935,8 +905,8 @@ fn in_waves(speeds: Vec<f64>, orders: &[f64]) -> RunUpData {
 
 #[test]
 fn gears_in_waves_move_as_a_plain_integrator_moves_them_in_the_frame_of_the_gear() {
-    // The classical Runge-Kutta method on the cosine and the sine of the first mode in the frame of the gear, past which the mesh runs: Q = q_c + i q_s obeys
-    // Q'' + 2 ζ ω Q' + 2 i c Ω Q' + (ω² − c² Ω²) Q = −F φ e^{−inΩt}, and the teeth move by φ Re(Q e^{inΩt}). The table is that of the teeth alone.
+    // In the frame of the gear, past which the mesh runs, the first mode has a cosine and a sine: Q = q_c + i q_s. It obeys
+    // Q'' + 2 ζ ω Q' + 2 i c Ω Q' + (ω² − c² Ω²) Q = −F φ e^{−inΩt}. The teeth move by φ Re(Q e^{inΩt}). The table is that of the teeth alone.
     let wave = |eta: f64| 0.3 * (2.0 * PI * eta).cos() + 0.1 * (4.0 * PI * eta + 0.4).cos();
     let whole = |eta: f64| 1.0 + 0.2 * (2.0 * PI * eta).cos();
     let of_all = table(256, 4.0, wave, whole);
@@ -950,8 +920,6 @@ fn gears_in_waves_move_as_a_plain_integrator_moves_them_in_the_frame_of_the_gear
     assert!(found.contact_lost.contains(&true) && found.contact_lost.contains(&false));
     let [first, second] = WAVES;
     for (place, omega) in omegas.into_iter().enumerate() {
-        let steps = 512;
-        let h = 2.0 * PI / omega / f64::from(steps);
         let turn = omega / teeth;
         let (n, c) = (2.0, 2.0 - first.split);
         // Approach of the hubs, the two parts of Q and the second mode, then their rates.
@@ -984,7 +952,7 @@ fn gears_in_waves_move_as_a_plain_integrator_moves_them_in_the_frame_of_the_gear
         };
         let rest = of_all.transmission_error(1.0)[0];
         let pushed = |mode: &BodyWave| -mode.at_mesh / mode.frequency.powi(2);
-        let mut state = [
+        let state = [
             rest,
             pushed(&first),
             0.0,
@@ -994,32 +962,12 @@ fn gears_in_waves_move_as_a_plain_integrator_moves_them_in_the_frame_of_the_gear
             0.0,
             0.0,
         ];
-        let (mut n, mut sum, mut squares) = (0.0, 0.0, 0.0);
-        let (mut least, mut most, mut largest) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
-        let (periods, watched) = (160, 40);
-        for i in 0..periods * steps {
-            let t = f64::from(i) * h;
-            let on = |by: f64, k: [f64; 8]| std::array::from_fn(|j| state[j] + by * h * k[j]);
-            let k1 = rate(t, state);
-            let k2 = rate(t + h / 2.0, on(0.5, k1));
-            let k3 = rate(t + h / 2.0, on(0.5, k2));
-            let k4 = rate(t + h, on(1.0, k3));
-            for j in 0..8 {
-                state[j] += h / 6.0 * (k1[j] + 2.0 * k2[j] + 2.0 * k3[j] + k4[j]);
-            }
-            if i >= (periods - watched) * steps {
-                let x = state[0];
-                n += 1.0;
-                sum += x;
-                squares += x * x;
-                (least, most) = (least.min(x), most.max(x));
-                let eta = omega * (t + h) / (2.0 * PI);
-                largest = largest.max(of_teeth.load(eta, at_teeth(t + h, &state)));
-            }
-        }
-        let mean: f64 = sum / n;
-        let rms = (squares / n - mean * mean).sqrt();
-        within_a_percent(&found, place, [rms, most - least, largest]);
+        let see = |t: f64, s: [f64; 8]| {
+            let force = of_teeth.load(omega * t / (2.0 * PI), at_teeth(t, &s));
+            (s[0], force)
+        };
+        let moved = settled_by_runge_kutta(2.0 * PI / omega, [512, 160, 40], state, rate, see);
+        within_a_percent(&found, place, moved);
     }
 }
 

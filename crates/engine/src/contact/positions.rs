@@ -36,6 +36,16 @@ pub enum PositionsError {
     Stopped(#[from] Stopped),
 }
 
+impl PositionsError {
+    /// The `error` of a mesh position.
+    pub(super) fn at(error: PositionError, mesh_position: f64) -> Self {
+        Self::At {
+            mesh_position,
+            error,
+        }
+    }
+}
+
 /// The contact of `deviating` at each of `positions` under `load`.
 ///
 /// # Errors
@@ -98,12 +108,8 @@ fn chunk_of(
     let mut first = WarmStart::default();
     for (fraction, places) in chunk {
         // Each phase starts from the one before it, and each further period of a phase from the last period.
-        let at = |error, mesh_position| PositionsError::At {
-            mesh_position,
-            error,
-        };
         let mut phase = MeshPhase::new(deviating, *fraction, load)
-            .map_err(|error| at(error, positions[places[0]]))?;
+            .map_err(|error| PositionsError::at(error, positions[places[0]]))?;
         let mut warm = first.clone();
         for &place in places {
             let eta = positions[place];
@@ -111,7 +117,7 @@ fn chunk_of(
             let solved = phase.contact_with(period, &mut warm, |contact, cells, solution| {
                 each(place, contact, cells, solution);
             });
-            solved.map_err(|error| at(error, eta))?;
+            solved.map_err(|error| PositionsError::at(error, eta))?;
             run.reached(1)?;
             if place == places[0] {
                 first = warm.clone();

@@ -16,10 +16,10 @@ use super::bodies::Coupled;
 /// Numbers that one step of arithmetic takes together.
 pub(super) const LANES: usize = 4;
 
-/// The largest product of the norms of the eigenvectors and of their inverse, over their number, before equal eigenvalues are told apart.
+/// The largest product of the norms of the eigenvectors and of their inverse, over their number, before equal eigenvalues are separated.
 const ILL_CONDITIONED: f64 = 1e6;
 
-/// The part by which frequencies are told apart then, from one mode to the next.
+/// The part of a frequency by which each mode is separated from the one before then.
 const APART: f64 = 1e-9;
 
 /// Below this |λ t| the series of the exponential has more digits than its closed form.

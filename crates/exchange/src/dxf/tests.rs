@@ -429,7 +429,7 @@ fn circles_about_the_axis_are_the_bore_and_the_one_around_and_other_contours_the
     }
     let told = refused(&file(Some(4), &[circle(axis, 12.0)]));
     assert!(told.contains("none bounds an opening"), "{told}");
-    // An opening that does not close is told beside the bore, too.
+    // An opening that does not close is reported beside a bore, too.
     let open = [circle(axis, 12.0), line([20.0, 0.0], [30.0, 0.0])];
     let told = refused(&file(Some(4), &open));
     assert!(told.contains("none bounds an opening"), "{told}");

@@ -131,16 +131,13 @@ impl FaceModel {
         positions: &[f64],
         run: &Run,
     ) -> Result<Vec<FaceContact>, PositionsError> {
-        let at = |error, mesh_position| PositionsError::At {
-            mesh_position,
-            error,
-        };
         let margin = margin(self.pair(), deviations);
         let phases = store.phases.get([load, margin].map(f64::to_bits), |_| {
             let FirstReach { delta, .. } = self.first_reach(load)?;
             Ok(self.flanks.phases_within(delta + margin))
         });
-        let phases = Result::clone(&phases).map_err(|error| at(error, LOOKED_FROM))?;
+        let phases =
+            Result::clone(&phases).map_err(|error| PositionsError::at(error, LOOKED_FROM))?;
         let module = self.pair().section().driving().data().rack.module;
         let solved: Result<Vec<_>, PositionsError> = stages(positions)
             .par_iter()
@@ -159,12 +156,13 @@ impl FaceModel {
                 let each = places.iter().map(|&place| {
                     let eta = positions[place];
                     let period = (eta - fraction).round() as i64;
-                    let stage = Result::as_ref(&stage).map_err(|error| at(error.clone(), eta))?;
+                    let stage = Result::as_ref(&stage)
+                        .map_err(|error| PositionsError::at(error.clone(), eta))?;
                     let contact = stage.contact((self.pair(), deviations), load, period, &mut warm);
                     run.reached(1)?;
-                    let contact = contact.map_err(|error| at(error, eta))?;
+                    let contact = contact.map_err(|error| PositionsError::at(error, eta))?;
                     let checked = contact.mesh.check(module);
-                    checked.map_err(|error| at(error.into(), eta))?;
+                    checked.map_err(|error| PositionsError::at(error.into(), eta))?;
                     Ok((place, contact))
                 });
                 each.collect::<Result<Vec<_>, PositionsError>>()

@@ -190,16 +190,12 @@ impl FaceModel {
         positions: &[f64],
         run: &Run,
     ) -> Result<Vec<FaceContact>, PositionsError> {
-        let at = |error, mesh_position| PositionsError::At {
-            mesh_position,
-            error,
-        };
         if positions.is_empty() {
             return Ok(Vec::new());
         }
         let first = self.reaches.get(load.to_bits(), |_| self.first_reach(load));
         let FirstReach { touch, delta } =
-            Result::clone(&first).map_err(|error| at(error, LOOKED_FROM))?;
+            Result::clone(&first).map_err(|error| PositionsError::at(error, LOOKED_FROM))?;
         let mut reach = delta;
         let stages = self.stages_of(positions);
         let mut is_counted = false;
@@ -214,7 +210,7 @@ impl FaceModel {
                         let period = (eta - fraction).round() as i64;
                         let reached = self.reached(&mut stage, (eta, period), load, reach);
                         run.reached(u64::from(!is_counted))?;
-                        let reached = reached.map_err(|error| at(error, eta))?;
+                        let reached = reached.map_err(|error| PositionsError::at(error, eta))?;
                         Ok((place, reached))
                     });
                     solved.collect::<Result<Vec<_>, PositionsError>>()
@@ -231,7 +227,10 @@ impl FaceModel {
                     let eta = positions[place];
                     let contact = contact?;
                     let checked = contact.mesh.check(module);
-                    Some(checked.map_or_else(|error| Err(at(error.into(), eta)), |()| Ok(contact)))
+                    Some(checked.map_or_else(
+                        |error| Err(PositionsError::at(error.into(), eta)),
+                        |()| Ok(contact),
+                    ))
                 });
                 return contacts.collect();
             }
