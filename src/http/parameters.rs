@@ -29,8 +29,12 @@ impl<T: DeserializeOwned, S: Sync> FromRequestParts<S> for Parameters<T> {
                 return Err(invalid(detail).into());
             }
         }
-        let Query(parameters) =
-            Query::try_from_uri(&parts.uri).map_err(|error| invalid(error.body_text()))?;
+        let parameters = Query::try_from_uri(&parts.uri).map_err(|error| {
+            // The cause names the parameter; what stands before it are words of the library.
+            let cause = std::error::Error::source(&error).map(ToString::to_string);
+            invalid(cause.unwrap_or_else(|| error.body_text()))
+        });
+        let Query(parameters) = parameters?;
         Ok(Self(parameters))
     }
 }

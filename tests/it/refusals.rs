@@ -215,7 +215,11 @@ async fn a_number_of_a_query_that_is_none_is_refused_with_the_one_that_would_do(
         let drawing = bench.send(&path).header("content-type", "image/vnd.dxf");
         let told = problem(drawing.body("0\nEOF\n"), 400, "invalid_parameter").await;
         let detail = told["detail"].as_str().unwrap();
-        assert!(detail.ends_with("0.01 would do"), "{detail}");
+        let begun = format!("{name}: ");
+        assert!(
+            detail.starts_with(&begun) && detail.ends_with("0.01 would do"),
+            "{detail}"
+        );
     }
     let path = format!("{results}/edges.json?torque=NaN");
     problem(bench.get(&path), 400, "invalid_parameter").await;
