@@ -240,6 +240,18 @@ impl Bench {
         answer.document().await
     }
 
+    /// The answer for a file that is computed anew. On a busy machine it is made after its request was answered (202), and asked for again.
+    pub(crate) async fn file(&self, path: &str) -> Response {
+        eventually(async || {
+            let answer = self.get(path).answer().await;
+            match answer.status() {
+                StatusCode::ACCEPTED => Err(StatusCode::ACCEPTED),
+                _ => Ok(answer),
+            }
+        })
+        .await
+    }
+
     /// The job at an address when it has ended. It may take a minute of a machine that has much else to do.
     pub(crate) async fn ended(&self, path: &str) -> Value {
         let mut job = Value::Null;

@@ -6,7 +6,7 @@ use std::time::Duration;
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 
-use crate::bench::{Asked, Bench, eventually, problem, results, submission};
+use crate::bench::{Asked, Bench, problem, results, submission};
 use crate::stores;
 
 #[tokio::test]
@@ -149,14 +149,8 @@ async fn a_file_that_is_not_made_in_time_is_202_and_comes_later_at_the_same_addr
         assert_eq!(later.headers()["cache-control"], "no-store");
         assert!(!later.headers().contains_key("etag"));
         assert_eq!(later.whole_text().await, "");
-        let made = eventually(async || {
-            let answer = bench.get(&path).answer().await;
-            match answer.status() {
-                StatusCode::OK => Ok(answer),
-                status => Err(status),
-            }
-        })
-        .await;
+        let made = bench.file(&path).await;
+        assert_eq!(made.status(), StatusCode::OK, "{file}");
         let tag = made.headers()["etag"].clone();
         let made = made.whole_text().await;
         // It is kept.
@@ -179,8 +173,9 @@ async fn fields_come_as_a_grid_at_any_position_and_torque_of_the_job() {
     let path = bench.submit(&submission(115.0)).await;
     bench.ended(&path).await;
     let get = async |query: &str| {
-        let path = format!("{path}/results/fields.vtu{query}");
-        bench.get(&path).answer().await
+        bench
+            .file(&format!("{path}/results/fields.vtu{query}"))
+            .await
     };
     let answer = get("?torque=115&mesh_position=0.25").await;
     assert_eq!(answer.status(), StatusCode::OK);
@@ -217,11 +212,8 @@ async fn fields_come_as_a_grid_at_any_position_and_torque_of_the_job() {
         of_older.headers()["results-solver-version"],
         "meshwright 0.1.0"
     );
-    let edges = bench
-        .document(&format!(
-            "{path}/results/edges.json?torque=115&mesh_position=0.25"
-        ))
-        .await;
+    let edges = format!("{path}/results/edges.json?torque=115&mesh_position=0.25");
+    let edges = bench.file(&edges).await.document().await;
     assert_eq!(edges["mesh_position"], 0.25);
     let submitted = submission(115.0);
     for member in ["driving", "driven"] {
@@ -257,12 +249,7 @@ async fn a_mode_that_no_list_has_is_not_found_before_anything_is_computed() {
     let bench = Bench::quick().await;
     let path = bench.submit(&with_modes()).await;
     bench.ended(&path).await;
-    let get = async |file: &str| {
-        bench
-            .get(&format!("{path}/results/modes/{file}"))
-            .answer()
-            .await
-    };
+    let get = async |file: &str| bench.file(&format!("{path}/results/modes/{file}")).await;
     for file in ["0.vtu", "3.vtu?gear=driven", "one.vtu", "1.csv", "1"] {
         problem(get(file).await, 404, "not_found").await;
     }
@@ -285,12 +272,7 @@ async fn the_shape_of_a_mode_comes_as_a_grid_of_its_gear() {
     let bench = Bench::quick().await;
     let path = bench.submit(&with_modes()).await;
     bench.ended(&path).await;
-    let get = async |file: &str| {
-        bench
-            .get(&format!("{path}/results/modes/{file}"))
-            .answer()
-            .await
-    };
+    let get = async |file: &str| bench.file(&format!("{path}/results/modes/{file}")).await;
     for query in ["", "?gear=driving", "?gear=driven"] {
         let answer = get(&format!("2.vtu{query}")).await;
         assert_eq!(answer.status(), StatusCode::OK, "{query}");
@@ -321,7 +303,7 @@ async fn fields_of_a_pair_along_its_faces_are_volumes_and_its_edges_those_of_a_s
     bench.ended(&path).await;
     let get = async |file: &str| {
         let path = format!("{path}/results/{file}?torque=50&mesh_position=0.25");
-        bench.get(&path).answer().await
+        bench.file(&path).await
     };
     let volumes = get("fields.vtu").await;
     assert_eq!(volumes.status(), StatusCode::OK);
@@ -399,7 +381,7 @@ async fn the_contact_pattern_of_a_pair_along_its_faces_comes_as_numbers_and_as_a
     bench.ended(&path).await;
     let get = async |file: &str| {
         let path = format!("{path}/results/contact-pattern.{file}");
-        bench.get(&path).answer().await
+        bench.file(&path).await
     };
     let answer = get("json").await;
     assert_eq!(answer.status(), StatusCode::OK);
@@ -475,8 +457,7 @@ async fn a_contact_pattern_takes_as_long_as_its_job_however_short_previews_are()
     let path = bench.submit(&helical()).await;
     bench.ended(&path).await;
     let answer = bench
-        .get(&format!("{path}/results/contact-pattern.json"))
-        .answer()
+        .file(&format!("{path}/results/contact-pattern.json"))
         .await;
     assert_eq!(answer.status(), StatusCode::OK);
 }

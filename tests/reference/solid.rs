@@ -324,7 +324,7 @@ fn web_errors(case: &WebCase) -> Vec<f64> {
         let web = ring.on_outer(0.0, &Run::unattended());
         let classes = web.expect("definite");
         // Orders of different classes do not meet.
-        let between = |one: i64, other: i64| {
+        let stored = |one: i64, other: i64| {
             classes.iter().find_map(|class| {
                 let place = |order| class.orders.iter().position(|each| *each == order);
                 let (row, column) = (place(one)?, place(other)?);
@@ -336,6 +336,11 @@ fn web_errors(case: &WebCase) -> Vec<f64> {
                 );
                 Some(block.to_owned())
             })
+        };
+        // A class stands for the opposite one too, whose stiffness is its conjugate.
+        let between = |one: i64, other: i64| {
+            let opposite = || Some(stored(-one, -other)?.conjugate().to_owned());
+            stored(one, other).or_else(opposite)
         };
         let low: Vec<usize> = (0..orders.len())
             .filter(|i| orders[*i].order.abs() <= seen)
