@@ -3,8 +3,8 @@
 #
 # Expected: a tooth as thick as half of the pitch, pi m / 2, less half of `backlash` (the thickness of a reference tooth, ISO 21771). `InvoluteGear`
 # centers the tooth by the first of its own points of the involute that lies beyond the pitch circle, not by the point on it. Points are
-# 180 degrees / (`maxSteps` - 1) of roll apart. Two gears made so do not fit: in a contact simulation they begin jammed, a `backlash` of some hundredths
-# of the module does not help, and the excess jumps with the pressure angle.
+# 180 degrees / (`maxSteps` - 1) of roll apart. Two gears made so overlap at their distance, here by 0.24 mm; a `backlash` of some hundredths of the
+# module does not help, and the excess jumps with the pressure angle.
 # Do instead: pass `maxSteps=20000`, and a `tolerance` against too many points.
 #
 # Seen (module 2 mm, 20 degrees, thickness in mm):
