@@ -8,11 +8,12 @@ import { byId, debounced, h, within } from "./draw/dom.js";
 import { copied, save } from "./draw/download.js";
 import { Drawing, indexAt } from "./draw/drawing.js";
 import { fileOf, pictureOf } from "./draw/figure.js";
-import { jobs } from "./panels/jobs.js";
-import { population } from "./panels/population.js";
-import { sensitivity } from "./panels/sensitivity.js";
-import { study } from "./panels/study.js";
-import { sweep } from "./panels/sweep.js";
+import { Jobs } from "./panels/jobs.js";
+import { Population } from "./panels/population.js";
+import { RunUp } from "./panels/runup.js";
+import { Sensitivity } from "./panels/sensitivity.js";
+import { StudyOfAxes } from "./panels/study.js";
+import { Sweep } from "./panels/sweep.js";
 import { json, patiently, ProblemError } from "./state/api.js";
 import { Design, fromFragment, nameOf, same, toFragment } from "./state/design.js";
 import { isSolid, learnDimensions, needsSolid } from "./state/dimensions.js";
@@ -38,7 +39,6 @@ import { ProblemBox } from "./views/problem.js";
 import { Progress } from "./views/progress.js";
 import { Project } from "./views/project.js";
 import { nameFoot, reportOf } from "./views/report.js";
-import { RunUp } from "./views/runup.js";
 import { setUpKey, setUpLayout, setUpTheme } from "./views/settings.js";
 import { sheetOf } from "./views/sheet.js";
 import { FIRST_EXAMPLE, setUpFiles, setUpStart } from "./views/start.js";
@@ -326,11 +326,11 @@ class Page {
     });
     return {
       "run-up": runUp,
-      sweep: sweep(byId("sweep"), design),
-      study: study(byId("study"), design, form, open),
-      sensitivity: sensitivity(byId("sensitivity"), design, form, () => this.#current()),
-      population: population(byId("population"), design, form, limits, open),
-      jobs: jobs(byId("jobs"), design, form, open, resume),
+      sweep: new Sweep(byId("sweep"), design),
+      study: new StudyOfAxes(byId("study"), design, form, open),
+      sensitivity: new Sensitivity(byId("sensitivity"), design, form, () => this.#current()),
+      population: new Population(byId("population"), design, form, limits, open),
+      jobs: new Jobs(byId("jobs"), design, form, open, resume),
       export: exporting(byId("export"), {
         current: () => this.#current(),
         designs,

@@ -19,6 +19,7 @@ import {
 } from "../draw/dom.js";
 import { figure, ticks } from "../draw/figure.js";
 import { Tones } from "../draw/sound.js";
+import { Panel } from "./panel.js";
 import { motionAt } from "../state/motion.js";
 import { fixed, number } from "../state/numbers.js";
 import { wordsOf } from "../state/orders.js";
@@ -80,7 +81,8 @@ const WAYS = /** @type {Way[]} */ (Object.keys(BRANCHES));
  *   stage
  */
 
-export class RunUp {
+/** The run-up of the designs that are shown. */
+export class RunUp extends Panel {
   /** @type {number} */
   #speed = NaN;
   /** @type {Way} */
@@ -98,7 +100,7 @@ export class RunUp {
    * @param {Page} page
    */
   constructor(place, { ask, asked, refused, focus, designs, stage }) {
-    this.place = place;
+    super(place);
     this.asked = asked;
     this.refused = refused;
     /**
@@ -218,7 +220,7 @@ export class RunUp {
     this.coming.hidden = !live || there || !this.asked() || refused !== null;
     this.none.hidden = !live || there || this.asked();
     if (!there) return this.leave();
-    if (this.place.hidden) return undefined;
+    if (this.place.hidden) return;
     this.live = live;
     this.#offer(
       this.torque,
@@ -236,10 +238,9 @@ export class RunUp {
     if (!(this.#speed >= speeds[0] && this.#speed <= speeds[speeds.length - 1])) this.#speed = this.#loudest();
     this.#motion = null;
     this.#draw(designs);
-    return this.#look(this.#speed);
+    this.#look(this.#speed);
   }
 
-  /** Nobody looks any more. */
   leave() {
     this.#play(false);
     this.#listen(false);
