@@ -9,6 +9,7 @@ import {
   h,
   inLine,
   labelled,
+  measured,
   note,
   region,
   s,
@@ -16,7 +17,7 @@ import {
   tableRow,
   unseen,
 } from "../draw/dom.js";
-import { figure } from "../draw/figure.js";
+import { figure, roomIn } from "../draw/figure.js";
 import { allGiven, given, numeric, put } from "../draw/inputs.js";
 import { FieldChoice, options } from "./offer.js";
 import { mostOften, StudyPanel } from "./panel.js";
@@ -138,11 +139,7 @@ export class Population extends StudyPanel {
     const change = () => this.#draw();
     this.quantity = h("select", { id: "population-quantity", on: { change } }, ...options(SHOWN));
     this.torque = h("select", { id: "population-torque", on: { change } });
-    this.picker = inLine(
-      ...labelled("Look at", this.quantity),
-      ...labelled("at", this.torque),
-      h("span", { className: "unit" }, "N m"),
-    );
+    this.picker = inLine(...labelled("Look at", this.quantity), measured("at", this.torque, "N m"));
     this.picker.hidden = true;
     this.missing = h("p", { className: "outdated", role: "status" });
     this.short = note(
@@ -156,12 +153,7 @@ export class Population extends StudyPanel {
         ...this.classes.flatMap((each, i) => labelled(`teeth of the ${MEMBERS[i]} gear`, each)),
       ),
       ...this.laws.map((each) => each.element),
-      inLine(
-        ...labelled("Torques", this.torques),
-        h("span", { className: "unit" }, "N m"),
-        ...labelled("over a window of", this.span),
-        h("span", { className: "unit" }, "mesh periods"),
-      ),
+      inLine(measured("Torques", this.torques, "N m"), measured("over a window of", this.span, "mesh periods")),
       this.ahead,
       inLine(this.run, this.cancel),
     );
@@ -410,12 +402,14 @@ export class Population extends StudyPanel {
       );
     /** @type {(name: string, number: number) => HTMLButtonElement} */
     const member = (name, number) => button(`Open the ${name} member`, () => this.#openMember(address, number));
+    const width = roomIn(this.out);
     const pictures = [
       figure({
         lines: [outlineOf(one.histogram, factor)],
         x: inUnit(looked),
         y: "members",
         title: `Histogram of the ${words}`,
+        width,
       }),
       ...(all.length > 1
         ? [
@@ -434,6 +428,7 @@ export class Population extends StudyPanel {
               x: "output torque in N m",
               y: inUnit(looked),
               title: `Percentiles of the ${words} over the torque`,
+              width,
             }),
           ]
         : []),

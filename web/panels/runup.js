@@ -17,7 +17,7 @@ import {
   tableRow,
   unseen,
 } from "../draw/dom.js";
-import { figure, ticks } from "../draw/figure.js";
+import { figure, roomIn, ticks } from "../draw/figure.js";
 import { Tones } from "../draw/sound.js";
 import { Panel } from "./panel.js";
 import { motionAt } from "../state/motion.js";
@@ -46,7 +46,7 @@ const HEIGHT = 290;
 const MOST_RIDGES = 16;
 /** A row of the waterfall, and how many rows its highest ridge may cover, in px. */
 const [ROW, RISE] = [24, 2.4];
-const FRAME = { left: 74, right: 14, top: 44, bottom: 44 };
+const FRAME = { left: 74, right: 20, top: 44, bottom: 44 };
 /** The gears turn by so many mesh periods in a second at the highest speed. */
 const SLOW_MOTION = 1.5;
 const REST = 60;
@@ -289,9 +289,7 @@ export class RunUp extends Panel {
   /** @param {NamedDesign[]} designs */
   #draw(designs) {
     const [words, unit, read] = OVER_SPEED[this.quantity.value];
-    // Letters of a figure grow with those of the page.
-    const scale = parseFloat(getComputedStyle(document.documentElement).fontSize) / 16;
-    const width = Math.max(300, this.place.clientWidth / scale - 8);
+    const width = roomIn(this.place, Infinity);
     const torque = this.#curve.output_torque_n_m;
     const seen = designs.filter(({ hidden }) => !hidden);
     const { series } = looks();

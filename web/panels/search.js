@@ -3,7 +3,7 @@
 // compute.
 
 import { asking, button, h, inLine, labelled, note, region, table, tableRow, unseen } from "../draw/dom.js";
-import { figure } from "../draw/figure.js";
+import { figure, roomIn } from "../draw/figure.js";
 import { given, numeric } from "../draw/inputs.js";
 import { FieldChoice, options } from "./offer.js";
 import { mostOften, StudyPanel } from "./panel.js";
@@ -215,6 +215,7 @@ export class Search extends StudyPanel {
     const reached = generations.flatMap(({ best: value = null }, i) =>
       value === null ? [] : [[i + 1, parts[0].factor * value]],
     );
+    const width = roomIn(this.out);
     const pictures =
       front.length > 1
         ? [
@@ -228,6 +229,7 @@ export class Search extends StudyPanel {
               })),
               x: inUnit(parts[0]),
               y: inUnit(parts[1]),
+              width,
               title:
                 "The front: no design found is better in both; the large point is the best compromise. Press a point to open its design",
             }),
@@ -239,6 +241,7 @@ export class Search extends StudyPanel {
                 lines: [{ x: reached.map(([i]) => i), y: reached.map(([, value]) => value) }],
                 x: "generation",
                 y: inUnit(parts[0]),
+                width,
                 title: "The best so far, generation by generation",
               }),
             ]

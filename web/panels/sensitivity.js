@@ -2,7 +2,7 @@
 // The sensitivity of a design as bars around its own value: torque, center distance and misalignment at their limits,
 // by one small study.
 
-import { asking, h, inLine, labelled, note, region, s, table, tableRow, unseen } from "../draw/dom.js";
+import { asking, h, inLine, labelled, measured, note, region, s, table, tableRow, unseen } from "../draw/dom.js";
 import { given, numeric, put } from "../draw/inputs.js";
 import { options } from "./offer.js";
 import { offerTold, StudyPanel } from "./panel.js";
@@ -67,12 +67,9 @@ export class Sensitivity extends StudyPanel {
       asking(
         () => void this.start(),
         inLine(
-          ...labelled("Torque ±", this.torque),
-          h("span", { className: "unit" }, "%"),
-          ...labelled("center distance ±", this.distance),
-          h("span", { className: "unit" }, "mm"),
-          ...labelled("misalignment ±", this.misalignment),
-          h("span", { className: "unit" }, "µm"),
+          measured("Torque ±", this.torque, "%"),
+          measured("center distance ±", this.distance, "mm"),
+          measured("misalignment ±", this.misalignment, "µm"),
           this.run,
           this.cancel,
         ),

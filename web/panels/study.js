@@ -4,7 +4,7 @@
 
 import { asking, button, h, inLine, labelled, note, region, table, unseen } from "../draw/dom.js";
 import { saveTable } from "../draw/download.js";
-import { figure } from "../draw/figure.js";
+import { figure, roomIn } from "../draw/figure.js";
 import { allGiven, given, numeric, put } from "../draw/inputs.js";
 import { FieldChoice, options } from "./offer.js";
 import { offerTold, StudyPanel } from "./panel.js";
@@ -192,7 +192,9 @@ export class StudyOfAxes extends StudyPanel {
       .filter((point) => Number.isFinite(point.x) && Number.isFinite(point.y));
     this.picker.hidden = computed.length < 2;
     const title = `Designs by ${inWords(x)} and ${inWords(y)}, of several torques the worst; large points are the best`;
-    this.picture.replaceChildren(...(points.length > 1 ? [figure({ points, x: inUnit(x), y: inUnit(y), title })] : []));
+    this.picture.replaceChildren(
+      ...(points.length > 1 ? [figure({ points, x: inUnit(x), y: inUnit(y), title, width: roomIn(this.out) })] : []),
+    );
   }
 
   /** @param {StudyResults} results */

@@ -2,20 +2,23 @@
 // The peak-to-peak transmission error over the torque, and where it is least: a study over the torque, which is found
 // again as others are.
 
-import { asking, button, h, inLine, labelled, note } from "../draw/dom.js";
-import { figure } from "../draw/figure.js";
+import { asking, button, h, inLine, measured, note } from "../draw/dom.js";
+import { figure, roomIn } from "../draw/figure.js";
 import { given, numeric, put } from "../draw/inputs.js";
 import { StudyPanel } from "./panel.js";
 import { ProblemError } from "../state/api.js";
 import { apart, nameOf } from "../state/design.js";
+import { markOf } from "../state/marks.js";
 import { fixed, number } from "../state/numbers.js";
 
 /** @import { Dot, Figure } from "../draw/figure.js" */
 /** @import { Design } from "../state/design.js" */
-/** @import { AskedStudy, StudyResults } from "../state/documents.js" */
+/** @import { AskedStudy, StudyResults, Warning } from "../state/documents.js" */
+/** @import { Form } from "../views/form.js" */
 
 const MOST_TORQUES = 24;
 const TORQUE = "/output_torques_n_m";
+const PEAK_TO_PEAK = "transmission_error_um.peak_to_peak";
 
 /**
  * The sweep of a design.
@@ -24,11 +27,23 @@ const TORQUE = "/output_torques_n_m";
  */
 export class Sweep extends StudyPanel {
   /**
+   * The warnings of the design that is swept: rows tell none.
+   *
+   * @type {Warning[]}
+   */
+  #warnings = [];
+
+  /**
+   * The sweep of `design` in `place`; `form` names fields, and `warnings` gives those of its results.
+   *
    * @param {HTMLElement} place
    * @param {Design} design
+   * @param {Form} form
+   * @param {() => Warning[]} warnings
    */
-  constructor(place, design) {
-    super(place, design, { id: "sweep", words: "Sweep", ignored: [TORQUE] });
+  constructor(place, design, form, warnings) {
+    super(place, design, { id: "sweep", words: "Sweep", inWords: (detail) => form.inWords(detail), ignored: [TORQUE] });
+    this.warnings = warnings;
     this.ends = ["from", "to"].map((end) => numeric({ id: `sweep-${end}` }));
     for (const input of this.ends)
       input.addEventListener("input", () => {
@@ -40,14 +55,7 @@ export class Sweep extends StudyPanel {
       note("At which torque is the transmission error flattest? A tip relief suits one torque; this shows which."),
       asking(
         () => void this.start(),
-        inLine(
-          ...labelled("Torque from", from),
-          h("span", { className: "unit" }, "N m"),
-          ...labelled("to", to),
-          h("span", { className: "unit" }, "N m"),
-          this.run,
-          this.cancel,
-        ),
+        inLine(measured("Torque from", from, "N m"), measured("to", to, "N m"), this.run, this.cancel),
       ),
       this.state,
       this.outdated,
@@ -63,6 +71,11 @@ export class Sweep extends StudyPanel {
       const input = this.ends[i];
       if (!input.dataset.typed || !input.value) put(input, number(torque * part, 2));
     }
+  }
+
+  clear() {
+    super.clear();
+    this.#warnings = [];
   }
 
   /** @returns {AskedStudy} */
@@ -105,11 +118,12 @@ export class Sweep extends StudyPanel {
   ended({ rows, status }) {
     return status === "dismissed"
       ? `Cancelled after ${rows.filter(({ curves }) => curves?.length).length} torques.`
-      : (rows.find(({ problem }) => problem)?.problem?.detail ?? "");
+      : this.inWords(rows.find(({ problem }) => problem)?.problem?.detail ?? "");
   }
 
   /** @param {StudyResults} found */
   show({ rows, status }) {
+    if (this.outdated.hidden) this.#warnings = this.warnings();
     const points = rows
       .flatMap((row) =>
         row.curves.map((curve) => ({
@@ -121,38 +135,47 @@ export class Sweep extends StudyPanel {
       .filter(({ y }) => Number.isFinite(y))
       .sort((a, b) => a.x - b.x);
     const least = status === "successful" && points.length ? this.#leastOf(points) : [];
-    this.out.replaceChildren(...least, ...(points.length ? [pictureOf(points)] : []));
+    this.out.replaceChildren(...least, ...(points.length ? [pictureOf(points, roomIn(this.out))] : []));
   }
 
   /**
-   * The least of the points in words; its point is larger than the others.
+   * The least of the points in words; its point is larger than the others, unless a warning limits what they say.
    *
    * @param {Dot[]} points
    */
   #leastOf(points) {
     const least = points.reduce((best, point) => (point.y < best.y ? point : best));
-    least.strong = true;
-    least.label = `least: ${fixed(least.y, 3)} µm at ${number(least.x)} N m`;
+    const told = `${fixed(least.y, 3)} µm at ${number(least.x)} N m`;
     const use = button(`Show ${number(least.x)} N m`, () => this.design.set(TORQUE, [least.x], "mend"));
     const atEnd = least === points[0] || least === points.at(-1);
     const words = atEnd ? "The least lies at an end of the sweep; a wider one may find less." : "";
-    return [
-      h(
-        "p",
-        {},
-        `Least peak-to-peak of these torques: ${fixed(least.y, 3)} µm at ${number(least.x)} N m. ${words} `,
-        use,
-      ),
-    ];
+    const mark = markOf(PEAK_TO_PEAK, this.#warnings);
+    if (mark) {
+      const why = h("span", { className: "mark" }, mark.word);
+      return [
+        h(
+          "p",
+          {},
+          `Smallest number of these torques: ${told}, which is not called the least: `,
+          why,
+          ` ${mark.detail} `,
+          use,
+        ),
+      ];
+    }
+    least.strong = true;
+    least.label = `least: ${told}`;
+    return [h("p", {}, `Least peak-to-peak of these torques: ${told}. ${words} `, use)];
   }
 }
 
-/** @type {(points: Dot[]) => Figure} */
-const pictureOf = (points) =>
+/** @type {(points: Dot[], width: number) => Figure} */
+const pictureOf = (points, width) =>
   figure({
     points,
     lines: [{ x: points.map((point) => point.x), y: points.map((point) => point.y) }],
     x: "output torque in N m",
     y: "STE peak-to-peak in µm",
     title: "Peak-to-peak transmission error over the torque",
+    width,
   });
