@@ -419,6 +419,27 @@ export async function benchSteps(service) {
     assert.equal(await page.locator("#table tr", { hasText: "Mass of the driven gear" }).locator("td.best").count(), 1);
   });
 
+  await step("a sweep calls no torque the least where a warning limits its numbers", async (page) => {
+    await page.route("**/v1/preview", async (route) => {
+      const response = await route.fetch();
+      const json = await response.json();
+      const warning = { code: "few_positions", pointer: null, detail: "More positions would tell.", nearest: null };
+      await route.fulfill({ response, json: { ...json, warnings: [...json.warnings, warning] } });
+    });
+    await open(page, service);
+    await page.locator("#sweep-to").fill("90000");
+    await page.locator("#sweep-run").click();
+    await page.locator("#sweep .out p").waitFor();
+    assert.match(
+      await page.locator("#sweep .out p").innerText(),
+      /^Smallest number of these torques: [\d.]+ µm at [\d.]+ N m, which is not called the least: few positions More positions/,
+    );
+    assert.equal(await page.locator("#sweep .scatter .strong").count(), 0);
+    assert.ok(await page.locator("#sweep button", { hasText: /^Show [\d.]+ N m/ }).isVisible());
+    // A torque that the teeth do not bear is named as in the form.
+    assert.match(await page.locator("#sweep-state").innerText(), /^“Output torque/);
+  });
+
   await opened("holes that are asked for lie within the web, and a web around the holes", async (page) => {
     await page.locator("#start").selectOption("new pair");
     await settled(page);

@@ -699,8 +699,32 @@ for (const [width, height] of WIDTHS) {
                 .map(({ tagName, id, className }) => `${tagName} ${id} ${className}`),
             );
           assert.deepEqual(cut, [], await each.innerText());
+          // The name of an answer stays above its number.
+          const crossed = await page
+            .locator("#headline .tile:visible .name")
+            .evaluateAll((all) =>
+              all.filter((name) => name.scrollWidth > name.parentElement.clientWidth + 1).map((name) => name.innerText),
+            );
+          assert.deepEqual(crossed, [], await each.innerText());
         }
         await tab(page, "noise");
+        // The numbers of a part stand below each other, and the letters of the drawing are those of the page.
+        const lefts = await page
+          .locator('#form [data-pointer="/pair"] > .fields > :is(.number, .alike) > .row > input:visible')
+          .evaluateAll((all) => all.map((input) => Math.round(input.getBoundingClientRect().left)));
+        assert.ok(lefts.length > 3 && new Set(lefts).size === 1, `at ${lefts} px`);
+        const letters = await page.locator(".dimension").evaluateAll((all) =>
+          all
+            .filter((text) => text.checkVisibility())
+            .map((text) => {
+              const rem = parseFloat(getComputedStyle(document.documentElement).fontSize);
+              return text.getBoundingClientRect().height / rem;
+            }),
+        );
+        assert.ok(
+          letters.every((height) => height > 0.7 && height < 1.3),
+          `${letters} rem`,
+        );
         if (process.argv.includes("--screenshots")) {
           const name = `${width}-${colorScheme}`;
           await page.locator("#position").fill("0.3");

@@ -4,7 +4,7 @@
 import uPlot from "../vendor/uplot.js";
 import { button, h, s } from "./dom.js";
 import { cellsOf, cssOf, faceOf, SCALE, scaleOf, wordsOfFace } from "./face.js";
-import { figure } from "./figure.js";
+import { figure, roomIn } from "./figure.js";
 import { extent, fixed, number } from "../state/numbers.js";
 import {
   linesOf,
@@ -561,7 +561,9 @@ export class Charts {
       panel.plot?.destroy();
       Object.assign(panel, { plot: null, now: null, shape: "mean" });
       const { title, unit } = panel;
-      panel.canvas.replaceChildren(faceFigure(face, { title, y: `${title} in ${unit}`, panel }));
+      panel.canvas.replaceChildren(
+        faceFigure(face, { title, y: `${title} in ${unit}`, width: roomIn(panel.canvas), panel }),
+      );
       panel.below.replaceChildren(
         "How it changes while the teeth pass is told where every position is asked for. ",
         button("Show every position", () => this.onEveryPosition()),

@@ -89,6 +89,16 @@ export const inLine = (...children) => h("div", { className: "line" }, ...childr
 export const labelled = (words, control) => [h("label", { htmlFor: control.id }, words), control];
 
 /**
+ * A control for a number between its label and its unit, which stay in one line.
+ *
+ * @param {Child} words
+ * @param {HTMLElement} control
+ * @param {string} unit
+ */
+export const measured = (words, control, unit) =>
+  h("span", { className: "measured" }, ...labelled(words, control), h("span", { className: "unit" }, unit));
+
+/**
  * What may be wider than its place and is scrolled there, by keys too.
  *
  * @param {string} ariaLabel

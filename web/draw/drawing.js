@@ -59,6 +59,7 @@ export class Drawing {
     );
     this.svg.append(this.world);
     place.replaceChildren(this.svg);
+    new ResizeObserver(() => this.#scale()).observe(this.svg);
     this.#turnByHand();
   }
 
@@ -270,11 +271,20 @@ export class Drawing {
       const [x, y] = line.points[2].at_mm;
       const reach = 2.6 * (driving.circles.tip_mm - driving.circles.root_mm);
       this.svg.setAttribute("viewBox", `${x - 1.6 * reach} ${-y - reach} ${3.2 * reach} ${2 * reach}`);
-      return;
+      return this.#scale();
     }
     const margin = 0.03 * (r1 + r2);
     const height = Math.max(r1, r2) + margin;
     this.svg.setAttribute("viewBox", `${-r1 - margin} ${-height} ${r1 + a + r2 + 2 * margin} ${2 * height}`);
+    return this.#scale();
+  }
+
+  /** Tells the style sheet how many mm of the drawing a pixel is, whose letters are those of the page. */
+  #scale() {
+    const { width, height } = this.svg.viewBox.baseVal;
+    const { clientWidth, clientHeight } = this.svg;
+    if (!width || !clientWidth || !clientHeight) return;
+    this.svg.style.setProperty("--mm-per-px", String(Math.max(width / clientWidth, height / clientHeight)));
   }
 
   /**

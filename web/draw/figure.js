@@ -8,7 +8,7 @@ import { placedNames } from "../state/series.js";
 
 /** @import { OrderName } from "../state/series.js" */
 
-const FRAME = { left: 62, right: 14, top: 14, bottom: 44 };
+const FRAME = { left: 62, right: 20, top: 14, bottom: 44 };
 const LETTER = 11;
 const FONT = "system-ui, sans-serif";
 
@@ -75,6 +75,19 @@ export function ticks(low, high, count = 5) {
   return found;
 }
 
+/** The width of a figure unless its place has less room, and the least that one has. */
+const [WIDTH, LEAST] = [520, 300];
+
+/**
+ * The width of a figure in `place`, at most `most`, where its letters are as large as those of the page.
+ *
+ * @type {(place: HTMLElement, most?: number) => number}
+ */
+export function roomIn(place, most = WIDTH) {
+  const scale = parseFloat(getComputedStyle(document.documentElement).fontSize) / 16;
+  return place.clientWidth ? Math.min(most, Math.max(LEAST, place.clientWidth / scale - 8)) : WIDTH;
+}
+
 /** @type {(values: (number | null | undefined)[], room: number) => [number, number]} */
 function range(values, room) {
   const [least, most] = extent(values) ?? [0, 1];
@@ -102,7 +115,7 @@ export function figure({
   names = [],
   scale = null,
   colors = null,
-  width = 520,
+  width = WIDTH,
   height = 300,
   heading = false,
   xRange = null,

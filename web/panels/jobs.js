@@ -1,9 +1,10 @@
 // @ts-check
 // The jobs of this client: submitted, followed by their events, cancelled, opened, run again.
 
-import { button, debounced, h, inLine, labelled, note, table } from "../draw/dom.js";
+import { button, debounced, h, inLine, labelled, note, region, table } from "../draw/dom.js";
 import { filesOf, saveFile } from "../draw/files.js";
 import { read } from "../draw/inputs.js";
+import { Panel } from "./panel.js";
 import { checked, follow, hasEnded, isAborted, json, post, ProblemError, request } from "../state/api.js";
 import { differences, nameOf, told } from "../state/design.js";
 import { number } from "../state/numbers.js";
@@ -32,103 +33,127 @@ const DOCUMENTS = 200;
 const FIELDS = 4;
 const REST = 300;
 
-/**
- * The jobs and studies in `place`; `form` names fields, the results of a finished job are opened by `onOpen`, and a
- * study that is given by its id and document by `onStudy`.
- *
- * @param {HTMLElement} place
- * @param {Design} design
- * @param {Form} form
- * @param {Open} onOpen
- * @param {(id: string, study: AskedStudy) => void} onStudy
- */
-export function jobs(place, design, form, onOpen, onStudy) {
-  const out = h("div", { className: "scroll", id: "jobs-list", tabIndex: 0, role: "region", ariaLabel: "Jobs" });
-  const state = h("p", { className: "note", role: "status" });
-  const tags = h("input", {
-    type: "text",
-    id: "jobs-tags",
-    maxLength: 200,
-    spellcheck: false,
-    on: { change: ({ target }) => design.set("/tags", read(target, { kind: "texts" }), "mend") },
-  });
-  const submit = button("Submit this design as a job", () => act(() => send(design.submission)), {
-    className: "primary",
-  });
-  const ofStudies = h("input", { type: "checkbox", id: "jobs-of-studies", on: { change: () => refresh() } });
-  const look = button("Look again", () => refresh());
-  const older = button("Older jobs", () => more(), { hidden: true });
-  const studies = h("div", {
-    className: "scroll",
-    id: "studies",
-    tabIndex: 0,
-    role: "region",
-    ariaLabel: "Sweeps, studies, searches and populations",
-  });
-  const olderStudies = button("Older ones", () => moreStudies(), { hidden: true });
-  place.replaceChildren(
-    note(
-      "A job is kept: its results can be fetched and linked to for weeks. What the page shows while you change numbers is not. A design that is too large to follow the hand is submitted by itself when the hand rests.",
-    ),
-    inLine(submit, ...labelled("with the tags", tags)),
-    inLine(look, h("label", {}, ofStudies, " those of studies too")),
-    state,
-    out,
-    older,
-    h("h3", {}, "Sweeps, studies, searches and populations"),
-    studies,
-    olderStudies,
-  );
+/** The jobs of this client, and its studies. */
+export class Jobs extends Panel {
   /** @type {Map<string, HTMLTableRowElement>} */
-  const rows = new Map();
+  #rows = new Map();
   /** @type {Map<string, AbortController>} */
-  const followed = new Map();
+  #followed = new Map();
   /** @type {Map<string, Submission>} */
-  const documents = new Map();
-  /** @type {Job[]} */
-  let listed = [];
-  /** @type {string | null} */
-  let next = null;
-  /** @type {StudyState[]} */
-  let listedStudies = [];
-  /** @type {string | null} */
-  let nextStudies = null;
+  #documents = new Map();
   /**
    * The design as it is, with every default filled in as the documents of jobs are; null where it is none.
    *
    * @type {Submission | null}
    */
-  let live = null;
-  let telling = 0;
+  #live = null;
+  #telling = 0;
 
-  design.onChange(
-    debounced(REST, () => {
-      if (!place.hidden) tell();
-    }),
-  );
+  /**
+   * The jobs and studies in `place`; `form` names fields, the results of a finished job are opened by `onOpen`, and a
+   * study that is given by its id and document by `onStudy`.
+   *
+   * @param {HTMLElement} place
+   * @param {Design} design
+   * @param {Form} form
+   * @param {Open} onOpen
+   * @param {(id: string, study: AskedStudy) => void} onStudy
+   */
+  constructor(place, design, form, onOpen, onStudy) {
+    super(place);
+    this.design = design;
+    this.form = form;
+    this.onOpen = onOpen;
+    this.onStudy = onStudy;
+    this.state = h("p", { className: "note", role: "status" });
+    this.tags = h("input", {
+      type: "text",
+      id: "jobs-tags",
+      maxLength: 200,
+      spellcheck: false,
+      on: { change: ({ target }) => design.set("/tags", read(target, { kind: "texts" }), "mend") },
+    });
+    this.ofStudies = h("input", { type: "checkbox", id: "jobs-of-studies", on: { change: () => this.refresh() } });
+    /** @type {Listing<Job>} */
+    this.jobs = new Listing({
+      address: "v1/jobs",
+      only: () => (this.ofStudies.checked ? "" : "&study=none"),
+      id: "jobs-list",
+      title: "Jobs",
+      names: ["Submitted", "Design, and what differs from the one on the page", "State", "Actions"],
+      rowOf: (job) => this.#rowOf(job),
+      none: "There are no jobs yet.",
+      older: button("Older jobs", () => this.#moreJobs()),
+    });
+    /** @type {Listing<StudyState>} */
+    this.studies = new Listing({
+      address: "v1/studies",
+      id: "studies",
+      title: "Sweeps, studies, searches and populations",
+      names: ["Submitted", "What", "State", "Actions"],
+      rowOf: (study) => this.#studyRow(study),
+      none: "There are none yet.",
+      older: button("Older ones", () => this.#attempt(() => this.studies.more())),
+    });
+    place.replaceChildren(
+      note(
+        "A job is kept: its results can be fetched and linked to for weeks. What the page shows while you change numbers is not. A design that is too large to follow the hand is submitted by itself when the hand rests.",
+      ),
+      inLine(
+        button("Submit this design as a job", () => this.#act(() => send(design.submission)), { className: "primary" }),
+        ...labelled("with the tags", this.tags),
+      ),
+      inLine(
+        button("Look again", () => this.refresh()),
+        h("label", {}, this.ofStudies, " those of studies too"),
+      ),
+      this.state,
+      ...this.jobs.elements,
+      h("h3", {}, "Sweeps, studies, searches and populations"),
+      ...this.studies.elements,
+    );
+    design.onChange(
+      debounced(REST, () => {
+        if (!place.hidden) void this.#tell();
+      }),
+    );
+  }
+
+  async refresh() {
+    this.tags.value = (this.design.get("/tags") ?? []).join(", ");
+    this.#telling += 1;
+    for (const each of [this.jobs, this.studies]) each.clear();
+    await Promise.all([this.#moreJobs(), this.#attempt(() => this.studies.more())]);
+  }
+
+  /** Follows nothing while nobody looks. */
+  leave() {
+    for (const stop of this.#followed.values()) stop.abort();
+  }
 
   /**
    * Says of each job which design it is of. The list does not say it: each document is asked for once, the newest
    * first.
    */
-  async function tell() {
-    telling += 1;
-    const turn = telling;
-    const filled = await checked(design.submission).then(
+  async #tell() {
+    this.#telling += 1;
+    const turn = this.#telling;
+    const documents = this.#documents;
+    const filled = await checked(this.design.submission).then(
       ({ submission }) => submission,
       () => null,
     );
-    if (turn !== telling) return;
-    live = filled;
-    for (const job of listed) {
+    if (turn !== this.#telling) return;
+    this.#live = filled;
+    for (const job of this.jobs.items) {
       const { id } = job;
       if (!documents.has(id)) {
         const whole = await json(`v1/jobs/${id}`).catch(() => null);
         if (whole) documents.set(id, whole.submission);
         if (documents.size > DOCUMENTS) documents.delete([...documents.keys()][0]);
       }
-      if (turn !== telling || place.hidden) return;
-      rows.get(id)?.querySelector(".of-design")?.replaceWith(designOf(job));
+      if (turn !== this.#telling || this.place.hidden) return;
+      this.#rows.get(id)?.querySelector(".of-design")?.replaceWith(this.#designOf(job));
     }
   }
 
@@ -137,8 +162,9 @@ export function jobs(place, design, form, onOpen, onStudy) {
    *
    * @param {Job} job
    */
-  function designOf({ id, tags: given, method }) {
-    const submission = documents.get(id);
+  #designOf({ id, tags: given, method }) {
+    const submission = this.#documents.get(id);
+    const live = this.#live;
     const cell = h(
       "td",
       { className: "of-design" },
@@ -152,7 +178,7 @@ export function jobs(place, design, form, onOpen, onStudy) {
     const others = all.length > 1 ? all.filter(({ pointer }) => pointer !== "/resolution/span_mesh_periods") : all;
     const shown = others
       .slice(0, FIELDS)
-      .map(({ pointer, values: [, value] }) => `${form.named(pointer)} ${told(value)}`);
+      .map(({ pointer, values: [, value] }) => `${this.form.named(pointer)} ${told(value)}`);
     const rest = others.length - shown.length;
     cell.append(
       h(
@@ -169,102 +195,53 @@ export function jobs(place, design, form, onOpen, onStudy) {
    *
    * @param {() => unknown} work
    */
-  async function attempt(work) {
+  async #attempt(work) {
     try {
-      state.textContent = "";
       await work();
     } catch (error) {
       if (!(error instanceof ProblemError)) throw error;
-      state.textContent = error.reason;
+      this.state.textContent = error.reason;
     }
   }
 
   /**
-   * Does something to a job, then shows how the jobs stand.
+   * Does something to a job or a study, then shows how they stand.
    *
    * @param {() => unknown} work
    */
-  async function act(work) {
-    await attempt(work);
-    await refresh();
+  async #act(work) {
+    this.state.textContent = "";
+    await this.#attempt(work);
+    await this.refresh();
   }
 
-  async function refresh() {
-    tags.value = (design.get("/tags") ?? []).join(", ");
-    telling += 1;
-    [listed, next] = [[], null];
-    [listedStudies, nextStudies] = [[], null];
-    await Promise.all([more(), moreStudies()]);
-  }
-
-  /**
-   * Submits a job that the project keeps.
-   *
-   * @param {Submission} submission
-   */
-  async function send(submission) {
-    const { id, submitted_at: at } = await post("v1/jobs", submission);
-    submitted({ id, kind: "job", name: nameOf(submission), at });
-  }
-
-  /** The next page of the list of studies, each with the way back to it. */
-  async function moreStudies() {
-    await attempt(async () => {
-      const page = await json(
-        `v1/studies?limit=${SHOWN}${nextStudies ? `&cursor=${encodeURIComponent(nextStudies)}` : ""}`,
-      );
-      listedStudies = [...listedStudies, ...page.items];
-      nextStudies = page.next;
-      olderStudies.hidden = !nextStudies;
-      studies.replaceChildren(
-        listedStudies.length
-          ? table(["Submitted", "What", "State", "Actions"], listedStudies.map(studyRow))
-          : note("There are none yet."),
-      );
+  /** The next page of the list of jobs, of which those that go on are followed. */
+  #moreJobs() {
+    return this.#attempt(async () => {
+      const came = await this.jobs.more();
+      void this.#tell();
+      for (const job of came.filter(({ status }) => !hasEnded(status)).slice(-FOLLOWED)) void this.#watch(job);
     });
   }
 
   /** @param {StudyState} study */
-  function studyRow({ id, name, status, done, total, submitted_at: at }) {
+  #studyRow({ id, name, status, done, total, submitted_at: at }) {
     const what = name ?? `study ${id.slice(-6)}`;
-    /** @type {(words: string, work: () => unknown) => HTMLButtonElement} */
-    const doing = (words, work) => button(words, () => attempt(work), { ariaLabel: `${words} ${what}` });
-    const buttons = [doing("Go to it", async () => onStudy(id, await json(`v1/studies/${id}/document`)))];
-    if (!hasEnded(status))
-      buttons.push(
-        doing("Cancel", async () => {
-          await request(`v1/studies/${id}/cancel`, { method: "POST" });
-          await refresh();
-        }),
-      );
+    const show = async () => this.onStudy(id, await json(`v1/studies/${id}/document`));
+    const cancel = () => request(`v1/studies/${id}/cancel`, { method: "POST" });
     return h(
       "tr",
       {},
       h("th", { scope: "row" }, new Date(at).toLocaleString()),
       h("td", { className: "of-design" }, what),
       h("td", {}, `${status}, ${done} of ${total}`),
-      h("td", { className: "actions" }, ...buttons),
+      h(
+        "td",
+        { className: "actions" },
+        button("Go to it", () => this.#attempt(show), { ariaLabel: `Go to it ${what}` }),
+        hasEnded(status) ? null : button("Cancel", () => this.#act(cancel), { ariaLabel: `Cancel ${what}` }),
+      ),
     );
-  }
-
-  /** The next page of the list. */
-  async function more() {
-    try {
-      const page = await json(
-        `v1/jobs?limit=${SHOWN}${ofStudies.checked ? "" : "&study=none"}${next ? `&cursor=${encodeURIComponent(next)}` : ""}`,
-      );
-      listed = [...listed, ...page.items];
-      next = page.next;
-      older.hidden = !next;
-      /** @type {{ items: Job[] }} */
-      const { items } = page;
-      out.replaceChildren(listed.length ? tableOf(listed) : note("There are no jobs yet."));
-      tell();
-      for (const job of items.filter(({ status }) => !hasEnded(status)).slice(-FOLLOWED)) watch(job);
-    } catch (error) {
-      if (!(error instanceof ProblemError)) throw error;
-      state.textContent = error.message;
-    }
   }
 
   /**
@@ -272,15 +249,16 @@ export function jobs(place, design, form, onOpen, onStudy) {
    *
    * @param {Job} job
    */
-  async function watch(job) {
-    if (followed.has(job.id) || place.hidden) return;
+  async #watch(job) {
+    const followed = this.#followed;
+    if (followed.has(job.id) || this.place.hidden) return;
     const stop = new AbortController();
     followed.set(job.id, stop);
     let known = job;
     /** @type {(event: string, data: Partial<Job>) => void} */
     const told = (event, data) => {
       known = { ...known, ...data };
-      rows.get(job.id)?.replaceWith(rowOf(known));
+      this.#rows.get(job.id)?.replaceWith(this.#rowOf(known));
     };
     try {
       told("status", await follow(`v1/jobs/${job.id}`, told, stop.signal));
@@ -288,44 +266,41 @@ export function jobs(place, design, form, onOpen, onStudy) {
       if (!(error instanceof ProblemError) && !isAborted(error)) throw error;
     } finally {
       followed.delete(job.id);
-      if (!stop.signal.aborted) refresh();
+      if (!stop.signal.aborted) void this.refresh();
     }
-  }
-
-  /** @param {Job[]} items */
-  function tableOf(items) {
-    const names = ["Submitted", "Design, and what differs from the one on the page", "State", "Actions"];
-    return table(names, items.map(rowOf));
   }
 
   /**
    * @param {Job} job
    * @returns {HTMLTableRowElement}
    */
-  function rowOf(job) {
+  #rowOf(job) {
     const address = `v1/jobs/${job.id}`;
     /** @type {(name: string, work: () => unknown) => HTMLButtonElement} */
-    const doing = (name, work) => button(name, () => act(work), { ariaLabel: `${name} ${job.id.slice(-6)}` });
+    const doing = (name, work) => button(name, () => this.#act(work), { ariaLabel: `${name} ${job.id.slice(-6)}` });
     // A file changes no job: the rows stay as they are under the pointer.
     /** @type {(words: string, name: string) => HTMLButtonElement} */
     const file = (words, name) =>
       button(
         words,
         () =>
-          attempt(() => {
-            const asked = documents.get(job.id);
+          this.#attempt(() => {
+            const asked = this.#documents.get(job.id);
             return saveFile(job.id, name, fileOfDesign(asked ? nameOf(asked) : "", `${job.id.slice(-6)}-`));
           }),
         { ariaLabel: `${words} ${job.id.slice(-6)}` },
       );
     const open = async () =>
-      onOpen((await json(address)).submission, job.status === "successful" ? await json(`${address}/results`) : null);
+      this.onOpen(
+        (await json(address)).submission,
+        job.status === "successful" ? await json(`${address}/results`) : null,
+      );
     // What else there is depends on what was asked for.
     /** @type {HTMLButtonElement} */
     const more = button(
       "More files",
       () =>
-        attempt(async () => {
+        this.#attempt(async () => {
           const files = filesOf((await json(address)).submission).filter(
             ({ name }) => !IN_ROW.some(([, shown]) => shown === name),
           );
@@ -356,18 +331,72 @@ export function jobs(place, design, form, onOpen, onStudy) {
       "tr",
       {},
       h("th", { scope: "row" }, new Date(job.submitted_at).toLocaleString()),
-      designOf(job),
+      this.#designOf(job),
       h("td", {}, progress, took, why),
       h("td", { className: "actions" }, ...buttons),
     );
-    rows.set(job.id, row);
+    this.#rows.set(job.id, row);
     return row;
   }
+}
 
-  /** Follows nothing while nobody looks. */
-  function leave() {
-    for (const stop of followed.values()) stop.abort();
+/**
+ * Submits a job that the project keeps.
+ *
+ * @param {Submission} submission
+ */
+async function send(submission) {
+  const { id, submitted_at: at } = await post("v1/jobs", submission);
+  submitted({ id, kind: "job", name: nameOf(submission), at });
+}
+
+/**
+ * A list of the service, page by page.
+ *
+ * @template T what it lists
+ */
+class Listing {
+  /** @type {T[]} */
+  items = [];
+  /** @type {string | null} */
+  #next = null;
+
+  /**
+   * @param {{ address: string, only?: () => string, id: string, title: string, names: string[],
+   *   rowOf: (item: T) => HTMLTableRowElement, none: string, older: HTMLButtonElement }} how `only` is the query for a
+   *   part of the list
+   */
+  constructor({ address, only = () => "", id, title, names, rowOf, none, older }) {
+    this.address = address;
+    this.only = only;
+    this.names = names;
+    this.rowOf = rowOf;
+    this.none = none;
+    this.older = older;
+    older.hidden = true;
+    this.out = Object.assign(region(title), { id });
   }
 
-  return { refresh, leave };
+  get elements() {
+    return [this.out, this.older];
+  }
+
+  clear() {
+    [this.items, this.#next] = [[], null];
+  }
+
+  /**
+   * Shows the next page too.
+   *
+   * @returns {Promise<T[]>} what it lists
+   */
+  async more() {
+    const cursor = this.#next ? `&cursor=${encodeURIComponent(this.#next)}` : "";
+    const page = await json(`${this.address}?limit=${SHOWN}${this.only()}${cursor}`);
+    this.items = [...this.items, ...page.items];
+    this.#next = page.next;
+    this.older.hidden = !page.next;
+    this.out.replaceChildren(this.items.length ? table(this.names, this.items.map(this.rowOf)) : note(this.none));
+    return page.items;
+  }
 }

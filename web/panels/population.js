@@ -2,24 +2,36 @@
 // How good the pairs will be that are made by a design: members drawn from laws and classes of accuracy, and what they
 // come to.
 
-import { button, debounced, h, inLine, labelled, note, region, s, table, tableRow, unseen } from "../draw/dom.js";
-import { figure } from "../draw/figure.js";
+import {
+  asking,
+  button,
+  debounced,
+  h,
+  inLine,
+  labelled,
+  measured,
+  note,
+  region,
+  s,
+  table,
+  tableRow,
+  unseen,
+} from "../draw/dom.js";
+import { figure, roomIn } from "../draw/figure.js";
 import { allGiven, given, numeric, put } from "../draw/inputs.js";
-import { offer, options } from "./offer.js";
-import { mostOften, Question } from "./question.js";
+import { FieldChoice, options } from "./offer.js";
+import { mostOften, StudyPanel } from "./panel.js";
 import { foreseen, json, ProblemError } from "../state/api.js";
 import { apart, at, nameOf } from "../state/design.js";
 import { fixed, number, timeOf } from "../state/numbers.js";
 import { inUnit, inWords, quantityOf, shown } from "../state/quantities.js";
 
-/** @import { Watching } from "./question.js" */
 /** @import { Design } from "../state/design.js" */
 /** @import { AskedStudy, GearName, Limits, Open, Percentile, PopulationResults } from "../state/documents.js" */
 /** @import { QuantityResults } from "../state/documents.js" */
 /** @import { Form } from "../views/form.js" */
 
-/** What has come so far is fetched so often at most while members are computed, in milliseconds. */
-const PAUSE = 1000;
+/** @typedef {AskedStudy & { population: NonNullable<AskedStudy["population"]> }} AskedPopulation */
 
 /** What is looked at first; over windows, which do not tell the peak-to-peak of the true period. */
 const SHOWN = "transmission_error_um.peak_to_peak";
@@ -69,127 +81,117 @@ const FIRST = [
 ];
 
 /**
- * The population of `design` in `place`; `form` knows the fields, `limits` are those of the service, `onOpen` opens a
- * member as a design.
+ * The population of a design.
  *
- * @param {HTMLElement} place
- * @param {Design} design
- * @param {Form} form
- * @param {Limits} limits
- * @param {Open} onOpen
+ * @augments {StudyPanel<PopulationResults>}
  */
-export function population(place, design, form, limits, onOpen) {
-  const size = h("input", { type: "number", id: "population-size", value: 200, min: 2, max: 100000, step: 1 });
-  const torques = h("input", {
-    type: "text",
-    id: "population-torques",
-    spellcheck: false,
-    on: {
-      input: () => {
-        torques.dataset.typed = "yes";
-      },
-    },
-  });
-  const span = h("input", {
-    type: "number",
-    id: "population-window",
-    min: 4,
-    max: 20000,
-    step: 1,
-    placeholder: "all",
-    on: {
-      input: () => {
-        span.dataset.typed = "yes";
-      },
-    },
-  });
-  const classes = MEMBERS.map((gear) =>
-    h(
-      "select",
-      { id: `population-${gear}` },
-      h("option", { value: "" }, "as designed"),
-      ...CLASSES.map((each) => h("option", { value: each, selected: each === 6 }, `class ${each}`)),
-    ),
-  );
-  const laws = FIRST.map((_, i) => law(i, design, form));
-  const question = new Question(design, {
-    id: "population",
-    words: "Draw them",
-    inWords: (detail) => form.inWords(detail),
-    ignored: NOT_ASKED,
-  });
-  const ahead = h("p", { className: "note", id: "population-ahead", aria: { live: "polite" } });
-  const quantity = h("select", { id: "population-quantity", on: { change: () => last && draw() } }, ...options(SHOWN));
-  const torque = h("select", { id: "population-torque", on: { change: () => last && draw() } });
-  const picker = h(
-    "div",
-    { className: "line", hidden: true },
-    ...labelled("Look at", quantity),
-    ...labelled("at", torque),
-    h("span", { className: "unit" }, "N m"),
-  );
-  const missing = h("p", { className: "outdated", role: "status", hidden: true });
-  const short = note(
-    "These members are computed over a part of their true period: peak-to-peak and rms are those of that part, and less than those of the true period.",
-  );
-  short.hidden = true;
-  const out = h("div", { className: "out" });
-  place.replaceChildren(
-    h("h3", {}, "As made"),
-    note(
-      "Every member has teeth of its own, made by the class of ISO 1328-1 in place of those that the design may give, and fields that vary by a law. How many are beyond the total pitch tolerance F_pT of their class, or were rejected by its inspection, stands with what was found. ",
-      h("a", { href: "guides/how-good-will-they-be" }, "How good will they be?"),
-    ),
-    h(
-      "form",
-      {
-        on: {
-          submit: (event) => {
-            event.preventDefault();
-            start();
-          },
-          input: () => foresee(),
-        },
-      },
-      inLine(
-        ...labelled("Members", size),
-        ...classes.flatMap((each, i) => [h("label", { htmlFor: each.id }, `teeth of the ${MEMBERS[i]} gear`), each]),
-      ),
-      ...laws.map((each) => each.element),
-      inLine(
-        ...labelled("Torques", torques),
-        h("span", { className: "unit" }, "N m"),
-        ...labelled("over a window of", span),
-        h("span", { className: "unit" }, "mesh periods"),
-      ),
-      ahead,
-      inLine(question.run, question.cancel),
-    ),
-    question.state,
-    question.of.element,
-    missing,
-    short,
-    picker,
-    out,
-  );
-  /** @type {{ results: PopulationResults, address: string } | null} */
-  let last = null;
+export class Population extends StudyPanel {
+  part = "/results/population";
+  pause = 1000;
+  /** True until something of the population has come. */
+  #isNew = true;
 
-  const suggest = () => {
-    laws.forEach((each) => each.refresh());
-    suggestWindow(false);
-    suggestTorques(TORQUES.length);
-    foresee();
-  };
+  /**
+   * The population of `design` in `place`; `form` knows the fields, `limits` are those of the service, `onOpen` opens a
+   * member as a design.
+   *
+   * @param {HTMLElement} place
+   * @param {Design} design
+   * @param {Form} form
+   * @param {Limits} limits
+   * @param {Open} onOpen
+   */
+  constructor(place, design, form, limits, onOpen) {
+    super(place, design, {
+      id: "population",
+      words: "Draw them",
+      inWords: (detail) => form.inWords(detail),
+      ignored: NOT_ASKED,
+    });
+    this.form = form;
+    this.limits = limits;
+    this.onOpen = onOpen;
+    /** @type {(event: { target: HTMLInputElement }) => void} */
+    const typed = ({ target }) => {
+      target.dataset.typed = "yes";
+    };
+    this.size = h("input", { type: "number", id: "population-size", value: 200, min: 2, max: 100000, step: 1 });
+    this.torques = h("input", { type: "text", id: "population-torques", spellcheck: false, on: { input: typed } });
+    this.span = h("input", {
+      type: "number",
+      id: "population-window",
+      min: 4,
+      max: 20000,
+      step: 1,
+      placeholder: "all",
+      on: { input: typed },
+    });
+    this.classes = MEMBERS.map((gear) =>
+      h(
+        "select",
+        { id: `population-${gear}` },
+        h("option", { value: "" }, "as designed"),
+        ...CLASSES.map((each) => h("option", { value: each, selected: each === 6 }, `class ${each}`)),
+      ),
+    );
+    this.laws = FIRST.map((_, i) => new Law(design, form, i));
+    this.ahead = h("p", { className: "note", id: "population-ahead", aria: { live: "polite" } });
+    const change = () => this.#draw();
+    this.quantity = h("select", { id: "population-quantity", on: { change } }, ...options(SHOWN));
+    this.torque = h("select", { id: "population-torque", on: { change } });
+    this.picker = inLine(...labelled("Look at", this.quantity), measured("at", this.torque, "N m"));
+    this.picker.hidden = true;
+    this.missing = h("p", { className: "outdated", role: "status" });
+    this.short = note(
+      "These members are computed over a part of their true period: peak-to-peak and rms are those of that part, and less than those of the true period.",
+    );
+    this.foresee = debounced(REST, () => void this.#foresee());
+    const asks = asking(
+      () => void this.start(),
+      inLine(
+        ...labelled("Members", this.size),
+        ...this.classes.flatMap((each, i) => labelled(`teeth of the ${MEMBERS[i]} gear`, each)),
+      ),
+      ...this.laws.map((each) => each.element),
+      inLine(measured("Torques", this.torques, "N m"), measured("over a window of", this.span, "mesh periods")),
+      this.ahead,
+      inLine(this.run, this.cancel),
+    );
+    asks.addEventListener("input", () => this.foresee());
+    place.replaceChildren(
+      h("h3", {}, "As made"),
+      note(
+        "Every member has teeth of its own, made by the class of ISO 1328-1 in place of those that the design may give, and fields that vary by a law. How many are beyond the total pitch tolerance F_pT of their class, or were rejected by its inspection, stands with what was found. ",
+        h("a", { href: "guides/how-good-will-they-be" }, "How good will they be?"),
+      ),
+      asks,
+      this.state,
+      this.outdated,
+      this.missing,
+      this.short,
+      this.picker,
+      this.out,
+    );
+    this.clear();
+    this.refresh();
+  }
+
+  refresh() {
+    for (const each of this.laws) each.refresh();
+    this.#suggestWindow(false);
+    this.#suggestTorques(TORQUES.length);
+    this.foresee();
+  }
 
   /**
    * So many torques about that of the design, or its own, until somebody types other ones.
    *
    * @param {number} most
    */
-  function suggestTorques(most) {
+  #suggestTorques(most) {
+    const { torques } = this;
     if (torques.dataset.typed && torques.value) return;
-    const own = design.get("/output_torques_n_m") ?? [100];
+    const own = this.design.get("/output_torques_n_m") ?? [100];
     const about =
       own.length > 1
         ? own
@@ -203,53 +205,54 @@ export function population(place, design, form, limits, onOpen) {
    *
    * @param {boolean} isLong
    */
-  function suggestWindow(isLong) {
+  #suggestWindow(isLong) {
+    const { span } = this;
     const before = span.value;
     if (!span.dataset.typed) put(span, isLong ? String(WINDOW) : "");
     return span.value !== before;
   }
 
   /** Says what the members will take: one whose teeth all differ repeats only when every tooth has met every other. */
-  const foresee = debounced(REST, async () => {
-    if (place.hidden) return;
+  async #foresee() {
+    if (this.place.hidden) return;
     /** @type {GearName[]} */
     let differing = [];
     try {
-      const { size: count, accuracy } = asked().population;
+      const { size: count, accuracy } = this.asked().population;
       differing = MEMBERS.filter((each) => accuracy?.[each]);
-      const member = await estimated(differing);
+      const member = await this.#estimated(differing);
       if (!member) return;
       const { seconds, positions } = member;
-      const most = Math.floor(limits.positions / positions);
-      suggestTorques(most);
-      const { length } = asked().base.output_torques_n_m;
-      ahead.textContent =
+      const most = Math.floor(this.limits.positions / positions);
+      this.#suggestTorques(most);
+      const { length } = this.asked().base.output_torques_n_m;
+      this.ahead.textContent =
         length > most
           ? `A member has ${number(positions)} positions for each torque, which leaves room for ${most} of them.`
-          : `${overWindow()}A member has ${number(length * positions)} positions, all torques together, and takes a core ${timeOf(1000 * length * seconds)} at most, by a rough estimate: ${timeOf(1000 * length * seconds * count)} for all ${number(count)}.`;
+          : `${this.#overWindow()}A member has ${number(length * positions)} positions, all torques together, and takes a core ${timeOf(1000 * length * seconds)} at most, by a rough estimate: ${timeOf(1000 * length * seconds * count)} for all ${number(count)}.`;
     } catch (error) {
       if (!(error instanceof ProblemError)) throw error;
       // What is wrong with the design is told beside it.
-      if (error.problem.code !== "too_large") ahead.textContent = "";
-      else if (suggestWindow(true)) {
-        delete torques.dataset.typed;
-        suggestTorques(TORQUES.length);
-        foresee();
+      if (error.problem.code !== "too_large") this.ahead.textContent = "";
+      else if (this.#suggestWindow(true)) {
+        delete this.torques.dataset.typed;
+        this.#suggestTorques(TORQUES.length);
+        this.foresee();
       } else {
-        suggestTorques(1);
-        const ways = await waysOf(differing);
-        ahead.textContent = `${form.inWords(error.reason)}${ways.length ? ` What fits: ${ways.join(", or ")}.` : ""}`;
+        this.#suggestTorques(1);
+        const ways = await this.#waysOf(differing);
+        this.ahead.textContent = `${this.inWords(error.reason)}${ways.length ? ` What fits: ${ways.join(", or ")}.` : ""}`;
       }
     }
-  });
+  }
 
   /**
    * What a member takes under one torque whose teeth differ on these gears.
    *
    * @param {GearName[]} differing
    */
-  async function estimated(differing) {
-    const study = asked();
+  async #estimated(differing) {
+    const study = this.asked();
     study.base.output_torques_n_m = study.base.output_torques_n_m.slice(0, 1);
     for (const each of MEMBERS)
       if (!differing.includes(each) && study.population.accuracy) delete study.population.accuracy[each];
@@ -262,10 +265,10 @@ export function population(place, design, form, limits, onOpen) {
    *
    * @param {GearName[]} differing
    */
-  async function waysOf(differing) {
+  async #waysOf(differing) {
     const fits = await Promise.all(
       differing.map((left) =>
-        estimated(differing.filter((each) => each !== left)).then(
+        this.#estimated(differing.filter((each) => each !== left)).then(
           (member) => Boolean(member),
           (error) => {
             if (!(error instanceof ProblemError)) throw error;
@@ -278,17 +281,20 @@ export function population(place, design, form, limits, onOpen) {
   }
 
   /** What a window tells, in words; nothing without one. */
-  function overWindow() {
+  #overWindow() {
+    const { span } = this;
     return span.value
       ? `Each member is computed where its teeth differ most from one to the next, over ${number(Number(span.value))} mesh periods: tooth-to-tooth error and mesh orders are those of the true period within some percent, peak-to-peak and rms are those of the window, and orders of rotation and of holes are not told. `
       : "";
   }
 
-  function asked() {
+  /** @returns {AskedPopulation} */
+  asked() {
+    const { span } = this;
     const over = span.value ? { mesh_periods: Number(span.value), places: 1 } : null;
     const most = over ? POSITIONS_OF_WINDOW : POSITIONS;
-    const base = structuredClone(apart(design.submission).curves);
-    base.output_torques_n_m = allGiven(torques);
+    const base = structuredClone(apart(this.design.submission).curves);
+    base.output_torques_n_m = allGiven(this.torques);
     base.resolution = {
       ...base.resolution,
       positions_per_mesh_period: Math.min(most, base.resolution?.positions_per_mesh_period ?? most),
@@ -299,17 +305,17 @@ export function population(place, design, form, limits, onOpen) {
     /** @type {Partial<Record<GearName, { iso_1328_class: number }>>} */
     const accuracy = {};
     MEMBERS.forEach((member, i) => {
-      if (!classes[i].value) return;
-      accuracy[member] = { iso_1328_class: Number(classes[i].value) };
+      if (!this.classes[i].value) return;
+      accuracy[member] = { iso_1328_class: Number(this.classes[i].value) };
       delete base.pair[member].tooth_deviations;
     });
-    const vary = laws.flatMap((each) => each.read());
+    const vary = this.laws.flatMap((each) => each.read());
     return {
       base,
       keep: "statistics",
-      name: `${nameOf(design.submission)} as made`,
+      name: `${nameOf(this.design.submission)} as made`,
       population: {
-        size: Number(size.value),
+        size: Number(this.size.value),
         vary,
         accuracy: Object.keys(accuracy).length ? accuracy : null,
         ...(over && { window: over }),
@@ -317,38 +323,26 @@ export function population(place, design, form, limits, onOpen) {
     };
   }
 
-  /** @type {Watching<PopulationResults>} */
-  const how = {
-    part: "/results/population",
-    pause: PAUSE,
-    show,
-    // Those that cannot be built are known at once, and tell nothing of the time that the others take.
-    progress: (done, total, left) =>
-      `${done} of ${total} members${last ? left(done - last.results.failed, total - last.results.failed) : ""}`,
-    ended: ({ done, size: all, status }) => `${done} of ${all} members, ${status}`,
-  };
-
-  function clear() {
-    last = null;
-    missing.hidden = true;
-    short.hidden = true;
-    out.replaceChildren();
-  }
-
-  function start() {
-    clear();
-    return question.study(asked, how);
-  }
-
   /**
-   * Shows a population that was asked for before.
+   * Members that cannot be built are known at once, and tell nothing of the time that the others take.
    *
-   * @param {string} id
-   * @param {AskedStudy} study
+   * @type {StudyPanel<PopulationResults>["progress"]}
    */
-  function resume(id, { base }) {
-    clear();
-    return question.resume(id, base, how);
+  progress(done, total, left) {
+    const failed = this.last?.found.failed;
+    return `${done} of ${total} members${failed === undefined ? "" : left(done - failed, total - failed)}`;
+  }
+
+  /** @param {PopulationResults} found */
+  ended({ done, size, status }) {
+    return `${done} of ${size} members, ${status}`;
+  }
+
+  clear() {
+    super.clear();
+    this.#isNew = true;
+    this.missing.hidden = true;
+    this.short.hidden = true;
   }
 
   /**
@@ -357,20 +351,18 @@ export function population(place, design, form, limits, onOpen) {
    *
    * @param {PopulationResults} results
    */
-  function missed({ failed, size, refusals, partial }) {
-    short.hidden = !partial;
-    missing.hidden = !failed;
-    missing.textContent = `${failed === size ? "None of the members can be computed" : `${failed} of ${size} members cannot be computed`}${mostOften(refusals, (detail) => form.inWords(detail))}.${failed === size ? "" : " What stands below is of the others alone."}`;
+  #missed({ failed, size, refusals, partial }) {
+    this.short.hidden = !partial;
+    this.missing.hidden = !failed;
+    this.missing.textContent = `${failed === size ? "None of the members can be computed" : `${failed} of ${size} members cannot be computed`}${mostOften(refusals, this.inWords)}.${failed === size ? "" : " What stands below is of the others alone."}`;
   }
 
-  /**
-   * @param {PopulationResults} results
-   * @param {string} address
-   */
-  function show(results, address) {
-    if (!last && results.partial && quantity.value === SHOWN) quantity.value = SHOWN_OF_WINDOW;
-    last = { results, address };
-    missed(results);
+  /** @param {PopulationResults} results */
+  show(results) {
+    const { quantity, torque } = this;
+    if (this.#isNew && results.partial && quantity.value === SHOWN) quantity.value = SHOWN_OF_WINDOW;
+    this.#isNew = false;
+    this.#missed(results);
     const known = [
       ...new Set(results.quantities.map((each) => each.output_torque_n_m).filter((each) => each !== null)),
     ];
@@ -378,19 +370,19 @@ export function population(place, design, form, limits, onOpen) {
       torque.replaceChildren(...known.map((each) => h("option", { value: each }, number(each))));
     const there = new Set(results.quantities.map(({ name }) => name));
     for (const option of quantity.options) option.hidden = !there.has(option.value);
-    draw();
+    this.#draw();
   }
 
-  function draw() {
-    if (!last) return;
-    const { results, address } = last;
-    const looked = quantityOf(quantity.value);
+  #draw() {
+    if (!this.last) return;
+    const { found: results, address } = this.last;
+    const looked = quantityOf(this.quantity.value);
     const { printed, factor } = looked;
     const words = inWords(looked);
-    const all = results.quantities.filter(({ name }) => name === quantity.value);
-    const one = all.find((each) => each.output_torque_n_m === Number(torque.value)) ?? all[0];
-    picker.hidden = !one;
-    if (!one) return out.replaceChildren();
+    const all = results.quantities.filter(({ name }) => name === this.quantity.value);
+    const one = all.find((each) => each.output_torque_n_m === Number(this.torque.value)) ?? all[0];
+    this.picker.hidden = !one;
+    if (!one) return this.out.replaceChildren();
     /** @type {(each: QuantityResults, percent: number) => Percentile | undefined} */
     const percentile = (each, percent) => each.percentiles.find((found) => found.percent === percent);
     const { value: at95th, low = null, high = null } = percentile(one, 95) ?? {};
@@ -409,13 +401,15 @@ export function population(place, design, form, limits, onOpen) {
           `${fixed(100 * (share ?? NaN), 1)} % of the ${gear} gears made were rejected by the inspection.`,
       );
     /** @type {(name: string, number: number) => HTMLButtonElement} */
-    const member = (name, number) => button(`Open the ${name} member`, () => open(address, number));
+    const member = (name, number) => button(`Open the ${name} member`, () => this.#openMember(address, number));
+    const width = roomIn(this.out);
     const pictures = [
       figure({
         lines: [outlineOf(one.histogram, factor)],
         x: inUnit(looked),
         y: "members",
         title: `Histogram of the ${words}`,
+        width,
       }),
       ...(all.length > 1
         ? [
@@ -434,14 +428,15 @@ export function population(place, design, form, limits, onOpen) {
               x: "output torque in N m",
               y: inUnit(looked),
               title: `Percentiles of the ${words} over the torque`,
+              width,
             }),
           ]
         : []),
     ];
-    out.replaceChildren(
+    this.out.replaceChildren(
       h("p", {}, at95, " ", [...beyond, ...rejected].join(" ")),
       ...pictures,
-      influencesOf(one),
+      this.#influencesOf(one),
       h(
         "div",
         { className: "buttons" },
@@ -457,10 +452,10 @@ export function population(place, design, form, limits, onOpen) {
    *
    * @param {QuantityResults} quantity
    */
-  function influencesOf({ influences }) {
+  #influencesOf({ influences }) {
     if (!influences.length) return note("Nothing varies so far.");
     /** @type {(influence: QuantityResults["influences"][number]) => string} */
-    const name = ({ path, accuracy }) => (path ? form.named(path) : `teeth of the ${accuracy} gear`);
+    const name = ({ path, accuracy }) => (path ? this.form.named(path) : `teeth of the ${accuracy} gear`);
     const rows = influences.map((each) => {
       const [low, high] = [each.low ?? each.share, each.high ?? each.share];
       const bar = s(
@@ -477,13 +472,13 @@ export function population(place, design, form, limits, onOpen) {
     return region("Influences", found);
   }
 
-  /** @type {(address: string, member: number) => Promise<void>} */
-  async function open(address, member) {
-    onOpen({ ...(await json(`${address}/designs/${member}`)), ...apart(design.submission).further }, null);
+  /**
+   * @param {string} address
+   * @param {number} member
+   */
+  async #openMember(address, member) {
+    this.onOpen({ ...(await json(`${address}/designs/${member}`)), ...apart(this.design.submission).further }, null);
   }
-
-  suggest();
-  return { refresh: suggest, resume };
 }
 
 /**
@@ -496,65 +491,54 @@ function outlineOf({ edges, counts }, factor) {
   return { x: x.map((each) => each * factor), y: [0, ...counts.flatMap((count) => [count, count]), 0] };
 }
 
-/**
- * A field and the law that it follows, around the value that the design has.
- *
- * @param {number} index
- * @param {Design} design
- * @param {Form} form
- */
-function law(index, design, form) {
-  const id = `law-${index}`;
-  const field = h("select", {
-    id,
-    on: {
-      change: () => {
-        put(spread, String(suggested()));
-      },
-    },
-  });
-  const kind = h(
-    "select",
-    { id: `${id}-kind`, ariaLabel: "Law" },
-    h("option", { value: "normal" }, "normal, standard deviation"),
-    h("option", { value: "uniform" }, "uniform, plus or minus"),
-    h("option", { value: "triangular" }, "triangular, plus or minus"),
-  );
-  const spread = numeric({ id: `${id}-spread`, ariaLabel: "Spread" });
-  const element = inLine(h("label", { htmlFor: id }, index ? "and" : "Vary"), field, ...labelled("by", kind), spread);
-  /** @type {() => unknown} */
-  const valueOf = () => at(design.submission, field.value);
-  const suggested = () => {
-    const usual = FIRST.find(([path]) => path === field.value)?.[1];
-    const value = valueOf();
-    return usual ?? (typeof value === "number" && value ? Number(Math.abs(0.02 * value).toPrecision(2)) : 0.01);
-  };
+/** A field and the law that it follows, around the value that the design has. */
+class Law extends FieldChoice {
+  /**
+   * @param {Design} design
+   * @param {Form} form
+   * @param {number} index
+   */
+  constructor(design, form, index) {
+    const id = `law-${index}`;
+    super(design, form, { id, index, words: "Vary", none: "nothing else" });
+    this.kind = h(
+      "select",
+      { id: `${id}-kind`, ariaLabel: "Law" },
+      h("option", { value: "normal" }, "normal, standard deviation"),
+      h("option", { value: "uniform" }, "uniform, plus or minus"),
+      h("option", { value: "triangular" }, "triangular, plus or minus"),
+    );
+    this.spread = numeric({ id: `${id}-spread`, ariaLabel: "Spread" });
+    this.element = inLine(this.label, this.field, ...labelled("by", this.kind), this.spread);
+    this.isBegun = false;
+  }
 
-  function read() {
-    const [value, by = 0] = [valueOf(), given(spread)];
-    if (!field.value || typeof value !== "number" || !(by > 0)) return [];
-    const path = field.value;
-    if (kind.value === "normal")
-      return [{ path, kind: "normal", mean: value, standard_deviation: by, low: value - 3 * by, high: value + 3 * by }];
+  suggest() {
+    const usual = FIRST.find(([path]) => path === this.field.value)?.[1];
+    const { value } = this;
+    const about = typeof value === "number" && value ? Number(Math.abs(0.02 * value).toPrecision(2)) : 0.01;
+    put(this.spread, String(usual ?? about));
+  }
+
+  /** @returns {NonNullable<AskedPopulation["population"]["vary"]>} */
+  read() {
+    const { value } = this;
+    const by = given(this.spread) ?? 0;
+    const path = this.field.value;
+    if (!path || typeof value !== "number" || !(by > 0)) return [];
     const ends = { low: value - by, high: value + by };
-    return [
-      kind.value === "uniform"
-        ? { path, kind: "uniform", ...ends }
-        : { path, kind: "triangular", mode: value, ...ends },
-    ];
+    if (this.kind.value === "uniform") return [{ path, kind: "uniform", ...ends }];
+    if (this.kind.value === "triangular") return [{ path, kind: "triangular", mode: value, ...ends }];
+    return [{ path, kind: "normal", mean: value, standard_deviation: by, low: value - 3 * by, high: value + 3 * by }];
   }
 
   /** Only fields that have a number in this design can vary. */
-  function refresh() {
-    offer(
-      field,
-      "nothing else",
-      form.fields().filter(({ pointer }) => typeof at(design.submission, pointer) === "number"),
-    );
-    if (!element.dataset.begun && [...field.options].some(({ value }) => value === FIRST[index][0]))
-      field.value = FIRST[index][0];
-    element.dataset.begun = "yes";
-    if (!spread.value) put(spread, String(suggested()));
+  refresh() {
+    const fields = this.numbers();
+    this.offer(fields);
+    const [first] = FIRST[this.index];
+    if (!this.isBegun && fields.some(({ pointer }) => pointer === first)) this.field.value = first;
+    this.isBegun = true;
+    if (!this.spread.value) this.suggest();
   }
-  return { element, read, refresh };
 }

@@ -3,10 +3,10 @@
 // compute.
 
 import { asking, button, h, inLine, labelled, note, region, table, tableRow, unseen } from "../draw/dom.js";
-import { figure } from "../draw/figure.js";
+import { figure, roomIn } from "../draw/figure.js";
 import { given, numeric } from "../draw/inputs.js";
-import { offer, options } from "./offer.js";
-import { mostOften, Question } from "./question.js";
+import { FieldChoice, options } from "./offer.js";
+import { mostOften, StudyPanel } from "./panel.js";
 import { json, ProblemError, request } from "../state/api.js";
 import { apart, at, nameOf, withValue } from "../state/design.js";
 import { fixed, number } from "../state/numbers.js";
@@ -15,15 +15,11 @@ import { preview } from "../state/preview.js";
 import { inUnit, inWords, quantityOf } from "../state/quantities.js";
 import { DASHES } from "../state/series.js";
 
-/** @import { Watching } from "./question.js" */
 /** @import { Design } from "../state/design.js" */
-/** @import { AskedSearch, FoundDesign, Open, Search, SearchProgress, StudyState } from "../state/documents.js" */
+/** @import { AskedSearch, FoundDesign, Open, Search as AskedOf, StudyState } from "../state/documents.js" */
 /** @import { Submission } from "../state/documents.js" */
 /** @import { Quantity } from "../state/quantities.js" */
 /** @import { Form } from "../views/form.js" */
-
-/** How a search stands is fetched so often at most, in milliseconds. */
-const PAUSE = 500;
 
 /** What is made small unless somebody chooses otherwise. */
 const FIRST_GOAL = "transmission_error_um.peak_to_peak";
@@ -53,59 +49,83 @@ const chosen = (id, label, none) =>
   );
 
 /**
- * The search of `design` in `place`; `form` knows the fields, `onOpen` opens a design.
+ * The search for a better design.
  *
- * @param {HTMLElement} place
- * @param {Design} design
- * @param {Form} form
- * @param {Open} onOpen
+ * @augments {StudyPanel<StudyState>}
  */
-export function search(place, design, form, onOpen) {
-  const variables = Array.from({ length: VARIABLES }, (_, i) => variable(i, design, form));
-  const goals = [
-    chosen("search-goal", "What is to be small", null),
-    chosen("search-goal-2", "And what besides", "nothing else"),
-  ];
-  const conditions = ["", "-2"].map(condition);
-  const evaluations = h("input", { type: "number", id: "search-evaluations", value: 150, min: 2, max: 20000, step: 1 });
-  const question = new Question(design, { id: "search", words: "Search", inWords: (detail) => form.inWords(detail) });
-  const out = h("div", { className: "out", id: "search-out" });
+export class Search extends StudyPanel {
+  part = "";
+  pause = 500;
   /** The design that the search began with and the best one, drawn beside each other; which row that is. */
-  const beside = h("div", { className: "beside", id: "search-beside" });
+  #beside = h("div", { className: "beside", id: "search-beside" });
   /** @type {string | null} */
-  let drawn = null;
+  #drawn = null;
   /**
    * What the design has beside its curves: no design that is looked at needs it, and the one that is opened has it
    * again.
    *
    * @type {Partial<Submission>}
    */
-  let further = {};
-  place.replaceChildren(
-    note(
-      "Each generation of designs is chosen by what came of those before; it begins with this design. ",
-      h("a", { href: "guides/find-a-design" }, "Find a design"),
-    ),
-    asking(
-      start,
-      ...variables.map((each) => each.element),
-      inLine(...labelled("for the least", goals[0]), ...labelled("and", goals[1])),
-      ...conditions.map((each) => each.element),
-      inLine(...labelled("Designs", evaluations), question.run, question.cancel),
-    ),
-    question.state,
-    question.of.element,
-    out,
-  );
+  #further = {};
+
+  /**
+   * The search of `design` in `place`; `form` knows the fields, `onOpen` opens a design.
+   *
+   * @param {HTMLElement} place
+   * @param {Design} design
+   * @param {Form} form
+   * @param {Open} onOpen
+   */
+  constructor(place, design, form, onOpen) {
+    super(place, design, { id: "search", words: "Search", inWords: (detail) => form.inWords(detail) });
+    this.form = form;
+    this.onOpen = onOpen;
+    this.variables = Array.from({ length: VARIABLES }, (_, i) => new Variable(design, form, i));
+    this.goals = [
+      chosen("search-goal", "What is to be small", null),
+      chosen("search-goal-2", "And what besides", "nothing else"),
+    ];
+    this.conditions = ["", "-2"].map(condition);
+    this.evaluations = h("input", {
+      type: "number",
+      id: "search-evaluations",
+      value: 150,
+      min: 2,
+      max: 20000,
+      step: 1,
+    });
+    const [first, second] = this.goals;
+    place.replaceChildren(
+      note(
+        "Each generation of designs is chosen by what came of those before; it begins with this design. ",
+        h("a", { href: "guides/find-a-design" }, "Find a design"),
+      ),
+      asking(
+        () => void this.start(),
+        ...this.variables.map((each) => each.element),
+        inLine(...labelled("for the least", first), ...labelled("and", second)),
+        ...this.conditions.map((each) => each.element),
+        inLine(...labelled("Designs", this.evaluations), this.run, this.cancel),
+      ),
+      this.state,
+      this.outdated,
+      this.out,
+    );
+    this.refresh();
+  }
+
+  refresh() {
+    for (const each of this.variables) each.refresh();
+  }
 
   /** @returns {AskedSearch} */
-  function asked() {
+  asked() {
     // The names of the choices are those of the service.
-    const minimize = goals
+    const minimize = this.goals
       .map(({ value }) => value)
       .filter(Boolean)
-      .map((quantity) => /** @type {Search["minimize"][number]} */ ({ quantity }));
-    const subject_to = conditions.flatMap((each) => each.read());
+      .map((quantity) => /** @type {AskedOf["minimize"][number]} */ ({ quantity }));
+    const subject_to = this.conditions.flatMap((each) => each.read());
     // What is asked for by a goal or a bound is told; gears are what they are.
     const needs = [...minimize, ...subject_to]
       .flatMap(({ quantity }) => quantityOf(quantity ?? "").needs)
@@ -115,67 +135,43 @@ export function search(place, design, form, onOpen) {
       withValue(
         base,
         pointer,
-        at(design.submission, pointer) || pointer === "/stress" || form.beginnings.object(pointer, null),
+        this.design.get(pointer) || pointer === "/stress" || this.form.beginnings.object(pointer, null),
       );
     return {
-      base: needs.reduce(give, apart(design.submission).curves),
-      name: `${nameOf(design.submission)}, searched`,
+      base: needs.reduce(give, apart(this.design.submission).curves),
+      name: `${nameOf(this.design.submission)}, searched`,
       search: {
-        variables: variables.flatMap((each) => each.read()),
+        variables: this.variables.flatMap((each) => each.read()),
         minimize,
         subject_to,
-        evaluations: Number(evaluations.value),
+        evaluations: Number(this.evaluations.value),
       },
     };
   }
 
-  /** @type {(about: () => AskedSearch | null) => Watching<StudyState>} */
-  const how = (about) => ({
-    pause: PAUSE,
-    show: (study, address) => show(study.search, address, about()),
-    progress: (done, total, left) => `${done} of at most ${total} designs${left(done, total)}`,
-    ended: (study) => study.problem?.detail ?? `${study.search?.evaluations} designs looked at, ${study.status}`,
-  });
-
-  function clear() {
-    ({ further } = apart(design.submission));
-    out.replaceChildren();
-    beside.replaceChildren();
-    drawn = null;
+  /** @type {StudyPanel<StudyState>["progress"]} */
+  progress(done, total, left) {
+    return `${done} of at most ${total} designs${left(done, total)}`;
   }
 
-  function start() {
-    clear();
-    /** @type {AskedSearch | null} */
-    let about = null;
-    return question.study(
-      () => (about = asked()),
-      how(() => about),
-    );
+  /** @param {StudyState} study */
+  ended({ problem, search, status }) {
+    return problem?.detail ?? `${search?.evaluations} designs looked at, ${status}`;
+  }
+
+  clear() {
+    super.clear();
+    this.#further = apart(this.design.submission).further;
+    this.#beside.replaceChildren();
+    this.#drawn = null;
   }
 
   /**
-   * Shows a search that was asked for before.
-   *
-   * @param {string} id
-   * @param {AskedSearch} about
-   */
-  function resume(id, about) {
-    clear();
-    return question.resume(
-      id,
-      about.base,
-      how(() => about),
-    );
-  }
-
-  /**
-   * @param {SearchProgress | null | undefined} found
+   * @param {StudyState} study
    * @param {string} address
-   * @param {AskedSearch | null} about
    */
-  function show(found, address, about) {
-    /** @type {(asked: { quantity?: string | null, percent?: number | null }) => Quantity} */
+  show({ search: found }, address) {
+    const about = /** @type {AskedSearch | null} */ (this.about);
     if (!found || !about) return;
     /** @type {(asked: { quantity?: string | null, percent?: number | null }) => Quantity} */
     const called = ({ quantity, percent }) => {
@@ -197,27 +193,29 @@ export function search(place, design, form, onOpen) {
     ].flatMap(({ what, refusals = [] }) =>
       refusals.length
         ? [
-            `${refusals.reduce((sum, { count }) => sum + count, 0)} ${what} cannot be computed${mostOften(refusals, (detail) => form.inWords(detail))}.`,
+            `${refusals.reduce((sum, { count }) => sum + count, 0)} ${what} cannot be computed${mostOften(refusals, this.inWords)}.`,
           ]
         : [],
     );
     const missing = h("p", { className: "outdated", hidden: !failed.length }, failed.join(" "));
-    if (!best) return out.replaceChildren(missing);
+    if (!best) return this.out.replaceChildren(missing);
     const rows = Object.entries(best.values).map(([path, value]) =>
-      tableRow(form.named(path), number(at(about.base, path) ?? null, 5), number(value, 5)),
+      tableRow(this.form.named(path), number(at(about.base, path) ?? null, 5), number(value, 5)),
     );
 
     const atEnd = about.search.variables
       .filter(({ path, low, high }) => [low, high].includes(at(best, "/values")?.[path]))
-      .map(({ path }) => form.named(path));
+      .map(({ path }) => this.form.named(path));
     /** @type {(row: number) => Promise<void>} */
-    const open = async (row) => void onOpen({ ...(await json(`${address}/designs/${row}`)), ...further }, null);
+    const open = async (row) =>
+      void this.onOpen({ ...(await json(`${address}/designs/${row}`)), ...this.#further }, null);
     /** @type {(row: number, words: string) => HTMLButtonElement} */
     const use = (row, words) => button(words, () => open(row));
-    drawBeside(address, best.row, about.base);
+    void this.#drawBeside(address, best.row, about.base);
     const reached = generations.flatMap(({ best: value = null }, i) =>
       value === null ? [] : [[i + 1, parts[0].factor * value]],
     );
+    const width = roomIn(this.out);
     const pictures =
       front.length > 1
         ? [
@@ -231,10 +229,11 @@ export function search(place, design, form, onOpen) {
               })),
               x: inUnit(parts[0]),
               y: inUnit(parts[1]),
+              width,
               title:
                 "The front: no design found is better in both; the large point is the best compromise. Press a point to open its design",
             }),
-            frontOf(front, parts, use),
+            this.#frontOf(front, parts, use),
           ]
         : reached.length > 1
           ? [
@@ -242,6 +241,7 @@ export function search(place, design, form, onOpen) {
                 lines: [{ x: reached.map(([i]) => i), y: reached.map(([, value]) => value) }],
                 x: "generation",
                 y: inUnit(parts[0]),
+                width,
                 title: "The best so far, generation by generation",
               }),
             ]
@@ -251,7 +251,7 @@ export function search(place, design, form, onOpen) {
       (confirmed.error_estimate
         ? `By the ${about.base.method.startsWith("three") ? "three-dimensional" : "flexible"} method on the fine grid: ${told(confirmed.goals, parts)}; another grid level changes the peak-to-peak value by ${fixed(confirmed.error_estimate.transmission_error_peak_to_peak_um, 4)} µm.`
         : `It could not be confirmed: ${confirmed.problem?.detail ?? "there are no results"}`);
-    out.replaceChildren(
+    this.out.replaceChildren(
       h(
         "p",
         {},
@@ -269,7 +269,7 @@ export function search(place, design, form, onOpen) {
         : []),
       h("div", { className: "buttons" }, use(best.row, "Use this design")),
       ...(fine ? [h("p", {}, fine)] : []),
-      beside,
+      this.#beside,
       ...pictures,
     );
   }
@@ -281,9 +281,9 @@ export function search(place, design, form, onOpen) {
    * @param {number} row
    * @param {Submission} base
    */
-  async function drawBeside(address, row, base) {
-    if (drawn === `${address} ${row}`) return;
-    const asked = (drawn = `${address} ${row}`);
+  async #drawBeside(address, row, base) {
+    if (this.#drawn === `${address} ${row}`) return;
+    const asked = (this.#drawn = `${address} ${row}`);
     try {
       const best = await json(`${address}/designs/${row}`);
       const both = [
@@ -306,12 +306,12 @@ export function search(place, design, form, onOpen) {
           );
         }),
       );
-      if (asked !== drawn) return;
-      beside.replaceChildren(...pictures);
+      if (asked !== this.#drawn) return;
+      this.#beside.replaceChildren(...pictures);
       const curves = await Promise.all(
         both.map(async ([name, submission]) => ({ name, curve: withPoints((await preview(submission)).curves[0]) })),
       );
-      if (asked !== drawn) return;
+      if (asked !== this.#drawn) return;
       const lines = curves.map(({ name, curve }, i) => ({
         name,
         x: curve.mesh_position,
@@ -319,7 +319,7 @@ export function search(place, design, form, onOpen) {
         color: `var(--series-${i + 1})`,
         dash: DASHES[i],
       }));
-      beside.append(
+      this.#beside.append(
         h(
           "figure",
           {},
@@ -345,7 +345,7 @@ export function search(place, design, form, onOpen) {
    * @param {Quantity[]} parts
    * @param {(row: number, words: string) => HTMLButtonElement} use
    */
-  function frontOf(front, parts, use) {
+  #frontOf(front, parts, use) {
     const rows = front.map(({ row, goals }) =>
       h(
         "tr",
@@ -356,10 +356,6 @@ export function search(place, design, form, onOpen) {
     );
     return region("Designs of the front", table([...parts.map(inUnit), unseen("Actions")], rows));
   }
-
-  const refresh = () => variables.forEach((each) => each.refresh());
-  refresh();
-  return { refresh, resume };
 }
 
 /**
@@ -381,7 +377,7 @@ function condition(end, index) {
   const read = () =>
     bounded.value && bound.value
       ? [
-          /** @type {NonNullable<Search["subject_to"]>[number]} */ ({
+          /** @type {NonNullable<AskedOf["subject_to"]>[number]} */ ({
             quantity: bounded.value,
             [side.value]: (given(bound) ?? NaN) / quantityOf(bounded.value).factor,
           }),
@@ -390,62 +386,56 @@ function condition(end, index) {
   return { element, read };
 }
 
-/**
- * A field and the range that is searched, around the value that the design has.
- *
- * @param {number} index
- * @param {Design} design
- * @param {Form} form
- */
-function variable(index, design, form) {
-  const id = `variable-${index}`;
-  // Until somebody chooses one the field is one that the design has, whichever design that is.
-  const field = h("select", {
-    id,
-    on: {
-      change: () => {
-        field.dataset.chosen = "yes";
-        suggest();
-      },
-    },
-  });
-  const [low, high, step] = ["low", "high", "step"].map((name) =>
-    numeric({
-      id: `${id}-${name}`,
-      ariaLabel: `${{ low: "Smallest", high: "Largest", step: "Step of the" }[name]} value of variable ${index + 1}`,
-    }),
-  );
-  const element = inLine(
-    h("label", { htmlFor: id }, index ? "and" : "Choose"),
-    field,
-    ...labelled("from", low),
-    ...labelled("to", high),
-    ...labelled("in steps of", step),
-  );
+/** A field and the range that is searched, around the value that the design has. */
+class Variable extends FieldChoice {
+  /**
+   * @param {Design} design
+   * @param {Form} form
+   * @param {number} index
+   */
+  constructor(design, form, index) {
+    const id = `variable-${index}`;
+    super(design, form, { id, index, words: "Choose", none: index ? "nothing else" : "a field" });
+    /** @type {(name: string, label: string) => HTMLInputElement} */
+    const number = (name, label) =>
+      numeric({ id: `${id}-${name}`, ariaLabel: `${label} value of variable ${index + 1}` });
+    this.low = number("low", "Smallest");
+    this.high = number("high", "Largest");
+    this.step = number("step", "Step of the");
+    this.element = inLine(
+      this.label,
+      this.field,
+      ...labelled("from", this.low),
+      ...labelled("to", this.high),
+      ...labelled("in steps of", this.step),
+    );
+  }
 
-  function suggest() {
-    const known = form.fields().find(({ pointer }) => pointer === field.value);
-    const value = at(design.submission, field.value);
+  suggest() {
+    const { value } = this;
     if (typeof value !== "number") return;
+    const isWhole = this.known?.kind.whole;
     const ends = value === 0 ? [0, 1] : [0.4 * value, 2 * value].sort((a, b) => a - b);
     /** @type {(end: number) => number} */
-    const round = (end) => (known?.kind.whole ? Math.round(end) : Number(end.toPrecision(3)));
-    [low.value, high.value, step.value] = [`${round(ends[0])}`, `${round(ends[1])}`, known?.kind.whole ? "1" : ""];
+    const round = (end) => (isWhole ? Math.round(end) : Number(end.toPrecision(3)));
+    [this.low.value, this.high.value, this.step.value] = [`${round(ends[0])}`, `${round(ends[1])}`, isWhole ? "1" : ""];
   }
 
-  const read = () =>
-    field.value && low.value !== "" && high.value !== ""
-      ? [{ path: field.value, low: given(low) ?? NaN, high: given(high) ?? NaN, step: given(step) ?? null }]
+  read() {
+    const { low, high, step } = this;
+    return this.field.value && low.value !== "" && high.value !== ""
+      ? [{ path: this.field.value, low: given(low) ?? NaN, high: given(high) ?? NaN, step: given(step) ?? null }]
       : [];
+  }
 
   /** Only fields that have a number in this design can be searched. */
-  function refresh() {
-    const fields = form.fields().filter(({ pointer }) => typeof at(design.submission, pointer) === "number");
+  refresh() {
+    const fields = this.numbers();
     const offered = FIRST.filter((first) => fields.some(({ pointer }) => pointer === first)).slice(0, BEGUN);
-    const before = field.value;
-    offer(field, index ? "nothing else" : "a field", fields);
-    if (!field.dataset.chosen) field.value = offered[index] ?? "";
-    if (low.value === "" || field.value !== before) suggest();
+    const before = this.field.value;
+    this.offer(fields);
+    // Until somebody chooses one the field is one that the design has, whichever design that is.
+    if (!this.isChosen) this.field.value = offered[this.index] ?? "";
+    if (this.low.value === "" || this.field.value !== before) this.suggest();
   }
-  return { element, read, refresh };
 }

@@ -2,10 +2,10 @@
 // The sensitivity of a design as bars around its own value: torque, center distance and misalignment at their limits,
 // by one small study.
 
-import { asking, h, inLine, labelled, note, region, s, table, tableRow, unseen } from "../draw/dom.js";
+import { asking, h, inLine, labelled, measured, note, region, s, table, tableRow, unseen } from "../draw/dom.js";
 import { given, numeric, put } from "../draw/inputs.js";
 import { options } from "./offer.js";
-import { Question } from "./question.js";
+import { offerTold, StudyPanel } from "./panel.js";
 import { ProblemError } from "../state/api.js";
 import { apart, nameOf } from "../state/design.js";
 import { isSolid } from "../state/dimensions.js";
@@ -13,15 +13,12 @@ import { fixed } from "../state/numbers.js";
 import { inUnit, quantityOf, shown, worstInRow } from "../state/quantities.js";
 import { barsOf, js7, studyOf } from "../state/sensitivity.js";
 
-/** @import { Watching } from "./question.js" */
 /** @import { Design } from "../state/design.js" */
-/** @import { AskedStudy, NamedDesign, StudyResults } from "../state/documents.js" */
+/** @import { NamedDesign, StudyResults } from "../state/documents.js" */
 /** @import { Quantity } from "../state/quantities.js" */
 /** @import { Bar } from "../state/sensitivity.js" */
 /** @import { Form } from "../views/form.js" */
 
-/** Bars are fetched so often at most while the study runs, in milliseconds. */
-const PAUSE = 400;
 /** The quantity of the first bars. */
 const SHOWN = "transmission_error_um.peak_to_peak";
 /** The limits that are offered: of the torque in percent, of misalignment in um. */
@@ -30,132 +27,108 @@ const [PERCENT, MISALIGNED] = [20, 10];
 const [WIDTH, HEIGHT] = [260, 18];
 
 /**
- * The sensitivity of `design` in `place`; `form` names fields, and `live` waits for the design as it is computed and
- * gives it, or null where it cannot be.
+ * The sensitivity of a design.
  *
- * @param {HTMLElement} place
- * @param {Design} design
- * @param {Form} form
- * @param {() => Promise<NamedDesign | null>} live
+ * @augments {StudyPanel<StudyResults>}
  */
-export function sensitivity(place, design, form, live) {
-  const torque = numeric({ id: "sensitivity-torque", value: String(PERCENT) });
-  const distance = numeric({ id: "sensitivity-distance" });
-  const misalignment = numeric({ id: "sensitivity-misalignment", value: String(MISALIGNED) });
-  distance.addEventListener("input", () => {
-    distance.dataset.typed = "yes";
-  });
-  const question = new Question(design, {
-    id: "sensitivity",
-    words: "Show the bars",
-    inWords: (detail) => form.inWords(detail),
-  });
-  const quantity = h(
-    "select",
-    { id: "sensitivity-quantity", on: { change: () => last && draw(last) } },
-    ...options(SHOWN),
-  );
-  const picker = inLine(...labelled("Look at", quantity));
-  picker.hidden = true;
-  const inPlane = note(
-    "Misalignment changes nothing that a method in the plane sees: choose a method in three dimensions for its bars.",
-  );
-  const out = h("div", { className: "out", id: "sensitivity-out" });
-  place.replaceChildren(
-    h("h3", {}, "Sensitivity"),
-    asking(
-      () => void start(),
-      inLine(
-        ...labelled("Torque ±", torque),
-        h("span", { className: "unit" }, "%"),
-        ...labelled("center distance ±", distance),
-        h("span", { className: "unit" }, "mm"),
-        ...labelled("misalignment ±", misalignment),
-        h("span", { className: "unit" }, "µm"),
-        question.run,
-        question.cancel,
-      ),
-    ),
-    inPlane,
-    question.state,
-    question.of.element,
-    picker,
-    out,
-  );
-  /** @type {StudyResults | null} */
-  let last = null;
-
-  /** @type {Watching<StudyResults>} */
-  const how = {
-    part: "/results",
-    pause: PAUSE,
-    show: (results) => {
-      last = results;
-      draw(results);
-    },
-    progress: (done, total, left) => `${done} of ${total} designs${left(done, total)}`,
-    ended: ({ done, total, status }) => `${done} of ${total} designs, ${status}`,
-  };
-
-  function clear() {
-    last = null;
-    picker.hidden = true;
-    out.replaceChildren();
-  }
-
-  async function start() {
-    clear();
-    const base = await live();
-    return question.study(() => {
-      if (!base)
-        throw new ProblemError({ detail: "There are no numbers of this design. Ask again once they stand above." });
-      const limits = {
-        torque: given(torque) ?? 0,
-        distance: given(distance) ?? 0,
-        misalignment: given(misalignment) ?? 0,
-      };
-      if (!Object.values(limits).some((each) => each > 0))
-        throw new ProblemError({ detail: "One of the limits has to be above 0." });
-      const { curves, further } = apart(base.asked);
-      const asked = { ...curves, ...(further.stress ? { stress: further.stress } : {}) };
-      return studyOf(asked, limits, `${nameOf(base.submission)}, sensitivity`);
-    }, how);
-  }
+export class Sensitivity extends StudyPanel {
+  /** @type {NamedDesign | null} */
+  #base = null;
 
   /**
-   * Shows bars that were asked for before.
+   * The sensitivity of `design` in `place`; `form` names fields, and `live` waits for the design as it is computed and
+   * gives it, or null where it cannot be.
    *
-   * @param {string} id
-   * @param {AskedStudy} study
+   * @param {HTMLElement} place
+   * @param {Design} design
+   * @param {Form} form
+   * @param {() => Promise<NamedDesign | null>} live
    */
-  function resume(id, { base }) {
-    clear();
-    return question.resume(id, base, how);
+  constructor(place, design, form, live) {
+    super(place, design, { id: "sensitivity", words: "Show the bars", inWords: (detail) => form.inWords(detail) });
+    this.live = live;
+    this.torque = numeric({ id: "sensitivity-torque", value: String(PERCENT) });
+    this.distance = numeric({ id: "sensitivity-distance" });
+    this.misalignment = numeric({ id: "sensitivity-misalignment", value: String(MISALIGNED) });
+    this.distance.addEventListener("input", () => {
+      this.distance.dataset.typed = "yes";
+    });
+    this.quantity = h(
+      "select",
+      { id: "sensitivity-quantity", on: { change: () => this.last && this.show(this.last.found) } },
+      ...options(SHOWN),
+    );
+    this.picker = inLine(...labelled("Look at", this.quantity));
+    this.inPlane = note(
+      "Misalignment changes nothing that a method in the plane sees: choose a method in three dimensions for its bars.",
+    );
+    place.replaceChildren(
+      h("h3", {}, "Sensitivity"),
+      asking(
+        () => void this.start(),
+        inLine(
+          measured("Torque ±", this.torque, "%"),
+          measured("center distance ±", this.distance, "mm"),
+          measured("misalignment ±", this.misalignment, "µm"),
+          this.run,
+          this.cancel,
+        ),
+      ),
+      this.inPlane,
+      this.state,
+      this.outdated,
+      this.picker,
+      this.out,
+    );
+    this.clear();
+    this.refresh();
+    design.onChange(() => this.refresh());
+  }
+
+  clear() {
+    super.clear();
+    this.picker.hidden = true;
+  }
+
+  async start() {
+    this.clear();
+    this.#base = await this.live();
+    return super.start();
+  }
+
+  asked() {
+    const base = this.#base;
+    if (!base)
+      throw new ProblemError({ detail: "There are no numbers of this design. Ask again once they stand above." });
+    const limits = {
+      torque: given(this.torque) ?? 0,
+      distance: given(this.distance) ?? 0,
+      misalignment: given(this.misalignment) ?? 0,
+    };
+    if (!Object.values(limits).some((each) => each > 0))
+      throw new ProblemError({ detail: "One of the limits has to be above 0." });
+    const { curves, further } = apart(base.asked);
+    const asked = { ...curves, ...(further.stress ? { stress: further.stress } : {}) };
+    return studyOf(asked, limits, `${nameOf(base.submission)}, sensitivity`);
   }
 
   /** @param {StudyResults} results */
-  function draw({ rows, gear }) {
-    const computed = rows.filter((row) => row.curves?.length);
-    for (const option of quantity.options)
-      option.hidden = !computed.some((row) => Number.isFinite(worstInRow(quantityOf(option.value), row, gear)));
-    const looked = quantityOf(quantity.value);
-    const { value, bars } = barsOf(rows, (row) => worstInRow(looked, row, gear));
-    picker.hidden = value === null;
-    if (value === null) return out.replaceChildren();
-    return out.replaceChildren(region("Sensitivity", tableOf(looked, value, bars)));
+  show(results) {
+    offerTold(this.quantity, results);
+    const looked = quantityOf(this.quantity.value);
+    const { value, bars } = barsOf(results.rows, (row) => worstInRow(looked, row, results.gear));
+    this.picker.hidden = value === null;
+    this.out.replaceChildren(...(value === null ? [] : [region("Sensitivity", tableOf(looked, value, bars))]));
   }
 
   /** The limit of the center distance follows it until somebody types another one. */
-  function refresh() {
-    const { pair, method } = design.submission;
+  refresh() {
+    const { pair, method } = this.design.submission;
+    const { distance } = this;
     if (!distance.dataset.typed || !distance.value) put(distance, String(js7(pair.center_distance_mm)));
-    inPlane.hidden = isSolid(method);
-    misalignment.disabled = !isSolid(method);
+    this.inPlane.hidden = isSolid(method);
+    this.misalignment.disabled = !isSolid(method);
   }
-
-  refresh();
-  design.onChange(refresh);
-  return { refresh, resume };
 }
 
 /**

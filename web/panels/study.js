@@ -2,13 +2,13 @@
 // Many designs at once: axes of values over any fields, a table, a picture of two of its columns, and which designs no
 // other beats; or a search that chooses the values itself.
 
-import { asking, button, h, inLine, labelled, note, region, table, unseen, within } from "../draw/dom.js";
+import { asking, button, h, inLine, labelled, note, region, table, unseen } from "../draw/dom.js";
 import { saveTable } from "../draw/download.js";
-import { figure } from "../draw/figure.js";
+import { figure, roomIn } from "../draw/figure.js";
 import { allGiven, given, numeric, put } from "../draw/inputs.js";
-import { offer, options } from "./offer.js";
-import { Question } from "./question.js";
-import { search } from "./search.js";
+import { FieldChoice, options } from "./offer.js";
+import { offerTold, StudyPanel } from "./panel.js";
+import { Search } from "./search.js";
 import { json, request } from "../state/api.js";
 import { at, nameOf, withValue } from "../state/design.js";
 import { number } from "../state/numbers.js";
@@ -16,14 +16,10 @@ import { calledOf, inRow, inUnit, inWords, quantityOf, shown, worstInRow } from 
 import { usualAt } from "../state/schema.js";
 import { fileOfDesign } from "../state/tables.js";
 
-/** @import { Watching } from "./question.js" */
 /** @import { Design } from "../state/design.js" */
 /** @import { AskedStudy, Open, RowCurve, StudyResults, TableRow } from "../state/documents.js" */
 /** @import { Quantity } from "../state/quantities.js" */
 /** @import { Form } from "../views/form.js" */
-
-/** A table is fetched so often at most while a study runs, in milliseconds. */
-const PAUSE = 400;
 
 /** What the picture shows first, over what. */
 const [ACROSS, UP] = ["pair_mass_kg", "transmission_error_um.peak_to_peak"];
@@ -34,6 +30,13 @@ const OF_CURVE = [UP, "mesh_stiffness_tangent_n_per_m.mean", "hole_order_um", "m
 const TORQUE = "/output_torques_n_m";
 /** With which field the first axis begins until somebody chooses another one, and the values of such a field. */
 const [COUNT, COUNTS] = [/^\/pair\/driven\/blank\/holes\/(0\/)?count$/, "6, 8, 10"];
+
+/**
+ * The words of values that are no numbers.
+ *
+ * @type {Record<string, boolean | null>}
+ */
+const WORDS = { true: true, false: false, null: null };
 
 /** The parts of gears that a design may lack and an axis may change all the same, and their fields. */
 const PART = /^(\/pair\/\w+\/(?:blank\/holes|blank\/web|tip_relief))\//;
@@ -51,99 +54,91 @@ const LACKING = ["driving", "driven"].flatMap((gear) =>
 );
 
 /**
- * The study of `design` in `place`; `form` knows the fields, `onOpen` opens the design of a row.
+ * The study of a design, with a search below it.
  *
- * @param {HTMLElement} place
- * @param {Design} design
- * @param {Form} form
- * @param {Open} onOpen
+ * @augments {StudyPanel<StudyResults>}
  */
-export function study(place, design, form, onOpen) {
-  const axes = [axis(0, design, form), axis(1, design, form)];
-  const constant = h("input", { type: "checkbox", id: "study-mass" });
-  const gear = h(
-    "select",
-    { id: "study-gear", ariaLabel: "Gear of the same mass" },
-    h("option", { value: "driven" }, "driven"),
-    h("option", { value: "driving" }, "driving"),
-  );
-  const removed = numeric({ id: "study-removed", value: 25, ariaLabel: "Mass removed in percent" });
-  const question = new Question(design, {
-    id: "study",
-    words: "Run the study",
-    inWords: (detail) => form.inWords(detail),
-  });
-  const [across, up] = [ACROSS, UP].map((chosen, i) =>
-    h("select", { id: `study-${i ? "up" : "across"}`, on: { change: () => last && draw(last) } }, ...options(chosen)),
-  );
-  const picture = h("div", {});
-  const picker = h(
-    "div",
-    { className: "line", hidden: true },
-    ...labelled("Picture:", up),
-    ...labelled("over", across),
-  );
-  const out = h("div", { className: "out" });
-  const searched = h("div", {});
-  const formOf = asking(
-    start,
-    ...axes.map((each) => each.element),
-    inLine(
-      constant,
-      h("label", { htmlFor: "study-mass" }, "Same mass: holes remove"),
-      removed,
-      h("span", { className: "unit" }, "% of the"),
-      gear,
-      h("span", {}, "blank, all equally wide"),
-    ),
-    inLine(question.run, question.cancel),
-  );
-  place.replaceChildren(
-    note(
-      "Every combination of these values is computed from the design; values stand apart by spaces. “Best” is a design that no other beats: none is at least as good in mass, peak-to-peak and mean stiffness, and better in one.",
-    ),
-    formOf,
-    question.state,
-    question.of.element,
-    picker,
-    picture,
-    out,
-    h("details", { id: "search" }, h("summary", {}, "Let a search choose the values"), searched),
-  );
-  const seeker = search(searched, design, form, onOpen);
-  /** @type {StudyResults | null} */
-  let last = null;
-  /** The name of the study. */
-  let called = "";
-
-  /** @type {Watching<StudyResults>} */
-  const how = {
-    part: "/results",
-    pause: PAUSE,
-    show,
-    progress: (done, total, left) => `${done} of ${total} designs${left(done, total)}`,
-    ended: ({ done, total, status }) => `${done} of ${total} designs, ${status}`,
-  };
-
-  function clear() {
-    last = null;
-    picture.replaceChildren();
-    out.replaceChildren();
+export class StudyOfAxes extends StudyPanel {
+  /**
+   * The study of `design` in `place`; `form` knows the fields, `onOpen` opens the design of a row.
+   *
+   * @param {HTMLElement} place
+   * @param {Design} design
+   * @param {Form} form
+   * @param {Open} onOpen
+   */
+  constructor(place, design, form, onOpen) {
+    super(place, design, { id: "study", words: "Run the study", inWords: (detail) => form.inWords(detail) });
+    this.form = form;
+    this.onOpen = onOpen;
+    this.axes = [0, 1].map((index) => new Axis(design, form, index));
+    this.constant = h("input", { type: "checkbox", id: "study-mass" });
+    this.gear = h(
+      "select",
+      { id: "study-gear", ariaLabel: "Gear of the same mass" },
+      h("option", { value: "driven" }, "driven"),
+      h("option", { value: "driving" }, "driving"),
+    );
+    this.removed = numeric({ id: "study-removed", value: 25, ariaLabel: "Mass removed in percent" });
+    /** @type {(id: string, chosen: string) => HTMLSelectElement} */
+    const axisOf = (id, chosen) =>
+      h("select", { id, on: { change: () => this.last && this.#draw(this.last.found) } }, ...options(chosen));
+    this.across = axisOf("study-across", ACROSS);
+    this.up = axisOf("study-up", UP);
+    this.picture = h("div", {});
+    this.picker = inLine(...labelled("Picture:", this.up), ...labelled("over", this.across));
+    this.picker.hidden = true;
+    const searched = h("div", {});
+    this.details = h("details", { id: "search" }, h("summary", {}, "Let a search choose the values"), searched);
+    place.replaceChildren(
+      note(
+        "Every combination of these values is computed from the design; values stand apart by spaces. “Best” is a design that no other beats: none is at least as good in mass, peak-to-peak and mean stiffness, and better in one.",
+      ),
+      asking(
+        () => void this.start(),
+        ...this.axes.map((each) => each.element),
+        inLine(
+          this.constant,
+          h("label", { htmlFor: "study-mass" }, "Same mass: holes remove"),
+          this.removed,
+          h("span", { className: "unit" }, "% of the"),
+          this.gear,
+          h("span", {}, "blank, all equally wide"),
+        ),
+        inLine(this.run, this.cancel),
+      ),
+      this.state,
+      this.outdated,
+      this.picker,
+      this.picture,
+      this.out,
+      this.details,
+    );
+    this.search = new Search(searched, design, form, onOpen);
   }
 
-  function start() {
-    clear();
-    return question.study(() => {
-      /** @type {AskedStudy} */
-      const asked = { base: base(), axes: axes.flatMap((each) => each.read()), name: nameOf(design.submission) };
-      if (constant.checked) {
-        // What is missing the service says.
-        const mass_removed_percent = /** @type {number} */ (given(removed));
-        asked.constant_mass = { gear: gear.value === "driving" ? "driving" : "driven", mass_removed_percent };
-      }
-      called = asked.name ?? "";
-      return asked;
-    }, how);
+  refresh() {
+    for (const each of [...this.axes, this.search]) each.refresh();
+  }
+
+  clear() {
+    super.clear();
+    this.picture.replaceChildren();
+  }
+
+  asked() {
+    /** @type {AskedStudy} */
+    const asked = {
+      base: this.#base(),
+      axes: this.axes.flatMap((each) => each.read()),
+      name: nameOf(this.design.submission),
+    };
+    if (this.constant.checked) {
+      // What is missing the service says.
+      const mass_removed_percent = /** @type {number} */ (given(this.removed));
+      asked.constant_mass = { gear: this.gear.value === "driving" ? "driving" : "driven", mass_removed_percent };
+    }
+    return asked;
   }
 
   /**
@@ -152,22 +147,19 @@ export function study(place, design, form, onOpen) {
    * @param {string} id
    * @param {AskedStudy} asked
    */
-  function resume(id, asked) {
-    if (asked.search) {
-      within(place, "#search", HTMLDetailsElement).open = true;
-      return seeker.resume(id, { ...asked, search: asked.search });
-    }
-    clear();
-    called = asked.name ?? "";
-    return question.resume(id, asked.base, how);
+  async resume(id, asked) {
+    if (!asked.search) return super.resume(id, asked);
+    this.details.open = true;
+    return this.search.resume(id, asked);
   }
 
   /** The design, with holes or a web to begin with where an axis changes what it lacks. */
-  function base() {
-    const touched = axes.flatMap((each) => each.read()).flatMap(({ path }) => PART.exec(path)?.[1] ?? []);
-    let submission = design.submission;
+  #base() {
+    const touched = this.axes.flatMap((each) => each.read()).flatMap(({ path }) => PART.exec(path)?.[1] ?? []);
+    let { submission } = this.design;
     for (const pointer of touched)
-      if (!at(submission, pointer)) submission = withValue(submission, pointer, form.beginnings.object(pointer, null));
+      if (!at(submission, pointer))
+        submission = withValue(submission, pointer, this.form.beginnings.object(pointer, null));
     return submission;
   }
 
@@ -175,33 +167,38 @@ export function study(place, design, form, onOpen) {
    * @param {StudyResults} results
    * @param {string} address
    */
-  function show(results, address) {
-    last = results;
-    draw(results);
+  show(results, address) {
+    this.#draw(results);
     const csv = button("Table as CSV", async () =>
-      saveTable(fileOfDesign(called, "study.csv"), await (await request(`${address}/results/table.csv`)).text()),
+      saveTable(
+        fileOfDesign(this.about?.name ?? "", "study.csv"),
+        await (await request(`${address}/results/table.csv`)).text(),
+      ),
     );
-    out.replaceChildren(region("Designs of the study", tableOf(results)), h("div", { className: "buttons" }, csv));
+    this.out.replaceChildren(
+      region("Designs of the study", this.#tableOf(results)),
+      h("div", { className: "buttons" }, csv),
+    );
   }
 
   /** @param {StudyResults} results */
-  function draw({ rows, gear }) {
-    const computed = rows.filter((row) => row.curves?.length && row.curves[0].statistics);
-    for (const option of [...across.options, ...up.options])
-      option.hidden = !computed.some((row) => Number.isFinite(worstInRow(quantityOf(option.value), row, gear)));
-    const [x, y] = [quantityOf(across.value), quantityOf(up.value)];
+  #draw(results) {
+    const [computed] = [this.across, this.up].map((select) => offerTold(select, results));
+    const [x, y] = [quantityOf(this.across.value), quantityOf(this.up.value)];
     /** @type {(quantity: Quantity, row: TableRow) => number} */
-    const readOf = (quantity, row) => quantity.factor * worstInRow(quantity, row, gear);
+    const readOf = (quantity, row) => quantity.factor * worstInRow(quantity, row, results.gear);
     const points = computed
-      .map((row) => ({ x: readOf(x, row), y: readOf(y, row), label: nameOfRow(row), strong: row.pareto }))
+      .map((row) => ({ x: readOf(x, row), y: readOf(y, row), label: this.#nameOfRow(row), strong: row.pareto }))
       .filter((point) => Number.isFinite(point.x) && Number.isFinite(point.y));
-    picker.hidden = computed.length < 2;
+    this.picker.hidden = computed.length < 2;
     const title = `Designs by ${inWords(x)} and ${inWords(y)}, of several torques the worst; large points are the best`;
-    picture.replaceChildren(...(points.length > 1 ? [figure({ points, x: inUnit(x), y: inUnit(y), title })] : []));
+    this.picture.replaceChildren(
+      ...(points.length > 1 ? [figure({ points, x: inUnit(x), y: inUnit(y), title, width: roomIn(this.out) })] : []),
+    );
   }
 
   /** @param {StudyResults} results */
-  function tableOf({ rows, gear }) {
+  #tableOf({ rows, gear }) {
     const ofRow = OF_ROW.map(
       (name) => [name, `${name}.${gear}`].map(quantityOf).find((each) => each.of) ?? quantityOf(name),
     );
@@ -217,7 +214,7 @@ export function study(place, design, form, onOpen) {
     };
     return table(
       names,
-      rows.flatMap((row) => rowsOf(row, cells)),
+      rows.flatMap((row) => this.#rowsOf(row, cells)),
     );
   }
 
@@ -225,9 +222,9 @@ export function study(place, design, form, onOpen) {
    * @param {TableRow} row
    * @param {(row: TableRow, curve: RowCurve) => string[]} cells
    */
-  function rowsOf(row, cells) {
+  #rowsOf(row, cells) {
     const lead = [
-      h("th", { scope: "row" }, nameOfRow(row)),
+      h("th", { scope: "row" }, this.#nameOfRow(row)),
       h(
         "td",
         {},
@@ -249,12 +246,12 @@ export function study(place, design, form, onOpen) {
           h("td", { colSpan: 9 }, row.problem ? (row.problem.errors?.[0]?.detail ?? row.problem.detail) : row.status),
         ),
       ];
-    const open = button("Open", () => openRow(row), { ariaLabel: `Open ${nameOfRow(row)}` });
+    const open = button("Open", () => this.#openRow(row), { ariaLabel: `Open ${this.#nameOfRow(row)}` });
     return row.curves.map((curve, i) =>
       h(
         "tr",
         { className: row.pareto ? "strong" : "" },
-        ...(i ? [h("th", { scope: "row" }, nameOfRow(row)), h("td")] : lead),
+        ...(i ? [h("th", { scope: "row" }, this.#nameOfRow(row)), h("td")] : lead),
         ...cells(row, curve).map((cell) => h("td", {}, cell)),
         h("td", {}, i ? "" : open),
       ),
@@ -266,107 +263,96 @@ export function study(place, design, form, onOpen) {
    *
    * @param {TableRow} row
    */
-  function nameOfRow({ label, changes }) {
+  #nameOfRow({ label, changes }) {
     const words = Object.entries(/** @type {Record<string, unknown>} */ (changes)).map(
       ([pointer, value]) =>
-        `${form.named(pointer)} ${typeof value === "number" ? number(value, 5) : Array.isArray(value) ? value.join(", ") : String(value).replace(/_/g, " ")}`,
+        `${this.form.named(pointer)} ${typeof value === "number" ? number(value, 5) : Array.isArray(value) ? value.join(", ") : String(value).replace(/_/g, " ")}`,
     );
     return words.join("; ") || label;
   }
 
   /** @param {TableRow} row */
-  async function openRow(row) {
+  async #openRow(row) {
     const job = await json(`v1/jobs/${row.job}`);
-    onOpen(job.submission, null);
+    this.onOpen(job.submission, null);
   }
-
-  return { refresh: () => [...axes, seeker].forEach((each) => each.refresh()), resume };
 }
 
-/**
- * Values over a field that is chosen from all that the form has.
- *
- * @param {number} index
- * @param {Design} design
- * @param {Form} form
- */
-function axis(index, design, form) {
-  const id = `axis-${index}`;
-  const values = h("input", {
-    type: "text",
-    id: `${id}-values`,
-    ariaLabel: `Values of axis ${index + 1}`,
-    spellcheck: false,
-  });
-  const field = h("select", {
-    id,
-    on: {
-      change: () => {
-        field.dataset.chosen = "yes";
-        put(values, suggested());
-      },
-    },
-  });
-  const element = inLine(h("label", { htmlFor: id }, index ? "and" : "Vary"), field, ...labelled("over", values));
+/** Values over a field that is chosen from all that the form has. */
+class Axis extends FieldChoice {
+  /**
+   * @param {Design} design
+   * @param {Form} form
+   * @param {number} index
+   */
+  constructor(design, form, index) {
+    const id = `axis-${index}`;
+    super(design, form, { id, index, words: "Vary", none: "none" });
+    this.values = h("input", {
+      type: "text",
+      id: `${id}-values`,
+      ariaLabel: `Values of axis ${index + 1}`,
+      spellcheck: false,
+    });
+    this.element = inLine(this.label, this.field, ...labelled("over", this.values));
+    this.refresh();
+  }
+
+  suggest() {
+    put(this.values, this.#suggested());
+  }
 
   /** Values around the one that the design has. */
-  function suggested() {
-    if (COUNT.test(field.value)) return COUNTS;
-    const known = form.fields().find(({ pointer }) => pointer === field.value);
-    const [, part] = PART.exec(field.value) ?? [];
+  #suggested() {
+    const path = this.field.value;
+    if (COUNT.test(path)) return COUNTS;
+    const { kind } = this.known ?? {};
+    const [, part] = PART.exec(path) ?? [];
     const begun =
-      part && !at(design.submission, part)
-        ? at(form.beginnings.object(part, null), field.value.slice(part.length))
-        : undefined;
-    const value = at(design.submission, field.value) ?? usualAt(form.api, design.submission, field.value) ?? begun;
-    if (known?.kind.kind === "choice") return (known.kind.schema.enum ?? []).join(", ");
+      part && !this.design.get(part) ? at(this.form.beginnings.object(part, null), path.slice(part.length)) : undefined;
+    const value = this.value ?? usualAt(this.form.api, this.design.submission, path) ?? begun;
+    if (kind?.kind === "choice") return (kind.schema.enum ?? []).join(", ");
     if (typeof value !== "number") return "";
-    if (value === 0) return known?.kind.whole ? "0, 1, 2" : "0, 0.1, 0.2";
+    if (value === 0) return kind?.whole ? "0, 1, 2" : "0, 0.1, 0.2";
     return [0.9, 1, 1.1]
-      .map((part) => (known?.kind.whole ? Math.round(part * value) : Number((part * value).toPrecision(3))))
+      .map((part) => (kind?.whole ? Math.round(part * value) : Number((part * value).toPrecision(3))))
       .join(", ");
   }
 
-  /** @type {Record<string, boolean | null>} */
-  const WORDS = { true: true, false: false, null: null };
-  const isWord = () =>
-    ["choice", "flag"].includes(form.fields().find(({ pointer }) => pointer === field.value)?.kind.kind ?? "");
-  const listed = () =>
-    isWord()
-      ? values.value
+  /**
+   * The axis; none without a field or values. A field within a list is changed by its place; the torque as the list
+   * that it is.
+   *
+   * @returns {{ path: string, values: unknown[] }[]}
+   */
+  read() {
+    const path = this.field.value;
+    if (!path || !this.values.value.trim()) return [];
+    /** @type {unknown[]} */
+    const listed = ["choice", "flag"].includes(this.known?.kind.kind ?? "")
+      ? this.values.value
           .split(/[\s,;]+/)
           .filter(Boolean)
           .map((word) => (word in WORDS ? WORDS[word] : word))
-      : allGiven(values);
-  const read = () =>
-    field.value && values.value.trim() ? [pathOf(field.value, [...new Set(/** @type {unknown[]} */ (listed()))])] : [];
-
-  /**
-   * A field within a list is changed by its place; the torque as the list that it is.
-   *
-   * @param {string} path
-   * @param {unknown[]} list
-   */
-  function pathOf(path, list) {
-    return path === TORQUE ? { path, values: list.map((value) => [value]) } : { path, values: list };
+      : allGiven(this.values);
+    const values = [...new Set(listed)];
+    return [{ path, values: path === TORQUE ? values.map((value) => [value]) : values }];
   }
 
-  function refresh() {
-    const fields = form.fields().filter(({ pointer }) => pointer !== "/tags");
+  refresh() {
+    const fields = this.form.fields().filter(({ pointer }) => pointer !== "/tags");
     // Several patterns have fields of their own, and none of one pattern.
     const absent = LACKING.filter(
       (pointer) =>
-        !fields.some((each) => each.pointer === pointer) && !Array.isArray(design.get(PART.exec(pointer)?.[1] ?? "")),
+        !fields.some((each) => each.pointer === pointer) &&
+        !Array.isArray(this.design.get(PART.exec(pointer)?.[1] ?? "")),
     );
-    const all = [...[...absent, TORQUE].map((pointer) => ({ pointer, title: form.titled(pointer) })), ...fields];
-    const before = field.value;
+    const all = [...[...absent, TORQUE].map((pointer) => ({ pointer, title: this.form.titled(pointer) })), ...fields];
+    const before = this.field.value;
     // The field that was chosen may not be there any more.
-    if (!offer(field, "none", all)) values.value = "";
-    if (index === 0 && !field.dataset.chosen)
-      field.value = all.find(({ pointer }) => COUNT.test(pointer))?.pointer ?? "";
-    if (field.value && field.value !== before) put(values, suggested());
+    if (!this.offer(all)) this.values.value = "";
+    if (this.index === 0 && !this.isChosen)
+      this.field.value = all.find(({ pointer }) => COUNT.test(pointer))?.pointer ?? "";
+    if (this.field.value && this.field.value !== before) this.suggest();
   }
-
-  refresh();
-  return { element, read, refresh };
 }

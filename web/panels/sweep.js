@@ -2,165 +2,180 @@
 // The peak-to-peak transmission error over the torque, and where it is least: a study over the torque, which is found
 // again as others are.
 
-import { button, h, note } from "../draw/dom.js";
-import { figure } from "../draw/figure.js";
+import { asking, button, h, inLine, measured, note } from "../draw/dom.js";
+import { figure, roomIn } from "../draw/figure.js";
 import { given, numeric, put } from "../draw/inputs.js";
-import { Question } from "./question.js";
+import { StudyPanel } from "./panel.js";
 import { ProblemError } from "../state/api.js";
 import { apart, nameOf } from "../state/design.js";
+import { markOf } from "../state/marks.js";
 import { fixed, number } from "../state/numbers.js";
 
 /** @import { Dot, Figure } from "../draw/figure.js" */
-/** @import { Watching } from "./question.js" */
 /** @import { Design } from "../state/design.js" */
-/** @import { AskedStudy, StudyResults } from "../state/documents.js" */
+/** @import { AskedStudy, StudyResults, Warning } from "../state/documents.js" */
+/** @import { Form } from "../views/form.js" */
 
 const MOST_TORQUES = 24;
-/** Points are fetched so often at most while a sweep runs, in milliseconds. */
-const PAUSE = 400;
 const TORQUE = "/output_torques_n_m";
+const PEAK_TO_PEAK = "transmission_error_um.peak_to_peak";
 
 /**
- * The sweep of `design` in `place`.
+ * The sweep of a design.
  *
- * @param {HTMLElement} place
- * @param {Design} design
+ * @augments {StudyPanel<StudyResults>}
  */
-export function sweep(place, design) {
-  const [from, to] = ["from", "to"].map((end) => numeric({ id: `sweep-${end}` }));
-  const question = new Question(design, { id: "sweep", words: "Sweep", ignored: [TORQUE] });
-  const out = h("div", { className: "out" });
-  for (const input of [from, to])
-    input.addEventListener("input", () => {
-      input.dataset.typed = "yes";
-    });
-  const form = h(
-    "form",
-    {
-      className: "line",
-      on: {
-        submit: (event) => {
-          event.preventDefault();
-          start();
-        },
-      },
-    },
-    h("label", { htmlFor: "sweep-from" }, "Torque from"),
-    from,
-    h("span", { className: "unit" }, "N m"),
-    h("label", { htmlFor: "sweep-to" }, "to"),
-    to,
-    h("span", { className: "unit" }, "N m"),
-    question.run,
-    question.cancel,
-  );
-  place.replaceChildren(
-    h("h3", {}, "Transmission error over torque"),
-    note("At which torque is the transmission error flattest? A tip relief suits one torque; this shows which."),
-    form,
-    question.state,
-    question.of.element,
-    out,
-  );
+export class Sweep extends StudyPanel {
+  /**
+   * The warnings of the design that is swept: rows tell none.
+   *
+   * @type {Warning[]}
+   */
+  #warnings = [];
+
+  /**
+   * The sweep of `design` in `place`; `form` names fields, and `warnings` gives those of its results.
+   *
+   * @param {HTMLElement} place
+   * @param {Design} design
+   * @param {Form} form
+   * @param {() => Warning[]} warnings
+   */
+  constructor(place, design, form, warnings) {
+    super(place, design, { id: "sweep", words: "Sweep", inWords: (detail) => form.inWords(detail), ignored: [TORQUE] });
+    this.warnings = warnings;
+    this.ends = ["from", "to"].map((end) => numeric({ id: `sweep-${end}` }));
+    for (const input of this.ends)
+      input.addEventListener("input", () => {
+        input.dataset.typed = "yes";
+      });
+    const [from, to] = this.ends;
+    place.replaceChildren(
+      h("h3", {}, "Transmission error over torque"),
+      note("At which torque is the transmission error flattest? A tip relief suits one torque; this shows which."),
+      asking(
+        () => void this.start(),
+        inLine(measured("Torque from", from, "N m"), measured("to", to, "N m"), this.run, this.cancel),
+      ),
+      this.state,
+      this.outdated,
+      this.out,
+    );
+    this.refresh();
+  }
 
   /** From a tenth of the design's torque to twice as much, until somebody types other ones. */
-  const suggest = () => {
-    const torque = design.get(`${TORQUE}/0`) ?? 100;
-    if (!from.dataset.typed || !from.value) put(from, number(torque / 10, 2));
-    if (!to.dataset.typed || !to.value) put(to, number(torque * 2, 2));
-  };
+  refresh() {
+    const torque = this.design.get(`${TORQUE}/0`) ?? 100;
+    for (const [i, part] of [0.1, 2].entries()) {
+      const input = this.ends[i];
+      if (!input.dataset.typed || !input.value) put(input, number(torque * part, 2));
+    }
+  }
 
-  /** @type {Watching<StudyResults>} */
-  const how = {
-    part: "/results",
-    pause: PAUSE,
-    show: ({ rows, status }) => {
-      const points = rows
-        .flatMap((row) =>
-          row.curves.map((curve) => ({
-            x: curve.output_torque_n_m,
-            y: curve.statistics?.transmission_error_um.peak_to_peak ?? NaN,
-            label: `${number(curve.output_torque_n_m)} N m`,
-          })),
-        )
-        .filter(({ y }) => Number.isFinite(y))
-        .sort((a, b) => a.x - b.x);
-      out.replaceChildren(...(points.length ? shown(points, status) : []));
-    },
-    progress: (done, total, left) => `${done} of ${total} torques${left(done, total)}`,
-    ended: ({ rows, status }) =>
-      status === "dismissed"
-        ? `Cancelled after ${rows.filter(({ curves }) => curves?.length).length} torques.`
-        : (rows.find(({ problem }) => problem)?.problem?.detail ?? ""),
-  };
+  clear() {
+    super.clear();
+    this.#warnings = [];
+  }
 
-  function start() {
-    out.replaceChildren();
-    return question.study(() => {
-      const [low = 0, high = 0] = [given(from), given(to)];
-      if (!(low > 0 && high > low))
-        throw new ProblemError({ detail: "The torques have to be positive, the second larger than the first." });
-      question.say("Computing");
-      const torques = Array.from({ length: MOST_TORQUES }, (_, i) =>
-        Number((low + ((high - low) * i) / (MOST_TORQUES - 1)).toPrecision(6)),
-      );
-      const { curves: base } = apart(design.submission);
-      return {
-        base,
-        keep: "statistics",
-        axes: [{ path: TORQUE, values: torques.map((torque) => [torque]) }],
-        name: `${nameOf(base)}, torque sweep`,
-      };
-    }, how);
+  /** @returns {AskedStudy} */
+  asked() {
+    const [low = 0, high = 0] = this.ends.map(given);
+    if (!(low > 0 && high > low))
+      throw new ProblemError({ detail: "The torques have to be positive, the second larger than the first." });
+    this.say("Computing");
+    const torques = Array.from({ length: MOST_TORQUES }, (_, i) =>
+      Number((low + ((high - low) * i) / (MOST_TORQUES - 1)).toPrecision(6)),
+    );
+    const { curves: base } = apart(this.design.submission);
+    return {
+      base,
+      keep: "statistics",
+      axes: [{ path: TORQUE, values: torques.map((torque) => [torque]) }],
+      name: `${nameOf(base)}, torque sweep`,
+    };
   }
 
   /**
-   * Shows a sweep that was asked for before.
-   *
    * @param {string} id
    * @param {AskedStudy} study
    */
-  function resume(id, { base, axes }) {
-    const values = axes?.[0].values ?? [];
-    [from.value, to.value] = [String(values[0]), String(values.at(-1))];
-    for (const input of [from, to]) input.dataset.typed = "yes";
-    out.replaceChildren();
-    return question.resume(id, base, how);
+  resume(id, study) {
+    const values = study.axes?.[0].values ?? [];
+    for (const [i, input] of this.ends.entries()) {
+      input.value = String(values.at(-i));
+      input.dataset.typed = "yes";
+    }
+    return super.resume(id, study);
   }
 
-  /** @type {(points: Dot[]) => Figure} */
-  const pictureOf = (points) =>
-    figure({
-      points,
-      lines: [{ x: points.map((point) => point.x), y: points.map((point) => point.y) }],
-      x: "output torque in N m",
-      y: "STE peak-to-peak in µm",
-      title: "Peak-to-peak transmission error over the torque",
-    });
+  /** @type {StudyPanel<StudyResults>["progress"]} */
+  progress(done, total, left) {
+    return `${done} of ${total} torques${left(done, total)}`;
+  }
+
+  /** @param {StudyResults} found */
+  ended({ rows, status }) {
+    return status === "dismissed"
+      ? `Cancelled after ${rows.filter(({ curves }) => curves?.length).length} torques.`
+      : this.inWords(rows.find(({ problem }) => problem)?.problem?.detail ?? "");
+  }
+
+  /** @param {StudyResults} found */
+  show({ rows, status }) {
+    if (this.outdated.hidden) this.#warnings = this.warnings();
+    const points = rows
+      .flatMap((row) =>
+        row.curves.map((curve) => ({
+          x: curve.output_torque_n_m,
+          y: curve.statistics?.transmission_error_um.peak_to_peak ?? NaN,
+          label: `${number(curve.output_torque_n_m)} N m`,
+        })),
+      )
+      .filter(({ y }) => Number.isFinite(y))
+      .sort((a, b) => a.x - b.x);
+    const least = status === "successful" && points.length ? this.#leastOf(points) : [];
+    this.out.replaceChildren(...least, ...(points.length ? [pictureOf(points, roomIn(this.out))] : []));
+  }
 
   /**
+   * The least of the points in words; its point is larger than the others, unless a warning limits what they say.
+   *
    * @param {Dot[]} points
-   * @param {string} status
    */
-  function shown(points, status) {
-    if (status !== "successful") return [pictureOf(points)];
+  #leastOf(points) {
     const least = points.reduce((best, point) => (point.y < best.y ? point : best));
-    least.strong = true;
-    least.label = `least: ${fixed(least.y, 3)} µm at ${number(least.x)} N m`;
-    const use = button(`Show ${number(least.x)} N m`, () => design.set(TORQUE, [least.x], "mend"));
+    const told = `${fixed(least.y, 3)} µm at ${number(least.x)} N m`;
+    const use = button(`Show ${number(least.x)} N m`, () => this.design.set(TORQUE, [least.x], "mend"));
     const atEnd = least === points[0] || least === points.at(-1);
     const words = atEnd ? "The least lies at an end of the sweep; a wider one may find less." : "";
-    return [
-      h(
-        "p",
-        {},
-        `Least peak-to-peak of these torques: ${fixed(least.y, 3)} µm at ${number(least.x)} N m. ${words} `,
-        use,
-      ),
-      pictureOf(points),
-    ];
+    const mark = markOf(PEAK_TO_PEAK, this.#warnings);
+    if (mark) {
+      const why = h("span", { className: "mark" }, mark.word);
+      return [
+        h(
+          "p",
+          {},
+          `Smallest number of these torques: ${told}, which is not called the least: `,
+          why,
+          ` ${mark.detail} `,
+          use,
+        ),
+      ];
+    }
+    least.strong = true;
+    least.label = `least: ${told}`;
+    return [h("p", {}, `Least peak-to-peak of these torques: ${told}. ${words} `, use)];
   }
-
-  suggest();
-  return { refresh: suggest, resume };
 }
+
+/** @type {(points: Dot[], width: number) => Figure} */
+const pictureOf = (points, width) =>
+  figure({
+    points,
+    lines: [{ x: points.map((point) => point.x), y: points.map((point) => point.y) }],
+    x: "output torque in N m",
+    y: "STE peak-to-peak in µm",
+    title: "Peak-to-peak transmission error over the torque",
+    width,
+  });

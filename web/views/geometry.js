@@ -45,7 +45,7 @@ export const OF_GEARS = [
   ["Least material around holes", "", "mm", (it) => fixed(it.least_ligament_mm, 2)],
   ["Mass", "m", "kg", (it) => fixed(it.mass_kg, 4)],
   ["Removed by holes", "", "%", (it) => fixed(it.mass_removed_percent, 1)],
-  ["Polar inertia", "J", "kg m²", (it) => number(it.polar_inertia_kg_m2, 5)],
+  ["Polar inertia", "J", "kg cm²", (it) => number(1e4 * it.polar_inertia_kg_m2, 5)],
   ["Imbalance", "", "kg mm", (it) => number(it.imbalance_kg_mm, 3)],
   ["Alike again after", "", "mesh periods", (it) => String(it.period_mesh_periods)],
 ];

@@ -4,51 +4,25 @@
 import { button, byId, h, inLine, labelled, note, table, tableRow } from "../draw/dom.js";
 import { save } from "../draw/download.js";
 import { ProblemError } from "../state/api.js";
-import { same } from "../state/design.js";
-import {
-  contentOf,
-  documentOf,
-  fileOf,
-  isName,
-  LONGEST_NAME,
-  MOST_WORK,
-  NoProject,
-  projectOf,
-} from "../state/project.js";
+import { contentOf, fileOf, isName, LONGEST_NAME, NoProject, projectOf } from "../state/project.js";
 import { add, change, ChangedMeanwhile, isShared, list, read, remove } from "../state/projects.js";
 import { fileOfDesign } from "../state/tables.js";
-import { onSubmitted } from "../state/work.js";
 
-/** @import { Design } from "../state/design.js" */
-/** @import { Content, KeptDesign, RememberedProject } from "../state/project.js" */
+/** @import { KeptDesign } from "../state/project.js" */
 /** @import { Known, Listed } from "../state/projects.js" */
-/** @import { Submitted } from "../state/work.js" */
+/** @import { Store } from "../state/store.js" */
 
 const UNNAMED = "Project";
-
-/**
- * @typedef {object} Around
- * @property {() => void} onChange is called when what is remembered has changed
- * @property {() => void} onWork is called when the submitted work is another one
- * @property {(kept: KeptDesign) => Promise<unknown>} compute computes a design and keeps it beside the live one
- */
 
 /** @type {(time: string) => string} */
 const when = (time) => new Date(time).toLocaleString(undefined, { dateStyle: "medium", timeStyle: "short" });
 
+/** The dialog of the project. */
 export class Project {
-  /** @type {Known | null} */
-  #known = null;
-  /** @type {object | null} */
-  #saved = null;
-  /** @type {KeptDesign[]} */
-  #waiting = [];
-  /** @type {Submitted[]} */
-  #work = [];
   #dialog = byId("project-dialog", HTMLDialogElement);
   #opener = byId("project-button");
-  #name = h("input", { type: "text", id: "project-name", maxLength: LONGEST_NAME, autocomplete: "off" });
-  #notes = h("textarea", { id: "project-notes", rows: 3, on: { input: () => this.changed() } });
+  #name = this.#line("name");
+  #notes = h("textarea", { id: "project-notes", rows: 3, on: { input: () => this.#describe() } });
   #author = this.#line("author");
   #drawing = this.#line("drawing");
   #state = h("p", { className: "note", role: "status" });
@@ -59,17 +33,16 @@ export class Project {
   #file = h("input", { type: "file", id: "project-file", accept: ".json", hidden: true });
 
   /**
-   * @param {Design} design
-   * @param {Around} around
+   * The project of `store`; `compute` computes a design and keeps it beside the live one.
+   *
+   * @param {Store} store
+   * @param {(kept: KeptDesign) => Promise<unknown>} compute
    */
-  constructor(design, { onChange, onWork, compute }) {
-    this.design = design;
-    this.onChange = onChange;
-    this.onWork = onWork;
-    onSubmitted((work) => this.#setWork([...this.#work, work].slice(-MOST_WORK)));
+  constructor(store, compute) {
+    this.store = store;
     this.compute = compute;
+    store.onProject(() => this.#tell());
     this.#opener.addEventListener("click", () => void this.#show());
-    this.#name.addEventListener("input", () => this.changed());
     this.#file.addEventListener("change", () => void this.#import());
     this.#dialog.append(
       h("h2", { id: "project-title" }, "Project"),
@@ -96,31 +69,8 @@ export class Project {
     );
   }
 
-  /** @returns {RememberedProject} */
-  get state() {
-    return {
-      known: this.#known,
-      notes: this.#notes.value,
-      author: this.#author.value,
-      drawing: this.#drawing.value,
-      work: this.#work,
-      waiting: this.#waiting,
-      saved: this.#saved,
-    };
-  }
-
-  /** The words of the title block of a report. */
-  get title() {
-    return {
-      name: this.#known?.name ?? this.#name.value,
-      author: this.#author.value,
-      drawing: this.#drawing.value,
-      notes: this.#notes.value,
-    };
-  }
-
   /**
-   * A line that is typed for the title block.
+   * A line that is typed.
    *
    * @param {string} name
    */
@@ -130,80 +80,45 @@ export class Project {
       id: `project-${name}`,
       maxLength: LONGEST_NAME,
       autocomplete: "off",
-      on: { input: () => this.changed() },
+      on: { input: () => this.#describe() },
     });
   }
 
-  /** The jobs and studies that were submitted for the project, the oldest first. */
-  get work() {
-    return this.#work;
+  #describe() {
+    const [name, notes, author, drawing] = [this.#name, this.#notes, this.#author, this.#drawing].map(
+      ({ value }) => value,
+    );
+    this.store.describe({ name, notes, author, drawing });
   }
 
-  /** @param {Submitted[]} work */
-  #setWork(work) {
-    this.#work = work;
-    this.changed();
-    this.onWork();
-  }
-
-  /**
-   * The project keeps this job or study no more; the service does.
-   *
-   * @param {string} id
-   */
-  forget(id) {
-    this.#setWork(this.#work.filter((each) => each.id !== id));
-  }
-
-  /** @param {RememberedProject} remembered */
-  restore({ known, notes, author = "", drawing = "", work = [], waiting, saved }) {
-    [this.#known, this.#waiting, this.#saved] = [known, waiting, saved];
-    this.#type({ notes, author, drawing });
-    this.#name.value = known?.name ?? "";
-    this.#setWork(work);
-  }
-
-  /** @param {{ notes: string, author: string, drawing: string }} words */
-  #type({ notes, author, drawing }) {
-    [this.#notes.value, this.#author.value, this.#drawing.value] = [notes, author, drawing];
-  }
-
-  /** Says whether there is something to be saved. */
-  changed() {
-    const isSaved = this.#isSaved();
-    this.#opener.textContent = `${this.#known?.name ?? UNNAMED}${this.#known && !isSaved ? " *" : ""}`;
-    this.#opener.title = this.#known && !isSaved ? "The project has changes that are not saved" : "Projects";
-    const place = this.#known?.place === "browser" ? "in this browser" : "in the service";
-    this.#state.textContent = !this.#known
+  /** Shows the project as it is, and whether there is something to be saved. */
+  #tell() {
+    const { project, isSaved } = this.store;
+    const { known } = project;
+    /** @type {[{ value: string }, string][]} */
+    const typed = [
+      [this.#name, project.name],
+      [this.#notes, project.notes],
+      [this.#author, project.author],
+      [this.#drawing, project.drawing],
+    ];
+    // Writing moves the mark of whoever types.
+    for (const [input, value] of typed) if (input.value !== value) input.value = value;
+    this.#opener.textContent = `${known?.name ?? UNNAMED}${known && !isSaved ? " *" : ""}`;
+    this.#opener.title = known && !isSaved ? "The project has changes that are not saved" : "Projects";
+    const place = known?.place === "browser" ? "in this browser" : "in the service";
+    this.#state.textContent = !known
       ? "Not saved yet."
       : isSaved
-        ? `Saved ${place}, ${when(this.#known.updated_at)}.`
-        : `Changed since it was saved ${place}, ${when(this.#known.updated_at)}.`;
+        ? `Saved ${place}, ${when(known.updated_at)}.`
+        : `Changed since it was saved ${place}, ${when(known.updated_at)}.`;
     this.#showWaiting();
-    this.onChange();
-  }
-
-  #isSaved() {
-    return this.#known?.name === this.#name.value && same(this.#saved, this.#document());
-  }
-
-  #document() {
-    const { submission, typed, kept } = this.design;
-    return documentOf({
-      submission,
-      typed,
-      kept: [...kept, ...this.#waiting],
-      work: this.#work,
-      notes: this.#notes.value,
-      author: this.#author.value,
-      drawing: this.#drawing.value,
-    });
   }
 
   async #show() {
     this.#wrong.textContent = "";
-    if (!this.#name.value) this.#name.value = this.#known?.name ?? "";
-    this.changed();
+    const { name, known } = this.store.project;
+    this.store.describe({ name: name || (known?.name ?? "") });
     this.#dialog.showModal();
     await this.#act(() => this.#refresh());
   }
@@ -226,7 +141,7 @@ export class Project {
 
   /** The name that was typed; null, with the reason said, where it is none. */
   #named() {
-    const name = this.#name.value;
+    const { name } = this.store.project;
     if (isName(name)) return name;
     this.#wrong.textContent = "Give the project a name.";
     this.#name.focus();
@@ -236,13 +151,13 @@ export class Project {
   async #save() {
     const name = this.#named();
     if (!name) return;
-    if (!this.#known) return this.#saveAnew();
-    const document = this.#document();
+    const { document, project } = this.store;
+    if (!project.known) return this.#saveAnew();
     try {
-      this.#took(await change(this.#known, name, document), document);
+      this.#took(await change(project.known, name, document), document);
     } catch (error) {
       if (!(error instanceof ChangedMeanwhile)) throw error;
-      return this.#offerBoth(this.#known);
+      return this.#offerBoth(project.known);
     }
     await this.#refresh();
   }
@@ -250,7 +165,7 @@ export class Project {
   async #saveAnew() {
     const name = this.#named();
     if (!name) return;
-    const document = this.#document();
+    const { document } = this.store;
     this.#took(await add(name, document), document);
     await this.#refresh();
   }
@@ -260,10 +175,8 @@ export class Project {
    * @param {object} saved
    */
   #took(known, saved) {
-    [this.#known, this.#saved] = [known, saved];
-    this.#name.value = known.name;
     this.#conflict.hidden = true;
-    this.changed();
+    this.store.save(known, saved);
   }
 
   /**
@@ -277,7 +190,7 @@ export class Project {
       ? `Somebody else saved this project as “${theirs.known.name}”, ${when(theirs.known.updated_at)}. Nothing was overwritten.`
       : "Somebody else deleted this project.";
     const keepMine = async () => {
-      const document = this.#document();
+      const { document } = this.store;
       const name = this.#named();
       if (!name || !theirs) return;
       try {
@@ -310,30 +223,15 @@ export class Project {
       this.#wrong.textContent = "This project was deleted.";
       return this.#refresh();
     }
-    this.#take(contentOf(found.document), found.known.name);
-    this.#took(found.known, this.#document());
+    this.store.open(contentOf(found.document), found.known.name);
+    this.#took(found.known, this.store.document);
     await this.#refresh();
-  }
-
-  /**
-   * Puts a content in place of what is worked on. The way back leads to that.
-   *
-   * @param {Content} content
-   * @param {string} name
-   */
-  #take({ submission, typed, kept, work, ...words }, name) {
-    this.#work = work;
-    this.#waiting = kept;
-    this.#type(words);
-    this.#name.value = name;
-    this.design.begin({ submission, typed, kept: [] });
-    this.onWork();
   }
 
   #export() {
     const name = this.#named();
     if (!name) return;
-    save(fileOfDesign(name, "project.json"), "application/json", fileOf(name, this.#document()));
+    save(fileOfDesign(name, "project.json"), "application/json", fileOf(name, this.store.document));
   }
 
   async #import() {
@@ -342,27 +240,25 @@ export class Project {
     if (!file) return;
     await this.#act(async () => {
       const { name, content } = projectOf(await file.text());
-      [this.#known, this.#saved] = [null, null];
-      this.#take(content, name);
-      this.changed();
+      this.store.unsave();
+      this.store.open(content, name);
     });
   }
 
   /** The designs of an opened project that are not computed yet. */
   #showWaiting() {
-    this.#uncomputed.hidden = this.#waiting.length === 0;
+    const { waiting } = this.store.project;
+    this.#uncomputed.hidden = waiting.length === 0;
     this.#uncomputed.replaceChildren(
-      note(`Kept designs that are not computed yet: ${this.#waiting.map(({ name }) => name).join("; ")}.`),
+      note(`Kept designs that are not computed yet: ${waiting.map(({ name }) => name).join("; ")}.`),
       inLine(button("Compute them", () => this.#act(() => this.#compute()), { id: "project-compute" })),
     );
   }
 
   async #compute() {
-    while (this.#waiting.length) {
-      const [next] = this.#waiting;
+    for (const next of this.store.project.waiting) {
       await this.compute(next);
-      this.#waiting = this.#waiting.filter((each) => each !== next);
-      this.changed();
+      this.store.arrived(next);
     }
   }
 
@@ -396,10 +292,7 @@ export class Project {
   async #delete(item) {
     if (!confirm(`Delete the project “${item.name}”? There is no way back.`)) return;
     await remove(item);
-    if (item.id === this.#known?.id) {
-      [this.#known, this.#saved] = [null, null];
-      this.changed();
-    }
+    if (item.id === this.store.project.known?.id) this.store.unsave();
     await this.#refresh();
   }
 }

@@ -7,6 +7,7 @@ import { hasEnded, json, ProblemError, request } from "../state/api.js";
 import { timeOf } from "../state/numbers.js";
 import { onWork, running } from "../state/work.js";
 
+/** @import { Store } from "../state/store.js" */
 /** @import { Running, Submitted } from "../state/work.js" */
 
 /** Work that takes less, in milliseconds, is not listed. */
@@ -25,13 +26,6 @@ const GONE = "removed by the service";
  * A row of what runs.
  *
  * @typedef {{ element: HTMLLIElement, bar: HTMLProgressElement, said: HTMLElement }} Row
- */
-
-/**
- * The parts of the page that the list calls: the submitted work of the project, what shows one of it, and what forgets
- * one.
- *
- * @typedef {{ kept: () => Submitted[], onShow: (work: Submitted) => unknown, onForget: (id: string) => void }} Around
  */
 
 /** @type {(work: Submitted) => string} */
@@ -73,11 +67,15 @@ export class Tray {
   /** @type {number | undefined} */
   #asking;
 
-  /** @param {Around} around */
-  constructor({ kept, onShow, onForget }) {
-    this.kept = kept;
+  /**
+   * The work of the project of `store`; `onShow` shows a job or a study of it.
+   *
+   * @param {Store} store
+   * @param {(work: Submitted) => unknown} onShow
+   */
+  constructor(store, onShow) {
+    this.store = store;
     this.onShow = onShow;
-    this.onForget = onForget;
     this.#place.append(
       h(
         "div",
@@ -99,11 +97,22 @@ export class Tray {
       if (ended) this.#end(ended.id, ended.status);
       this.#soon();
     });
-    this.renew();
+    let { work } = store.project;
+    store.onProject(() => {
+      if (work === store.project.work) return;
+      ({ work } = store.project);
+      this.#renew();
+    });
+    this.#renew();
+  }
+
+  /** The jobs and studies that were submitted for the project, the oldest first. */
+  get #work() {
+    return this.store.project.work;
   }
 
   /** The submitted work of the project is another one now. */
-  renew() {
+  #renew() {
     this.#soon();
     this.#askAfter(0);
   }
@@ -112,7 +121,7 @@ export class Tray {
   #open(open) {
     this.#place.hidden = !open;
     this.#button.setAttribute("aria-expanded", String(open));
-    if (open) this.renew();
+    if (open) this.#renew();
     else this.#button.focus();
   }
 
@@ -137,7 +146,7 @@ export class Tray {
   #draw() {
     const own = running();
     const known = new Set(own.map(({ id }) => id));
-    const kept = this.kept();
+    const kept = this.#work;
     const others = [...this.#elsewhere.values()].filter(
       ({ id }) => !known.has(id) && kept.some((each) => each.id === id),
     );
@@ -216,7 +225,7 @@ export class Tray {
             ariaLabel: `Show ${work.name}`,
             disabled: work.status === GONE,
           }),
-          button("Forget", () => this.onForget(work.id), { ariaLabel: `Forget ${work.name}` }),
+          button("Forget", () => this.store.forget(work.id), { ariaLabel: `Forget ${work.name}` }),
         ),
       ),
     );
@@ -247,10 +256,10 @@ export class Tray {
   /** Asks the service for submitted work of which this page does not hear, until all of it has ended. */
   async #ask() {
     const known = new Set(running().map(({ id }) => id));
-    const unknown = this.kept().filter(({ id }) => !(id in this.#ended) && !known.has(id));
+    const unknown = this.#work.filter(({ id }) => !(id in this.#ended) && !known.has(id));
     for (const work of unknown) await this.#askFor(work);
     if (unknown.length) this.#soon();
-    if (this.kept().some(({ id }) => !(id in this.#ended))) this.#askAfter(this.#place.hidden ? CLOSED : OPEN);
+    if (this.#work.some(({ id }) => !(id in this.#ended))) this.#askAfter(this.#place.hidden ? CLOSED : OPEN);
   }
 
   /** @param {Submitted} work */

@@ -17,8 +17,9 @@ import {
   tableRow,
   unseen,
 } from "../draw/dom.js";
-import { figure, ticks } from "../draw/figure.js";
+import { figure, roomIn, ticks } from "../draw/figure.js";
 import { Tones } from "../draw/sound.js";
+import { Panel } from "./panel.js";
 import { motionAt } from "../state/motion.js";
 import { fixed, number } from "../state/numbers.js";
 import { wordsOf } from "../state/orders.js";
@@ -45,7 +46,7 @@ const HEIGHT = 290;
 const MOST_RIDGES = 16;
 /** A row of the waterfall, and how many rows its highest ridge may cover, in px. */
 const [ROW, RISE] = [24, 2.4];
-const FRAME = { left: 74, right: 14, top: 44, bottom: 44 };
+const FRAME = { left: 74, right: 20, top: 44, bottom: 44 };
 /** The gears turn by so many mesh periods in a second at the highest speed. */
 const SLOW_MOTION = 1.5;
 const REST = 60;
@@ -80,7 +81,8 @@ const WAYS = /** @type {Way[]} */ (Object.keys(BRANCHES));
  *   stage
  */
 
-export class RunUp {
+/** The run-up of the designs that are shown. */
+export class RunUp extends Panel {
   /** @type {number} */
   #speed = NaN;
   /** @type {Way} */
@@ -98,7 +100,7 @@ export class RunUp {
    * @param {Page} page
    */
   constructor(place, { ask, asked, refused, focus, designs, stage }) {
-    this.place = place;
+    super(place);
     this.asked = asked;
     this.refused = refused;
     /**
@@ -218,7 +220,7 @@ export class RunUp {
     this.coming.hidden = !live || there || !this.asked() || refused !== null;
     this.none.hidden = !live || there || this.asked();
     if (!there) return this.leave();
-    if (this.place.hidden) return undefined;
+    if (this.place.hidden) return;
     this.live = live;
     this.#offer(
       this.torque,
@@ -236,10 +238,9 @@ export class RunUp {
     if (!(this.#speed >= speeds[0] && this.#speed <= speeds[speeds.length - 1])) this.#speed = this.#loudest();
     this.#motion = null;
     this.#draw(designs);
-    return this.#look(this.#speed);
+    this.#look(this.#speed);
   }
 
-  /** Nobody looks any more. */
   leave() {
     this.#play(false);
     this.#listen(false);
@@ -288,9 +289,7 @@ export class RunUp {
   /** @param {NamedDesign[]} designs */
   #draw(designs) {
     const [words, unit, read] = OVER_SPEED[this.quantity.value];
-    // Letters of a figure grow with those of the page.
-    const scale = parseFloat(getComputedStyle(document.documentElement).fontSize) / 16;
-    const width = Math.max(300, this.place.clientWidth / scale - 8);
+    const width = roomIn(this.place, Infinity);
     const torque = this.#curve.output_torque_n_m;
     const seen = designs.filter(({ hidden }) => !hidden);
     const { series } = looks();
