@@ -164,8 +164,7 @@ pub struct AdmissionOptions {
     #[arg(long, value_enum, hide_default_value = true)]
     pub keys: Option<KeysRule>,
 
-    /// Requests a second without a key that one address may send where keys are needed, and all together twenty times as many; 0
-    /// for any number.
+    /// Limit for requests a second without a key, where keys are needed: of one address; all addresses together have 20 times that. 0 for no limit.
     #[arg(long, default_value_t = 50, value_name = "NUMBER")]
     pub requests_without_key: u32,
 

@@ -172,7 +172,7 @@ fn read<const MIB: usize>(
     document: &JsonBody<MIB>,
     run: &Run,
 ) -> Result<Vec<Result<Submission, Problem>>, Problem> {
-    let batch: Batch<'_> = document.parse("batch of submissions")?;
+    let batch: Batch<'_> = document.parse()?;
     let count = batch.submissions.len();
     if !(1..=MOST_IN_BATCH).contains(&count) {
         let detail = format!(

@@ -15,7 +15,7 @@ use meshwright_connections::Part;
 use meshwright_engine::run::Run;
 use meshwright_exchange::rexs::{Refused, is_packed, unpacked};
 use meshwright_wire::declare::escaped;
-use meshwright_wire::{Code, FieldError, Problem};
+use meshwright_wire::{Code, Problem};
 use serde::Deserialize;
 use serde_path_to_error::Segment;
 use tokio::time::timeout;
@@ -25,6 +25,7 @@ use utoipa::openapi::{RefOr, Response};
 use super::app::App;
 use super::blocking::blocking;
 use super::client::ClientName;
+use super::faults;
 use super::memory::{weight, weight_of_lines};
 use super::problem::Refusal;
 use crate::mark::without_mark;
@@ -111,20 +112,34 @@ async fn taken(
 }
 
 impl<const MIB: usize> JsonBody<MIB> {
-    /// The document as a `T`, of which a problem speaks as `name`.
-    pub(super) fn parse<'a, T: Deserialize<'a>>(&'a self, name: &str) -> Result<T, Problem> {
-        serde_json::from_slice(&self.0).map_err(|error| {
-            let detail = format!("This is no {name}: {error}.");
-            if !error.is_data() {
-                return Problem::new(Code::MalformedJson, detail);
-            }
+    /// The document as a `T`, which is an object.
+    pub(super) fn parse<'a, T: Deserialize<'a>>(&'a self) -> Result<T, Problem> {
+        let read = serde_json::from_slice(&self.0);
+        if let Err(error) = &read
+            && !error.is_data()
+        {
+            let detail = format!("The JSON ends or breaks: {error}.");
+            return Err(Problem::new(Code::MalformedJson, detail));
+        }
+        // A derived reader takes a list of the fields for the object, too.
+        let first = self.0.trim_ascii_start().first();
+        if let Some(problem) = first.and_then(|first| faults::of_whole_document(*first)) {
+            return Err(problem);
+        }
+        read.or_else(|_| {
             let mut json = serde_json::Deserializer::from_slice(&self.0);
-            let read = serde_path_to_error::deserialize::<_, T>(&mut json);
-            let pointer = read.err().map(|error| pointer_of(error.path()));
-            let error = FieldError::new(pointer.unwrap_or_default(), Code::WrongType, detail);
-            Problem::of_fields(vec![error])
+            serde_path_to_error::deserialize(&mut json).map_err(|error| fault_of(&error))
         })
     }
+}
+
+/// The fault that was met in reading a document.
+pub(super) fn fault_of(error: &serde_path_to_error::Error<serde_json::Error>) -> Problem {
+    let message = error.inner().to_string();
+    let message = message
+        .rsplit_once(" at line ")
+        .map_or(&*message, |(message, _)| message);
+    faults::of_document(&pointer_of(error.path()), message)
 }
 
 /// The pointer to the place at which a document could not be read: the object that lacks a field, where one is missing.

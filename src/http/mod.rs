@@ -20,6 +20,7 @@ mod docs;
 mod draw;
 mod edge;
 mod events;
+mod faults;
 mod fields;
 mod guides;
 mod headers;

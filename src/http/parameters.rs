@@ -11,6 +11,7 @@ use serde::{Deserialize, Deserializer};
 use utoipa::IntoParams;
 use uuid::Uuid;
 
+use super::faults;
 use super::problem::Refusal;
 use crate::keys::is_user_name;
 
@@ -30,9 +31,14 @@ impl<T: DeserializeOwned, S: Sync> FromRequestParts<S> for Parameters<T> {
             }
         }
         let parameters = Query::try_from_uri(&parts.uri).map_err(|error| {
-            // The cause names the parameter; what stands before it are words of the library.
+            // The cause begins with the name of the parameter, if there is one; before it stand words of the library.
             let cause = std::error::Error::source(&error).map(ToString::to_string);
-            invalid(cause.unwrap_or_else(|| error.body_text()))
+            let cause = cause.unwrap_or_else(|| error.body_text());
+            let (name, message) = cause.split_once(": ").unwrap_or(("", &cause));
+            let mut query =
+                form_urlencoded::parse(parts.uri.query().unwrap_or_default().as_bytes());
+            let given = query.find_map(|(key, value)| (key == name).then_some(value));
+            invalid(faults::of_parameter(name, message, given.as_deref()))
         });
         let Query(parameters) = parameters?;
         Ok(Self(parameters))

@@ -175,7 +175,7 @@ pub(super) async fn make(
     IdempotencyKey(key): IdempotencyKey,
     body: JsonBody<MIB>,
 ) -> Result<Response, Refusal> {
-    let content = body.parse::<NewProject>("project")?.content()?;
+    let content = body.parse::<NewProject>()?.content()?;
     let jobs = &client.app.jobs;
     let (project, repeated) = jobs.add_project(&client.member, content, key).await?;
     let status = if repeated {
@@ -241,7 +241,7 @@ pub(super) async fn change(
     body: JsonBody<MIB>,
 ) -> Result<Response, Refusal> {
     let read = read_by(&client, id, &request).await?;
-    let content = body.parse::<NewProject>("project")?.content()?;
+    let content = body.parse::<NewProject>()?.content()?;
     let jobs = &client.app.jobs;
     let project = jobs.change_project(client.name(), &read, &content).await?;
     Ok(changed(StatusCode::OK, &project, &client.app.edge))
@@ -287,7 +287,7 @@ impl From<ProjectError> for Problem {
         let said = sentence(&error);
         match error {
             ProjectError::Job(error) => error.into(),
-            ProjectError::Name => Self::of_fields(vec![FieldError::new(
+            ProjectError::Name(_) => Self::of_fields(vec![FieldError::new(
                 "/name",
                 Code::OutOfRange,
                 format!("{said}."),

@@ -27,7 +27,7 @@ use super::parameters::{JobId, Parameters, ShareId};
 use super::problem::Refusal;
 use super::results::{self, ResultsParameters};
 use super::tables::{self, TableParameters};
-use crate::jobs::{Job, LONGEST_LINK_DAYS, LinkError, LinkRecord, LinkSecret, MOST_LINKS};
+use crate::jobs::{Job, LinkError, LinkRecord, LinkSecret, MOST_LINKS};
 
 /// A link to be made.
 #[derive(Deserialize, ToSchema)]
@@ -35,8 +35,20 @@ use crate::jobs::{Job, LONGEST_LINK_DAYS, LinkError, LinkRecord, LinkSecret, MOS
 #[schema(title = "NewShare")]
 pub(super) struct NewShare {
     /// From when on it opens nothing (RFC 3339): within the next 90 days.
-    #[schema(example = "2100-01-01T00:00:00Z")]
-    ends_at: Timestamp,
+    #[schema(value_type = Timestamp, example = "2100-01-01T00:00:00Z")]
+    ends_at: String,
+}
+
+impl NewShare {
+    fn end(&self) -> Result<Timestamp, Problem> {
+        self.ends_at.parse().map_err(|_| {
+            let given: String = self.ends_at.chars().take(60).collect();
+            let detail = format!(
+                "/ends_at is {given:?}; a time with its offset from UTC is expected, such as 2026-12-24T12:00:00Z."
+            );
+            Problem::of_fields(vec![FieldError::new("/ends_at", Code::WrongType, detail)])
+        })
+    }
 }
 
 document! {
@@ -79,7 +91,7 @@ pub(super) async fn make(
     JobId(id): JobId,
     document: JsonBody,
 ) -> Result<Response, Refusal> {
-    let NewShare { ends_at } = document.parse("share")?;
+    let ends_at = document.parse::<NewShare>()?.end()?;
     let key = match &client.pass {
         Pass::Key(key) => Some(key.id().to_owned()),
         Pass::Until(_) | Pass::Open => None,
@@ -121,10 +133,8 @@ impl From<LinkError> for Problem {
     fn from(error: LinkError) -> Self {
         match error {
             LinkError::Job(error) => error.into(),
-            LinkError::Time => {
-                let detail = format!(
-                    "ends_at has to lie in the future, and within {LONGEST_LINK_DAYS} days."
-                );
+            LinkError::Time { .. } => {
+                let detail = format!("/ends_at: {error}.");
                 Self::of_fields(vec![FieldError::new("/ends_at", Code::OutOfRange, detail)])
             }
             LinkError::TooMany => Self::new(

@@ -340,8 +340,13 @@ fn make(
         }
         File::Picture(picture) => {
             let svg = picture.draw(&curves).ok_or_else(|| {
-                let detail = "These results have nothing that this shows.";
-                Problem::new(Code::NotFound, detail)
+                no_table(match picture {
+                    Picture::TransmissionError | Picture::LoadShare => Table::TransmissionError,
+                    Picture::MeshStiffness => Table::MeshStiffness,
+                    Picture::Spectrum => Table::Spectrum,
+                    Picture::RunUp => Table::RunUp,
+                    Picture::FaceLoad => Table::FaceLoad,
+                })
             });
             Ok(pictures::answer(svg?))
         }

@@ -6,7 +6,7 @@ use axum::response::{IntoResponse, Response};
 use jiff::Timestamp;
 use meshwright_store::webhooks::{Delivery, Webhook};
 use meshwright_wire::declare::document;
-use meshwright_wire::{Code, Problem};
+use meshwright_wire::{Code, FieldError, Problem};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 use uuid::Uuid;
@@ -16,6 +16,7 @@ use super::client::Client;
 use super::parameters::{IdempotencyKey, WebhookId};
 use super::problem::Refusal;
 use crate::jobs::EventKind as Kind;
+use crate::webhooks::WebhookError;
 
 /// Kinds of events.
 #[derive(Clone, Copy, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -175,7 +176,7 @@ pub(super) async fn make(
     IdempotencyKey(key): IdempotencyKey,
     document: JsonBody,
 ) -> Result<Response, Refusal> {
-    let new: NewWebhookDocument = document.parse("webhook")?;
+    let new: NewWebhookDocument = document.parse()?;
     let mut events: Vec<Kind> = Vec::new();
     for event in new.events.into_iter().map(Kind::from) {
         if !events.contains(&event) {
@@ -185,13 +186,21 @@ pub(super) async fn make(
     if events.is_empty() {
         let words = Kind::ALL.map(Kind::word).join(", ");
         let detail = format!("/events is empty; give one or more of {words}, or leave it out.");
-        return Err(Problem::new(Code::OutOfRange, detail).into());
+        let error = FieldError::new("/events", Code::OutOfRange, detail);
+        return Err(Problem::of_fields(vec![error]).into());
     }
     let made = client
         .app
         .webhooks
         .make(client.name(), new.url, events, key)
-        .await?;
+        .await
+        .map_err(|error| match error {
+            WebhookError::Refused(why) => {
+                let error = FieldError::new("/url", Code::WebhookRefused, why);
+                Problem::of_fields(vec![error])
+            }
+            other => other.into(),
+        })?;
     let status = if made.repeated {
         StatusCode::OK
     } else {

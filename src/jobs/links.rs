@@ -73,8 +73,17 @@ pub fn without_secrets(text: &str) -> String {
 #[derive(Debug, Clone, thiserror::Error)]
 pub enum LinkError {
     /// The end lies in the past or too far ahead.
-    #[error("ends_at has to lie within the next {LONGEST_LINK_DAYS} days")]
-    Time,
+    #[error(
+        "{given} is not within the next {LONGEST_LINK_DAYS} days; a link can end after {now}, and at the latest at {latest}"
+    )]
+    Time {
+        /// The end that was asked for.
+        given: Timestamp,
+        /// The present time.
+        now: Timestamp,
+        /// The latest end.
+        latest: Timestamp,
+    },
     /// As many links to the results of the job are open as may be.
     #[error("{MOST_LINKS} links to the results of this job are open, which is the limit")]
     TooMany,
@@ -106,7 +115,11 @@ impl Jobs {
         let longest = SignedDuration::from_hours(24 * LONGEST_LINK_DAYS);
         let latest = now.saturating_add(longest).unwrap_or(Timestamp::MAX);
         if ends_at <= now || ends_at > latest {
-            return Err(LinkError::Time);
+            return Err(LinkError::Time {
+                given: ends_at,
+                now,
+                latest,
+            });
         }
         let secret = LinkSecret::random().map_err(|_| LinkError::NoChance)?;
         let link = NewLink {

@@ -29,11 +29,11 @@ pub struct ProjectContent {
 /// Why something cannot be done with a project.
 #[derive(Debug, Clone, thiserror::Error)]
 pub enum ProjectError {
-    /// The name is empty, too long, or has a control character.
+    /// The name, of so many characters, is empty, too long, or has a control character.
     #[error(
-        "a project is called by 1 to {LONGEST_PROJECT_NAME} characters, none of them a control character"
+        "the name of a project has 1 to {LONGEST_PROJECT_NAME} characters, none of them a control character, and not only spaces; this one has {0}"
     )]
-    Name,
+    Name(usize),
     /// The document has so many bytes, which are too many.
     #[error("the document has {0} bytes; it may have {MOST_PROJECT_BYTES}")]
     TooLarge(usize),
@@ -64,11 +64,12 @@ impl ProjectContent {
     ///
     /// [`ProjectError::Name`], [`ProjectError::TooLarge`].
     pub fn new(name: String, document: String) -> Result<Self, ProjectError> {
+        let length = name.chars().count();
         let is_name = !name.trim().is_empty()
-            && name.chars().count() <= LONGEST_PROJECT_NAME
+            && length <= LONGEST_PROJECT_NAME
             && !name.chars().any(char::is_control);
         if !is_name {
-            return Err(ProjectError::Name);
+            return Err(ProjectError::Name(length));
         }
         if document.len() > MOST_PROJECT_BYTES {
             return Err(ProjectError::TooLarge(document.len()));

@@ -140,7 +140,11 @@ async fn what_is_no_batch_is_refused() {
     let bench = Bench::quick().await;
     let send = async |batch: Value| bench.post("/v1/jobs/batch", &batch).answer().await;
     problem(send(json!([])).await, 422, "wrong_type").await;
-    problem(send(json!({ "submission": [] })).await, 422, "wrong_type").await;
+    let misspelled = send(json!({ "submission": [] })).await;
+    problem(misspelled, 422, "unknown_field").await;
+    // A list of the fields is no object of them.
+    let list = send(json!([[submission(1.0)]])).await;
+    problem(list, 422, "wrong_type").await;
     let asked = send(json!({ "submissions": [] })).await;
     problem(asked, 422, "out_of_range").await;
     let many = vec![submission(1.0); 101];

@@ -249,15 +249,20 @@ async fn a_project_keeps_the_bounds_that_the_limits_tell() {
         assert_eq!(refused["errors"][0]["pointer"], "/name");
     }
     kept(&bench, &project(&"ü".repeat(200), "")).await;
-    for (body, pointer) in [
-        ("{\"name\": \"a\"}", ""),
-        ("{\"name\": \"a\", \"document\": {}, \"x\": 1}", "/x"),
-        ("{\"name\": 5, \"document\": {}}", "/name"),
+    for (body, pointer, code) in [
+        ("{\"name\": \"a\"}", "/document", "missing_field"),
+        (
+            "{\"name\": \"a\", \"document\": {}, \"x\": 1}",
+            "/x",
+            "unknown_field",
+        ),
+        ("{\"name\": 5, \"document\": {}}", "/name", "wrong_type"),
+        ("[\"a\", {}]", "", "wrong_type"),
     ] {
         let request = bench
             .send(PROJECTS)
             .header("content-type", "application/json");
-        let refused = problem(request.body(body), 422, "wrong_type").await;
+        let refused = problem(request.body(body), 422, code).await;
         assert_eq!(refused["errors"][0]["pointer"], pointer, "{body}");
     }
     let request = bench

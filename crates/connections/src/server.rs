@@ -16,6 +16,7 @@ use std::time::Duration;
 use bytes::Bytes;
 use http_body::{Body, Frame, SizeHint};
 use hyper::body::Incoming;
+use hyper::header::{CONNECTION, EXPECT, HeaderValue};
 use hyper::server::conn::http1;
 use hyper::service::service_fn;
 use hyper::{Request, Response};
@@ -249,8 +250,15 @@ async fn serve_connection<T, S, B>(
             let reads = Arc::clone(&connection.reads);
             request.extensions_mut().insert(connection);
             request.extensions_mut().insert(Arc::clone(&active));
-            let request = request.map(|body| WatchedBody::new(body, reads));
-            let Ok(response) = service.oneshot(request).await;
+            // To read the body of a client that waits with it would ask for it.
+            let waits = request.headers().contains_key(EXPECT);
+            let request = request.map(|body| WatchedBody::new(body, Arc::clone(&reads)));
+            let rest = request.body().rest();
+            let Ok(mut response) = service.oneshot(request).await;
+            if !rest.discard(reads, waits).await {
+                let close = HeaderValue::from_static("close");
+                response.headers_mut().insert(CONNECTION, close);
+            }
             Ok::<_, Infallible>(response.map(|inner| ActiveBody {
                 inner,
                 _active: active,
@@ -368,6 +376,40 @@ mod tests {
             assert!(client.read_buf(&mut taken).await.unwrap() > 0);
         }
         assert_eq!(made.load(Ordering::Relaxed), 20);
+    }
+
+    #[tokio::test]
+    async fn a_request_is_answered_on_the_connection_of_one_whose_body_was_not_read() {
+        let (_, mut client, made) = connect(4 << 10, 1, PATIENCE, &CancellationToken::new());
+        let head = "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 6\r\n\r\n";
+        client.write_all(head.as_bytes()).await.unwrap();
+        while made.load(Ordering::Relaxed) == 0 {
+            yield_now().await;
+        }
+        let rest = format!("abcdef{REQUEST}");
+        client.write_all(rest.as_bytes()).await.unwrap();
+        let mut taken = Vec::new();
+        while taken.windows(5).filter(|at| at == b"HTTP/").count() < 2 {
+            assert!(client.read_buf(&mut taken).await.unwrap() > 0);
+        }
+        assert!(!String::from_utf8_lossy(&taken).contains("connection: close"));
+    }
+
+    #[tokio::test]
+    async fn an_answer_says_that_its_connection_ends_where_a_body_is_not_read() {
+        for left in [
+            "Content-Length: 1048577",
+            "Content-Length: 6\r\nExpect: 100-continue",
+        ] {
+            let (served, mut client, _) = connect(4 << 10, 1, PATIENCE, &CancellationToken::new());
+            let head = format!("POST / HTTP/1.1\r\nHost: localhost\r\n{left}\r\n\r\n");
+            client.write_all(head.as_bytes()).await.unwrap();
+            let mut taken = String::new();
+            client.read_to_string(&mut taken).await.unwrap();
+            assert!(taken.starts_with("HTTP/1.1 200 OK\r\n"), "{taken}");
+            assert!(taken.contains("\r\nconnection: close\r\n"), "{taken}");
+            timeout(PATIENCE, served).await.unwrap().unwrap();
+        }
     }
 
     #[tokio::test]

@@ -1,5 +1,6 @@
-//! Stalled reads: for how long a request has waited for bytes of its body.
+//! Reads of a request's body: for how long it has waited for bytes, and what is left of it when the answer is made.
 
+use std::future::poll_fn;
 use std::pin::Pin;
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::task::{Context, Poll};
@@ -8,7 +9,7 @@ use std::time::Duration;
 use bytes::Bytes;
 use http_body::{Body, Frame, SizeHint};
 use hyper::body::Incoming;
-use tokio::time::Instant;
+use tokio::time::{Instant, timeout};
 
 use super::stalled_writes::LEAST_RATE;
 
@@ -28,22 +29,88 @@ impl Reads {
     }
 }
 
+/// A body with more bytes left than this is not read to its end.
+const LONGEST_REST: u64 = 1 << 20;
+
+/// Time in which the rest of a body has to arrive.
+const TIME_FOR_REST: Duration = Duration::from_secs(2);
+
+/// A body that was dropped, with what was not read of it.
+#[derive(Debug)]
+pub(super) struct Rest<B>(Arc<Mutex<Option<B>>>);
+
+impl<B> Clone for Rest<B> {
+    fn clone(&self) -> Self {
+        Self(Arc::clone(&self.0))
+    }
+}
+
+impl<B> Default for Rest<B> {
+    fn default() -> Self {
+        Self(Arc::default())
+    }
+}
+
+impl<B> Rest<B> {
+    fn place(&self) -> MutexGuard<'_, Option<B>> {
+        self.0.lock().expect("nothing panics with this lock")
+    }
+}
+
+impl<B: Body<Data = Bytes> + Unpin> Rest<B> {
+    /// Reads and discards the rest, so that the connection can take the next request. False if it is too long, late, or broken off: then the
+    /// connection has to end with the answer, and the answer has to say so. It does so too where the client `waits` to be asked for its body.
+    pub(super) async fn discard(self, reads: Arc<Reads>, waits: bool) -> bool {
+        let body = self.place().take();
+        let Some(body) = body.filter(|body| !body.is_end_stream()) else {
+            return true;
+        };
+        if waits || body.size_hint().lower() > LONGEST_REST {
+            return false;
+        }
+        let mut body = WatchedBody::new(body, reads);
+        let read = async {
+            let mut bytes = 0;
+            while !body.is_end_stream() {
+                let next = poll_fn(|context| Pin::new(&mut body).poll_frame(context)).await;
+                let Some(frame) = next else { return true };
+                let Ok(frame) = frame else { return false };
+                bytes += frame.data_ref().map_or(0, |data| data.len() as u64);
+                if bytes > LONGEST_REST {
+                    return false;
+                }
+            }
+            true
+        };
+        timeout(TIME_FOR_REST, read).await.unwrap_or(false)
+    }
+}
+
 /// The body of a request whose reads are watched.
 #[derive(Debug)]
 pub struct WatchedBody<B = Incoming> {
-    inner: B,
+    /// Absent only while it is dropped.
+    inner: Option<B>,
     reads: Arc<Reads>,
     /// How much later than at the least rate the bytes came that are here: a byte now and then does not make a client fast.
     late: Duration,
+    /// Where the body is put when it is dropped.
+    rest: Rest<B>,
 }
 
 impl<B> WatchedBody<B> {
     pub(super) fn new(inner: B, reads: Arc<Reads>) -> Self {
         Self {
-            inner,
+            inner: Some(inner),
             reads,
             late: Duration::ZERO,
+            rest: Rest::default(),
         }
+    }
+
+    /// Where the body is put when it is dropped.
+    pub(super) fn rest(&self) -> Rest<B> {
+        self.rest.clone()
     }
 
     /// Notes the result of a poll: so many bytes, or nothing yet.
@@ -72,7 +139,10 @@ impl<B: Body<Data = Bytes> + Unpin> Body for WatchedBody<B> {
         mut self: Pin<&mut Self>,
         context: &mut Context<'_>,
     ) -> Poll<Option<Result<Frame<Bytes>, B::Error>>> {
-        let polled = Pin::new(&mut self.inner).poll_frame(context);
+        let Some(inner) = &mut self.inner else {
+            return Poll::Ready(None);
+        };
+        let polled = Pin::new(inner).poll_frame(context);
         let came = match &polled {
             Poll::Pending => Poll::Pending,
             Poll::Ready(Some(Ok(frame))) => Poll::Ready(frame.data_ref().map_or(0, Bytes::len)),
@@ -83,18 +153,20 @@ impl<B: Body<Data = Bytes> + Unpin> Body for WatchedBody<B> {
     }
 
     fn is_end_stream(&self) -> bool {
-        self.inner.is_end_stream()
+        self.inner.as_ref().is_none_or(Body::is_end_stream)
     }
 
     fn size_hint(&self) -> SizeHint {
-        self.inner.size_hint()
+        let inner = self.inner.as_ref();
+        inner.map_or_else(SizeHint::default, Body::size_hint)
     }
 }
 
-/// Who drops the body waits for nothing.
+/// Who drops the body waits for nothing, and leaves the rest to be discarded.
 impl<B> Drop for WatchedBody<B> {
     fn drop(&mut self) {
         *self.reads.since() = None;
+        *self.rest.place() = self.inner.take();
     }
 }
 

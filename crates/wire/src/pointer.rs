@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use serde_json::{Map, Value};
 
-use super::declare;
+use super::declare::{self, nearest_word};
 use super::problem::Code;
 use super::submission::SubmissionDocument;
 
@@ -154,13 +154,16 @@ impl Pointer {
                     .flat_map(Map::keys)
                     .map(String::as_str)
                     .collect();
+                let meant = nearest_word(step, &known);
+                let meant = meant.map(|name| format!(" Is {place}/{name} meant?"));
+                let meant = meant.unwrap_or_default().replace("//", "/");
                 let known = if known.is_empty() {
                     "nothing".to_owned()
                 } else {
                     known.join(", ")
                 };
                 let detail = format!(
-                    "{} names no field of {}; at {place} there is {known}.",
+                    "{} names no field of {}; at {place} there is {known}.{meant}",
                     self.text, schema.of
                 );
                 return Err((Code::UnknownField, detail));
@@ -247,6 +250,21 @@ mod tests {
 
     fn named(text: &str) -> bool {
         Pointer::parse(text).is_ok_and(|pointer| pointer.check_named().is_ok())
+    }
+
+    #[test]
+    fn a_misspelled_step_is_answered_with_the_one_that_is_meant() {
+        for (text, meant) in [
+            (
+                "/pair/driven/blank/holes/cont",
+                " Is /pair/driven/blank/holes/count meant?",
+            ),
+            ("/metod", " Is /method meant?"),
+            ("/colour", "resolution, tags."),
+        ] {
+            let (_, detail) = Pointer::parse(text).unwrap().check_named().unwrap_err();
+            assert!(detail.ends_with(meant), "{detail}");
+        }
     }
 
     #[test]

@@ -25,7 +25,7 @@ pub use nested::{
 pub use node::{Node, escaped};
 pub use number::{Number, meant_by, number};
 pub use optional::{Optional, absent, or_else, or_null, unless};
-pub use reader::{Location, ObjectReader};
+pub use reader::{Location, ObjectReader, nearest_word};
 pub use words::{Choice, Flag, OneWord, Text, flag, is_short_text, text, word, words};
 
 /// The named schemas that others refer to.

@@ -201,7 +201,7 @@ impl<'a> ObjectReader<'a> {
 }
 
 /// The known word that takes the fewest edits, capitals aside, if they are few.
-pub(super) fn nearest_word(word: &str, known: &[&'static str]) -> Option<&'static str> {
+pub fn nearest_word<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     if word.len() > 60 {
         return None;
     }

@@ -227,10 +227,14 @@ impl Kind for String {
         let longest = spec.longest;
         match node {
             Node::Text(text) if is_short_text(text, longest) => Some(text.clone()),
-            Node::Text(_) => {
-                let detail = format!(
-                    "{place} has to have 1 to {longest} characters, none of them a control character."
-                );
+            Node::Text(text) => {
+                let detail = match text.chars().count() {
+                    0 => format!("{place} is empty; it has to have 1 to {longest} characters."),
+                    count if count > longest => {
+                        format!("{place} has {count} characters; at most {longest} are taken.")
+                    }
+                    _ => format!("{place} has a control character, which is not taken."),
+                };
                 place.wrong(Code::OutOfRange, detail, None)
             }
             _ => place.wrong_kind(node, "a text"),
