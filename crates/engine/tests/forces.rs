@@ -1,6 +1,8 @@
 //! Force tables against direct solutions, and the run-up of a pair of the paper.
 
 mod cases;
+#[path = "cases/plain_motion.rs"]
+mod plain_motion;
 
 use std::f64::consts::PI;
 use std::sync::{Arc, LazyLock, Mutex};
@@ -21,7 +23,7 @@ use meshwright_engine::analysis::{
 };
 use meshwright_engine::assembly::FaceResolution;
 use meshwright_engine::contact::{DeviatingPair, WarmStart};
-use meshwright_engine::dynamics::{Excitation, ForceTable};
+use meshwright_engine::dynamics::{Excitation, FlankRows, ForceTable};
 use meshwright_engine::gear::{
     Alignment, Eccentricity, GearData, GearPair, Helix, LeadModification, Material, Member,
     Normals, PairDeviations, SolidGear, SolidPair, SpurGear, Tolerances, ToothDeviations, Web,
@@ -30,6 +32,7 @@ use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
 use meshwright_engine::run::Run;
 use nalgebra::{Cholesky, Complex, DMatrix, DVector, SMatrix, Vector3};
+use plain_motion::settled_by_runge_kutta;
 
 const TWELVE: ForceTableRequest = ForceTableRequest {
     loads: 12,
@@ -909,6 +912,76 @@ fn rims_outside_their_webs_have_the_natural_frequencies_of_both_bodies_in_torsio
         let heavy = vibrating(&case, &[100.0], 1.0, Some(0));
         let of_rims = heavy.natural_frequency_of_rims.expect("an estimate");
         assert!((of_rims / heavy.run_up.natural_frequencies[0] - 1.0).abs() < 1e-3);
+    }
+}
+
+/// The motion of the hubs, peak to peak, of two like gears on webs of 2 mm under the load of `case` at `rpm`: a hub and a rim each, with so much inertia `beside`
+/// each hub and a quarter of the web's with the hub, by the classical Runge-Kutta method on the table of the teeth alone.
+fn hubs_and_rims(case: &Case, whole: &ForceTable, stiffness: f64, [beside, rpm]: [f64; 2]) -> f64 {
+    let gear = case.pair.driving();
+    let (radius, material) = (gear.base_radius(), gear.material());
+    let ring = |[inner, outer]: [f64; 2], thickness: f64| {
+        let twist = (inner.powi(-2) - outer.powi(-2)) / (4.0 * PI * thickness);
+        let moment = PI / 2.0 * thickness * (outer.powi(4) - inner.powi(4));
+        [twist / material.shear_modulus(), moment * material.density]
+    };
+    let [of_hub, hub] = ring([16e-3, 22e-3], 20e-3);
+    let [of_web, web] = ring([22e-3, 43e-3], 2e-3);
+    let [of_rim, _] = ring([43e-3, gear.root_radius()], 20e-3);
+    let own = gear.polar_inertia();
+    let rim = own - hub - 0.25 * web;
+    let inertias = [own - rim + beside, rim];
+    let spring = 1.0 / (of_hub + of_web + of_rim);
+    let yields = 2.0 * radius * radius / spring;
+    let without = |rows: &[Vec<f64>], sign: f64| {
+        let rows = rows.iter().zip(whole.loads());
+        let rows = rows.map(|(row, load)| row.iter().map(|x| x - sign * load * yields).collect());
+        FlankRows::of_delta(rows.collect())
+    };
+    let flanks = [
+        without(&whole.loaded().delta, 1.0),
+        without(&whole.other().delta, -1.0),
+    ];
+    let teeth = ForceTable::new(whole.period(), whole.loads().to_vec(), flanks).expect("rises");
+    let load = case.output_torques[0] / case.pair.driven().base_radius();
+    let mass = (own + beside) / (2.0 * radius * radius);
+    let of_mesh = 2.0 * 0.05 * (stiffness * mass).sqrt();
+    let of_body = 2.0 * 0.02 * (spring * rim).sqrt();
+    let period = 60.0 / (rpm * f64::from(gear.tooth_count()));
+    // Both gears are alike, and move alike: angles of hub and rim, then their rates.
+    let rate = |t: f64, [hub, rim, hub_rate, rim_rate]: [f64; 4]| {
+        let approach = 2.0 * radius;
+        let force = teeth.load(t / period, approach * rim) + of_mesh * approach * rim_rate;
+        let twisted = spring * (hub - rim) + of_body * (hub_rate - rim_rate);
+        [
+            hub_rate,
+            rim_rate,
+            (radius * load - twisted) / inertias[0],
+            (twisted - radius * force) / inertias[1],
+        ]
+    };
+    let rest = whole.transmission_error(load)[0];
+    let start = [rest, rest - yields * load].map(|x| x / (2.0 * radius));
+    let state = [start[0], start[1], 0.0, 0.0];
+    let see = |_: f64, state: [f64; 4]| (2.0 * radius * state[0], 0.0);
+    settled_by_runge_kutta(period, [256, 100, 4], state, rate, see)[1]
+}
+
+#[test]
+#[ignore = "./test all"]
+fn gears_on_thin_webs_move_as_hubs_and_rims_on_their_own_table() {
+    let case = on_webs(2e-3);
+    let whole = table(&case).refined(4, 2);
+    for (beside, rpm) in [(0.0, 3000.0), (5e-4, 1500.0)] {
+        let told = vibrating(&case, &[rpm], beside, Some(1));
+        let analysis = analyze(&case, &*LIBRARY, &Run::unattended()).expect("curves");
+        let stiffness = analysis.curves[0].mesh_stiffness_tangent_statistics.mean;
+        let expected = hubs_and_rims(&case, &whole, stiffness, [beside, rpm]);
+        let found = told.run_up.up.expect("asked").peak_to_peak[0];
+        assert!(
+            (found / expected - 1.0).abs() < 0.05,
+            "{rpm} 1/min: {found} {expected}"
+        );
     }
 }
 
