@@ -173,7 +173,10 @@ async fn a_thousand_decomposition_designs_straight_through_and_killed_half_way()
         assert!(read < Duration::from_secs(5), "{read:?}");
         assert!(memory < 400, "{memory} MB");
         assert_eq!(positions, 1_240_000);
-        assert!(documents < BYTES_A_POSITION * positions, "{documents} bytes");
+        assert!(
+            documents < BYTES_A_POSITION * positions,
+            "{documents} bytes"
+        );
         assert!(bytes < documents + 1000 * BYTES_BESIDE, "{bytes} bytes");
         process.kill();
     }
