@@ -20,7 +20,7 @@ use self::folder::ResultFolder;
 use self::picture::picture;
 use self::tables::{search_table, short_table, spread_table};
 use super::document::{EXIT_PROBLEM, read, text_of};
-use crate::jobs::{search_state, shown_status, why_failed};
+use crate::jobs::{search_state, why_failed};
 
 /// Compute a study: many variants of one submission, and their table.
 #[derive(Debug, clap::Args)]
@@ -102,7 +102,7 @@ fn population(study: &StudyDocument, computed: &Computed) -> Option<PopulationRe
     for (member, row) in (0..).zip(&computed.rows) {
         sample.add(member, row);
     }
-    Some(sample.results(None, shown_status(computed.record.status())))
+    Some(sample.results(None, computed.record.status()))
 }
 
 fn results(study: &StudyDocument, computed: Computed) -> StudyResults {
@@ -110,7 +110,7 @@ fn results(study: &StudyDocument, computed: Computed) -> StudyResults {
     let problem = why_failed(&record);
     StudyResults {
         id: None,
-        status: shown_status(record.status()),
+        status: record.status(),
         done: record.done(),
         total: record.total,
         gear: study.gear(),
