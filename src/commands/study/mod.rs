@@ -19,7 +19,7 @@ use self::compute::{Computed, compute};
 use self::folder::ResultFolder;
 use self::picture::picture;
 use self::tables::{search_table, short_table, spread_table};
-use super::document::{EXIT_PROBLEM, read, text_of};
+use super::document::{EXIT_PROBLEM, has_field, read, text_of};
 use crate::jobs::{search_state, why_failed};
 
 /// Compute a study: many variants of one submission, and their table.
@@ -43,6 +43,10 @@ impl Study {
     /// code 2.
     pub(crate) fn run(&self) -> anyhow::Result<ExitCode> {
         let document = read(&self.study)?;
+        if has_field(&document, "pair") {
+            eprintln!("This is a submission, not a study; `meshwright solve` computes it.");
+            return Ok(ExitCode::from(EXIT_PROBLEM));
+        }
         let study = match StudyDocument::submitted(&document, &Run::unattended()) {
             Ok(study) => study,
             Err(problem) => {
