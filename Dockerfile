@@ -16,11 +16,12 @@ COPY crates/exchange/Cargo.toml crates/exchange/build.rs crates/exchange/
 COPY crates/fuzz-check/Cargo.toml crates/fuzz-check/
 COPY crates/paper/Cargo.toml crates/paper/build.rs crates/paper/
 COPY crates/plot/Cargo.toml crates/plot/
+COPY crates/state/Cargo.toml crates/state/
 COPY crates/store/Cargo.toml crates/store/
 COPY crates/studies/Cargo.toml crates/studies/
 COPY crates/wire/Cargo.toml crates/wire/
 RUN mkdir -p build src benches/load && touch src/lib.rs crates/engine/benches/lib.rs \
-    && for name in connections engine exchange fuzz-check paper plot store studies wire; do mkdir -p crates/$name/src && touch crates/$name/src/lib.rs; done \
+    && for name in connections engine exchange fuzz-check paper plot state store studies wire; do mkdir -p crates/$name/src && touch crates/$name/src/lib.rs; done \
     && for file in build/main src/main benches/load/main crates/engine/benches/jobs crates/engine/benches/parts crates/paper/src/main; do \
          echo 'fn main() {}' > "$file.rs"; done \
     && cargo build --release --locked --features otlp --bin meshwright

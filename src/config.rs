@@ -21,7 +21,7 @@ use crate::webhooks::HookTarget;
 /// Where and how the service runs. Every option has its variable of the environment (`with_variable`).
 #[derive(Debug, Clone, clap::Args)]
 pub struct Config {
-    /// Address to listen on; port 0 takes a free one. Where others than this machine can call, keys are needed.
+    /// Address to listen on; port 0 takes a free one. If other machines can reach it, requests need keys.
     #[arg(long, default_value = "127.0.0.1:8080", value_name = "ADDRESS")]
     pub listen: SocketAddr,
 
@@ -139,7 +139,7 @@ pub struct KeepOptions {
     #[arg(long, default_value = "30d", value_parser = span, value_name = "TIME")]
     pub keep_results: Duration,
 
-    /// Size of the database beyond which the jobs and studies that ended first are removed, in GB; 0 for any size.
+    /// Size of the database beyond which the jobs and studies that ended first are removed, in GB; 0 for no limit.
     #[arg(long, default_value_t = 10.0, value_name = "GB")]
     pub keep_gb: f64,
 
@@ -164,11 +164,11 @@ pub struct AdmissionOptions {
     #[arg(long, value_enum, hide_default_value = true)]
     pub keys: Option<KeysRule>,
 
-    /// Limit for requests a second without a key, where keys are needed: of one address; all addresses together have 20 times that. 0 for no limit.
+    /// Limit of requests a second without a valid key, for each address; all addresses together have 20 times that. 0 for no limit.
     #[arg(long, default_value_t = 50, value_name = "NUMBER")]
     pub requests_without_key: u32,
 
-    /// Requests a second that one client may send; 0 for any number.
+    /// Limit of requests a second of one client; 0 for no limit.
     #[arg(long, default_value_t = 0, value_name = "NUMBER")]
     pub requests_per_second: u32,
 
@@ -209,7 +209,7 @@ pub struct AdmissionOptions {
 /// Whose tokens are accepted beside keys.
 #[derive(Debug, Clone, clap::Args)]
 pub struct OidcOptions {
-    /// Identity provider (OpenID Connect) whose tokens are accepted beside keys, as they have it under iss [default: keys alone].
+    /// Identity provider (OpenID Connect) whose tokens are accepted beside keys: the value of their claim iss [default: keys alone].
     #[arg(long, value_name = "URL", requires = "oidc_audience")]
     pub oidc_issuer: Option<IssuerUrl>,
 

@@ -7,7 +7,7 @@ use anyhow::{Context, bail};
 
 use crate::jobs::{DatabaseAddress, Store};
 
-/// Copy the database, while the service runs or not.
+/// Copy the database; the service may run meanwhile.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Backup {
     /// File of the database.
@@ -19,7 +19,7 @@ pub(crate) struct Backup {
         value_name = "FILE"
     )]
     database: DatabaseAddress,
-    /// Where the copy goes; nothing is there yet.
+    /// Path of the copy; it must not exist yet.
     target: PathBuf,
 }
 

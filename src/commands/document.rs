@@ -1,5 +1,6 @@
 //! Documents from files and into them, and problems as a person reads them.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::io::{Read, Write};
 use std::path::Path;
@@ -8,6 +9,7 @@ use anyhow::Context;
 
 use meshwright_wire::Problem;
 use meshwright_wire::declare::meant_by;
+use serde::de::IgnoredAny;
 
 use crate::mark::without_mark;
 
@@ -49,6 +51,12 @@ pub(super) fn is_dash(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
+/// True if a document is an object with this field.
+pub(super) fn has_field(document: &[u8], name: &str) -> bool {
+    let object = serde_json::from_slice::<BTreeMap<String, IgnoredAny>>(document);
+    object.is_ok_and(|object| object.contains_key(name))
+}
+
 /// The number of an option, with a decimal point.
 pub(super) fn number(text: &str) -> Result<f64, String> {
     text.parse().map_err(|_| {
@@ -81,4 +89,18 @@ pub(super) fn text_with_origins<'a>(
         }
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_study_and_a_submission_are_told_apart_by_a_field_and_text_has_none() {
+        let study = include_bytes!("../../api/examples/study-section-5.json");
+        let submission = include_bytes!("../../api/examples/test-case-2.json");
+        assert!(has_field(study, "base") && !has_field(study, "pair"));
+        assert!(has_field(submission, "pair") && !has_field(submission, "base"));
+        assert!(!has_field(b"[\"base\"]", "base") && !has_field(b"base", "base"));
+    }
 }

@@ -5,10 +5,10 @@ use std::time::Duration;
 
 use anyhow::Context;
 
-/// Ask a running service whether it is ready.
+/// Check whether a running service is ready.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Health {
-    /// The address that the service listens on.
+    /// Address that the service listens on.
     #[arg(long, env = "MESHWRIGHT_LISTEN", default_value = "127.0.0.1:8080")]
     listen: std::net::SocketAddr,
 }

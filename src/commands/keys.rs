@@ -31,11 +31,11 @@ pub(crate) struct Keys {
 
 #[derive(Debug, clap::Subcommand)]
 enum What {
-    /// Make a key and print it. It is shown this once and kept nowhere.
+    /// Make a key and print it. It cannot be printed again: only a hash of it is stored.
     Create(Create),
     /// List the keys, without their secrets.
     List,
-    /// Revoke a key at once; its jobs stay.
+    /// Revoke a key at once; the jobs of its client stay.
     Revoke {
         /// The public part of the key, between the underscores.
         id: String,
@@ -46,20 +46,20 @@ enum What {
 struct Create {
     /// Your name for the key.
     name: String,
-    /// Whose jobs it makes and sees; several keys may have one client. "anonymous" has the jobs from before there were keys
+    /// Client whose jobs the key may submit and read; several keys may share one. The client "anonymous" has the jobs from before there were keys
     /// [default: the name].
     #[arg(long, value_name = "NAME")]
     client: Option<String>,
     /// Rights of the bearer.
     #[arg(long, value_parser = role(), default_value = "client")]
     role: Role,
-    /// How long it is accepted, such as 90d or 12h [default: until it is revoked].
+    /// Time after which the key expires, such as 90d or 12h [default: never].
     #[arg(long, value_parser = lasting, value_name = "TIME")]
     expires_in: Option<Duration>,
-    /// Requests a second; 0 for any number [default: that of the service].
+    /// Limit of requests a second; 0 for no limit [default: that of the service].
     #[arg(long, value_name = "NUMBER")]
     requests_per_second: Option<u32>,
-    /// Jobs that may wait, not counting designs of studies [default: that of the service].
+    /// Limit of waiting jobs, not counting designs of studies [default: that of the service].
     #[arg(long, value_name = "NUMBER")]
     queue_limit: Option<u32>,
 }
@@ -67,14 +67,17 @@ struct Create {
 /// The roles by their words.
 fn role() -> impl TypedValueParser<Value = Role> {
     let roles = [
-        (Role::Client, "Everything with the jobs of its client"),
+        (
+            Role::Client,
+            "Submit, read, cancel and delete the jobs of its client",
+        ),
         (
             Role::Reader,
-            "Look at the jobs of its client, and change nothing",
+            "Read the jobs of its client, and change nothing",
         ),
         (
             Role::Operator,
-            "As client, and read the numbers of the whole service",
+            "As client, and read the metrics of the service",
         ),
         (
             Role::Administrator,
@@ -108,7 +111,7 @@ impl Keys {
             What::List => list(store).await,
             What::Revoke { id } => {
                 if !store.revoke_key(id, Timestamp::now()).await? {
-                    bail!("there is no key {id} that is not revoked already");
+                    bail!("there is no key {id}, or it is revoked already");
                 }
                 println!("{id} is revoked.");
                 Ok(())
@@ -127,10 +130,12 @@ impl Create {
                 );
             }
         }
-        let key = Key::random().context("the system has no source of chance")?;
+        let key = Key::random().context("the system gives no random numbers")?;
         let now = Timestamp::now();
         let expires_at = self.expires_in.map(|span| now.checked_add(span));
-        let expires_at = expires_at.transpose().context("no calendar goes so far")?;
+        let expires_at = expires_at
+            .transpose()
+            .context("the key would expire beyond the calendar")?;
         let record = KeyRecord {
             id: key.id().to_owned(),
             client: client.clone(),
@@ -147,7 +152,7 @@ impl Create {
         // The key alone on standard output, for a script; the rest beside it.
         println!("{}", key.reveal());
         eprintln!(
-            "Send it as `Authorization: Bearer {}...`. It is kept nowhere and cannot be shown again. From now on the service asks for keys.",
+            "Send it as `Authorization: Bearer {}...`. It cannot be shown again: only a hash of it is stored. From now on the service requires keys.",
             &key.reveal()[..20]
         );
         Ok(())
@@ -157,7 +162,7 @@ impl Create {
 async fn list(store: &Store) -> anyhow::Result<()> {
     println!(
         "{:<18}{:<10}{:<20}{:<20}{:<22}state",
-        "id", "role", "client", "name", "made"
+        "id", "role", "client", "name", "created"
     );
     for key in store.list_keys().await? {
         let state = match (key.revoked_at, key.expires_at) {

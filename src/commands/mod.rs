@@ -39,27 +39,23 @@ enum Command {
     Solve(solve::Solve),
     /// Compute a study: many variants of one submission, and their table.
     Study(study::Study),
-    /// Take a pair out of a REXS model, or write one.
+    /// Read a pair from a REXS model, or write a model.
     #[command(subcommand)]
     Rexs(rexs::Rexs),
-    /// Write the openings of a blank that a drawing in DXF comes to.
+    /// Read the openings of a blank from a DXF drawing.
     Outline(outline::Outline),
     /// Make, list and revoke API keys.
     Keys(keys::Keys),
     /// Bring the tables of the database up to date.
     Migrate(migrate::Migrate),
-    /// Copy the database, while the service runs or not.
+    /// Copy the database; the service may run meanwhile.
     Backup(backup::Backup),
-    /// Ask a running service whether it is ready; exit code 1 if not.
+    /// Check whether a running service is ready; exit code 1 if it is not.
     Health(health::Health),
 }
 
-/// Runs the command of the command line.
-///
-/// # Errors
-///
-/// The error of a command that has no exit code of its own for it.
-pub fn run() -> anyhow::Result<ExitCode> {
+/// Runs the command of the command line. An error is printed with its causes in one line.
+pub fn run() -> ExitCode {
     let ended = match Arguments::parse().command {
         Command::Serve(serve) => serve.run(),
         Command::Solve(solve) => solve.run(),
@@ -71,15 +67,11 @@ pub fn run() -> anyhow::Result<ExitCode> {
         Command::Backup(backup) => backup.run(),
         Command::Health(health) => health.run(),
     };
-    match ended {
-        Err(error)
-            if error
-                .downcast_ref::<UnusableDatabase>()
-                .is_some_and(|database| !database.may_pass()) =>
-        {
-            eprintln!("Error: {error:#}.");
-            Ok(ExitCode::from(EXIT_DATABASE))
+    ended.unwrap_or_else(|error| {
+        eprintln!("Error: {error:#}.");
+        match error.downcast_ref::<UnusableDatabase>() {
+            Some(database) if !database.may_pass() => ExitCode::from(EXIT_DATABASE),
+            _ => ExitCode::FAILURE,
         }
-        ended => ended,
-    }
+    })
 }

@@ -7,21 +7,21 @@ use meshwright_exchange::dxf::{Choices, TOLERANCE_MM, outline};
 
 use super::document::{EXIT_PROBLEM, number, read, write};
 
-/// Write the outline that a drawing comes to, for `blank.outline` of a submission.
+/// Read the openings of a blank from a DXF drawing: the `blank.outline` of a submission.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Outline {
     /// The drawing, DXF as text; - reads standard input.
     drawing: PathBuf,
-    /// Reads this layer only; may be given several times.
+    /// Read this layer only; may be given several times.
     #[arg(long, value_name = "NAME")]
     layer: Vec<String>,
-    /// The place of the axis of the gear, in the unit of the drawing; without it, the origin.
+    /// Position of the gear's axis, in the unit of the drawing [default: its origin].
     #[arg(long, value_name = "X,Y", value_parser = point, allow_hyphen_values = true)]
     center: Option<[f64; 2]>,
-    /// Join ends that are no farther apart, 0 to 0.1 mm.
+    /// Join ends that are at most this far apart, 0 to 0.1 mm.
     #[arg(long, value_name = "MM", default_value_t = TOLERANCE_MM, value_parser = number)]
     tolerance: f64,
-    /// The radius of the bore, where it is not drawn as a circle: it is left out then, with keyways and splines.
+    /// Radius of the bore, where the drawing shows it with a keyway or splines; that contour is left out then.
     #[arg(long, value_name = "MM", value_parser = number)]
     bore_radius: Option<f64>,
     /// Where to write the outline.

@@ -11,10 +11,10 @@ use serde_json::Value;
 
 use super::document::{EXIT_PROBLEM, read, text_of, text_with_origins, write};
 
-/// Take a pair out of a REXS model, or write one.
+/// Read a pair from a REXS model, or write a model.
 #[derive(Debug, clap::Subcommand)]
 pub(crate) enum Rexs {
-    /// Write the submission that a pair of a model comes to.
+    /// Read a pair from a model, and write its submission.
     Import {
         /// The model, REXS 1.0 to 2 as XML, as JSON or zipped; - reads standard input.
         model: PathBuf,
@@ -24,7 +24,7 @@ pub(crate) enum Rexs {
         #[command(flatten)]
         choices: ModelChoices,
     },
-    /// Write a model, REXS 2.0, of a submission, and of its results if they are given.
+    /// Write a submission as a REXS 2.0 model, with its results if they are given.
     Export {
         /// The submission; - reads standard input.
         submission: PathBuf,
@@ -39,10 +39,10 @@ pub(crate) enum Rexs {
 /// Choices that a REXS model leaves open.
 #[derive(Debug, clap::Args)]
 pub(crate) struct ModelChoices {
-    /// Of a REXS model: the id of the cylindrical stage, where there are several.
+    /// REXS model: id of the cylindrical stage, if there are several.
     #[arg(long, value_name = "ID")]
     stage: Option<i64>,
-    /// Of a REXS model: torques on the driven gear, instead of those that it says.
+    /// REXS model: torques on the driven gear, instead of those of the model.
     #[arg(
         long,
         value_name = "N_M",
@@ -50,13 +50,13 @@ pub(crate) struct ModelChoices {
         allow_negative_numbers = true
     )]
     torque: Vec<f64>,
-    /// Of a REXS model: the method; flexible if neither this nor the model says one.
+    /// REXS model: method, instead of that of the model; flexible if neither says one.
     #[arg(long)]
     method: Option<String>,
-    /// REXS model: the bore radius of both gears, or of the driving and the driven one, in place of the model's.
+    /// REXS model: bore radius of both gears, or of the driving and the driven one, instead of those of the model.
     #[arg(long, value_name = "MM", value_delimiter = ',')]
     bore_radius: Vec<f64>,
-    /// Of a REXS model: the flanks of both gears that are loaded, instead of those that it says.
+    /// REXS model: loaded flanks of both gears, instead of those of the model.
     #[arg(long, value_parser = ["left", "right"])]
     flank: Option<String>,
 }

@@ -13,7 +13,7 @@ use meshwright_studies::solve;
 use meshwright_wire::results::{CurveDocument, GearPeakStress, PeakStressDocument, Results};
 use meshwright_wire::{Problem, Submission};
 
-use super::document::{EXIT_PROBLEM, is_dash, read, text_of, write};
+use super::document::{EXIT_PROBLEM, has_field, is_dash, read, text_of, write};
 use super::progress::Progress;
 use super::rexs::ModelChoices;
 
@@ -31,7 +31,7 @@ pub(crate) struct Solve {
     /// Where to write the results document; - writes standard output. Without it, only the table is printed.
     #[arg(long, short)]
     output: Option<PathBuf>,
-    /// Put the points between the positions, those of events and extremes, into the lists of the document.
+    /// Add the points between the positions (events and extremes) to the lists of the document.
     #[arg(long, requires = "output")]
     between: bool,
     #[command(flatten)]
@@ -85,7 +85,11 @@ impl Solve {
             return self.model.submission(document);
         }
         if let Some(option) = self.model.given() {
-            eprintln!("{option} is for REXS models; a submission says it itself.");
+            eprintln!("{option} is for REXS models; a submission has a field for it.");
+            return None;
+        }
+        if has_field(document, "base") {
+            eprintln!("This is a study, not a submission; `meshwright study` computes it.");
             return None;
         }
         let parsed = Submission::parse(document);
@@ -218,7 +222,7 @@ fn for_a_terminal(detail: &str) -> String {
         }
     }
     if left > 0 {
-        text.push_str(&format!("; {left} more stand in the results."));
+        text.push_str(&format!("; {left} more in the results."));
     }
     text
 }
@@ -246,7 +250,9 @@ mod tests {
         let told = for_a_terminal(&parts.join("; "));
         assert!(told.len() < LONGEST_LIST + 50 && told.starts_with("H_Z2 at 0 1/min; "));
         let shown = told.matches("1/min").count();
-        assert!(told.ends_with(&format!("; {} more stand in the results.", 100 - shown)));
+        assert!(told.ends_with(&format!("; {} more in the results.", 100 - shown)));
         assert_eq!(for_a_terminal("one; two."), "one; two.");
+        let long = format!("{}; two", "one".repeat(LONGEST_LIST));
+        assert!(for_a_terminal(&long).ends_with("oneone; 1 more in the results."));
     }
 }

@@ -16,6 +16,7 @@ mod client;
 mod contact_pattern;
 mod contract;
 mod credential;
+mod curve_columns;
 mod docs;
 mod draw;
 mod edge;

@@ -23,6 +23,7 @@ use uuid::Uuid;
 use super::app::App;
 use super::body::JsonBody;
 use super::client::{Client, Pass};
+use super::curve_columns::CurveTable;
 use super::parameters::{JobId, Parameters, ShareId};
 use super::problem::Refusal;
 use super::results::{self, ResultsParameters};
@@ -236,7 +237,7 @@ pub(super) async fn results(
     responses(
         (status = 200, description = "The table.", content(
             (String = "text/csv"),
-            (tables::CurveTable = "application/json"),
+            (CurveTable = "application/json"),
             (String = "image/svg+xml"),
             (String = "text/plain"),
         )),

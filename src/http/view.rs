@@ -9,14 +9,14 @@ use serde_json::value::RawValue;
 use uuid::Uuid;
 
 use super::edge::Edge;
-use crate::jobs::{Job, shown_kept, shown_status};
+use crate::jobs::Job;
 
 document! {
     /// A job: one submission, its state, and links to its parts.
     pub(super) struct JobView<'a> as Job view of (job: &'a Job, edge: &Edge) {
         /// The id of the job.
         id: Uuid = job.id,
-        status: Status = shown_status(job.status),
+        status: Status = job.status,
         /// Mesh positions solved, in whole percent of those to solve. 100 means all.
         #[schema(minimum = 0, maximum = 100)]
         progress_percent: u8 = job.progress.percent(),
@@ -45,7 +45,7 @@ document! {
         /// `statistics` where the study of the job keeps no more of its results; absent where they are kept whole. They can be
         /// had by submitting the design alone.
         #[schema(example = "statistics")]
-        keep?: Kept = Some(shown_kept(job.keep)).filter(|keep| *keep != Kept::Results),
+        keep?: Kept = Some(job.keep).filter(|keep| *keep != Kept::Results),
         /// `administrator` where an administrator of the service dismissed the job; absent elsewhere.
         #[schema(example = "administrator")]
         dismissed_by?: &'a str = job.dismissed_by.as_deref(),

@@ -11,7 +11,6 @@ use uuid::Uuid;
 
 use super::error::{JobError, not_done};
 use super::queue::{Jobs, new_job, rough_cost};
-use super::shown::{kept_by, shown_status};
 
 /// Designs expanded and written in one transaction. Others write in between.
 pub(super) const CHUNK: usize = 500;
@@ -78,7 +77,7 @@ impl Jobs {
             user,
             submitted_at,
             memory_mb: self.rules.job_memory_mb,
-            keep: kept_by(study),
+            keep: study.keep(),
             is_population: study.is_population(),
         }
     }
@@ -207,7 +206,7 @@ fn row_state(row: StoredRow) -> Result<RowState, Damaged> {
         label: row.label,
         changes: serde_json::from_str(&row.changes).unwrap_or_default(),
         job: row.job.and_then(|id| id.parse().ok()),
-        status: shown_status(status),
+        status,
         summary: summary.and_then(|text| serde_json::from_str(&text).ok()),
         problem,
     })

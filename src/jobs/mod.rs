@@ -20,7 +20,6 @@ mod projects;
 mod queue;
 mod resource;
 mod searches;
-mod shown;
 mod studies;
 mod study;
 mod worker;
@@ -43,7 +42,6 @@ pub use projects::{MOST_PROJECT_BYTES, MOST_PROJECTS, ProjectContent, ProjectErr
 pub(crate) use queue::KEY_LIFETIME;
 pub use queue::{Jobs, Member, Rules};
 pub use resource::Resource;
-pub use shown::{shown_kept, shown_status};
 pub use study::{gear_of, search_state, why_failed};
 pub use worker::{StartError, Workers};
 pub use worker_context::Pace;

@@ -21,6 +21,22 @@ use crate::{stores, threads};
 /// Time after which an answer is missing. No verdict depends on how fast an answer comes before that.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(60);
 
+/// The preference of a request that is to be answered when its job has ended: the longest wait after which an answer still comes within [`PATIENCE`].
+pub(crate) const WAIT: &str = "wait=50";
+
+/// The job or study that `look` asks for, when it has ended. Panics if nothing of it changes during a whole wait.
+pub(crate) async fn ended(look: impl Fn() -> RequestBuilder) -> Value {
+    let mut seen = Value::Null;
+    loop {
+        let now = look().header("prefer", WAIT).document().await;
+        if ["successful", "failed", "dismissed"].contains(&now["status"].as_str().unwrap()) {
+            return now;
+        }
+        assert_ne!(now, seen, "nothing happens");
+        seen = now;
+    }
+}
+
 /// Looks until `look` finds something, and panics after [`PATIENCE`] with what it saw last.
 pub(crate) async fn eventually<Found, Seen: std::fmt::Debug>(
     mut look: impl AsyncFnMut() -> Result<Found, Seen>,
@@ -254,15 +270,7 @@ impl Bench {
 
     /// The job at an address when it has ended. It may take a minute of a machine that has much else to do.
     pub(crate) async fn ended(&self, path: &str) -> Value {
-        let mut job = Value::Null;
-        for _ in 0..8 {
-            let request = self.get(path).header("prefer", "wait=15");
-            job = request.document().await;
-            if ["successful", "failed", "dismissed"].contains(&job["status"].as_str().unwrap()) {
-                return job;
-            }
-        }
-        panic!("{job}");
+        ended(|| self.get(path)).await
     }
 }
 

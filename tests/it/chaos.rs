@@ -15,7 +15,7 @@ use reqwest::Client;
 use serde_json::{Value, json};
 use tokio::sync::Mutex;
 
-use crate::bench::Asked;
+use crate::bench::{Asked, PATIENCE, ended};
 use crate::generated::Chance;
 use crate::process::Process;
 use crate::stores;
@@ -44,10 +44,7 @@ struct Tally {
 
 async fn round(seed: u64, jobs: u64, kills: u32, database: &DatabaseAddress) -> Tally {
     let mut chance = Chance(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
-    let client = meshwright::client()
-        .timeout(Duration::from_secs(20))
-        .build()
-        .unwrap();
+    let client = meshwright::client().timeout(PATIENCE).build().unwrap();
     let mut tally = Tally::default();
     let mut process = Process::start(database);
     let bases: Bases = Arc::new(Mutex::new(vec![process.base.clone()]));
@@ -76,8 +73,7 @@ async fn check(client: &Client, process: &Process, taken: &Taken) {
     let library = Library::with_capacity(256 << 20);
     for (number, id) in taken {
         let url = format!("{}/v1/jobs/{id}", process.base);
-        let ended = client.get(&url).header("prefer", "wait=20").answer().await;
-        let ended = ended.document().await;
+        let ended = ended(|| client.get(&url)).await;
         assert_eq!(ended["status"], "successful", "job {number}: {ended}");
         let text = client.get(format!("{url}/results")).whole_text().await;
         let submission = Submission::parse(job(*number).to_string().as_bytes()).unwrap();

@@ -4,7 +4,6 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::time::Duration;
 
 use meshwright::jobs::DatabaseAddress;
 use reqwest::Client;
@@ -12,7 +11,7 @@ use serde_json::{Value, json};
 use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{ConnectOptions, Connection};
 
-use crate::bench::{Asked, Bench, eventually, problem, submission};
+use crate::bench::{Asked, Bench, PATIENCE, ended, eventually, problem, submission};
 use crate::process::Process;
 
 /// A small file system, gone when it is dropped.
@@ -79,10 +78,7 @@ async fn a_full_disk_stops_nothing_for_longer_than_it_is_full() {
         &DatabaseAddress::File(disk.folder.join("meshwright.db")),
         &["--keep-gb", "0"],
     );
-    let client = meshwright::client()
-        .timeout(Duration::from_secs(30))
-        .build()
-        .unwrap();
+    let client = meshwright::client().timeout(PATIENCE).build().unwrap();
     let mut taken = Vec::new();
     let mut filler = None;
     let ready = format!("{}/health/ready", process.base);
@@ -135,8 +131,7 @@ async fn a_full_disk_stops_nothing_for_longer_than_it_is_full() {
     .await;
     for id in &taken {
         let url = format!("{}/v1/jobs/{id}", process.base);
-        let ended = client.get(url).header("prefer", "wait=20").answer().await;
-        let ended = ended.document().await;
+        let ended = ended(|| client.get(&url)).await;
         assert_eq!(ended["status"], "successful", "{ended}");
     }
     println!("{} jobs taken and successful", taken.len());

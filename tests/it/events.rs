@@ -1,6 +1,6 @@
 //! The stream of a job's events.
 
-use crate::bench::{Asked, Bench, Events, submission};
+use crate::bench::{Asked, Bench, Events, WAIT, submission};
 
 impl Events {
     async fn status(&mut self) -> String {
@@ -80,7 +80,7 @@ async fn a_shutdown_ends_the_stream_and_who_waits_is_answered() {
     let work = engine.next().await;
     let mut events = Events::of(&bench, &path).await;
     assert_eq!(events.status().await, "running");
-    let waiting = tokio::spawn(bench.get(&path).header("prefer", "wait=15").send());
+    let waiting = tokio::spawn(bench.get(&path).header("prefer", WAIT).send());
     // The wait has begun when the service has answered a request that came after it.
     bench.job(&path).await;
     bench.shut_down().await;

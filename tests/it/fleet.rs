@@ -19,7 +19,7 @@ use tokio::net::tcp::{OwnedReadHalf, OwnedWriteHalf};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::{Mutex, watch};
 
-use crate::bench::{Asked, eventually};
+use crate::bench::{Asked, PATIENCE, WAIT, eventually};
 use crate::process::Process;
 use crate::submitters::{Bases, Submitters};
 use crate::{server, stores};
@@ -92,10 +92,7 @@ impl Fleet {
             workers,
             apis,
             bases: Arc::new(Mutex::new(bases)),
-            client: meshwright::client()
-                .timeout(Duration::from_secs(20))
-                .build()
-                .unwrap(),
+            client: meshwright::client().timeout(PATIENCE).build().unwrap(),
             place,
             lease: lease.to_owned(),
         }
@@ -427,11 +424,7 @@ async fn to_and_fro(place: &DatabaseAddress) -> f64 {
         });
         let start = Instant::now();
         let request = client.post(format!("{}/v1/jobs", process.base));
-        let answer = request
-            .header("prefer", "wait=20")
-            .json(&small)
-            .send()
-            .await;
+        let answer = request.header("prefer", WAIT).json(&small).send().await;
         assert_eq!(answer.unwrap().status(), 200);
         times.push(start.elapsed().as_secs_f64() * 1e3);
     }

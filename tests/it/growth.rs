@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 
+use crate::bench::WAIT;
 use crate::process::Process;
 use crate::stores;
 
@@ -21,7 +22,7 @@ async fn bytes_of_a_job(method: &str, jobs: u32) -> u64 {
     for number in 0..jobs {
         let request = client.post(format!("{}/v1/jobs", process.base));
         let job = case_2(method, number);
-        let answer = request.header("prefer", "wait=20").json(&job).send().await;
+        let answer = request.header("prefer", WAIT).json(&job).send().await;
         assert_eq!(answer.unwrap().status(), 200);
     }
     process.terminate();

@@ -8,7 +8,7 @@ use meshwright_wire::{Code, Problem, Submission};
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 
-use crate::bench::{Asked, Bench, RESULTS, problem, results, submission};
+use crate::bench::{Asked, Bench, RESULTS, WAIT, problem, results, submission};
 
 #[tokio::test]
 async fn a_job_goes_from_submission_over_progress_to_the_very_text_of_its_results() {
@@ -190,12 +190,12 @@ async fn who_prefers_to_wait_gets_the_job_with_its_results_inside() {
     let document = submission(115.0);
     let waiting = bench
         .post("/v1/jobs", &document)
-        .header("prefer", "respond-async, wait=15")
+        .header("prefer", format!("respond-async, {WAIT}"))
         .send();
     let (response, ()) = tokio::join!(waiting, async { engine.next().await.finish() });
     let response = response.unwrap();
     assert_eq!(response.status(), StatusCode::OK);
-    assert_eq!(response.headers()["preference-applied"], "wait=15");
+    assert_eq!(response.headers()["preference-applied"], WAIT);
     let path = response.headers()["location"].to_str().unwrap().to_owned();
     let job = response.document().await;
     assert_eq!(job["status"], "successful");
@@ -213,7 +213,7 @@ async fn a_job_that_was_created_is_answered_with_even_if_it_fails_or_is_cancelle
     let (bench, mut engine) = Bench::steered().await;
     let submit = |torque: f64| {
         let request = bench.post("/v1/jobs", &submission(torque));
-        request.header("prefer", "wait=15").send()
+        request.header("prefer", WAIT).send()
     };
     let (response, ()) = tokio::join!(submit(1.0), async {
         let problem = Problem::new(Code::NotConverged, "As was told.");
@@ -303,7 +303,9 @@ async fn the_engine_gives_way_to_those_who_answer() {
     let preview = bench.post("/v1/preview", &submission(115.0));
     assert_eq!(preview.answer().await.status(), 200);
     let of_preview = told.recv().await.unwrap();
-    assert!(niceness() < of_preview && of_preview < of_job);
+    // Above the test's own, which may be close to the highest one.
+    let above = |more: i32| (niceness() + more).min(19);
+    assert_eq!((of_preview, of_job), (above(5), above(10)));
 }
 
 #[tokio::test]

@@ -6,7 +6,7 @@ use reqwest::{Response, StatusCode};
 use serde_json::{Value, json};
 
 use crate::admission::{key_of, make_key};
-use crate::bench::{Asked, Bench, RESULTS, problem, submission};
+use crate::bench::{Asked, Bench, RESULTS, WAIT, problem, submission};
 
 fn hours(hours: i64) -> String {
     (Timestamp::now() + SignedDuration::from_hours(hours)).to_string()
@@ -14,7 +14,7 @@ fn hours(hours: i64) -> String {
 
 async fn done(bench: &Bench, key: &str) -> String {
     let job = bench.post("/v1/jobs", &submission(115.0)).bearer_auth(key);
-    let job = job.header("prefer", "wait=15").document().await;
+    let job = job.header("prefer", WAIT).document().await;
     assert_eq!(job["status"], "successful");
     job["links"]["self"].as_str().unwrap().to_owned()
 }
@@ -147,7 +147,7 @@ async fn a_link_ends_by_itself_when_it_is_ended_with_its_job_and_with_its_key() 
     assert_eq!(bench.get(&stays).answer().await.status(), StatusCode::OK);
 
     let second = bench.post("/v1/jobs", &submission(20.0)).bearer_auth(&key);
-    let second = second.header("prefer", "wait=15").document().await;
+    let second = second.header("prefer", WAIT).document().await;
     let second = second["links"]["self"].as_str().unwrap();
     let (_, of_second) = link(&bench, &key, second).await;
     let gone = bench.delete(second).bearer_auth(&key).answer().await;

@@ -13,7 +13,7 @@ use tokio::sync::mpsc;
 use tokio::task::JoinHandle;
 use tokio_util::sync::CancellationToken;
 
-use crate::bench::{Asked, Bench, PATIENCE, RESULTS, problem, results, submission};
+use crate::bench::{Asked, Bench, PATIENCE, RESULTS, WAIT, problem, results, submission};
 use crate::stores;
 
 fn named(id: &str, torque: f64) -> Value {
@@ -87,7 +87,7 @@ async fn a_preview_is_the_document_of_a_job_to_the_last_digit_and_is_not_kept() 
         let rows = stores::number(&bench.config.database, count).await;
         assert_eq!(rows, 0, "{count}");
     }
-    let job = bench.post("/v1/jobs", &case).header("prefer", "wait=20");
+    let job = bench.post("/v1/jobs", &case).header("prefer", WAIT);
     let answer: Value = serde_json::from_str(&text(job.answer().await).await).unwrap();
     let path = answer["links"]["results"].as_str().unwrap();
     let job = text(bench.get(path).answer().await).await;

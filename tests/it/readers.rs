@@ -7,7 +7,7 @@ use reqwest::{Client, StatusCode};
 use serde_json::{Value, json};
 use tokio::task::JoinSet;
 
-use crate::bench::{Asked, PATIENCE, problem};
+use crate::bench::{Asked, PATIENCE, WAIT, problem};
 use crate::flood::{make_key, shared_by};
 use crate::process::{LITTLE, LITTLE_MB, Process};
 use crate::stores;
@@ -298,7 +298,7 @@ async fn fields_of_gears_are_refused_where_they_never_fit_and_others_stay_in_the
             pair["pair"][member]["tooth_count"] = json!(teeth);
         }
         let made = client.post(format!("{}/v1/jobs", process.base));
-        let made = made.json(&pair).header("prefer", "wait=20").answer().await;
+        let made = made.json(&pair).header("prefer", WAIT).answer().await;
         made.document().await["id"].as_str().unwrap().to_owned()
     };
     let fields = async |job: &str, file: &str| {

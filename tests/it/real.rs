@@ -2,13 +2,13 @@
 
 use serde_json::{Value, json};
 
-use crate::bench::{Asked, Bench};
+use crate::bench::{Asked, Bench, WAIT};
 
 async fn post(bench: &Bench, json: String) -> (u16, Value) {
     let request = bench.client.post(format!("{}/v1/jobs", bench.base));
     let answer = request
         .header("content-type", "application/json")
-        .header("prefer", "wait=20")
+        .header("prefer", WAIT)
         .body(json)
         .answer()
         .await;

@@ -50,17 +50,6 @@ async fn begun(bench: &Bench, study: &Value) -> String {
     path.unwrap()
 }
 
-/// The study at an address when it has ended.
-async fn ended(bench: &Bench, path: &str) -> Value {
-    loop {
-        let study = bench.get(path).header("prefer", "wait=15").answer().await;
-        let study = study.document().await;
-        if ["successful", "failed", "dismissed"].contains(&study["status"].as_str().unwrap()) {
-            return study;
-        }
-    }
-}
-
 async fn with_workers(workers: usize) -> Bench {
     let adjust =
         |config: &mut meshwright::config::Config| config.workers = NonZeroUsize::new(workers);
@@ -72,7 +61,7 @@ async fn with_workers(workers: usize) -> Bench {
 async fn a_search_finds_its_best_design_confirms_it_and_gives_its_submission() {
     let bench = with_workers(2).await;
     let path = begun(&bench, &reliefs(30)).await;
-    let study = ended(&bench, &path).await;
+    let study = bench.ended(&path).await;
     let search = &study["search"];
     assert_eq!(study["status"], "successful");
     assert_eq!(
@@ -148,12 +137,12 @@ async fn a_search_finds_its_best_design_confirms_it_and_gives_its_submission() {
 
     let other = begun(&bench, &json!({ "base": reliefs(2)["base"], "axes": [{ "path": "/output_torques_n_m/0", "values": [1.0] }] })).await;
     problem(bench.get(&format!("{other}/best")), 404, "not_found").await;
-    assert_eq!(ended(&bench, &other).await["search"], Value::Null);
+    assert_eq!(bench.ended(&other).await["search"], Value::Null);
 }
 
 /// What a search comes to, apart from the ids of its jobs.
 async fn outcome(bench: &Bench, path: &str) -> (Value, Vec<Value>) {
-    let mut study = ended(bench, path).await;
+    let mut study = bench.ended(path).await;
     let table = bench.job(&format!("{path}/results")).await;
     let rows = table["rows"].as_array().unwrap().iter().map(|row| {
         let mut row = row.clone();
@@ -316,7 +305,7 @@ async fn a_search_whose_every_design_is_refused_names_the_usual_reason() {
     study["search"]["variables"][0] =
         json!({ "path": "/pair/center_distance_mm", "low": 45, "high": 50 });
     let path = begun(&bench, &study).await;
-    let failed = ended(&bench, &path).await;
+    let failed = bench.ended(&path).await;
     assert_eq!(
         (&failed["status"], &failed["done"], &failed["total"]),
         (&json!("failed"), &json!(20), &json!(20))
@@ -351,7 +340,7 @@ async fn a_search_begins_no_generation_after_its_time() {
                 }
                 work.finish();
             }
-            study = ended(&bench, &path) => break study,
+            study = bench.ended(&path) => break study,
         }
     };
     assert_eq!(

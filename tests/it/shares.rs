@@ -8,6 +8,7 @@ use std::time::Duration;
 use reqwest::Client;
 use serde_json::{Value, json};
 
+use crate::bench::WAIT;
 use crate::process::Process;
 use crate::stores;
 
@@ -26,7 +27,7 @@ async fn ask(client: Client, base_url: String, first: u32, ended: Arc<AtomicU64>
     for number in 0.. {
         let job = base(20.0 + f64::from(first) + f64::from(number) / 1e4);
         let request = client.post(format!("{base_url}/v1/jobs"));
-        let answer = request.header("prefer", "wait=20").json(&job).send().await;
+        let answer = request.header("prefer", WAIT).json(&job).send().await;
         if answer.is_ok_and(|answer| answer.status() == 200) {
             ended.fetch_add(1, Ordering::Relaxed);
         }

@@ -13,7 +13,7 @@ use reqwest::Client;
 use serde_json::{Value, json};
 use tokio::net::TcpListener;
 
-use crate::bench::{Asked, PATIENCE};
+use crate::bench::{Asked, PATIENCE, WAIT};
 use crate::process::Process;
 use crate::stores;
 
@@ -75,7 +75,7 @@ async fn compute(client: &Client, base: &str, torque: f64, parent: &str) -> Stri
     let made = answer.document().await;
     let id = made["id"].as_str().unwrap().to_owned();
     let wait = client.get(format!("{base}/v1/jobs/{id}"));
-    let ended = wait.header("prefer", "wait=15").answer().await;
+    let ended = wait.header("prefer", WAIT).answer().await;
     let ended = ended.document().await;
     assert_eq!(ended["status"], "successful");
     id

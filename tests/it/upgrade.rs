@@ -11,6 +11,7 @@ use reqwest::Client;
 use serde_json::{Value, json};
 use tokio::sync::Mutex;
 
+use crate::bench::PATIENCE;
 use crate::process::Process;
 use crate::submitters::{Bases, Submitters};
 use crate::{server, stores};
@@ -123,10 +124,7 @@ async fn versions_follow_each_other_forwards_and_back_under_load_and_nothing_fai
     let mut service = Service {
         place: DatabaseAddress::Postgres(server::database().await),
         bases: Arc::new(Mutex::new(Vec::new())),
-        client: meshwright::client()
-            .timeout(Duration::from_secs(20))
-            .build()
-            .unwrap(),
+        client: meshwright::client().timeout(PATIENCE).build().unwrap(),
         studies: Vec::new(),
     };
     let old = service.start(this);

@@ -5,7 +5,7 @@ use reqwest::{Response, StatusCode};
 use serde_json::{Value, json};
 
 use crate::admission::{key_of, make_key};
-use crate::bench::{Asked, Bench, Events, problem, submission};
+use crate::bench::{Asked, Bench, Events, WAIT, problem, submission};
 
 async fn administrator(bench: &Bench) -> String {
     make_key(bench, "operations", Role::Administrator, |_| {}).await
@@ -29,7 +29,7 @@ async fn an_administrator_sees_who_fills_the_queue_and_no_submission() {
     engine.next().await.finish();
     let path = done["links"]["self"].as_str().unwrap();
     let ended = bench.get(path).bearer_auth(&portal);
-    let ended = ended.header("prefer", "wait=15").document().await;
+    let ended = ended.header("prefer", WAIT).document().await;
     assert_eq!(ended["status"], "successful");
     let runs = submit(&bench, &portal, "ada", 2.0).await;
     let _running = engine.next().await;

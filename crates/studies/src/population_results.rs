@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use meshwright_engine::gear::Member;
+use meshwright_wire::Status;
 use meshwright_wire::declare::Node;
 use meshwright_wire::draw::Accuracy;
 use meshwright_wire::resolution::sees_faces;
-use meshwright_wire::status::Status;
 use meshwright_wire::warning::GearName;
 use serde::Serialize;
 use utoipa::ToSchema;

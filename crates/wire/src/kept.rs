@@ -1,19 +1,7 @@
-//! Extent of the stored results.
-
-use serde::Serialize;
-use utoipa::ToSchema;
+//! Extent of the stored results, as a study chooses it.
 
 use super::declare::words;
-
-/// Extent of the stored results.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum Kept {
-    /// The results document.
-    Results,
-    /// The values of a study's table.
-    Statistics,
-}
+use meshwright_state::Kept;
 
 words! {
     Kept {

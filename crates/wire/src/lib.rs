@@ -19,7 +19,6 @@ pub mod units;
 
 mod kept;
 pub mod problem;
-pub mod status;
 
 pub mod forces;
 pub mod gear;
@@ -51,8 +50,8 @@ pub use contact_pattern::ContactPatternDocument;
 pub use draw::{Draw, DrawnDeviations};
 pub use edges::LoadedEdges;
 pub use examples::{Example, examples};
-pub use kept::Kept;
 pub use memory::{is_plain, memory_above, memory_is_within, memory_of, too_much_memory};
+pub use meshwright_state::{Kept, Status};
 pub use outline::PairOutline;
 pub use preview::Preview;
 pub use problem::{Code, FieldError, Problem};
@@ -60,5 +59,4 @@ pub use resolution::methods;
 pub use results::Results;
 pub use rexs::model_of;
 pub use solve::{Limits, Validation, solve, validate};
-pub use status::Status;
 pub use submission::{DOCUMENT_VERSION, SOLVER_VERSION, Submission, method_schema};

@@ -19,8 +19,8 @@ use self::compute::{Computed, compute};
 use self::folder::ResultFolder;
 use self::picture::picture;
 use self::tables::{search_table, short_table, spread_table};
-use super::document::{EXIT_PROBLEM, read, text_of};
-use crate::jobs::{search_state, shown_status, why_failed};
+use super::document::{EXIT_PROBLEM, has_field, read, text_of};
+use crate::jobs::{search_state, why_failed};
 
 /// Compute a study: many variants of one submission, and their table.
 #[derive(Debug, clap::Args)]
@@ -43,6 +43,10 @@ impl Study {
     /// code 2.
     pub(crate) fn run(&self) -> anyhow::Result<ExitCode> {
         let document = read(&self.study)?;
+        if has_field(&document, "pair") {
+            eprintln!("This is a submission, not a study; `meshwright solve` computes it.");
+            return Ok(ExitCode::from(EXIT_PROBLEM));
+        }
         let study = match StudyDocument::submitted(&document, &Run::unattended()) {
             Ok(study) => study,
             Err(problem) => {
@@ -102,7 +106,7 @@ fn population(study: &StudyDocument, computed: &Computed) -> Option<PopulationRe
     for (member, row) in (0..).zip(&computed.rows) {
         sample.add(member, row);
     }
-    Some(sample.results(None, shown_status(computed.record.status())))
+    Some(sample.results(None, computed.record.status()))
 }
 
 fn results(study: &StudyDocument, computed: Computed) -> StudyResults {
@@ -110,7 +114,7 @@ fn results(study: &StudyDocument, computed: Computed) -> StudyResults {
     let problem = why_failed(&record);
     StudyResults {
         id: None,
-        status: shown_status(record.status()),
+        status: record.status(),
         done: record.done(),
         total: record.total,
         gear: study.gear(),

@@ -18,7 +18,7 @@ use crate::http::client::Client;
 use crate::http::memory::{SMALL, weight};
 use crate::http::parameters::{IfNoneMatch, StudyId};
 use crate::http::problem::Refusal;
-use crate::jobs::{Resource as _, StudyRecord, shown_status};
+use crate::jobs::{Resource as _, StudyRecord};
 
 /// Get the statistics of a population
 ///
@@ -74,7 +74,7 @@ async fn results(
             sample.add(row as u32, state);
         };
         let sample = over_rows(app, &client, record.id, sample, add).await?;
-        let (id, status) = (record.id, shown_status(record.status()));
+        let (id, status) = (record.id, record.status());
         let (part, is_last) = blocking(&client, move |_| {
             (sample.results(Some(id), status), sample.has_all_torques())
         })

@@ -32,7 +32,7 @@ use crate::http::client::Client;
 use crate::http::parameters::{IfNoneMatch, StudyId};
 use crate::http::problem::Refusal;
 use crate::http::view::with_public_type;
-use crate::jobs::{DocumentLine, JobError, Resource as _, StudyRecord, gear_of, shown_status};
+use crate::jobs::{DocumentLine, JobError, Resource as _, StudyRecord, gear_of};
 
 /// Get the table of a study
 ///
@@ -328,7 +328,7 @@ pub(super) async fn over_rows<T: Send + 'static>(
 fn head_of_json(study: &StudyRecord, app: &App) -> String {
     let empty = StudyResults {
         id: Some(study.id),
-        status: shown_status(study.status()),
+        status: study.status(),
         done: study.done(),
         total: study.total,
         gear: gear_of(study),

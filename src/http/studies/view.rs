@@ -12,7 +12,7 @@ use uuid::Uuid;
 use crate::http::edge::Edge;
 use crate::http::reference::StudyEstimate;
 use crate::http::view::with_public_type;
-use crate::jobs::{self, StudyRecord, shown_status};
+use crate::jobs::{self, StudyRecord};
 
 document! {
     /// A study: how far it has come, and where to find its table.
@@ -21,7 +21,7 @@ document! {
         /// The id of the study.
         id: Uuid = study.id,
         /// `successful` when at least one design has results, `failed` when none has and all have ended.
-        status: Status = shown_status(study.status()),
+        status: Status = study.status(),
         /// Designs that have come to an end, whichever.
         done: u64 = study.done(),
         /// Designs in all; of a search that has not ended, the most that it may come to.

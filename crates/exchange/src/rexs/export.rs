@@ -240,14 +240,12 @@ impl Gear<'_> {
         if let Some(rounding) = number_of(self.document, "tip_rounding_mm") {
             out.number(own::TIP_ROUNDING, MM, rounding);
         }
-        for (attribute, value) in [
-            (own::HOLES, &blank["holes"]),
-            (own::SPOKES, &blank["spokes"]),
-            (own::OUTLINE, &blank["outline"]),
+        let openings = own::OPENINGS.map(|(field, attribute)| (attribute, &blank[field]));
+        for (attribute, value) in openings.into_iter().chain([
             (own::SHAFT, &blank["shaft"]),
             (own::PROTUBERANCE, &self.document["protuberance"]),
             (own::DEVIATIONS, &self.document["tooth_deviations"]),
-        ] {
+        ]) {
             if !value.is_null() {
                 out.word(attribute, &value.to_string());
             }

@@ -629,11 +629,7 @@ impl<'a> Gear<'a> {
                 (radius, blank)
             }
         };
-        for (field, attribute) in [
-            ("holes", own::HOLES),
-            ("spokes", own::SPOKES),
-            ("outline", own::OUTLINE),
-        ] {
+        for (field, attribute) in own::OPENINGS {
             if let Some(openings) = reading.json(self.gear, attribute) {
                 reading.from(format!("{pointer}/{field}"), self.gear, attribute);
                 blank[field] = openings;

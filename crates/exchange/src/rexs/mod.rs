@@ -32,12 +32,12 @@ pub use reading::{Choices, LoadedFlank};
 mod own {
     /// Of the stage: the method, as a submission has it.
     pub(super) const METHOD: &str = "custom_meshwright_method";
-    /// Of a gear: the holes of the blank, the JSON of a submission.
-    pub(super) const HOLES: &str = "custom_meshwright_holes";
-    /// Of a gear: the openings between the spokes of the blank, the JSON of a submission.
-    pub(super) const SPOKES: &str = "custom_meshwright_spokes";
-    /// Of a gear: the openings of the blank by their outlines, the JSON of a submission.
-    pub(super) const OUTLINE: &str = "custom_meshwright_outline";
+    /// Of a gear: the openings of its blank by the field of each kind, the JSON of a submission.
+    pub(super) const OPENINGS: [(&str, &str); 3] = [
+        ("holes", "custom_meshwright_holes"),
+        ("spokes", "custom_meshwright_spokes"),
+        ("outline", "custom_meshwright_outline"),
+    ];
     /// Of a gear: the protuberance of its hob, the JSON of a submission.
     pub(super) const PROTUBERANCE: &str = "custom_meshwright_protuberance";
     /// Of a gear that is of one piece with its shaft: that, the JSON of a submission.

@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use meshwright_wire::declare::{
-    EACH, Errors, Kind, Location, Node, Number, Text, absent, document, list, nested, number,
+    EACH, Errors, Kind, List, Location, Node, Number, Text, absent, document, list, nested, number,
     or_else, text, word,
 };
 use meshwright_wire::draw::SEED;
@@ -80,11 +80,7 @@ document! {
         torques: Torques = word("Torques").or(Torques::Largest),
         /// How much each of the base's output torques counts, in their order, where `torques` is
         /// `mean` or `rms`.
-        weights: Option<Vec<f64>> = absent(
-            list("Weights", WEIGHT, MOST_TORQUES)
-                .not_empty(Code::MissingField, "give each torque its weight"),
-            "all alike",
-        ),
+        weights: Option<Vec<f64>> = absent(WEIGHTS, "all alike"),
         /// The percentile over the members of the population that is told of it.
         percent: Option<f64> = absent(PERCENT, "the design as it is drawn"),
     }
@@ -113,11 +109,7 @@ document! {
         torques: Torques = word("Torques").or(Torques::Largest),
         /// How much each of the base's output torques counts, in their order, where `torques` is
         /// `mean` or `rms`.
-        weights: Option<Vec<f64>> = absent(
-            list("Weights", WEIGHT, MOST_TORQUES)
-                .not_empty(Code::MissingField, "give each torque its weight"),
-            "all alike",
-        ),
+        weights: Option<Vec<f64>> = absent(WEIGHTS, "all alike"),
         /// The percentile over the members of the population that has to keep it.
         percent: Option<f64> = absent(PERCENT, "the design as it is drawn"),
     }
@@ -130,6 +122,10 @@ const fn value(title: &'static str) -> Number {
 
 /// How much a torque counts.
 const WEIGHT: Number = number("Weight", "1", 0.0, 1e6);
+
+/// The weights of the torques.
+const WEIGHTS: List<Number> = list("Weights", WEIGHT, MOST_TORQUES)
+    .not_empty(Code::MissingField, "give each torque its weight");
 
 /// A percentile.
 const PERCENT: Number = number("Percentile", "%", 0.1, 99.9);

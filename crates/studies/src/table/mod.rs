@@ -9,8 +9,8 @@ mod summary;
 #[cfg(test)]
 mod tests;
 
+use meshwright_wire::Status;
 use meshwright_wire::problem::Problem;
-use meshwright_wire::status::Status;
 use meshwright_wire::warning::GearName;
 use serde::Serialize;
 use serde_json::Value;

@@ -1,10 +1,10 @@
 //! A row of the table: a design, its outcome, and the quantities that designs are compared by.
 
 use meshwright_engine::analysis::Method;
+use meshwright_wire::Status;
 use meshwright_wire::declare::{Kind as _, utoipa_schema, word};
 use meshwright_wire::problem::Problem;
 use meshwright_wire::results::StatisticsDocument;
-use meshwright_wire::status::Status;
 use meshwright_wire::warning::GearName;
 use serde::Serialize;
 use serde_json::{Map, Value, json};

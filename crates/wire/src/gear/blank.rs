@@ -4,7 +4,7 @@ use meshwright_engine::gear::{BlankRegion, Core, FaceEnds, Hub, Web};
 
 use super::field::Field;
 use super::holes::HolesDocument;
-use super::openings::{LOOPS, SideDocument, SpokesDocument};
+use super::openings::{LOOPS, Shape, SideDocument, SpokesDocument};
 use crate::declare::{absent, document, nested, number, unless, word};
 use crate::units::from_mm;
 
@@ -78,6 +78,22 @@ document! {
 }
 
 impl BlankDocument {
+    /// The openings that a few numbers draw: those between spokes.
+    pub(super) fn shapes(&self) -> impl Iterator<Item = &dyn Shape> {
+        let spokes = self.spokes.as_ref();
+        spokes.map(|spokes| spokes as &dyn Shape).into_iter()
+    }
+
+    /// The same blank with neither holes nor other openings.
+    pub(super) fn without_openings(self) -> Self {
+        Self {
+            holes: HolesDocument::None,
+            spokes: None,
+            outline: None,
+            ..self
+        }
+    }
+
     /// Where the middle of the web stands from that of the face, in m.
     pub(super) fn web_offset(&self) -> f64 {
         self.web.as_ref().map_or(0.0, |web| from_mm(web.offset_mm))

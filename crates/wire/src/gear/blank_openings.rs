@@ -8,10 +8,9 @@ use super::blank::BlankDocument;
 use super::faults::Fault;
 use super::field::Field;
 use super::holes::MOST_HOLES;
-use super::openings::{MOST_LOOPS, SideDocument, SpokesDocument, drawn, loop_at, unsound};
-use super::proportions::check_between;
+use super::openings::{MOST_LOOPS, Shape, SideDocument, drawn, loop_at, unsound};
 use crate::problem::{Code, FieldError};
-use crate::units::{Side as Bound, from_mm, plain, to_mm};
+use crate::units::{from_mm, plain, to_mm};
 
 /// The most sides of all loops together: each place of a grid is looked at from many of them.
 const MOST_SIDES_IN_ALL: usize = 1000;
@@ -26,16 +25,16 @@ const DIGITS: f64 = 1e-6;
 type Openings = Vec<(usize, Hole)>;
 
 impl BlankDocument {
-    /// The openings of the spokes, then those of the outline.
+    /// The openings of each shape, then those of the outline.
     ///
     /// # Errors
     ///
     /// The openings of the engine, or the fault of one.
     pub(super) fn openings(&self) -> Result<Vec<Hole>, Fault> {
-        let mut openings = match &self.spokes {
-            Some(spokes) => spokes.openings()?,
-            None => Vec::new(),
-        };
+        let mut openings = Vec::new();
+        for shape in self.shapes() {
+            openings.extend(shape.openings()?);
+        }
         openings.extend(self.outlined()?.into_iter().map(|(_, hole)| hole));
         Ok(openings)
     }
@@ -99,12 +98,6 @@ impl BlankDocument {
         Ok(openings)
     }
 
-    /// The number of spokes, which is that of the openings between them.
-    fn spoke_count(&self) -> usize {
-        let spokes = self.spokes.as_ref();
-        spokes.map_or(0, |spokes| spokes.count as usize)
-    }
-
     /// That there are more holes and openings than a blank may have, or more sides of these.
     pub(super) fn too_many(&self, pointer: &str) -> Option<FieldError> {
         let sides: usize = self.outline.iter().flatten().map(Vec::len).sum();
@@ -116,8 +109,8 @@ impl BlankDocument {
             return Some(FieldError::new(pointer, Code::TooLarge, detail));
         }
         let loops = self.outline.as_ref().map_or(0, Vec::len);
-        let count =
-            self.holes.count() + self.spoke_count() + loops.saturating_sub(MOST_LOOPS - MOST_HOLES);
+        let of_shapes: usize = self.shapes().map(Shape::count).sum();
+        let count = self.holes.count() + of_shapes + loops.saturating_sub(MOST_LOOPS - MOST_HOLES);
         if count <= MOST_HOLES {
             return None;
         }
@@ -131,10 +124,13 @@ impl BlankDocument {
 
     /// The source of the opening that the engine knows as `hole`; `None` if that is one of a pattern.
     pub(super) fn drawn_by(&self, hole: usize) -> Option<DrawnBy> {
-        let index = hole.checked_sub(self.holes.count())?;
-        let Some(index) = index.checked_sub(self.spoke_count()) else {
-            return Some(DrawnBy::Spokes);
-        };
+        let mut index = hole.checked_sub(self.holes.count())?;
+        for shape in self.shapes() {
+            let Some(behind) = index.checked_sub(shape.count()) else {
+                return Some(DrawnBy::Shape(shape.name()));
+            };
+            index = behind;
+        }
         let outlined = self.outlined().ok()?;
         outlined.get(index).map(|(i, _)| DrawnBy::Loop(*i))
     }
@@ -143,23 +139,19 @@ impl BlankDocument {
 /// Source of an opening.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum DrawnBy {
-    Spokes,
+    /// A shape, by the name of its field within the blank.
+    Shape(&'static str),
+    /// A loop of the outline, by its place.
     Loop(usize),
 }
 
 impl GearDocument {
-    /// Spokes and outlines whose openings exist and are no mere points.
+    /// Shapes and outlines whose openings exist and are no mere points.
     pub(super) fn check_openings(&self) -> Result<(), Fault> {
         let blank = &self.blank;
         let openings = blank.openings()?;
-        if let Some(spokes) = &blank.spokes {
-            check_between(
-                SpokesDocument::field(SpokesDocument::fillet_radius_mm),
-                spokes.fillet_radius_mm,
-                0.2 * self.least_hole_mm(),
-                f64::INFINITY,
-                "0.2 % of the root radius and more",
-            )?;
+        for shape in blank.shapes() {
+            shape.check(self.least_hole_mm())?;
         }
         let holes = blank.holes.count();
         let small = |hole: &Hole| to_mm(hole.half_width()) < self.least_hole_mm();
@@ -175,7 +167,7 @@ impl GearDocument {
         }
     }
 
-    /// An opening of spokes or of an outline leaves too little between it and another one, the rim or the bore.
+    /// An opening of a shape or of an outline leaves too little between it and another one, the rim or the bore.
     pub(super) fn opening_fault(
         &self,
         by: DrawnBy,
@@ -183,24 +175,14 @@ impl GearDocument {
         missing: f64,
         detail: String,
     ) -> Fault {
-        let (DrawnBy::Spokes, Some(spokes)) = (by, &self.blank.spokes) else {
-            return Fault::new(by.field(), code, detail, None);
-        };
-        let (declared, bound) = match code {
-            Code::HolesBreachRim => (
-                SpokesDocument::outer_radius_mm,
-                (spokes.outer_radius_mm - missing, Bound::AtMost),
-            ),
-            Code::HolesBreachBore => (
-                SpokesDocument::inner_radius_mm,
-                (spokes.inner_radius_mm + missing, Bound::AtLeast),
-            ),
-            _ => (
-                SpokesDocument::width_mm,
-                (spokes.width_mm + missing, Bound::AtLeast),
-            ),
-        };
-        Fault::new(SpokesDocument::field(declared), code, detail, Some(bound))
+        let mut shapes = self.blank.shapes();
+        match shapes.find(|shape| by == DrawnBy::Shape(shape.name())) {
+            Some(shape) => {
+                let (field, bound) = shape.cure(code, missing);
+                Fault::new(field, code, detail, Some(bound))
+            }
+            None => Fault::new(by.field(), code, detail, None),
+        }
     }
 }
 
@@ -208,7 +190,7 @@ impl DrawnBy {
     /// Where it stands.
     pub(super) fn field(self) -> Field {
         match self {
-            Self::Spokes => Field::whole("blank/spokes".to_owned()),
+            Self::Shape(name) => Field::whole(format!("blank/{name}")),
             Self::Loop(i) => loop_at(i),
         }
     }

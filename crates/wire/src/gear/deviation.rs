@@ -3,7 +3,7 @@
 use meshwright_engine::gear::{Eccentricity, ToothDeviations};
 
 use super::GearDocument;
-use super::traces::{LARGEST, LeadTracesDocument, ProfileTracesDocument};
+use super::traces::{LARGEST, LeadTracesDocument, ProfileTracesDocument, too_large};
 use crate::declare::{List, Number, absent, document, list, nested, number};
 use crate::problem::{Code, FieldError};
 use crate::units::{from_um, plain, to_um};
@@ -180,14 +180,7 @@ impl DeviationsDocument {
         let (place, value) = listed
             .chain(eccentricity)
             .find(|(_, value)| value.abs() > most)?;
-        let pointer = format!("{pointer}/{place}");
-        let detail = format!(
-            "{pointer} is {} um, more than a quarter of a module; at most {} um.",
-            plain(value),
-            plain(most)
-        );
-        let error = FieldError::new(pointer, Code::OutOfRange, detail);
-        Some(error.nearest(most.copysign(value)))
+        Some(too_large(format!("{pointer}/{place}"), value, most))
     }
 
     fn does_not_close(&self, pointer: &str) -> Option<FieldError> {

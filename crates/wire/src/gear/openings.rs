@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 use super::faults::Fault;
 use super::field::Field;
 use super::holes::MOST_HOLES;
+use super::proportions::check_between;
 use crate::declare::{
     Declared, EACH, Kind, List, Location, Nested, Node, Number, document, list, number, or_else,
     unless,
@@ -124,6 +125,32 @@ impl SideDocument {
     }
 }
 
+/// Openings of a blank that a few numbers draw.
+pub(super) trait Shape {
+    /// Name of their field within the blank.
+    fn name(&self) -> &'static str;
+
+    /// Number of the openings.
+    fn count(&self) -> usize;
+
+    /// The openings of the engine.
+    ///
+    /// # Errors
+    ///
+    /// The fault of the number to blame, if there are no such openings.
+    fn openings(&self) -> Result<Vec<Hole>, Fault>;
+
+    /// Checks the numbers that the engine takes as they are; the radius of the least hole is `least_hole_mm`.
+    ///
+    /// # Errors
+    ///
+    /// The fault of a number.
+    fn check(&self, least_hole_mm: f64) -> Result<(), Fault>;
+
+    /// The field whose number leaves more material, and the value that leaves `missing` mm more, where `code` says the place.
+    fn cure(&self, code: Code, missing: f64) -> (Field, (f64, Bound));
+}
+
 impl SpokesDocument {
     fn data(&self) -> Spokes {
         Spokes {
@@ -136,11 +163,21 @@ impl SpokesDocument {
         }
     }
 
-    pub(super) fn field(declared: Declared<Number>) -> Field {
+    fn field(declared: Declared<Number>) -> Field {
         Field::of("blank/spokes/", declared)
     }
+}
 
-    pub(super) fn openings(&self) -> Result<Vec<Hole>, Fault> {
+impl Shape for SpokesDocument {
+    fn name(&self) -> &'static str {
+        "spokes"
+    }
+
+    fn count(&self) -> usize {
+        self.count as usize
+    }
+
+    fn openings(&self) -> Result<Vec<Hole>, Fault> {
         self.data().openings().map_err(|fault| match fault {
             SpokesFault::TooFew => Fault::new(
                 Self::field(Self::count),
@@ -188,6 +225,31 @@ impl SpokesDocument {
                 Some((to_mm(largest_radius), Bound::AtMost)),
             ),
         })
+    }
+
+    fn check(&self, least_hole_mm: f64) -> Result<(), Fault> {
+        check_between(
+            Self::field(Self::fillet_radius_mm),
+            self.fillet_radius_mm,
+            0.2 * least_hole_mm,
+            f64::INFINITY,
+            "0.2 % of the root radius and more",
+        )
+    }
+
+    fn cure(&self, code: Code, missing: f64) -> (Field, (f64, Bound)) {
+        let (declared, bound) = match code {
+            Code::HolesBreachRim => (
+                Self::outer_radius_mm,
+                (self.outer_radius_mm - missing, Bound::AtMost),
+            ),
+            Code::HolesBreachBore => (
+                Self::inner_radius_mm,
+                (self.inner_radius_mm + missing, Bound::AtLeast),
+            ),
+            _ => (Self::width_mm, (self.width_mm + missing, Bound::AtLeast)),
+        };
+        (Self::field(declared), bound)
     }
 }
 

@@ -4,7 +4,6 @@ use meshwright_engine::gear::{Helix, SpurGear};
 
 use super::faults::Fault;
 use super::field::Field;
-use super::holes::HolesDocument;
 use super::relief::Relief;
 use super::{GearDocument, LEAST_RACK_TIP_RADIUS, USUAL_DEDENDUM};
 use crate::problem::{Code, FieldError};
@@ -148,8 +147,7 @@ impl GearDocument {
         let mut gear = self.clone();
         gear.tooth_deviations = None;
         if gear.blank.too_many("").is_some() {
-            gear.blank.holes = HolesDocument::None;
-            (gear.blank.spokes, gear.blank.outline) = (None, None);
+            gear.blank = gear.blank.without_openings();
         }
         for modification in &mut gear.profile_modifications {
             modification.empty_table();

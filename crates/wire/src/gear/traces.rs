@@ -11,6 +11,17 @@ use crate::units::{from_mm, from_um, plain};
 /// The most that a flank deviates, in modules: a search among neighboring flanks means nothing beyond.
 pub(super) const LARGEST: f64 = 0.25;
 
+/// That the deviation at `pointer` is more than [`LARGEST`] allows, both in um.
+pub(super) fn too_large(pointer: String, value: f64, most: f64) -> FieldError {
+    let detail = format!(
+        "{pointer} is {} um, more than a quarter of a module; at most {} um.",
+        plain(value),
+        plain(most)
+    );
+    let error = FieldError::new(pointer, Code::OutOfRange, detail);
+    error.nearest(most.copysign(value))
+}
+
 document! {
     /// A measured trace of the profile of each loaded flank. It adds to the modifications of the gear.
     pub struct ProfileTracesDocument as "ProfileTraces", "Profile traces" {
@@ -188,16 +199,8 @@ impl Traces<'_> {
             row.map(move |(j, value)| ((i, j), *value))
         });
         let large = each.into_iter().find(|(_, value)| value.abs() > most);
-        let large = large.map(|((i, j), value)| {
-            let pointer = format!("{pointer}/{name}/{i}/{j}");
-            let detail = format!(
-                "{pointer} is {} um, more than a quarter of a module; at most {} um.",
-                plain(value),
-                plain(most)
-            );
-            let error = FieldError::new(pointer, Code::OutOfRange, detail);
-            error.nearest(most.copysign(value))
-        });
+        let large = large
+            .map(|((i, j), value)| too_large(format!("{pointer}/{name}/{i}/{j}"), value, most));
         large.into_iter().collect()
     }
 }
