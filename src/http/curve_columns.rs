@@ -242,7 +242,8 @@ pub(super) fn csv(curves: &[CurveColumns]) -> String {
     text.into_text()
 }
 
-fn no_table(table: Table) -> Problem {
+/// Problem of results that have no `table`.
+pub(super) fn no_table(table: Table) -> Problem {
     let detail = match table {
         Table::Spectrum => {
             "These results have no spectrum: they span no whole number of true periods."

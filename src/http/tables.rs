@@ -20,7 +20,7 @@ use super::app::App;
 use super::blocking::{blocking, goes_on};
 use super::campbell;
 use super::client::Client;
-use super::curve_columns::{CurveTable, Table, csv, select};
+use super::curve_columns::{CurveTable, Table, csv, no_table, select};
 use super::parameters::{IfNoneMatch, JobId, Parameters, invalid, number};
 use super::pictures::{self, Picture};
 use super::problem::{Refusal, internal, of_missing_results};

@@ -17,6 +17,9 @@ use crate::ring::solid::shaft::SolidShaft;
 use crate::root_finding::bisect;
 use crate::run::Run;
 
+/// The step of the number of orders in which holes are seen.
+const ORDERS_AT_ONCE: usize = 4;
+
 /// The orders that the interface circle carries: fields of the teeth fall to e^−this on their way to it.
 const DECAY: f64 = 4.5;
 /// Orders on it for each tooth, at most: beyond, the grids do not follow.
@@ -220,11 +223,16 @@ impl Joints {
         }
     }
 
-    /// The orders of these circles in which `holes` below the radius `root` are seen.
+    /// The orders of these circles in which `holes` below the radius `root` are seen, in steps: a hole that moves a little needs as many, so that the teeth
+    /// above it are not made anew.
     fn orders(&self, root: f64, holes: &[Hole], resolution: FaceResolution) -> usize {
         let of_hole = |hole: &Hole| self.orders_of(root, hole, resolution);
         let needed = holes.iter().map(of_hole).fold(0.0, f64::max);
-        ((needed - 1e-9).ceil() as usize).max(resolution.web_harmonics)
+        let needed = (needed - 1e-9).ceil() as usize;
+        match needed <= resolution.web_harmonics {
+            true => resolution.web_harmonics,
+            false => needed.next_multiple_of(ORDERS_AT_ONCE),
+        }
     }
 
     /// The first order whose fields have decayed to the truncation of the resolution: those of the teeth on their way to `hole`, those of the hole on theirs to
@@ -514,7 +522,8 @@ mod tests {
         for reach in [42.5e-3, 44e-3] {
             // (reach/root)^n falls to e^−5.5.
             let ratio = (reach / 45.5e-3_f64).powi(orders(reach) as i32);
-            let before = (reach / 45.5e-3_f64).powi(orders(reach) as i32 - 1);
+            let before = (orders(reach) - ORDERS_AT_ONCE) as i32;
+            let before = (reach / 45.5e-3_f64).powi(before);
             let left = (-5.5_f64).exp();
             assert!(ratio <= 1.01 * left && before > left, "{reach}");
         }

@@ -127,10 +127,10 @@ pub(super) fn spline(entity: &Entity<'_>, in_mm: f64) -> Result<Splined, String>
     if weights.is_empty() {
         weights = vec![1.0; count];
     }
-    if weights.len() != count || weights.iter().any(|weight| *weight <= 0.0) {
-        return Err(
-            "has weights that are not positive, or not one for each control point".to_owned(),
-        );
+    // Their ratios make the curve: some programs write −1 for each point.
+    let alike = |weight: &f64| *weight != 0.0 && weight.signum() == weights[0].signum();
+    if weights.len() != count || !weights.iter().all(alike) {
+        return Err("has weights of both signs or 0, or not one for each control point".to_owned());
     }
     let controls = controls.iter().zip(&weights);
     let spline = Spline {

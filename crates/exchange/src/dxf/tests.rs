@@ -622,7 +622,15 @@ fn a_spline_is_what_its_equation_says() {
         line([25.0, -6.0], [35.0, -6.0]),
         line([35.0, -6.0], [35.0, 1.25]),
     ];
+    let weighted = |weights: [f64; 5]| {
+        let groups = [groups.as_slice(), &weights.map(|weight| (41, weight))].concat();
+        [vec![cubic(&groups)], closing.to_vec()].concat()
+    };
     let read = read(&[vec![cubic(&groups)], closing.to_vec()].concat());
+    // Only the ratios of its weights count: Autodesk Inventor writes −1 for each point (netDxf, issue 122).
+    assert_eq!(self::read(&weighted([-1.0; 5])).loops, read.loops);
+    let told = refused(&file(Some(4), &weighted([1.0, 1.0, -1.0, 1.0, 1.0])));
+    assert!(told.contains("weights of both signs"), "{told}");
     let curved: Vec<Value> = read.loops[0].clone();
     let farthest = points(&curved)
         .into_iter()
