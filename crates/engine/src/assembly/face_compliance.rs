@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use faer::{Mat, c64};
 
-use super::flank_fit::{FlankFit, smoothed, smoothed_rows};
+use super::flank_fit::{FlankFit, smoothed_rows};
 use super::holed::{HoledChange, WebInterface, cost_of_holes, coupled_unknowns};
 use super::stack::{Stack, StackStiffness};
 use super::{FaceResolution, PartError};
@@ -144,17 +144,12 @@ impl PlainFace {
         );
         let (tooth, below) = (tooth?, below?);
         let seen = below.web.as_ref().map(|web| web.largest);
-        let classes = answers(&tooth, &below.stiffness, seen, run)?;
+        // Loads on the polynomials are few beside those on the nodes of the flank.
         let flank = FlankFit::new(gear, &stack.face, &tooth.roll_lengths);
+        let rows = smoothed_rows(&flank.nearest(), &tooth.rows, stack.face.len());
+        let classes = answers((&tooth.sector, &rows), &below.stiffness, seen, run)?;
         let web = below.web.map(|web| {
-            let smoothing = flank.smoothing();
-            let onto = |answers: &Mat<c64>| {
-                smoothed_rows(
-                    &smoothing,
-                    &answers.transpose().to_owned(),
-                    stack.face.len(),
-                )
-            };
+            let onto = |answers: &Mat<c64>| flank.without_highest(answers.transpose().to_owned());
             WebInterface::new(web, tooth.sector.count, &classes, &onto)
         });
         let own = tooth.grid_nodes - tooth.sector.side_nodes - 1;
@@ -221,7 +216,7 @@ impl FaceCompliance {
         let plain = PlainFace {
             squares: flank.squares,
             ends: FlankEnds::new(gear),
-            blocks: vec![flank.own(&compliance)],
+            blocks: vec![flank.own(&compliance, None)],
             stiffness_below: Vec::new(),
             web: None,
             degrees_of_freedom: degrees_of_freedom as u64,
@@ -352,12 +347,11 @@ fn blocks(
 ) -> Vec<Mat<f64>> {
     let z = tooth.sector.count;
     let of_classes = || classes.iter().map(|answer| (answer.class, &answer.flank));
-    let own = &tooth.held + between_teeth(of_classes(), z, 0);
-    let (smoothing, m) = (flank.smoothing(), flank.axial.len());
-    let mut blocks = vec![flank.own(&own)];
+    let mut blocks = vec![flank.own(&tooth.held, Some(&between_teeth(of_classes(), z, 0)))];
     for distance in 1..=farthest.min(z / 2) {
         let other = between_teeth(of_classes(), z, distance);
-        blocks.push(smoothed(&smoothing, &other, m));
+        let other = flank.without_highest(other).transpose().to_owned();
+        blocks.push(flank.without_highest(other).transpose().to_owned());
     }
     blocks
 }

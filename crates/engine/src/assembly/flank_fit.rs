@@ -43,18 +43,31 @@ impl<'a> FlankFit<'a> {
         })
     }
 
-    /// The polynomials nearest to the compliance `g` of one flank under its own loads, node by node, less the half space.
-    pub(super) fn own(&self, g: &Mat<f64>) -> Mat<f64> {
+    /// The polynomials nearest to the compliance `held` of one flank under its own loads, node by node, less the half space, with `more` compliance that is that
+    /// of the polynomials already.
+    pub(super) fn own(&self, held: &Mat<f64>, more: Option<&Mat<f64>>) -> Mat<f64> {
         let space = HalfSpace::new(self.gear, self.axial);
-        let whole = smoothed(&self.nearest(), g, self.axial.len());
-        let mut own = whole - space.over_flank(self.squares, OWN_DEGREE);
+        let mut own = smoothed(&self.nearest(), held, self.axial.len());
+        if let Some(more) = more {
+            own += more;
+        }
+        own -= space.over_flank(self.squares, OWN_DEGREE);
         symmetrize(&mut own);
         own
     }
 
+    /// `rows` of all the polynomials, those above [`OTHER_DEGREE`] empty.
+    pub(super) fn without_highest<T: ComplexField>(&self, mut rows: Mat<T>) -> Mat<T> {
+        let first = (OTHER_DEGREE + 1) * self.axial.len();
+        let highest = rows.nrows() - first;
+        rows.subrows_mut(first, highest)
+            .fill(faer::traits::math_utils::zero());
+        rows
+    }
+
     /// The polynomials nearest to values at the nodes, a row each: the mean along the flank of each with the interpolation of a node's value, a parabola over
     /// an element.
-    fn nearest(&self) -> Mat<f64> {
+    pub(super) fn nearest(&self) -> Mat<f64> {
         let mut nearest = Mat::zeros(OWN_DEGREE + 1, self.roll_lengths.len());
         let [from, to] = self.squares;
         let rule = gauss_legendre(OWN_DEGREE / 2 + 2);

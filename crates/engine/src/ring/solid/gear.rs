@@ -28,7 +28,8 @@ pub(crate) struct ClassAnswers {
     pub compliance: Mat<c64>,
 }
 
-/// The answers of all classes 0 … Z/2 of a ring of teeth on `below`, the stiffness of each order 0 … M.
+/// The answers of all classes 0 … Z/2 of a ring of teeth, each the `sector` on its interface, on `below`, the stiffness of each order 0 … M, to loads on functions
+/// over the flank of tooth 0: `rows` are their normal displacements by those of the interface.
 ///
 /// The answers on the circle are given for the orders up to `wanted` only, in the order of `orders`.
 ///
@@ -36,15 +37,15 @@ pub(crate) struct ClassAnswers {
 ///
 /// [`FemError`], or [`FemError::Stopped`].
 pub(crate) fn answers(
-    tooth: &SolidTooth,
+    (sector, rows): (&SolidSector, &Mat<f64>),
     below: &[Mat<c64>],
     wanted: Option<usize>,
     run: &Run,
 ) -> Result<Vec<ClassAnswers>, FemError> {
-    each_class(tooth, below, run, |ring, mut half| {
+    each_class(sector, below, (rows, run), |ring, mut half| {
         ring.factor.half_solve_in_place(half.as_mut());
         let flank = half.adjoint() * &half;
-        let (orders, mut unit) = ring.units(&tooth.sector, wanted);
+        let (orders, mut unit) = ring.units(sector, wanted);
         ring.factor.half_solve_in_place(unit.as_mut());
         ClassAnswers {
             class: ring.class,
@@ -56,20 +57,19 @@ pub(crate) fn answers(
     })
 }
 
-/// Result of `of` for each class 0 … Z/2 of a ring of teeth on `below`, with unit forces on the flank of tooth 0.
+/// Result of `of` for each class 0 … Z/2 of a ring of teeth on `below`, with unit forces on the functions of `rows` over the flank of tooth 0.
 fn each_class<T: Send>(
-    tooth: &SolidTooth,
+    sector: &SolidSector,
     below: &[Mat<c64>],
-    run: &Run,
+    (rows, run): (&Mat<f64>, &Run),
     of: impl Fn(ClassOfRing, Mat<c64>) -> T + Sync,
 ) -> Result<Vec<T>, FemError> {
-    let sector = &tooth.sector;
     (0..=sector.count / 2)
         .into_par_iter()
         .map(|class| {
             run.check()?;
             let ring = ClassOfRing::new(sector, below, class)?;
-            let rows = sector.on_class(&tooth.rows, class, &ring.orders);
+            let rows = sector.on_class(rows, class, &ring.orders);
             Ok(of(ring, rows.adjoint().to_owned()))
         })
         .collect()
@@ -155,18 +155,23 @@ pub(crate) fn motions(
     wanted: Option<usize>,
     run: &Run,
 ) -> Result<Vec<ClassMotion>, FemError> {
-    each_class(tooth, below, run, |ring, mut by_flank| {
-        ring.factor.solve_in_place(by_flank.as_mut());
-        let (wanted, mut by_circle) = ring.units(&tooth.sector, wanted);
-        ring.factor.solve_in_place(by_circle.as_mut());
-        ClassMotion {
-            class: ring.class,
-            orders: ring.orders,
-            by_flank,
-            wanted,
-            by_circle,
-        }
-    })
+    each_class(
+        &tooth.sector,
+        below,
+        (&tooth.rows, run),
+        |ring, mut by_flank| {
+            ring.factor.solve_in_place(by_flank.as_mut());
+            let (wanted, mut by_circle) = ring.units(&tooth.sector, wanted);
+            ring.factor.solve_in_place(by_circle.as_mut());
+            ClassMotion {
+                class: ring.class,
+                orders: ring.orders,
+                by_flank,
+                wanted,
+                by_circle,
+            }
+        },
+    )
 }
 
 /// Motion of the interfaces of all teeth in one class under given forces.
@@ -199,22 +204,27 @@ pub(crate) fn forced(
         tooth.sector.size,
         tooth.sector.size * tooth.sector.side_nodes,
     );
-    each_class(tooth, below, run, |ring, by_flank| {
-        let mut motion = by_flank * on_flank(ring.class);
-        for (k, &order) in ring.orders.iter().enumerate() {
-            if let Some(force) = on_order(order) {
-                motion
-                    .subrows_mut(sides + k * size, size)
-                    .add_assign(&force);
+    each_class(
+        &tooth.sector,
+        below,
+        (&tooth.rows, run),
+        |ring, by_flank| {
+            let mut motion = by_flank * on_flank(ring.class);
+            for (k, &order) in ring.orders.iter().enumerate() {
+                if let Some(force) = on_order(order) {
+                    motion
+                        .subrows_mut(sides + k * size, size)
+                        .add_assign(&force);
+                }
             }
-        }
-        ring.factor.solve_in_place(motion.as_mut());
-        ForcedClass {
-            class: ring.class,
-            orders: ring.orders,
-            motion,
-        }
-    })
+            ring.factor.solve_in_place(motion.as_mut());
+            ForcedClass {
+                class: ring.class,
+                orders: ring.orders,
+                motion,
+            }
+        },
+    )
 }
 
 /// Motion of the interfaces of the teeth at each of `distances` counter-clockwise of tooth 0, from that of each class: its number, its orders and its unknowns.
