@@ -247,7 +247,8 @@ fn a_few_slices_that_carry_all_of_the_load_press_as_one_line() {
     };
     let leads = [Vec::new(), Vec::new()];
     let pair = SolidPair::new(gears, leads, 32.63e-3, alignment).expect("meshes");
-    let load = pair.section().load(0.98);
+    // More would deflect the teeth by over a quarter of the module, which is no result.
+    let load = pair.section().load(0.8);
     let model = FaceModel::new(pair, yields, SLICES, FARTHEST_COUPLED);
     let positions: Vec<f64> = (0..16).map(|i| f64::from(i) / 16.0).collect();
     let contacts = model.contacts(load, &positions, &Run::unattended());
