@@ -1,10 +1,7 @@
 //! Faults that the derived readers of serde meet, in the words of this service: the words of the library stay out of answers.
 
-use meshwright_wire::declare::{escaped, nearest_word};
+use meshwright_wire::declare::{escaped, is_meant, shortened};
 use meshwright_wire::{Code, FieldError, Problem};
-
-/// A quoted text or name is cut to so many characters.
-const LONGEST_QUOTE: usize = 60;
 
 /// Kind of a fault.
 #[derive(Debug, PartialEq)]
@@ -57,7 +54,7 @@ impl<'a> Fault<'a> {
 /// Words for a value that serde calls `given`.
 fn kind(given: &str) -> String {
     let value = given.split_once(' ').map_or("", |(_, value)| value);
-    let value = cut(value.trim_matches('`'));
+    let value = shortened(value.trim_matches('`'));
     match given.split([' ', ':']).next().unwrap_or_default() {
         "map" => "an object".to_owned(),
         "sequence" => "a list".to_owned(),
@@ -79,18 +76,9 @@ fn expected(kind: &str) -> &str {
     }
 }
 
-/// `text`, shortened where it is long.
-fn cut(text: &str) -> String {
-    match text.char_indices().nth(LONGEST_QUOTE) {
-        Some((end, _)) => format!("{}...", &text[..end]),
-        None => text.to_owned(),
-    }
-}
-
 /// Asks whether the known name nearest to `given` is meant, if one is near, and lists them all.
 fn known_names(given: &str, known: &[&str]) -> String {
-    let meant = nearest_word(given, known).map(|word| format!(" Is {word} meant?"));
-    let meant = meant.unwrap_or_default();
+    let meant = is_meant(given, known);
     format!("{meant} Known are {}.", known.join(", "))
 }
 
@@ -109,11 +97,11 @@ pub(super) fn of_document(place: &str, message: &str) -> Problem {
         }
         Fault::Unknown(given, known) => {
             let names = known_names(given, &known);
-            let detail = format!("{} is not a field here.{names}", cut(place));
-            (cut(place), Code::UnknownField, detail)
+            let detail = format!("{} is not a field here.{names}", shortened(place));
+            (shortened(place), Code::UnknownField, detail)
         }
         Fault::NoneOf(given, known) => {
-            let given = cut(given);
+            let given = shortened(given);
             let known = known.join(", ");
             let detail = format!("{whole} is the text {given:?}; expected is one of {known}.");
             (place.to_owned(), Code::WrongType, detail)
@@ -127,7 +115,7 @@ pub(super) fn of_document(place: &str, message: &str) -> Problem {
             (place.to_owned(), Code::WrongType, detail)
         }
         Fault::Other(message) => {
-            let detail = format!("{whole} is not understood: {}.", cut(message));
+            let detail = format!("{whole} is not understood: {}.", shortened(message));
             (place.to_owned(), Code::WrongType, detail)
         }
     };
@@ -154,12 +142,12 @@ pub(super) fn of_whole_document(first: u8) -> Option<Problem> {
 
 /// What is wrong with the parameters of a query: the fault that serde words as `message` at the parameter `name`, whose value is `given`.
 pub(super) fn of_parameter(name: &str, message: &str, given: Option<&str>) -> String {
-    let value = format!("{:?}", cut(given.unwrap_or_default()));
+    let value = format!("{:?}", shortened(given.unwrap_or_default()));
     match Fault::of(message) {
         Fault::Missing(name) => format!("The parameter {name} is needed."),
         Fault::Unknown(given, known) => {
             let names = known_names(given, &known);
-            format!("{} is not a parameter here.{names}", cut(given))
+            format!("{} is not a parameter here.{names}", shortened(given))
         }
         Fault::NoneOf(_, known) => {
             let known = known.join(", ");

@@ -14,7 +14,7 @@ use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
 use jiff::Timestamp;
 use meshwright_connections::Connection;
-use meshwright_wire::declare::document;
+use meshwright_wire::declare::{document, shortened};
 use meshwright_wire::{Code, FieldError, Problem};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -43,7 +43,7 @@ pub(super) struct NewShare {
 impl NewShare {
     fn end(&self) -> Result<Timestamp, Problem> {
         self.ends_at.parse().map_err(|_| {
-            let given: String = self.ends_at.chars().take(60).collect();
+            let given = shortened(&self.ends_at);
             let detail = format!(
                 "/ends_at is {given:?}; a time with its offset from UTC is expected, such as 2026-12-24T12:00:00Z."
             );

@@ -113,13 +113,15 @@ async fn a_study_killed_half_way_is_finished_by_the_next_process_with_every_desi
     check_table(&second.get(&client, &format!("{path}/results")).await, 60);
 }
 
-/// Bound of the compressed bytes of a result for each of its positions. Seven numbers of a position are unlike those of others: transmission error and both
-/// stiffnesses; amplitude and phase of both at half an order of the spectrum; the first three again at the third of a point between. Ten decimal digits are
-/// 33 bits, hence 29 bytes of information. Deflate, which sees digits but no curve, needs twice as many: measured are 53 with all that repeats.
+/// Bound of the compressed bytes of a result for each of its positions.
+///
+/// Seven numbers of a position are unlike those of others. Three are the transmission error and both stiffnesses. There is half an order of the spectrum for each
+/// position, with two amplitudes and two phases, and a third of a point between, with the first three. Ten decimal digits are 33 bits, hence 29 bytes of
+/// information. Deflate, which sees digits but no curve, needs twice as many: measured are 53 with all that repeats.
 const BYTES_A_POSITION: u64 = 60;
 
-/// Bound of the bytes of a design beside its result: a page of 4 kB for the submission, 2 kB for the summary, the job, the row of the table and their indexes,
-/// and the part of a page that a document leaves free.
+/// Bound of the bytes of a design beside its result. The submission takes a page of 4 kB, the summary 2 kB. The rest are the job, the row of the table, their
+/// indexes, and the part of a page that a document leaves free.
 const BYTES_BESIDE: u64 = 16_000;
 
 #[tokio::test]

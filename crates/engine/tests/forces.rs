@@ -915,8 +915,10 @@ fn rims_outside_their_webs_have_the_natural_frequencies_of_both_bodies_in_torsio
     }
 }
 
-/// The motion of the hubs, peak to peak, of two like gears on webs of 2 mm under the load of `case` at `rpm`: a hub and a rim each, with so much inertia `beside`
-/// each hub and a quarter of the web's with the hub, by the classical Runge-Kutta method on the table of the teeth alone.
+/// Peak-to-peak motion of the hubs of two like gears on webs of 2 mm, under the load of `case` at `rpm`, by the classical Runge-Kutta method.
+///
+/// A gear is a hub and a rim. A quarter of the web's inertia moves with the hub, and there is more of it `beside` each hub. The force is that of the table of the
+/// teeth alone: `whole` without the yield of the blanks.
 fn hubs_and_rims(case: &Case, whole: &ForceTable, stiffness: f64, [beside, rpm]: [f64; 2]) -> f64 {
     let gear = case.pair.driving();
     let (radius, material) = (gear.base_radius(), gear.material());

@@ -147,7 +147,7 @@ impl PlainFace {
         // Loads on the polynomials are few beside those on the nodes of the flank.
         let flank = FlankFit::new(gear, &stack.face, &tooth.roll_lengths);
         let rows = smoothed_rows(&flank.nearest(), &tooth.rows, stack.face.len());
-        let classes = answers((&tooth.sector, &rows), &below.stiffness, seen, run)?;
+        let classes = answers(&tooth.sector, &rows, &below.stiffness, seen, run)?;
         let web = below.web.map(|web| {
             let onto = |answers: &Mat<c64>| flank.without_highest(answers.transpose().to_owned());
             WebInterface::new(web, tooth.sector.count, &classes, &onto)

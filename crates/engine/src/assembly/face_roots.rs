@@ -79,11 +79,11 @@ impl FaceRoots {
         let own = interfaces(sector, by_flank, &[0]);
         let own = rows.by_points + &rows.by_kept * &own[0];
 
-        let smoothing = FlankFit::new(gear, &stack.face, &tooth.roll_lengths).smoothing();
+        let nearest = FlankFit::new(gear, &stack.face, &tooth.roll_lengths).nearest();
         let lower: Vec<_> = classes
             .iter()
             .map(|class| {
-                let onto = smoothed_rows(&smoothing, &class.by_flank.transpose().to_owned(), m);
+                let onto = smoothed_rows(&nearest, &class.by_flank.transpose().to_owned(), m);
                 let lower = onto.subrows(0, (OTHER_DEGREE + 1) * m);
                 lower.transpose().to_owned()
             })

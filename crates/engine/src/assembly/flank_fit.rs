@@ -30,21 +30,8 @@ impl<'a> FlankFit<'a> {
         }
     }
 
-    /// The polynomials of [`OTHER_DEGREE`] nearest to values at the nodes: a row for each of all the polynomials, the higher ones
-    /// empty.
-    pub(super) fn smoothing(&self) -> Mat<f64> {
-        let nearest = self.nearest();
-        Mat::from_fn(nearest.nrows(), nearest.ncols(), |a, i| {
-            if a <= OTHER_DEGREE {
-                nearest[(a, i)]
-            } else {
-                0.0
-            }
-        })
-    }
-
-    /// The polynomials nearest to the compliance `held` of one flank under its own loads, node by node, less the half space, with `more` compliance that is that
-    /// of the polynomials already.
+    /// The compliance of one flank under its own loads on the polynomials, less the half space: `held` is given node by node, `more` of it on the polynomials
+    /// already.
     pub(super) fn own(&self, held: &Mat<f64>, more: Option<&Mat<f64>>) -> Mat<f64> {
         let space = HalfSpace::new(self.gear, self.axial);
         let mut own = smoothed(&self.nearest(), held, self.axial.len());
@@ -97,7 +84,7 @@ pub(super) fn squares(roll_lengths: &[f64]) -> [f64; 2] {
 }
 
 /// Q g Qᵀ, with Q the same for each of `m` functions along the axis.
-pub(super) fn smoothed(smoothing: &Mat<f64>, g: &Mat<f64>, m: usize) -> Mat<f64> {
+fn smoothed(smoothing: &Mat<f64>, g: &Mat<f64>, m: usize) -> Mat<f64> {
     let once = smoothed_rows(smoothing, g, m);
     smoothed_rows(smoothing, &once.transpose().to_owned(), m)
         .transpose()

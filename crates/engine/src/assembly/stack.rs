@@ -18,7 +18,7 @@ use crate::root_finding::bisect;
 use crate::run::Run;
 
 /// The step of the number of orders in which holes are seen.
-const ORDERS_AT_ONCE: usize = 4;
+const ORDER_STEP: usize = 4;
 
 /// The orders that the interface circle carries: fields of the teeth fall to e^−this on their way to it.
 const DECAY: f64 = 4.5;
@@ -231,7 +231,7 @@ impl Joints {
         let needed = (needed - 1e-9).ceil() as usize;
         match needed <= resolution.web_harmonics {
             true => resolution.web_harmonics,
-            false => needed.next_multiple_of(ORDERS_AT_ONCE),
+            false => needed.next_multiple_of(ORDER_STEP),
         }
     }
 
@@ -522,7 +522,7 @@ mod tests {
         for reach in [42.5e-3, 44e-3] {
             // (reach/root)^n falls to e^−5.5.
             let ratio = (reach / 45.5e-3_f64).powi(orders(reach) as i32);
-            let before = (orders(reach) - ORDERS_AT_ONCE) as i32;
+            let before = (orders(reach) - ORDER_STEP) as i32;
             let before = (reach / 45.5e-3_f64).powi(before);
             let left = (-5.5_f64).exp();
             assert!(ratio <= 1.01 * left && before > left, "{reach}");

@@ -22,10 +22,11 @@ pub use nested::{
     EACH, Exclusion, Nested, Object, Property, document, exclusive, nested, object, tagged,
     utoipa_schema,
 };
-pub use node::{Node, escaped};
+pub use node::{Node, escaped, shortened};
 pub use number::{Number, meant_by, number};
 pub use optional::{Optional, absent, or_else, or_null, unless};
-pub use reader::{Location, ObjectReader, nearest_word};
+pub(crate) use reader::nearest_word;
+pub use reader::{Location, ObjectReader, is_meant};
 pub use words::{Choice, Flag, OneWord, Text, flag, is_short_text, text, word, words};
 
 /// The named schemas that others refer to.

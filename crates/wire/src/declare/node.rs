@@ -149,7 +149,7 @@ pub(super) fn joined(pointer: &str, key: &str) -> String {
 }
 
 /// The first characters of a text, for a message.
-pub(super) fn shortened(text: &str) -> String {
+pub fn shortened(text: &str) -> String {
     const MOST: usize = 60;
     match text.char_indices().nth(MOST) {
         None => text.to_owned(),

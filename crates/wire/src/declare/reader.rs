@@ -185,8 +185,7 @@ impl<'a> ObjectReader<'a> {
                 return;
             }
             if !self.known.contains(&key.as_str()) {
-                let meant = nearest_word(key, &self.known)
-                    .map_or_else(String::new, |word| format!(" Is {word} meant?"));
+                let meant = is_meant(key, &self.known);
                 let detail = format!(
                     "{} is not a field here.{meant} Known are {}.",
                     shortened(&joined(&self.place.pointer, key)),
@@ -200,8 +199,13 @@ impl<'a> ObjectReader<'a> {
     }
 }
 
+/// Question whether the known word nearest to `word` is meant, as it follows a sentence; empty if none is near.
+pub fn is_meant(word: &str, known: &[&str]) -> String {
+    nearest_word(word, known).map_or_else(String::new, |word| format!(" Is {word} meant?"))
+}
+
 /// The known word that takes the fewest edits, capitals aside, if they are few.
-pub fn nearest_word<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+pub(crate) fn nearest_word<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     if word.len() > 60 {
         return None;
     }

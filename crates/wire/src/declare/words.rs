@@ -3,7 +3,7 @@
 use serde::Serializer;
 use serde_json::{Value, json};
 
-use super::reader::nearest_word;
+use super::reader::is_meant;
 use super::{Kind, Location, Node, ObjectReader};
 use crate::problem::Code;
 
@@ -66,8 +66,7 @@ impl<C: Copy> OneWord<C> {
         };
         C::of_word(word).or_else(|| {
             let known: Vec<_> = C::OPTIONS.iter().map(|(word, ..)| *word).collect();
-            let meant = nearest_word(word, &known);
-            let meant = meant.map_or_else(String::new, |word| format!(" Is {word} meant?"));
+            let meant = is_meant(word, &known);
             let words = C::words();
             let detail = format!(
                 "{place} is {}; expected is one of {words}.{meant}",

@@ -28,8 +28,10 @@ pub(crate) struct ClassAnswers {
     pub compliance: Mat<c64>,
 }
 
-/// The answers of all classes 0 … Z/2 of a ring of teeth, each the `sector` on its interface, on `below`, the stiffness of each order 0 … M, to loads on functions
-/// over the flank of tooth 0: `rows` are their normal displacements by those of the interface.
+/// The answers of all classes 0 … Z/2 of a ring of teeth to loads on functions over the flank of tooth 0.
+///
+/// Each tooth is the `sector` on its interface, and stands on `below`, the stiffness of each order 0 … M. `rows` are the normal displacements of the functions by
+/// those of the interface.
 ///
 /// The answers on the circle are given for the orders up to `wanted` only, in the order of `orders`.
 ///
@@ -37,12 +39,13 @@ pub(crate) struct ClassAnswers {
 ///
 /// [`FemError`], or [`FemError::Stopped`].
 pub(crate) fn answers(
-    (sector, rows): (&SolidSector, &Mat<f64>),
+    sector: &SolidSector,
+    rows: &Mat<f64>,
     below: &[Mat<c64>],
     wanted: Option<usize>,
     run: &Run,
 ) -> Result<Vec<ClassAnswers>, FemError> {
-    each_class(sector, below, (rows, run), |ring, mut half| {
+    each_class(sector, rows, below, run, |ring, mut half| {
         ring.factor.half_solve_in_place(half.as_mut());
         let flank = half.adjoint() * &half;
         let (orders, mut unit) = ring.units(sector, wanted);
@@ -60,8 +63,9 @@ pub(crate) fn answers(
 /// Result of `of` for each class 0 … Z/2 of a ring of teeth on `below`, with unit forces on the functions of `rows` over the flank of tooth 0.
 fn each_class<T: Send>(
     sector: &SolidSector,
+    rows: &Mat<f64>,
     below: &[Mat<c64>],
-    (rows, run): (&Mat<f64>, &Run),
+    run: &Run,
     of: impl Fn(ClassOfRing, Mat<c64>) -> T + Sync,
 ) -> Result<Vec<T>, FemError> {
     (0..=sector.count / 2)
@@ -157,8 +161,9 @@ pub(crate) fn motions(
 ) -> Result<Vec<ClassMotion>, FemError> {
     each_class(
         &tooth.sector,
+        &tooth.rows,
         below,
-        (&tooth.rows, run),
+        run,
         |ring, mut by_flank| {
             ring.factor.solve_in_place(by_flank.as_mut());
             let (wanted, mut by_circle) = ring.units(&tooth.sector, wanted);
@@ -204,27 +209,22 @@ pub(crate) fn forced(
         tooth.sector.size,
         tooth.sector.size * tooth.sector.side_nodes,
     );
-    each_class(
-        &tooth.sector,
-        below,
-        (&tooth.rows, run),
-        |ring, by_flank| {
-            let mut motion = by_flank * on_flank(ring.class);
-            for (k, &order) in ring.orders.iter().enumerate() {
-                if let Some(force) = on_order(order) {
-                    motion
-                        .subrows_mut(sides + k * size, size)
-                        .add_assign(&force);
-                }
+    each_class(&tooth.sector, &tooth.rows, below, run, |ring, by_flank| {
+        let mut motion = by_flank * on_flank(ring.class);
+        for (k, &order) in ring.orders.iter().enumerate() {
+            if let Some(force) = on_order(order) {
+                motion
+                    .subrows_mut(sides + k * size, size)
+                    .add_assign(&force);
             }
-            ring.factor.solve_in_place(motion.as_mut());
-            ForcedClass {
-                class: ring.class,
-                orders: ring.orders,
-                motion,
-            }
-        },
-    )
+        }
+        ring.factor.solve_in_place(motion.as_mut());
+        ForcedClass {
+            class: ring.class,
+            orders: ring.orders,
+            motion,
+        }
+    })
 }
 
 /// Motion of the interfaces of the teeth at each of `distances` counter-clockwise of tooth 0, from that of each class: its number, its orders and its unknowns.
