@@ -238,7 +238,7 @@ impl Access {
 }
 
 /// True for a request for the health of the service.
-fn is_health(uri: &Uri) -> bool {
+pub(super) fn is_health(uri: &Uri) -> bool {
     uri.path().starts_with("/health/")
 }
 

@@ -17,7 +17,6 @@ use super::problem::{Refusal, internal};
 
 /// Which curve.
 #[derive(Deserialize, IntoParams)]
-#[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 pub(super) struct PatternParameters {
     /// One of the job's output torques, in N m, not 0; without it, all of them.

@@ -2,11 +2,25 @@
 
 use serde_json::{Map, Value, json};
 
-use super::tables;
+use super::{studies, tables};
+
+/// A file among those that one handler answers.
+pub(super) struct ListedFile {
+    /// Its name.
+    pub(super) name: &'static str,
+    /// Its media type.
+    pub(super) media_type: &'static str,
+    /// The name of the schema of the file, or of each of its lines, where there is one.
+    pub(super) schema: Option<&'static str>,
+    /// What it holds; absent where the words for all files say enough.
+    pub(super) about: Option<&'static str>,
+    /// The parameters of the handler that it does not take.
+    pub(super) without: &'static [&'static str],
+}
 
 /// Completes the document.
 pub(super) fn finish(document: &mut Value) {
-    list_tables(document);
+    list_files(document);
     name_shapes(document);
     take_studies(document);
     let paths = document.get_mut("paths").and_then(Value::as_object_mut);
@@ -21,21 +35,24 @@ pub(super) fn finish(document: &mut Value) {
     describe_messages(document);
 }
 
-/// Puts an operation for each table and picture in the place of one for all: clients are generated with one answer each.
-fn list_tables(document: &mut Value) {
-    const PLACEHOLDER: &str = "{table}";
+/// Puts an operation for each file in the place of one for all that a handler answers: clients are generated with one answer each.
+fn list_files(document: &mut Value) {
     let Some(paths) = document.get_mut("paths").and_then(Value::as_object_mut) else {
         return;
     };
     let mut listed = Map::new();
     for (path, item) in std::mem::take(paths) {
-        if !path.ends_with(PLACEHOLDER) {
-            listed.insert(path, item);
-            continue;
-        }
-        for file in tables::files() {
-            let path = path.replace(PLACEHOLDER, file.0);
-            listed.insert(path, of_table(item.clone(), file));
+        let (placeholder, files) = match path.rsplit_once('/') {
+            Some((_, "{table}")) => ("table", tables::files()),
+            Some((_, "{file}")) => ("file", studies::files()),
+            _ => {
+                listed.insert(path, item);
+                continue;
+            }
+        };
+        for file in files {
+            let path = path.replace(&format!("{{{placeholder}}}"), file.name);
+            listed.insert(path, of_file(item.clone(), placeholder, &file));
         }
     }
     *paths = listed;
@@ -64,30 +81,30 @@ fn take_studies(document: &mut Value) {
     }
 }
 
-/// The item of one table, by its name, its media type and whether it takes points between positions, made of that of all tables.
-fn of_table(mut item: Value, (file, media_type, takes_points): (&str, &str, bool)) -> Value {
+/// The item of one file, made of that of all files, in whose words the placeholder stands for a file.
+fn of_file(mut item: Value, placeholder: &str, file: &ListedFile) -> Value {
     let operation = &mut item["get"];
-    let word = file.replace(['-', '.'], "_");
+    let word = file.name.replace(['-', '.'], "_");
     if let Some(id) = operation["operationId"].as_str() {
-        operation["operationId"] = id.replace("table", &word).into();
+        operation["operationId"] = id.replace(placeholder, &word).into();
     }
     if let Some(summary) = operation["summary"].as_str() {
-        operation["summary"] = summary
-            .replace("one table or picture of the results", file)
-            .replace("one shared table or picture", &format!("shared {file}"))
-            .into();
+        let place = format!("{{{placeholder}}}");
+        operation["summary"] = summary.replace(&place, file.name).into();
+    }
+    if let Some(about) = file.about {
+        operation["description"] = about.into();
     }
     if let Some(parameters) = operation["parameters"].as_array_mut() {
-        let is_of_it = |name: &Value| name != "table" && (takes_points || name != "between");
-        parameters.retain(|parameter| is_of_it(&parameter["name"]));
+        let is_taken = |name: &str| name != placeholder && !file.without.contains(&name);
+        parameters.retain(|parameter| parameter["name"].as_str().is_some_and(is_taken));
     }
-    let content = &mut operation["responses"]["200"]["content"];
-    let schema = match media_type {
-        "application/json" => content["application/json"]["schema"].take(),
-        "application/octet-stream" => json!({ "type": "string", "format": "binary" }),
-        _ => json!({ "type": "string" }),
+    let schema = match (file.schema, file.media_type) {
+        (Some(name), _) => json!({ "$ref": format!("#/components/schemas/{name}") }),
+        (None, "application/octet-stream") => json!({ "type": "string", "format": "binary" }),
+        (None, _) => json!({ "type": "string" }),
     };
-    *content = json!({ media_type: { "schema": schema } });
+    operation["responses"]["200"]["content"] = json!({ file.media_type: { "schema": schema } });
     item
 }
 

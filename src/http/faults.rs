@@ -145,10 +145,6 @@ pub(super) fn of_parameter(name: &str, message: &str, given: Option<&str>) -> St
     let value = format!("{:?}", shortened(given.unwrap_or_default()));
     match Fault::of(message) {
         Fault::Missing(name) => format!("The parameter {name} is needed."),
-        Fault::Unknown(given, known) => {
-            let names = known_names(given, &known);
-            format!("{} is not a parameter here.{names}", shortened(given))
-        }
         Fault::NoneOf(_, known) => {
             let known = known.join(", ");
             format!("{name} is {value}; expected is one of {known}.")
@@ -157,8 +153,18 @@ pub(super) fn of_parameter(name: &str, message: &str, given: Option<&str>) -> St
         Fault::Other("provided string was not `true` or `false`") => {
             format!("{name} is {value}; expected is one of true, false.")
         }
-        Fault::Type(..) | Fault::Other(_) => format!("{name}: {message}"),
+        Fault::Unknown(..) | Fault::Type(..) | Fault::Other(_) => format!("{name}: {message}"),
     }
+}
+
+/// What is wrong with a query that has the parameter `given` where `known` ones are taken.
+pub(super) fn of_unknown_parameter(given: &str, known: &[String]) -> String {
+    let known: Vec<&str> = known.iter().map(String::as_str).collect();
+    let names = match known[..] {
+        [] => " None is taken.".to_owned(),
+        _ => known_names(given, &known),
+    };
+    format!("{} is not a parameter here.{names}", shortened(given))
 }
 
 #[cfg(test)]

@@ -53,7 +53,6 @@ const LINEAR: [u64; 2] = [40, 10];
 
 /// Where to look.
 #[derive(Deserialize, IntoParams)]
-#[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 pub(super) struct FieldParameters {
     /// One of the job's output torques, in N m, not 0; without it, the first of them.
@@ -68,7 +67,6 @@ pub(super) struct FieldParameters {
 
 /// Where to look, and on which cells.
 #[derive(Deserialize, IntoParams)]
-#[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 pub(super) struct GridParameters {
     /// One of the job's output torques, in N m, not 0; without it, the first of them.

@@ -25,7 +25,6 @@ use crate::jobs::{Filter, Job, JobError, Jobs, Membership, Status};
 
 /// Filter of a list.
 #[derive(Deserialize, IntoParams)]
-#[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 pub(super) struct ListParameters {
     /// Jobs in this state, or in one of these, separated by commas.

@@ -40,6 +40,7 @@ mod previews;
 mod problem;
 mod problem_pages;
 mod projects;
+mod queries;
 mod readings;
 mod reference;
 mod resource;

@@ -27,7 +27,6 @@ const PACKED: [u64; 2] = [30, 60];
 
 /// Which gear.
 #[derive(Deserialize, IntoParams)]
-#[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 pub(super) struct ShapeParameters {
     /// The gear whose mode it is; without it, the driving one.

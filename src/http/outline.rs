@@ -24,7 +24,6 @@ const DRAWN: &str = "application/vnd.meshwright.outline+json";
 
 /// Choices that a drawing leaves open; a submission leaves none.
 #[derive(Debug, Deserialize, IntoParams)]
-#[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 pub(super) struct DrawingParameters {
     /// Of a drawing: the one layer that is read; without it, all of them.

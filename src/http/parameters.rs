@@ -15,7 +15,7 @@ use super::faults;
 use super::problem::Refusal;
 use crate::keys::is_user_name;
 
-/// The query of a request. An unknown parameter is refused, as an unknown field is.
+/// The parameters in the query of a request, whose names are known by now.
 pub(super) struct Parameters<T>(pub(super) T);
 
 impl<T: DeserializeOwned, S: Sync> FromRequestParts<S> for Parameters<T> {

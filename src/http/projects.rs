@@ -105,7 +105,6 @@ impl NewProject<'_> {
 
 /// What to list.
 #[derive(Deserialize, IntoParams)]
-#[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 pub(super) struct ProjectListParameters {
     /// So many projects at most.

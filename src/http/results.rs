@@ -20,7 +20,6 @@ pub(super) const TIMES_THE_RESULTS: u64 = 4;
 
 /// Form of the results.
 #[derive(Deserialize, IntoParams)]
-#[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 pub(super) struct ResultsParameters {
     /// True puts the points of `between` into the lists of each curve, at their mesh positions: an event stands twice, just before and just behind it. The

@@ -27,7 +27,6 @@ const MOST_STAGES: usize = 20;
 
 /// Choices that a model leaves open.
 #[derive(Deserialize, IntoParams)]
-#[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 pub(super) struct ModelParameters {
     /// The id of one cylindrical stage; without it, all of them.

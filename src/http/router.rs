@@ -16,6 +16,7 @@ use meshwright_wire::{Code, Problem};
 use serde_json::Value;
 use tower::ServiceBuilder;
 use tower_http::catch_panic::CatchPanicLayer;
+use tower_http::classify::ServerErrorsFailureClass;
 use tower_http::cors::{AllowOrigin, CorsLayer};
 use tower_http::timeout::TimeoutLayer;
 use tower_http::trace::{DefaultOnResponse, TraceLayer};
@@ -27,6 +28,7 @@ use utoipa_axum::routes;
 use super::app::App;
 use super::headers::Trace;
 use super::problem::Refusal;
+use super::queries::{Queries, refuse_unknown_names};
 use super::{
     access, batch, contact_pattern, docs, draw, fields, guides, headers, health, jobs, memory,
     metrics, mode_shapes, outline, packing, previews, problem, problem_pages, projects, reference,
@@ -38,6 +40,7 @@ use crate::jobs::without_secrets;
 pub fn router(app: App) -> Router {
     let edge = Arc::clone(&app.edge);
     let (router, mut openapi) = routes().split_for_parts();
+    let queries = Arc::new(Queries::of(&openapi));
     openapi.servers = Some(vec![docs::server(&edge.public_url)]);
     docs::add_common_answers(&mut openapi);
     docs::say_whether_keys_are_needed(&mut openapi, edge.asks_for_keys, edge.issuer.as_deref());
@@ -58,7 +61,8 @@ pub fn router(app: App) -> Router {
         .layer(
             TraceLayer::new_for_http()
                 .make_span_with(span)
-                .on_response(DefaultOnResponse::new().level(Level::INFO)),
+                .on_response(DefaultOnResponse::new().level(Level::INFO))
+                .on_failure(failed),
         )
         .layer(from_fn(metrics::count))
         .layer(from_fn(headers::tell))
@@ -73,6 +77,7 @@ pub fn router(app: App) -> Router {
         ))
         .layer(CatchPanicLayer::custom(problem::of_panic));
     router
+        .route_layer(from_fn_with_state(queries, refuse_unknown_names))
         .merge(docs::routes_of_docs(&openapi))
         .merge(web::routes_of_page())
         .merge(guides::routes_of_guides())
@@ -233,6 +238,16 @@ fn cors(origins: &[HeaderValue]) -> CorsLayer {
             name("x-request-id"),
         ])
         .max_age(Duration::from_secs(3600))
+}
+
+/// Logs a request that failed. A 503 says that something is full or away, which is nothing that a programmer has to look at.
+fn failed(failure: ServerErrorsFailureClass, latency: Duration, _: &tracing::Span) {
+    match failure {
+        ServerErrorsFailureClass::StatusCode(StatusCode::SERVICE_UNAVAILABLE) => {
+            tracing::warn!(?latency, "503: the request may be sent again");
+        }
+        failure => tracing::error!(%failure, ?latency, "the request failed"),
+    }
 }
 
 /// Fields of a request in the log: never its query or headers, which may hold secrets, nor the secret of a link; of a key its public part, of a token its

@@ -223,24 +223,18 @@ pub(super) async fn results(
     Ok(not_kept(answer))
 }
 
-/// Get one shared table or picture
+/// Get shared {table}
 ///
 /// The answer of `GET /v1/jobs/{id}/results/{table}`, for readers with the link. Caches do not keep it.
 #[utoipa::path(
     get, path = "/shared/{secret}/results/{table}", tag = "Results", operation_id = "get_shared_table",
     params(
         ("secret" = String, Path, description = "The last part of the address of the link."),
-        ("table" = String, Path, example = "ste.csv", description = "A table or a picture of the results, as of a job."),
         TableParameters,
     ),
     security(()),
     responses(
-        (status = 200, description = "The table.", content(
-            (String = "text/csv"),
-            (CurveTable = "application/json"),
-            (String = "image/svg+xml"),
-            (String = "text/plain"),
-        )),
+        (status = 200, description = "The table.", body = CurveTable),
         (status = 400, description = "A parameter is not understood."),
         (status = 404, description = "The link is not known, or has ended; or there is no such table or torque."),
         (status = 409, description = "The job failed or was cancelled, and has no results."),

@@ -20,6 +20,7 @@ use super::app::App;
 use super::blocking::{blocking, goes_on};
 use super::campbell;
 use super::client::Client;
+use super::contract::ListedFile;
 use super::curve_columns::{CurveTable, Table, csv, no_table, select};
 use super::parameters::{IfNoneMatch, JobId, Parameters, invalid, number};
 use super::pictures::{self, Picture};
@@ -32,7 +33,6 @@ const TIMES_FOR_AN_FMU: u64 = 16;
 
 /// Which curve.
 #[derive(Deserialize, IntoParams)]
-#[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 pub(super) struct TableParameters {
     /// The output torque of the curve, in N m; without it, all curves.
@@ -44,25 +44,18 @@ pub(super) struct TableParameters {
     between: Option<bool>,
 }
 
-/// Get one table or picture of the results
+/// Get {table}
 ///
 /// The transmission error, the mesh stiffness, the spectrum, the run-up or the load along the face alone, as JSON, as CSV or as a picture; the load shares as a
 /// picture. The first column of a CSV is the output torque. A column that the results do not have is left out.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/results/{table}", tag = "Results", operation_id = "get_table",
     params(
-        ("table" = String, Path, example = "ste.csv", description = "`curves.csv`, all lists over mesh positions; or `ste`, `mesh-stiffness`, `spectrum`, `run-up` or `face-load`, with `.json`, `.csv` or `.svg`; or `load-share.svg`; or `hole-phase.svg`; or `force-table.csv`, `force-table.txt` (CombiTable2D), `force-table.mo` (a Modelica package), `force-table.fmu` (FMU 2.0, `application/octet-stream`); or `look-up-table.csv`, `look-up-table.txt`, which have one curve over the angle in SI units, datum and signs in their head; or `campbell.csv`, the crossings of the mesh with the natural modes of both gears, or `campbell.svg`, their diagram."),
         TableParameters,
         IfNoneMatch,
     ),
     responses(
-        // Generators that know one answer only take the first: a text, of which JSON is one.
-        (status = 200, description = "The table.", content(
-            (String = "text/csv"),
-            (CurveTable = "application/json"),
-            (String = "image/svg+xml"),
-            (String = "text/plain"),
-        )),
+        (status = 200, description = "The table.", body = CurveTable),
         (status = 400, description = "A parameter is not understood."),
         (status = 404, description = "There is no such job, table or torque, or the job has not ended."),
         (status = 409, description = "The job failed or was cancelled, and has no results."),
@@ -334,11 +327,19 @@ impl File {
     }
 }
 
-/// The names of the tables and pictures, their media types, and whether they take points between positions.
-pub(super) fn files() -> impl Iterator<Item = (&'static str, &'static str, bool)> {
-    let of =
-        |(name, file): &(&'static str, File)| (*name, file.media_type(), file.is_over_positions());
-    FILES.iter().map(of)
+/// The tables and pictures.
+pub(super) fn files() -> Vec<ListedFile> {
+    let of = |(name, file): &(&'static str, File)| ListedFile {
+        name,
+        media_type: file.media_type(),
+        schema: matches!(file, File::Table(_, Form::Json)).then_some("CurveTable"),
+        about: None,
+        without: match file.is_over_positions() {
+            true => &[],
+            false => &["between"],
+        },
+    };
+    FILES.iter().map(of).collect()
 }
 
 fn find_file(file: &str) -> Result<File, Problem> {

@@ -15,7 +15,6 @@ use crate::jobs::{ClientUsage, UserUsage};
 
 /// Filter of a list.
 #[derive(Deserialize, IntoParams)]
-#[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 pub(super) struct UsageParameters {
     /// Maximum number of clients.

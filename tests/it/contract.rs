@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use reqwest::Method;
 use serde_json::Value;
 
 use crate::bench::Bench;
@@ -96,6 +97,37 @@ async fn what_operations_show_to_send_works_as_it_stands() {
         let status = answer.await.unwrap().status();
         assert!(status.is_success(), "{shown}: {status}");
     }
+}
+
+#[tokio::test]
+async fn no_operation_takes_a_parameter_that_it_does_not_declare() {
+    let bench = Bench::quick().await;
+    let document = meshwright::http::openapi();
+    let mut refused = 0;
+    for (path, item) in document["paths"].as_object().unwrap() {
+        let address = path
+            .replace("{id}", "00000000-0000-4000-8000-000000000000")
+            .replace("{n}", "1");
+        for method in item.as_object().unwrap().keys() {
+            let method = Method::from_bytes(method.to_uppercase().as_bytes()).unwrap();
+            let url = bench.url(&format!("{address}?torqe=115&limt=3"));
+            let request = bench.client.request(method.clone(), url);
+            let answer = request.send().await.unwrap();
+            if path.starts_with("/health/") {
+                assert!(answer.status().is_success(), "{path}");
+                continue;
+            }
+            let status = answer.status();
+            let problem: Value = answer.json().await.unwrap();
+            let detail = problem["detail"].as_str().unwrap();
+            assert_eq!(status, 400, "{method} {path}: {problem}");
+            assert_eq!(problem["code"], "invalid_parameter", "{method} {path}");
+            let names = |name: &str| detail.starts_with(&format!("{name} is not a parameter here."));
+            assert!(names("torqe") || names("limt"), "{method} {path}: {detail}");
+            refused += 1;
+        }
+    }
+    assert!(refused > 60, "{refused}");
 }
 
 /// The address of an operation with what its parameters show, none of which needs an escape. Every one shows something but those that name what is a client's own.

@@ -97,7 +97,6 @@ pub(super) async fn submit(
 
 /// Filter of a list.
 #[derive(Deserialize, IntoParams)]
-#[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 pub(in crate::http) struct StudyListParameters {
     /// Studies of this name.

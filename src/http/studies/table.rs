@@ -14,8 +14,7 @@ use meshwright_engine::run::Run;
 use meshwright_studies::table::{CsvTable, Outline, TableRow};
 use meshwright_studies::{RowState, StudyResults};
 use meshwright_wire::{Code, Problem, Results};
-use serde::de::IntoDeserializer;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use serde_json::Value;
 use serde_json::value::RawValue;
 use tokio::sync::OnceCell;
@@ -29,6 +28,7 @@ use crate::http::answer::{self, tell_when_to_return};
 use crate::http::app::App;
 use crate::http::blocking::{blocking, turn_to_read};
 use crate::http::client::Client;
+use crate::http::contract::ListedFile;
 use crate::http::parameters::{IfNoneMatch, StudyId};
 use crate::http::problem::Refusal;
 use crate::http::view::with_public_type;
@@ -55,25 +55,13 @@ pub(in crate::http) async fn results(
     send(client, id, &request, StudyFile::Json).await
 }
 
-/// Get the table of a study, or its results, as a file
-///
-/// `table.json`, `table.ndjson` and `table.csv` are the table: in NDJSON one row to a line, each as in the JSON; in CSV one line
-/// for each row and torque, the columns named as in the JSON with dots between the names. `documents.ndjson` has the results of
-/// every design that has some, as `/v1/jobs/{id}/results` gives them: one object to a line, with the place of the design in the
-/// table, its label and its job. All are sent as they are read.
+/// Get {file} of a study
 #[utoipa::path(
     get, path = "/v1/studies/{id}/results/{file}", tag = "Studies", operation_id = "get_study_file",
-    params(
-        ("file" = inline(StudyFile), Path, example = "table.csv", description = "`table.json`, `table.ndjson`, `table.csv` or `documents.ndjson`."),
-        IfNoneMatch,
-    ),
+    params(IfNoneMatch),
     responses(
-        (status = 200, description = "The table, or the results: of NDJSON, the schema is that of a line, `Row` in `table.ndjson`.", content(
-            (StudyResults = "application/json"),
-            (String = "text/csv"),
-            (NdjsonLine = "application/x-ndjson"),
-        )),
-        (status = 404, description = "There is no such study, or no such file."),
+        (status = 200, description = "The file. It is sent as it is read.", body = DesignResults),
+        (status = 404, description = "There is no such study."),
     ),
 )]
 pub(in crate::http) async fn file(
@@ -81,13 +69,10 @@ pub(in crate::http) async fn file(
     Path((id, file)): Path<(String, String)>,
     request: HeaderMap,
 ) -> Result<Response, Refusal> {
-    let form: Result<StudyFile, serde::de::value::Error> =
-        StudyFile::deserialize(file.as_str().into_deserializer());
-    let form = form.map_err(|_| {
-        Problem::new(
-            Code::NotFound,
-            "The files are table.json, table.ndjson, table.csv and documents.ndjson.",
-        )
+    let form = StudyFile::ALL.into_iter().find(|form| form.name() == file);
+    let form = form.ok_or_else(|| {
+        let names = StudyFile::ALL.map(StudyFile::name).join(", ");
+        Problem::new(Code::NotFound, format!("The files are {names}."))
     })?;
     let StudyId(id) = StudyId::of(&id)?;
     send(client, id, &request, form).await
@@ -117,21 +102,51 @@ pub(in crate::http) async fn old_csv(
 }
 
 /// A file of a study.
-#[derive(Clone, Copy, Deserialize, ToSchema)]
-#[schema(title = "StudyFile")]
-pub(in crate::http) enum StudyFile {
+#[derive(Clone, Copy)]
+enum StudyFile {
     /// The table.
-    #[serde(rename = "table.json")]
     Json,
     /// The table, one row to a line.
-    #[serde(rename = "table.ndjson")]
     Ndjson,
     /// The table as CSV.
-    #[serde(rename = "table.csv")]
     Csv,
     /// The results, one to a line.
-    #[serde(rename = "documents.ndjson")]
     Documents,
+}
+
+/// The files of a study.
+pub(in crate::http) fn files() -> Vec<ListedFile> {
+    let of = |form: StudyFile| {
+        let (schema, about) = match form {
+            StudyFile::Json => (
+                Some("StudyResults"),
+                "The table, as `/v1/studies/{id}/results` gives it.",
+            ),
+            StudyFile::Ndjson => (
+                Some("TableRow"),
+                "The table, one row to a line, each as in the JSON. The schema is that of a line.",
+            ),
+            StudyFile::Csv => (
+                None,
+                "The table, one line for each row and torque, the columns named as in the JSON with dots between the names.",
+            ),
+            StudyFile::Documents => (
+                Some("DesignResults"),
+                "The results of every design that has some, as `/v1/jobs/{id}/results` gives them: one object to a line, with the place of the design in the table, its label and its job. The schema is that of a line.",
+            ),
+        };
+        let media_type = form.content_type();
+        ListedFile {
+            name: form.name(),
+            media_type: media_type
+                .split_once(';')
+                .map_or(media_type, |(plain, _)| plain),
+            schema,
+            about: Some(about),
+            without: &[],
+        }
+    };
+    StudyFile::ALL.map(of).into()
 }
 
 /// A line of `documents.ndjson`: the results of a design.
@@ -150,27 +165,17 @@ pub(in crate::http) struct DesignResults<'a> {
     results: &'a RawValue,
 }
 
-/// A line of NDJSON: a row in `table.ndjson`, the results of a design in `documents.ndjson`.
-#[derive(Serialize, ToSchema)]
-#[schema(title = "StudyLine")]
-#[serde(untagged)]
-pub(in crate::http) enum NdjsonLine<'a> {
-    /// A row of the table.
-    Row(Box<TableRow>),
-    /// The results of a design.
-    Results(DesignResults<'a>),
-}
-
-impl NdjsonLine<'_> {
-    fn text(&self) -> String {
-        let mut text = serde_json::to_string(self).expect("a line is plain data");
-        text.push('\n');
-        text
-    }
+/// A line of NDJSON.
+fn ndjson(line: &impl Serialize) -> String {
+    let mut text = serde_json::to_string(line).expect("a line is plain data");
+    text.push('\n');
+    text
 }
 
 impl StudyFile {
-    fn word(self) -> &'static str {
+    const ALL: [Self; 4] = [Self::Json, Self::Ndjson, Self::Csv, Self::Documents];
+
+    fn name(self) -> &'static str {
         match self {
             Self::Json => "table.json",
             Self::Ndjson => "table.ndjson",
@@ -195,7 +200,7 @@ async fn send(
     form: StudyFile,
 ) -> Result<Response, Refusal> {
     let study = StudyRecord::find(&client.app.jobs, client.name(), id).await?;
-    let tag = tag_of(&study, form.word(), &client.app.edge);
+    let tag = tag_of(&study, form.name(), &client.app.edge);
     let name = Arc::from(client.name());
     let made = async {
         let body = match form {
@@ -209,7 +214,7 @@ async fn send(
             StudyFile::Json => ([(CONTENT_TYPE, media_type)], body).into_response(),
             _ => answer::file(
                 media_type,
-                &format!("study-{}-{}", study.id, form.word()),
+                &format!("study-{}-{}", study.id, form.name()),
                 body,
             ),
         })
@@ -373,7 +378,7 @@ impl RowWriter {
             row.problem = row.problem.map(|problem| self.with_address(problem));
             match &self.layout {
                 Layout::Csv(csv) => text.push_str(&csv.lines([&row])),
-                Layout::Lines => text.push_str(&NdjsonLine::Row(Box::new(row)).text()),
+                Layout::Lines => text.push_str(&ndjson(&row)),
                 Layout::List => {
                     if i > 0 {
                         text.push(',');
@@ -469,11 +474,10 @@ fn line(line: &DocumentLine) -> Result<String, Problem> {
     let text = text.replace(['\n', '\r'], " ");
     let results: &RawValue =
         serde_json::from_str(&text).map_err(|_| crate::http::problem::internal())?;
-    let line = NdjsonLine::Results(DesignResults {
+    Ok(ndjson(&DesignResults {
         row: line.position,
         label: &line.label,
         job: &line.job,
         results,
-    });
-    Ok(line.text())
+    }))
 }
