@@ -122,7 +122,8 @@ async fn no_operation_takes_a_parameter_that_it_does_not_declare() {
             let detail = problem["detail"].as_str().unwrap();
             assert_eq!(status, 400, "{method} {path}: {problem}");
             assert_eq!(problem["code"], "invalid_parameter", "{method} {path}");
-            let names = |name: &str| detail.starts_with(&format!("{name} is not a parameter here."));
+            let names =
+                |name: &str| detail.starts_with(&format!("{name} is not a parameter here."));
             assert!(names("torqe") || names("limt"), "{method} {path}: {detail}");
             refused += 1;
         }

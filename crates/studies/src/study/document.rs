@@ -112,8 +112,8 @@ fn read_plan(
             .wrong(Code::MissingField, detail, None);
     };
     if let Some((other, _)) = given.next() {
-        let detail = format!("A study has either /{name} or /{other}; it has both.");
-        return reader.place_of(other).wrong(Code::OutOfRange, detail, None);
+        reader.refuse_both(name, other);
+        return None;
     }
     match name {
         "axes" => read_axes(reader, node, written.axes.as_deref(), errors).map(Plan::Axes),

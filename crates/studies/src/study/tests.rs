@@ -326,9 +326,11 @@ fn repeated_labels_and_values_are_refused() {
     let document = listed(json!([{ "label": "a" }, { "label": "b" }, { "label": "a" }]));
     refuses(&document, Code::OutOfRange, &["/designs/2/label"]);
     // 6 and 6.0 are one number.
-    let document =
+    let mut document =
         axes(json!([{ "path": "/pair/driven/blank/bore_radius_mm", "values": [6, 7, 6.0] }]));
     refuses(&document, Code::OutOfRange, &["/axes/0/values/2"]);
+    document["designs"] = json!([{ "changes": {} }]);
+    refuses(&document, Code::ConflictingFields, &["/designs"]);
 }
 
 #[test]

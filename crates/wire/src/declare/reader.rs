@@ -204,20 +204,29 @@ pub fn is_meant(word: &str, known: &[&str]) -> String {
     nearest_word(word, known).map_or_else(String::new, |word| format!(" Is {word} meant?"))
 }
 
-/// The known word that takes the fewest edits, capitals aside, if they are few.
+/// The known word that takes the fewest edits, capitals aside, if they are few: a third of its letters, and half of those of each of its parts. Of a name with
+/// dots, as `mass_kg.driving`, a piece between them will do.
 pub(crate) fn nearest_word<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     if word.len() > 60 {
         return None;
     }
-    known
-        .iter()
-        .map(|&other| {
-            let edits = strsim::levenshtein(&word.to_lowercase(), &other.to_lowercase());
-            (edits, other)
-        })
-        .min()
-        .filter(|(edits, other)| *edits * 3 <= other.len())
-        .map(|(_, other)| other)
+    let word = word.to_lowercase();
+    let pieces = known.iter().flat_map(|&name| {
+        let pieces = name.split('.').filter(move |piece| *piece != name);
+        std::iter::once(name)
+            .chain(pieces)
+            .map(move |piece| (piece.to_lowercase(), name))
+    });
+    let near = pieces.map(|(piece, name)| (strsim::osa_distance(&word, &piece), piece, name));
+    let (edits, piece, name) = near.min_by_key(|(edits, ..)| *edits)?;
+    (edits * 3 <= piece.len() && has_near_parts(&word, &piece)).then_some(name)
+}
+
+/// False where two names have as many parts and two of them have little in common: another word before the same ones is another name.
+fn has_near_parts(word: &str, other: &str) -> bool {
+    let mut parts = word.split('_').zip(other.split('_'));
+    word.matches('_').count() != other.matches('_').count()
+        || parts.all(|(one, other)| strsim::osa_distance(one, other) * 2 <= other.len())
 }
 
 #[cfg(test)]
@@ -231,5 +240,20 @@ mod tests {
             Some("tooth_count")
         );
         assert_eq!(nearest_word("color", &["module_mm", "tooth_count"]), None);
+        assert_eq!(
+            nearest_word("bore_diameter_mm", &["root_diameter_mm"]),
+            None
+        );
+    }
+
+    #[test]
+    fn a_piece_of_a_name_with_dots_is_answered_with_the_first_name_that_has_it() {
+        let known = ["mass_kg.driving", "mass_kg.driven", "error_um.peak_to_peak"];
+        assert_eq!(nearest_word("mass_gk", &known), Some("mass_kg.driving"));
+        assert_eq!(
+            nearest_word("peak_to_peek_um", &known),
+            Some("error_um.peak_to_peak")
+        );
+        assert_eq!(nearest_word("stiffness", &known), None);
     }
 }

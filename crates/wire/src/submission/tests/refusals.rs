@@ -388,6 +388,19 @@ fn a_refusal_says_what_is_meant_and_proposes_no_other_pair() {
             "/positions_per_mesh_period",
             "/resolution/positions_per_mesh_period",
         ),
+        ("/pair/driving/z", "/pair/driving/tooth_count"),
+        ("/pair/driven/m_n", "/pair/driven/module_mm"),
+        ("/pair/a", "/pair/center_distance_mm"),
+        ("/pair/driven/beta", "/pair/helix_angle_deg"),
+        ("/torque", "/output_torques_n_m"),
+        (
+            "/pair/driven/blank/bore_diameter_mm",
+            "/pair/driven/blank/bore_radius_mm",
+        ),
+        (
+            "/pair/driven/bore_diameter_mm",
+            "/pair/driven/blank/bore_radius_mm",
+        ),
     ] {
         let (detail, _) = said(at, json!(9), Code::UnknownField);
         assert!(detail.ends_with(&format!("Is {place} meant?")), "{detail}");
