@@ -27,6 +27,7 @@ mod guides;
 mod headers;
 mod health;
 mod jobs;
+mod listed_files;
 mod memory;
 mod metrics;
 mod mode_shapes;

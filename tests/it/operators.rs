@@ -160,10 +160,11 @@ async fn no_label_has_a_value_that_a_client_invents() {
         "/v1/studies/{id}/results.csv",
         "/shared/{secret}",
     ]);
-    // The document has an operation for each table.
+    // The document has an operation for each file.
     routes.extend([
         "/v1/jobs/{id}/results/{table}",
         "/shared/{secret}/results/{table}",
+        "/v1/studies/{id}/results/{file}",
     ]);
     // The document has the name of the file, `{n}.vtu`.
     routes.extend(["/v1/jobs/{id}/results/modes/{n}"]);

@@ -372,6 +372,6 @@ async fn a_search_that_cannot_be_is_refused_with_its_place() {
     let refused = problem(bench.post("/v1/studies", &study), 422, "out_of_range").await;
     assert_eq!(refused["errors"][0]["pointer"], "/search/variables/1/step");
     study["axes"] = json!([{ "path": "/output_torques_n_m/0", "values": [1.0] }]);
-    let refused = problem(bench.post("/v1/studies", &study), 422, "out_of_range").await;
+    let refused = problem(bench.post("/v1/studies", &study), 422, "conflicting_fields").await;
     assert_eq!(refused["errors"][0]["pointer"], "/search");
 }

@@ -28,7 +28,7 @@ use crate::http::answer::{self, tell_when_to_return};
 use crate::http::app::App;
 use crate::http::blocking::{blocking, turn_to_read};
 use crate::http::client::Client;
-use crate::http::contract::ListedFile;
+use crate::http::listed_files::ListedFile;
 use crate::http::parameters::{IfNoneMatch, StudyId};
 use crate::http::problem::Refusal;
 use crate::http::view::with_public_type;
