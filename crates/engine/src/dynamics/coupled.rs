@@ -5,6 +5,8 @@
 //! linear in time, which the exponential of A takes exactly, free motion by free motion (`free`). The end of f depends on u there, by a piecewise
 //! linear equation. A stiffness that is constant is met exactly; one that varies, and flanks that part, to second order.
 
+use nalgebra::Complex;
+
 use super::bodies::Coupled;
 use super::free::{Complexes, FreeMotions};
 use super::law::Laws;
@@ -135,15 +137,9 @@ impl<'a> CoupledMotion<'a> {
         let teeth = &self.free.teeth;
         let share = rising.real_of_product(teeth);
         let mut own = self.free.own(state);
-        let mut columns: Vec<Column> = derivative
-            .iter()
-            .flat_map(|columns| columns.iter())
-            .map(|column| {
-                let own = self.free.own(column);
-                let nearer = own.real_of_product(teeth);
-                Column { own, nearer }
-            })
-            .collect();
+        let of_columns = derivative.iter().flat_map(|columns| columns.iter());
+        let own_columns: Vec<Complexes> = of_columns.map(|column| self.free.own(column)).collect();
+        let mut columns = Columns::of(&own_columns, teeth);
         // The share of f at the end of a look comes to the columns with the next one: both are in proportion to how much the teeth have come nearer.
         let later = self.carried.times(rising);
         let mut slope_before = 0.0;
@@ -161,7 +157,7 @@ impl<'a> CoupledMotion<'a> {
                 let end = self.end(step.law, (free, share), deflection, touch.place);
                 own.add(end.rest, rising);
                 nearer = free + share * end.rest;
-                if !columns.is_empty() {
+                if !own_columns.is_empty() {
                     push.clone_from(falling);
                     push.scale(touch.slope);
                     push.add(slope_before, &later);
@@ -187,23 +183,70 @@ impl<'a> CoupledMotion<'a> {
             place = touch.place;
         }
         self.free.to_state(&own, state);
-        for (told, mut column) in derivative.into_iter().flatten().zip(columns) {
-            column.own.add(slope_before * column.nearer, rising);
-            self.free.to_state(&column.own, told);
+        for (j, told) in derivative.into_iter().flatten().enumerate() {
+            let (mut own, nearer) = columns.get(j);
+            own.add(slope_before * nearer, rising);
+            self.free.to_state(&own, told);
         }
     }
 }
 
-/// A small difference of the state, without the share of f at the end of the last look.
-struct Column {
-    own: Complexes,
-    /// By how much the teeth come nearer in it.
-    nearer: f64,
+/// Columns that one step of arithmetic takes together.
+const ABREAST: usize = 8;
+
+/// Small differences of the state, some beside each other, without the share of f at the end of the last look.
+struct Columns {
+    /// The free motions of each.
+    count: usize,
+    /// Those of the first columns, one motion after the other, then those of the next columns.
+    re: Vec<[f64; ABREAST]>,
+    im: Vec<[f64; ABREAST]>,
+    /// By how much the teeth come nearer.
+    nearer: Vec<[f64; ABREAST]>,
+}
+
+impl Columns {
+    /// `columns`, in which the teeth come nearer as `teeth` says.
+    fn of(columns: &[Complexes], teeth: &Complexes) -> Self {
+        let count = teeth.parts().0.len();
+        let groups = columns.chunks(ABREAST);
+        let beside = |of: fn(&Complexes) -> &[f64]| {
+            let group = |group: &'_ [Complexes]| {
+                let motion = |i: usize| {
+                    std::array::from_fn(|lane| group.get(lane).map_or(0.0, |one| of(one)[i]))
+                };
+                (0..count).map(motion).collect::<Vec<_>>()
+            };
+            groups.clone().flat_map(group).collect()
+        };
+        let nearer = |group: &[Complexes]| {
+            std::array::from_fn(|lane| {
+                group
+                    .get(lane)
+                    .map_or(0.0, |one| one.real_of_product(teeth))
+            })
+        };
+        Self {
+            count,
+            re: beside(|one| one.parts().0),
+            im: beside(|one| one.parts().1),
+            nearer: groups.clone().map(nearer).collect(),
+        }
+    }
+
+    /// Column `j`, and by how much the teeth come nearer in it.
+    fn get(&self, j: usize) -> (Complexes, f64) {
+        let (group, lane) = (j / ABREAST, j % ABREAST);
+        let at = |i: usize| self.count * group + i;
+        let motion = |i: usize| Complex::new(self.re[at(i)][lane], self.im[at(i)][lane]);
+        let own = Complexes::of((0..self.count).map(motion));
+        (own, self.nearer[group][lane])
+    }
 }
 
 /// Small differences that are carried over a look: by e^{λ h}, and by what pushes each as far as its teeth have come nearer.
 struct Carried<'a> {
-    columns: &'a mut [Column],
+    columns: &'a mut Columns,
     by: &'a Complexes,
     push: &'a Complexes,
     teeth: &'a Complexes,
@@ -216,9 +259,31 @@ impl Loops for Carried<'_> {
 
     #[inline(always)]
     fn call(self) {
-        for column in self.columns {
-            column.own.carry(self.by, column.nearer, self.push);
-            column.nearer = self.follows * column.own.real_of_product(self.teeth);
+        let Columns {
+            count,
+            re,
+            im,
+            nearer,
+        } = self.columns;
+        let follows = self.follows;
+        let [by, push, teeth] = [self.by, self.push, self.teeth].map(Complexes::parts);
+        let groups = re.chunks_exact_mut(*count).zip(im.chunks_exact_mut(*count));
+        for ((re, im), nearer) in groups.zip(nearer) {
+            let (near, mut sums) = (*nearer, [0.0; ABREAST]);
+            let motions = re.iter_mut().zip(im).zip(by.0.iter().zip(by.1));
+            let shared = push.0.iter().zip(push.1).zip(teeth.0.iter().zip(teeth.1));
+            for (((re, im), by), (push, teeth)) in motions.zip(shared) {
+                // All is read before anything is written, so that each line is one of whole vectors.
+                let (a, b) = (*re, *im);
+                let [by, push, teeth] = [by, push, teeth].map(|(re, im)| (*re, *im));
+                let x: [f64; ABREAST] =
+                    std::array::from_fn(|i| by.0 * a[i] - by.1 * b[i] + push.0 * near[i]);
+                let y: [f64; ABREAST] =
+                    std::array::from_fn(|i| by.1 * a[i] + by.0 * b[i] + push.1 * near[i]);
+                sums = std::array::from_fn(|i| sums[i] + (teeth.0 * x[i] - teeth.1 * y[i]));
+                (*re, *im) = (x, y);
+            }
+            *nearer = sums.map(|sum| follows * sum);
         }
     }
 }

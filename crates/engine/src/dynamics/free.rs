@@ -54,6 +54,12 @@ impl Complexes {
         }
     }
 
+    /// Real and imaginary parts.
+    #[inline(always)]
+    pub(super) fn parts(&self) -> (&[f64], &[f64]) {
+        (self.re.as_flattened(), self.im.as_flattened())
+    }
+
     fn get(&self, i: usize) -> Complex<f64> {
         let (chunk, lane) = (i / LANES, i % LANES);
         Complex::new(self.re[chunk][lane], self.im[chunk][lane])

@@ -1,5 +1,7 @@
 //! Periodic motions: Newton's method on the state after a period, stability by multipliers, and where a motion settles.
 
+use std::sync::Arc;
+
 use nalgebra::{DMatrix, DVector, Dyn, LU, Schur};
 
 use super::coupled::CoupledMotion;
@@ -12,7 +14,13 @@ const MOST_STEPS: u32 = 16;
 const FEW: usize = 2;
 
 /// The part of its last step by which a derivative has to shorten the next one to serve again.
-const SERVES: f64 = 0.1;
+const SERVES: f64 = 0.2;
+
+/// A derivative that was taken with a step of this size left, over the scale of the motion, is that of the periodic motion.
+const ALIKE: f64 = 1e-6;
+
+/// After a step below this the next one is below [`ALIKE`], as a rule.
+const NEARLY_ALIKE: f64 = 10.0 * ALIKE;
 
 /// Largest difference between the end and the beginning of a periodic motion, over the scale of the motion.
 const CLOSED: f64 = 1e-11;
@@ -54,6 +62,8 @@ pub struct Orbit {
     pub multiplier: f64,
     /// True if the motion grows without bound.
     pub runs_away: bool,
+    /// The derivative of the state after it repeats to that before, where it was found to.
+    pub derivative: Option<Arc<Derivative>>,
 }
 
 impl Orbit {
@@ -64,6 +74,7 @@ impl Orbit {
         periods: 1,
         multiplier: 0.0,
         runs_away: false,
+        derivative: None,
     };
 }
 
@@ -137,22 +148,22 @@ pub trait Repeating {
 
     /// The motion near `start` that repeats after `repeats` periods, stable or not.
     fn periodic(&self, start: &[f64], repeats: u32, scale: Scale) -> Option<Orbit> {
-        self.periodic_within(f64::INFINITY, start, repeats, scale)
+        self.periodic_within(f64::INFINITY, (start, None), repeats, scale)
     }
 
-    /// The same if it is found within `reach` of `start`.
+    /// The same if it is found within `reach` of `start`. The derivative of a motion nearby stands in for that of `start`, where there is one.
     fn periodic_within(
         &self,
         reach: f64,
-        start: &[f64],
+        (start, nearby): (&[f64], Option<&Derivative>),
         repeats: u32,
         scale: Scale,
     ) -> Option<Orbit> {
         let size = self.size();
         let scales = self.scales(scale);
         let mut state = start.to_vec();
-        // The derivative, factorized, of an earlier state, and the size of the step that it gave last.
-        let mut known: Option<(LU<f64, Dyn, Dyn>, f64)> = None;
+        let mut known = nearby.map(Known::of_nearby);
+        let mut before = f64::INFINITY;
         for _ in 0..MOST_STEPS {
             let mut end = state.clone();
             let mut derivative = known.is_none().then(|| identity(size));
@@ -160,29 +171,29 @@ pub trait Repeating {
                 self.over_period(&mut end, derivative.as_mut(), &mut |_| ());
             }
             let missed = DVector::from_fn(size, |i, _| end[i] - state[i]);
-            let (factor, before) = match known.take() {
-                Some(known) => known,
-                // (1 − M) step = the remaining difference.
-                None => {
-                    let m = derivative.as_ref()?;
-                    let at = |i: usize, j: usize| f64::from(u8::from(i == j)) - m[j][i];
-                    (DMatrix::from_fn(size, size, at).lu(), f64::INFINITY)
-                }
+            let is_new = derivative.is_some();
+            let mut tried = match derivative {
+                Some(derivative) => Known::of(derivative),
+                None => known.take()?,
             };
-            let step = factor.solve(&missed)?;
+            let step = tried.factor.solve(&missed)?;
             if !step.iter().all(|value| value.is_finite()) {
                 return None;
             }
             let size_of_step = farthest(step.iter().copied(), &scales);
-            if size_of_step < CLOSED
-                && let Some(derivative) = &derivative
-            {
+            if is_new {
+                tried.left = size_of_step;
+            }
+            let is_alike = tried.left <= ALIKE;
+            if size_of_step < CLOSED && is_alike {
+                let derivative = tried.own?;
                 return Some(Orbit {
                     state,
                     repeats: Some(repeats),
                     periods: repeats,
-                    multiplier: multiplier(derivative),
+                    multiplier: multiplier(&derivative),
                     runs_away: false,
+                    derivative: Some(Arc::new(derivative)),
                 });
             }
             for (value, step) in state.iter_mut().zip(&step) {
@@ -191,9 +202,12 @@ pub trait Repeating {
             if distance(&state, start, &scales) > reach {
                 return None;
             }
-            // A derivative takes as long as the motion of as many systems. It serves again while it brings the end of a period much nearer to its beginning.
-            let serves = size > FEW && CLOSED <= size_of_step && size_of_step < SERVES * before;
-            known = serves.then_some((factor, size_of_step));
+            // A derivative takes as long as the motion of as many systems. It serves again while it brings the end of a period much nearer to its beginning, until
+            // the motion is so near that its own is as good as that of the periodic one.
+            let shortens = size_of_step < SERVES * before;
+            let serves = size > FEW && shortens && (is_alike || size_of_step > NEARLY_ALIKE);
+            known = serves.then_some(tried);
+            before = if serves { size_of_step } else { f64::INFINITY };
         }
         None
     }
@@ -203,12 +217,16 @@ pub trait Repeating {
         let scales = self.scales(scale);
         let mut state = from.state.clone();
         state.resize(self.size(), 0.0);
-        let continues = |near: &[f64], repeats: u32| {
-            let orbit = self.periodic_within(ASTRAY, near, repeats, scale)?;
+        let continued = |(near, nearby): (&[f64], Option<&Derivative>), repeats: u32| {
+            let orbit = self.periodic_within(ASTRAY, (near, nearby), repeats, scale)?;
             let is_near = distance(&orbit.state, near, &scales) < NEAR;
             (orbit.multiplier < 1.0 && is_near).then_some(orbit)
         };
-        if let Some(orbit) = continues(&state, from.repeats.unwrap_or(1)) {
+        let continues = |near: &[f64], repeats: u32| continued((near, None), repeats);
+        let repeats = from.repeats.unwrap_or(1);
+        let nearby = from.derivative.as_deref().filter(|_| self.size() > FEW);
+        let found = nearby.and_then(|nearby| continued((&state, Some(nearby)), repeats));
+        if let Some(orbit) = found.or_else(|| continues(&state, repeats)) {
             return orbit;
         }
         // One that goes on from a motion that does not repeat has nothing old to forget.
@@ -250,6 +268,7 @@ pub trait Repeating {
             periods: self.periods_of(WATCHED),
             multiplier: f64::INFINITY,
             runs_away: false,
+            derivative: None,
         }
     }
 
@@ -262,6 +281,36 @@ pub trait Repeating {
     /// Whole periods in so many looks, one at least.
     fn periods_in_looks(&self, looks: f64) -> u32 {
         (looks / self.period().1).max(1.0) as u32
+    }
+}
+
+/// A derivative by which Newton's method steps.
+struct Known {
+    /// 1 − M of the derivative M, factorized: (1 − M) step = the difference between the end and the beginning.
+    factor: LU<f64, Dyn, Dyn>,
+    /// M, unless it is that of a motion nearby.
+    own: Option<Derivative>,
+    /// The step over the scale of the motion that was left where M was taken.
+    left: f64,
+}
+
+impl Known {
+    fn of(derivative: Derivative) -> Self {
+        let of_nearby = Self::of_nearby(&derivative);
+        Self {
+            own: Some(derivative),
+            ..of_nearby
+        }
+    }
+
+    fn of_nearby(derivative: &Derivative) -> Self {
+        let size = derivative.len();
+        let at = |i: usize, j: usize| f64::from(u8::from(i == j)) - derivative[j][i];
+        Self {
+            factor: DMatrix::from_fn(size, size, at).lu(),
+            own: None,
+            left: f64::INFINITY,
+        }
     }
 }
 
