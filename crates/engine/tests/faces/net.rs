@@ -15,6 +15,8 @@ const UP: usize = 40;
 const ACROSS: usize = 37;
 /// Parts of a slice for the half space under it.
 const PARTS: usize = 8;
+/// Images of a load in the ends of the face, to either side.
+const IMAGES: u32 = 20;
 /// So many half-widths of a contact from where flanks are nearest they are pressed together, and give way as under a line: at a kink or an edge the whole
 /// contact lies on one side of that place.
 const PRESSED: f64 = 2.5;
@@ -255,7 +257,17 @@ impl<'a> Net<'a> {
                     (s * s - s_to * s_to) / (2.0 * r_b) - tau * 0.5 * (s + s_to) * (own - to);
                 let gen_ = (own - to) / cosine;
                 let distance = perp.hypot(gen_).max(0.5 * slice.half_width);
-                half_space += factor * slice.normal[0] / (PARTS as f64 * distance);
+                let width = gear.face_width();
+                let beyond = (1..=IMAGES).flat_map(|i| {
+                    let mirrored = if i % 2 == 0 { own - to } else { own + to };
+                    [-1.0, 1.0].map(|end| mirrored + end * f64::from(i) * width)
+                });
+                let images: f64 = beyond.map(|z| 1.0 / perp.hypot(z / cosine)).sum();
+                // As far as these reach, a line without ends in the plane has this from both kinds of images.
+                let reach = 2.0 * (f64::from(IMAGES) + 0.5) * width / cosine;
+                let plane = 2.0 * cosine / width * (reach / gear.normal_rack().module).ln();
+                let inverse = 1.0 / distance + images - plane;
+                half_space += factor * slice.normal[0] / PARTS as f64 * inverse;
             }
         }
         smooth + half_space
