@@ -30,13 +30,22 @@ const MOST_EVALUATIONS: u32 = 40;
 /// A step that moves flanks by less than this part of the δ that the load causes ends the iteration, and so does one within the rounding of δ.
 const NO_WAY: f64 = 1e-11;
 
-/// The points and weights of Gauss's rule over the loaded part of half a slice. It is one rule for all: forces would jump where a half that is loaded on a part of
-/// its length comes to be loaded on all of it, and a balance on a jump is none.
-const GAUSS: [[f64; 2]; 3] = [
-    [0.112_701_665_379_258_31, 5.0 / 18.0],
-    [0.5, 4.0 / 9.0],
-    [0.887_298_334_620_741_7, 5.0 / 18.0],
+/// The points and weights of Gauss's rules over a loaded half of a slice, and over the loaded part of one, where the load is more curved.
+const WHOLE: [[f64; 2]; 2] = [
+    [0.211_324_865_405_187_1, 0.5],
+    [0.788_675_134_594_812_9, 0.5],
 ];
+const PART: [[f64; 2]; 4] = [
+    [0.069_431_844_202_973_71, 0.173_927_422_568_726_93],
+    [0.330_009_478_207_571_9, 0.326_072_577_431_273_1],
+    [0.669_990_521_792_428_1, 0.326_072_577_431_273_1],
+    [0.930_568_155_797_026_3, 0.173_927_422_568_726_93],
+];
+
+/// The least depth of a loaded half of a slice over its largest one, up to which [`PART`] is used, and from which on [`WHOLE`] is. In between both are, each with
+/// a part of its weight: where forces jumped from one rule to the other, there would be no balance on the jump.
+const UNEVEN: f64 = 0.5;
+const EVEN: f64 = 0.75;
 
 /// A loaded point of integration.
 struct Point {
@@ -260,7 +269,7 @@ impl Problem<'_> {
 
     /// The places that are loaded at `state`.
     fn points(&self, state: &State) -> Vec<Point> {
-        let mut points = Vec::with_capacity(2 * GAUSS.len() * self.slices.len());
+        let mut points = Vec::with_capacity(4 * self.slices.len());
         for (i, slice) in self.slices.iter().enumerate() {
             for (end, edge) in slice.ends.iter().enumerate() {
                 let beside = beside(self.slices, i, end);
@@ -268,7 +277,13 @@ impl Problem<'_> {
                 let Some([from, to]) = loaded_part(middle, outer) else {
                     continue;
                 };
-                for [gauss, weight] in GAUSS {
+                let evenness = (middle.min(outer) / middle.max(outer)).max(0.0);
+                let whole = ((evenness - UNEVEN) / (EVEN - UNEVEN)).clamp(0.0, 1.0);
+                let rules = [(&WHOLE[..], whole), (&PART[..], 1.0 - whole)];
+                let rules = rules.into_iter().filter(|(_, share)| *share > 0.0);
+                let points_of =
+                    rules.flat_map(|(rule, share)| rule.iter().map(move |[at, w]| (at, w * share)));
+                for (gauss, weight) in points_of {
                     let place = from + (to - from) * gauss;
                     let depth = middle + (outer - middle) * place;
                     if depth <= 0.0 {
