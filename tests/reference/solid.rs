@@ -65,6 +65,21 @@ struct Band {
     width: f64,
 }
 
+/// The inverse distances of a point at the first of two heights from all images of a load at the other one in both ends of the face, so far `beside` its line,
+/// less those of a line without ends in the plane.
+fn beyond_face(gear: &SolidGear, [z, at]: [f64; 2], beside: f64) -> f64 {
+    const IMAGES: u32 = 20;
+    let width = gear.face_width();
+    let cos = gear.base_helix_angle().cos();
+    let images = (1..=IMAGES).flat_map(|i| {
+        let own = if i % 2 == 0 { z - at } else { z + at };
+        [-1.0, 1.0].map(|end| own + end * f64::from(i) * width)
+    });
+    let reach = (f64::from(IMAGES) + 0.5) * width / cos;
+    let plane = 2.0 * cos / width * (2.0 * reach / gear.normal_rack().module).ln();
+    images.map(|z| (z / cos).hypot(beside).recip()).sum::<f64>() - plane
+}
+
 #[test]
 fn a_helical_tooth_yields_under_oblique_lines_as_in_calculix() {
     const HALF_BAND: f64 = 0.25e-3;
@@ -151,7 +166,8 @@ fn a_helical_tooth_yields_under_oblique_lines_as_in_calculix() {
                 let mean_width = f64::midpoint(here.width, band.width) * (-1.5_f64).exp();
                 let near = across.hypot(mean_width);
                 let [end, start] = [0.5, -0.5].map(|part| ((along + part * length) / near).asinh());
-                found += (1.0 - 0.09) / (PI * 210e9) * force / length * (end - start);
+                let inverse = (end - start) / length + beyond_face(&gear, [z, *at], near);
+                found += (1.0 - 0.09) / (PI * 210e9) * force * inverse;
                 let (point, loaded) = ((here.roll_length, z), (band.roll_length, *at));
                 found += force * face.at_ends(point, loaded, length);
             }

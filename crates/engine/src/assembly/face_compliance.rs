@@ -250,10 +250,10 @@ impl FaceCompliance {
         }
     }
 
-    /// Displacement of a point on the same flank, a roll length and a height, by a unit force, from its ends: beside the smooth compliance and a half space;
-    /// the force is spread over a piece of a contact line of the length `along` about another such point.
+    /// Displacement of a piece of a contact line of the length `along` about a point, a roll length and a height, by a unit force that is spread over another
+    /// such piece of the same flank: what the tip and a narrow face add to the smooth compliance and a half space with images beyond the ends of the face.
     pub fn at_ends(&self, point: (f64, f64), loaded: (f64, f64), along: f64) -> f64 {
-        self.plain.ends.of_piece(point, loaded, along)
+        self.plain.ends.of_pieces(point, loaded, along)
     }
 
     /// Compliance between the functions of the listed teeth, in m/N: symmetric, a block for each two of them. Teeth count counter-clockwise from any, modulo Z.

@@ -1,7 +1,7 @@
 //! Fit of polynomials to a flank's compliance between nodes.
 
-use faer::Mat;
 use faer::traits::ComplexField;
+use faer::{Mat, Side};
 
 use crate::fem::axial::AxialBasis;
 use crate::fem::dense::symmetrize;
@@ -32,6 +32,9 @@ impl<'a> FlankFit<'a> {
 
     /// The compliance of one flank under its own loads on the polynomials, less the half space: `held` is given node by node, `more` of it on the polynomials
     /// already.
+    ///
+    /// A free end is softer than images make it, and a tooth softer than both. Under loads that vary along the axis faster than the grid resolves, the rest would
+    /// be negative; its negative part is left out.
     pub(super) fn own(&self, held: &Mat<f64>, more: Option<&Mat<f64>>) -> Mat<f64> {
         let space = HalfSpace::new(self.gear, self.axial);
         let mut own = smoothed(&self.nearest(), held, self.axial.len());
@@ -40,6 +43,7 @@ impl<'a> FlankFit<'a> {
         }
         own -= space.over_flank(self.squares, OWN_DEGREE);
         symmetrize(&mut own);
+        own += missing(&own, &self.axial.even());
         own
     }
 
@@ -76,6 +80,33 @@ impl<'a> FlankFit<'a> {
         }
         nearest
     }
+}
+
+/// The part of a compliance `h` between functions that have no mean along the axis, below zero and with the other sign; the mean of each function there is in
+/// proportion to `even`.
+fn missing(h: &Mat<f64>, even: &[f64]) -> Mat<f64> {
+    let m = even.len();
+    // The squares of the functions, in the mean up the flank.
+    let scale = |i: usize| ((2 * (i / m) + 1) as f64).sqrt();
+    let square: f64 = even.iter().map(|mean| mean * mean).sum();
+    let part = Mat::from_fn(h.nrows(), h.nrows(), |i, j| {
+        let same = if i == j { 1.0 } else { 0.0 };
+        if i / m == j / m {
+            (same - even[i % m] * even[j % m] / square) / scale(i)
+        } else {
+            0.0
+        }
+    });
+    let varying = &part * h * &part;
+    let Ok(eigen) = varying.self_adjoint_eigen(Side::Lower) else {
+        return Mat::zeros(h.nrows(), h.nrows());
+    };
+    let (values, vectors) = (eigen.S(), eigen.U());
+    let scaled = |i: usize, k: usize| scale(i) * vectors[(i, k)];
+    let below = Mat::from_fn(h.nrows(), values.dim(), |i, k| {
+        scaled(i, k) * (-values[k]).max(0.0)
+    });
+    below * Mat::from_fn(values.dim(), h.nrows(), |k, i| scaled(i, k))
 }
 
 /// The squares of the first and of the last of `roll_lengths`.

@@ -4,24 +4,30 @@
 //! y), with Michell's compliance C of the wedge and c of the half plane ([`super::corner`] has the derivation). An image load at the same distance beyond the
 //! tip, (C − c)/c as large, gives that logarithm for a long line, and for a short one its form in space.
 //!
-//! A face that is narrow against its teeth is a plate, which yields by the logarithm of plane stress as far as it is high, where a half space
-//! under a load so narrow would have nothing to tell beyond its width b. Of loads that are even across the face the half space knows
+//! A half space with images beyond both ends of the face ([`super::images`]) has under even loads the logarithm of plane strain at all distances. Between
+//! free ends the stress along the axis, ν (σ_x + σ_y) in plane strain, is missing. Under the pressure p cos kx it is 2 ν p e^(−ky) cos kx at the depth y. Its
+//! release at both ends, of each as of a half space, adds 32/(3π) (1 − ν²) ν²/(k b) of plane stress, as long as the waves are short against the width b.
+//! Under long waves all of ν² of plane stress is added. Both hold for a line of the compliance
 //!
 //! ```text
-//! (c/b) (asinh(b/d) − √(1 + d²/b²) + d/b)
+//! −(ν² c/b) (ln(B + √(B² + d²)) − √(1 + d²/B²) + d/B),   B = 3 b/(16 (1 − ν²))
 //! ```
 //!
-//! at the distance d, and a plate −(c/b) ln d. The difference is that of a wide face too, except for a smooth part.
+//! at the distance d beside the logarithm, with the c of plane stress.
 //!
-//! Both are subtracted from the grid's compliance and added again in the contact. Neither has to be exact: the remainder is smoother, and is fitted.
+//! All are subtracted from the grid's compliance and added again in the contact. None has to be exact: the remainder is smoother, and is fitted.
 
 use std::f64::consts::PI;
 
 use super::corner::tip_softness;
+use super::images::{Images, inverse_in_the_mean};
 use crate::gear::{Material, SolidGear};
 
 /// The distance, in modules, within which a load beyond the tip is blurred: contacts are wider.
 const BLUR: f64 = 0.02;
+
+/// B (1 − ν²)/b: how near a load on a plate the stress along the axis begins to be missing.
+const RELIEVED: f64 = 3.0 / 16.0;
 
 /// Further compliance of a flank beside a half space.
 #[derive(Debug, Clone)]
@@ -35,8 +41,10 @@ pub(crate) struct FlankEnds {
     /// (C − c)/c (1 − ν²)/(πE).
     beyond: f64,
     blur: f64,
-    /// 2/(πE b).
+    /// 2 ν²/(πE b).
     plate: f64,
+    /// The distance B.
+    relieved: f64,
     face_width: f64,
     module: f64,
 }
@@ -68,7 +76,8 @@ impl FlankEnds {
             tip: section.tip_roll_length(),
             beyond: tip_softness(section) * (1.0 - nu * nu) / (PI * e),
             blur: BLUR * module,
-            plate: 2.0 / (PI * e * gear.face_width()),
+            plate: 2.0 * nu * nu / (PI * e * gear.face_width()),
+            relieved: RELIEVED / (1.0 - nu * nu) * gear.face_width(),
             face_width: gear.face_width(),
             module,
         }
@@ -105,26 +114,44 @@ impl FlankEnds {
         (self.tip * self.tip - s * s) / (2.0 * self.base_radius)
     }
 
-    /// Displacement at `s` by a unit force at the roll length `loaded`, even across the face, as on a plate, less that of a half space.
-    pub(crate) fn of_plate(&self, s: f64, loaded: f64) -> f64 {
-        let Lines { stretch, reach, .. } = self.direct(s, loaded);
-        let b = self.face_width;
-        let far = b.hypot(reach);
-        -self.plate / stretch * (((b + far) / self.module).ln() - (far - reach) / b)
+    /// The images of a load beyond both ends of the face.
+    pub(crate) fn images(&self) -> Images {
+        Images {
+            length: self.face_width * self.along,
+            module: self.module,
+        }
     }
 
-    /// Displacement at the roll length `s` and the height `z` by a unit force beside that of a half space, spread over a piece of the contact line of the
-    /// length `along` about the roll length and the height `loaded`.
-    pub(crate) fn of_piece(&self, (s, z): (f64, f64), loaded: (f64, f64), along: f64) -> f64 {
+    /// The inverse distances of a point, a roll length and a height from the middle of the face, from all images of another one.
+    pub(crate) fn beyond_face(&self, (s, z): (f64, f64), loaded: (f64, f64)) -> f64 {
+        let level = (s * s - loaded.0 * loaded.0) / (2.0 * self.base_radius);
+        let beside = level - self.twist * f64::midpoint(s, loaded.0) * (z - loaded.1);
+        let [direct, mirrored] = [z - loaded.1, z + loaded.1].map(|apart| apart * self.along);
+        let images = self.images();
+        let own = |at: &f64| *at != 0.0;
+        let near = images.direct().filter(own).map(|at| direct + at);
+        let near = near.chain(images.mirrored().map(|at| mirrored + at));
+        let near: f64 = near.map(|apart| apart.hypot(beside).recip()).sum();
+        near + images.beyond_direct(direct, beside) + images.beyond_mirrored(mirrored, beside)
+    }
+
+    /// Displacement at `s` by a unit force at the roll length `loaded`, even across the face, as on a plate, less that of plane strain.
+    pub(crate) fn of_plate(&self, s: f64, loaded: f64) -> f64 {
+        let Lines { stretch, reach, .. } = self.direct(s, loaded);
+        let from = self.relieved;
+        let far = from.hypot(reach);
+        -self.plate / stretch * (((from + far) / self.module).ln() - (far - reach) / from)
+    }
+
+    /// Displacement in the mean over a piece of a contact line, about the roll length `s` and the height `z`, by a unit force spread over another one, beside that
+    /// of a half space with images; both are so long `along` the line.
+    pub(crate) fn of_pieces(&self, (s, z): (f64, f64), loaded: (f64, f64), along: f64) -> f64 {
         let (lines, factor) = self.beyond_tip(s, loaded.0);
-        let slope = self.twist * self.tip;
-        // The line leans against the tip, and beyond it the other way.
-        let (sin, cos) = (slope / lines.stretch, self.along / lines.stretch);
+        // The line leans against the tip, and its image the other way: pieces of both move apart as their projections on the tip do.
+        let cos = self.along / lines.stretch;
         let out = (self.below_tip(s) + self.below_tip(loaded.0)) * cos;
         let beside = lines.stretch * (z - loaded.1 - lines.nearest);
-        let (middle, off) = (out * sin + beside * cos, out * cos - beside * sin);
-        let off = off.hypot(self.blur);
-        let [to, from] = [0.5, -0.5].map(|part| ((middle + part * along) / off).asinh());
-        factor * (to - from) / along + self.of_plate(s, loaded.0)
+        let inverse = inverse_in_the_mean(along * cos, beside, out.hypot(self.blur));
+        factor * inverse + self.of_plate(s, loaded.0)
     }
 }

@@ -1,6 +1,6 @@
 //! Compliance of a half space between lines along a flank, and at the ends of one: the singular part of a tooth's compliance under its own load.
 
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 use faer::Mat;
 
@@ -14,6 +14,9 @@ use crate::quadrature::{gauss_legendre, legendre};
 const POINTS: usize = 16;
 const STRETCH: f64 = 3.0;
 
+/// Points a piece beyond the degree of its functions, over which images beyond the ends of the face are summed.
+const BEYOND: usize = 14;
+
 /// The half space's compliance between lines along the flank, (1 − ν²)/(π E) ∫∫ f_p f_q / distance.
 pub(crate) struct HalfSpace {
     /// ∫ f_p(z) f_q(z − Δ) dz over Δ.
@@ -25,6 +28,9 @@ pub(crate) struct HalfSpace {
     ends: FlankEnds,
     /// ∫ f_p dz.
     even: Vec<f64>,
+    /// Heights over the face, denser towards its ends, and the weighed functions there, a row each.
+    heights: Vec<f64>,
+    weighed: Mat<f64>,
 }
 
 /// ∫ f_p(z) f_q(z − Δ) dz between two distances Δ, where it is a polynomial: so much of each Legendre polynomial.
@@ -41,7 +47,31 @@ impl HalfSpace {
             poisson_ratio: nu,
             ..
         } = *section.material();
+        // Heights at even angles of a circle over each piece.
+        let count = axial.degree() + BEYOND;
+        let rule = gauss_legendre(count);
+        let pieces = axial.breaks().windows(2).map(|ends| [ends[0], ends[1]]);
+        let places: Vec<(f64, f64)> = pieces
+            .flat_map(|[from, to]| {
+                rule.iter().map(move |(x, w)| {
+                    let (middle, half) = (f64::midpoint(from, to), 0.5 * (to - from));
+                    let angle = FRAC_PI_2 * x;
+                    (
+                        middle + half * angle.sin(),
+                        FRAC_PI_2 * w * half * angle.cos(),
+                    )
+                })
+            })
+            .collect();
+        let mut weighed = Mat::zeros(places.len(), axial.len());
+        for (i, &(z, w)) in places.iter().enumerate() {
+            for (p, f) in axial.values(z).into_iter().enumerate() {
+                weighed[(i, p)] = w * f;
+            }
+        }
         Self {
+            heights: places.into_iter().map(|(z, _)| z).collect(),
+            weighed,
             products: Products::all(axial),
             rule: gauss_legendre(POINTS),
             scale: (1.0 - nu * nu) / (PI * e),
@@ -56,6 +86,7 @@ impl HalfSpace {
         let mut sum = self.along(self.ends.direct(s, loaded), self.scale);
         let (lines, factor) = self.ends.beyond_tip(s, loaded);
         sum += self.along(lines, factor);
+        sum += self.beyond_face(s, loaded);
         let of_plate = self.ends.of_plate(s, loaded);
         for (q, g) in self.even.iter().enumerate() {
             for (p, f) in self.even.iter().enumerate() {
@@ -63,6 +94,16 @@ impl HalfSpace {
             }
         }
         sum
+    }
+
+    /// That of the images beyond both ends of the face.
+    fn beyond_face(&self, s: f64, loaded: f64) -> Mat<f64> {
+        let size = self.heights.len();
+        let between = Mat::from_fn(size, size, |i, j| {
+            let [z, from] = [i, j].map(|i| self.heights[i]);
+            self.scale * self.ends.beyond_face((s, z), (loaded, from))
+        });
+        self.weighed.transpose() * (between * &self.weighed)
     }
 
     /// `factor` times ∫∫ f_p f_q / distance between two lines.
@@ -256,9 +297,9 @@ mod tests {
                 let lean = (tau * tip * cos).atan();
                 let away = (2.0 * tip * tip - s * s - loaded * loaded) / (2.0 * r_b) * lean.cos();
                 let softness = tip_softness(section);
-                // The mean over the face of the half space's compliance, as for straight teeth.
-                let (b, d) = (20e-3, (level * lean_of(slope, cos)).abs());
-                let plate = -2.0 / (PI * 210e9 * b)
+                // The difference of a plate from plane strain, ν = 0.3.
+                let (b, d) = (20e-3_f64 * 3.0 / 14.56, (level * lean_of(slope, cos)).abs());
+                let plate = -0.18 / (PI * 210e9 * 20e-3)
                     * slope_of(slope, cos).recip()
                     * (((b + b.hypot(d)) / 2e-3).ln() - (b.hypot(d) - d) / b);
                 let rule: Vec<(f64, Vec<f64>)> = axial
@@ -273,7 +314,8 @@ mod tests {
                         let distance = across.hypot((z - y) / cos);
                         let along = (z - y) / (cos * lean.cos()) - level * lean.sin();
                         let image = away.hypot(along).hypot(0.02 * 2e-3);
-                        let inverse = 1.0 / distance + softness / image;
+                        let beyond = space.ends.beyond_face((s, *z), (loaded, *y));
+                        let inverse = 1.0 / distance + softness / image + beyond;
                         let of_both = space.scale * inverse + plate;
                         for (q, g) in g.iter().enumerate() {
                             for (p, f) in f.iter().enumerate() {

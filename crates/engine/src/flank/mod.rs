@@ -5,11 +5,13 @@
 //! - `corner`: the wedge at a sharp tip,
 //! - `polynomials`: the smooth part along a face, as polynomials of roll length,
 //! - `half_space`: the compliance between lines along a face,
-//! - `ends`: the difference of a flank from a half space at its tip and at both ends of its face.
+//! - `images`: what a half space becomes between both ends of a face,
+//! - `ends`: the difference of a flank from that at its tip, and of a narrow face.
 
 pub(crate) mod corner;
 pub(crate) mod ends;
 pub(crate) mod half_plane;
 pub(crate) mod half_space;
+pub(crate) mod images;
 pub(crate) mod polynomials;
 pub(crate) mod table;

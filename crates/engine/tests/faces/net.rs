@@ -15,6 +15,8 @@ const UP: usize = 40;
 const ACROSS: usize = 37;
 /// Parts of a slice for the half space under it.
 const PARTS: usize = 8;
+/// Images of a load in the ends of the face, to either side.
+const IMAGES: u32 = 20;
 /// So many half-widths of a contact from where flanks are nearest they are pressed together, and give way as under a line: at a kink or an edge the whole
 /// contact lies on one side of that place.
 const PRESSED: f64 = 2.5;
@@ -60,8 +62,9 @@ impl<'a> Net<'a> {
                 let z = pair.own_height(member, slice.z);
                 of.basis(slice.roll_lengths[member.index()], z, &mut row);
                 let first = size * (slice.pair - pairs[0]) as usize;
+                let arm = arms(pair, slice.roll_lengths)[member.index()];
                 for (i, value) in row.iter().enumerate() {
-                    loads[(first + i, 0)] += value * slice.normal[0];
+                    loads[(first + i, 0)] += value * arm * slice.normal[0];
                 }
             }
             let teeth: Vec<usize> = (0..pairs.len()).collect();
@@ -163,7 +166,12 @@ impl<'a> Net<'a> {
         let cross = |a: Vector2<f64>, b: Vector2<f64>| a.x * b.y - a.y * b.x;
         // Both flanks stand clockwise of what they press on.
         let angle = cross(seen, there).atan2(seen.dot(&there));
-        let arm = -cross(seen, normal);
+        let arms = arms(self.pair, rolls);
+        let at_tip = arms[primary.index()] != 1.0;
+        let arm = match at_tip {
+            true => other.base_radius(),
+            false => -cross(seen, normal),
+        };
         let gap = arm * angle;
         let cosine = self.pair.base_helix_angle().cos();
         let teeth = section.teeth(n);
@@ -180,7 +188,7 @@ impl<'a> Net<'a> {
         if open >= 0.0 {
             return Some((0.0, rolls));
         }
-        Some((-open - self.yielded((n, z), rolls), rolls))
+        Some((-open - self.yielded((n, z), rolls, arms), rolls))
     }
 
     fn line(&self, n: i64) -> impl Iterator<Item = &SliceLoad> {
@@ -224,13 +232,16 @@ impl<'a> Net<'a> {
         })
     }
 
-    /// How far both flanks of pair `n` give way along the normal at the height `z` and these roll lengths.
-    fn yielded(&self, (n, z): (i64, f64), rolls: [f64; 2]) -> f64 {
-        let of = Member::BOTH.map(|member| self.yielded_by(member, (n, z), rolls[member.index()]));
+    /// How far both flanks of pair `n` give way along the normal at the height `z` and these roll lengths, with the arms of a force there.
+    fn yielded(&self, (n, z): (i64, f64), rolls: [f64; 2], arms: [f64; 2]) -> f64 {
+        let of = Member::BOTH.map(|member| {
+            let i = member.index();
+            self.yielded_by(member, (n, z), (rolls[i], arms[i]))
+        });
         of[0] + of[1]
     }
 
-    fn yielded_by(&self, member: Member, (n, z): (i64, f64), s: f64) -> f64 {
+    fn yielded_by(&self, member: Member, (n, z): (i64, f64), (s, arm): (f64, f64)) -> f64 {
         let yields = &self.yields[member.index()];
         let own = self.pair.own_height(member, z);
         let mut row = vec![0.0; yields.basis_len()];
@@ -255,9 +266,39 @@ impl<'a> Net<'a> {
                     (s * s - s_to * s_to) / (2.0 * r_b) - tau * 0.5 * (s + s_to) * (own - to);
                 let gen_ = (own - to) / cosine;
                 let distance = perp.hypot(gen_).max(0.5 * slice.half_width);
-                half_space += factor * slice.normal[0] / (PARTS as f64 * distance);
+                let width = gear.face_width();
+                let beyond = (1..=IMAGES).flat_map(|i| {
+                    let mirrored = if i % 2 == 0 { own - to } else { own + to };
+                    [-1.0, 1.0].map(|end| mirrored + end * f64::from(i) * width)
+                });
+                let images: f64 = beyond.map(|z| 1.0 / perp.hypot(z / cosine)).sum();
+                // As far as these reach, a line without ends in the plane has this from both kinds of images.
+                let reach = 2.0 * (f64::from(IMAGES) + 0.5) * width / cosine;
+                let plane = 2.0 * cosine / width * (reach / gear.normal_rack().module).ln();
+                let inverse = 1.0 / distance + images - plane;
+                half_space += factor * slice.normal[0] / PARTS as f64 * inverse;
             }
         }
-        smooth + half_space
+        arm * smooth + half_space
     }
+}
+
+/// The arms about both axes, over the base radii, of a force where flanks meet at these roll lengths: a tip edge is pressed along the normal of the other flank, and
+/// its gear turns and bends by the torque of the force.
+fn arms(pair: &SolidPair, rolls: [f64; 2]) -> [f64; 2] {
+    const AT_TIP: f64 = 1.0 - 1e-9;
+    let section = pair.section();
+    let a = section.center_distance();
+    Member::BOTH.map(|member| {
+        let (gear, mate) = (section.gear(member), section.gear(member.other()));
+        let (s, met) = (rolls[member.index()], rolls[member.other().index()]);
+        if s < AT_TIP * gear.tip_form_roll_length() {
+            return 1.0;
+        }
+        let [r, r_mate] = [(gear, s), (mate, met)].map(|(gear, s)| gear.base_radius().hypot(s));
+        // Angles at the axis of the mate: from the line of centers to the point, and on to the foot of the normal.
+        let to_point = ((a * a + r_mate * r_mate - r * r) / (2.0 * a * r_mate)).acos();
+        let to_foot = (met / mate.base_radius()).atan();
+        (a * (to_point + to_foot).cos() - mate.base_radius()) / gear.base_radius()
+    })
 }

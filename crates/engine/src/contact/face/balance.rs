@@ -15,8 +15,9 @@
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatRef, Par};
 
-use super::compliance::half_space;
+use super::compliance::BlurredLine;
 use super::slice::{Carried, Place, Slice, Within};
+use super::stage::Sliced;
 use crate::contact::{ContactError, PositionError};
 use crate::fem::dense::Cholesky;
 
@@ -25,10 +26,6 @@ const MOST_STEPS: u32 = 100;
 
 /// Evaluations of the energy's slope along one step, at most.
 const MOST_EVALUATIONS: u32 = 40;
-
-/// By how much more slices yield, in K q, until their compliance is positive definite. Beside a slice that is about as short as its contact is wide,
-/// the half space of a line without width yields too much: equal and opposite forces would gain energy from it.
-const SOFTER: [f64; 5] = [0.0, 0.1, 0.2, 0.4, 0.8];
 
 /// A step that moves flanks by less than this part of the δ that the load causes ends the iteration, and so does one within the rounding of δ.
 const NO_WAY: f64 = 1e-11;
@@ -44,6 +41,11 @@ const PART: [[f64; 2]; 4] = [
     [0.669_990_521_792_428_1, 0.326_072_577_431_273_1],
     [0.930_568_155_797_026_3, 0.173_927_422_568_726_93],
 ];
+
+/// The least depth of a loaded half of a slice over its largest one, up to which [`PART`] is used, and from which on [`WHOLE`] is. In between both are, each with
+/// a part of its weight: where forces jumped from one rule to the other, there would be no balance on the jump.
+const UNEVEN: f64 = 0.5;
+const EVEN: f64 = 0.75;
 
 /// A loaded point of integration.
 struct Point {
@@ -75,8 +77,8 @@ pub(super) struct Balance {
     pub(super) transmission_error: f64,
     pub(super) stiffness: f64,
     pub(super) iterations: u32,
-    /// True if springs carry more than the load of their table.
-    pub(super) is_beyond_range: bool,
+    /// The largest line load of a slice in the mean over its loaded part.
+    pub(super) heaviest: f64,
     /// By how much the linear yield opens their middles.
     opened: Vec<f64>,
     points: Vec<Point>,
@@ -117,8 +119,6 @@ struct Tangent {
 struct Problem<'a> {
     slices: &'a [Slice],
     lower: Mat<f64>,
-    /// Further compliance of springs ([`SOFTER`]).
-    softer: f64,
     load: f64,
 }
 
@@ -127,46 +127,19 @@ struct Problem<'a> {
 ///
 /// # Errors
 ///
-/// [`ContactError::NotPositiveDefinite`] where slices are so short beside the width of their contact that the compliance is not positive definite.
+/// [`ContactError::NotPositiveDefinite`] where the compliance is not positive definite.
 pub(super) fn balance(
     h: &Mat<f64>,
     slices: &[Slice],
     load: f64,
     start: Option<&Start>,
 ) -> Result<Balance, PositionError> {
-    balance_with(h, slices, load, &[0.0], start)
-}
-
-/// The same for slices that cannot be made longer: they yield more until the compliance is positive definite ([`SOFTER`]).
-pub(super) fn softened_balance(
-    h: &Mat<f64>,
-    slices: &[Slice],
-    load: f64,
-) -> Result<Balance, PositionError> {
-    balance_with(h, slices, load, &SOFTER, None)
-}
-
-fn balance_with(
-    h: &Mat<f64>,
-    slices: &[Slice],
-    load: f64,
-    softer: &[f64],
-    start: Option<&Start>,
-) -> Result<Balance, PositionError> {
-    let factor = |softer: f64| {
-        let mut whole = h.clone();
-        for (i, slice) in slices.iter().enumerate() {
-            whole[(i, i)] += slice.middle.spring.spread(softer);
-        }
-        Some((Cholesky::new(whole)?, softer))
-    };
     let points = slices.len();
-    let found = softer.iter().copied().find_map(factor);
-    let (factor, softer) = found.ok_or(ContactError::NotPositiveDefinite { points })?;
+    let factor = Cholesky::new(h.clone());
+    let factor = factor.ok_or(ContactError::NotPositiveDefinite { points })?;
     let problem = Problem {
         slices,
         lower: factor.lower(),
-        softer,
         load,
     };
     problem.solved(h, start)
@@ -266,7 +239,7 @@ impl Problem<'_> {
             .collect();
         let deltas = self.slices.iter().zip(product(h.as_ref(), &forces));
         let deltas = deltas.map(|(slice, opened)| {
-            let closed = slice.middle.spring.closing_at_end(density * slice.along) * 2.0;
+            let closed = slice.middle.spring.closing(density);
             (slice.middle.gap + opened + closed) / slice.middle.weights[1]
         });
         let delta = deltas.sum::<f64>() / self.slices.len() as f64;
@@ -304,12 +277,13 @@ impl Problem<'_> {
                 let Some([from, to]) = loaded_part(middle, outer) else {
                     continue;
                 };
-                let rule = if middle > 0.0 && outer > 0.0 {
-                    &WHOLE[..]
-                } else {
-                    &PART[..]
-                };
-                for &[gauss, weight] in rule {
+                let evenness = (middle.min(outer) / middle.max(outer)).max(0.0);
+                let whole = ((evenness - UNEVEN) / (EVEN - UNEVEN)).clamp(0.0, 1.0);
+                let rules = [(&WHOLE[..], whole), (&PART[..], 1.0 - whole)];
+                let rules = rules.into_iter().filter(|(_, share)| *share > 0.0);
+                let points_of =
+                    rules.flat_map(|(rule, share)| rule.iter().map(move |[at, w]| (at, w * share)));
+                for (gauss, weight) in points_of {
                     let place = from + (to - from) * gauss;
                     let depth = middle + (outer - middle) * place;
                     if depth <= 0.0 {
@@ -453,10 +427,9 @@ impl Problem<'_> {
         }
         let opened = product(h.as_ref(), &forces);
         // Where a slice carries, forces and their openings are to be the same.
-        for (i, slice) in self.slices.iter().enumerate() {
-            if carried[i].force > 0.0 {
-                let spread = slice.middle.spring.spread(self.softer) * forces[i];
-                gaps[i] = opened[i] + spread - state.opened[i];
+        for (i, carried) in carried.iter().enumerate() {
+            if carried.force > 0.0 {
+                gaps[i] = opened[i] - state.opened[i];
             }
         }
         let without_springs = self.slices.iter().zip(&opened);
@@ -466,12 +439,13 @@ impl Problem<'_> {
                     slice.middle.gap + opened - state.delta * slice.middle.weights[1]
                 })
                 .collect(),
-            is_beyond_range: points.iter().any(|point| {
-                let slice = &self.slices[point.slice];
-                let carried = &carried[point.slice];
-                let long = 0.5 * (carried.part[1] - carried.part[0]) * slice.along;
-                !slice.middle.spring.covers(carried.force / long)
-            }),
+            heaviest: (self.slices.iter().zip(&carried))
+                .filter(|(_, carried)| carried.force > 0.0)
+                .map(|(slice, carried)| {
+                    let long = 0.5 * (carried.part[1] - carried.part[0]) * slice.along;
+                    carried.force / long
+                })
+                .fold(0.0, f64::max),
             load_derivative: in_middles(&points, size, grown),
             carried,
             forces,
@@ -558,7 +532,7 @@ fn loaded_part(middle: f64, outer: f64) -> Option<[f64; 2]> {
     }
 }
 
-/// The slice beside slice `i` of the same line towards its beginning or its `end`, or itself.
+/// The slice beside slice `i` of the same line towards its beginning or its `end`, or itself: beyond an end of a face stands its image.
 fn beside(slices: &[Slice], i: usize, end: usize) -> usize {
     let slice = &slices[i];
     let other = if end == 0 {
@@ -610,29 +584,31 @@ fn product(h: MatRef<'_, f64>, values: &[f64]) -> Vec<f64> {
 }
 
 impl Balance {
-    /// The largest penetration in the middle of each of `slices` and between each two of a line.
-    pub(super) fn penetration(&self, slices: &[Slice]) -> f64 {
+    /// The largest penetration in the middle of each of the slices of `sliced`, and between each two of a line.
+    pub(super) fn penetration(&self, sliced: &Sliced<'_>) -> f64 {
         let inside = self.gaps.iter().fold(0.0, |most: f64, gap| most.max(-gap));
-        (1..slices.len())
-            .filter(|&i| slices[i - 1].pair == slices[i].pair)
-            .map(|i| -self.gap_before(slices, i))
+        let lines = sliced.compliance.lines().iter();
+        lines
+            .flat_map(|line| (1..line.range().len()).map(move |i| (line, i)))
+            .map(|(line, i)| -self.gap_before(&sliced.slices, line, i))
             .fold(inside, f64::max)
     }
 
-    /// The gap between slice `i` and the one before it.
-    fn gap_before(&self, slices: &[Slice], i: usize) -> f64 {
-        let of_line = |(_, slice): &(usize, &Slice)| slice.pair == slices[i].pair;
-        let line = || slices.iter().enumerate().filter(of_line);
-        // Smooth parts between them are interpolated; the half space is taken there.
-        let smooth = |at: usize| {
-            let others = line().filter(|(k, _)| *k != at);
-            let moved = others.map(|(k, other)| self.forces[k] * half_space(other, slices[at].z));
-            self.without_springs[at] - moved.sum::<f64>()
+    /// The gap between slice `i` of a `line` and the one before it.
+    fn gap_before(&self, slices: &[Slice], line: &BlurredLine, i: usize) -> f64 {
+        let forces = || self.forces[line.range()].iter().enumerate();
+        let start = line.range().start;
+        // The smooth part is interpolated between both middles; the half space is taken there.
+        let of_middle = |at: usize| {
+            let moved: f64 = forces().map(|(k, n)| n * line.in_the_mean(at, k)).sum();
+            let slice = &slices[start + at];
+            let closed = slice
+                .middle
+                .spring
+                .closing(self.forces[start + at] / slice.along);
+            self.without_springs[start + at] - moved + closed
         };
-        let z = f64::midpoint(slices[i - 1].z, slices[i].z);
-        let far = line().filter(|(k, _)| *k + 1 != i && *k != i);
-        let moved = far.map(|(k, other)| self.forces[k] * half_space(other, z));
-        let beside = [i - 1, i].map(|k| slices[k].middle.spring.closing_at_end(self.forces[k]));
-        0.5 * (smooth(i - 1) + smooth(i)) + moved.sum::<f64>() + beside[0] + beside[1]
+        let moved: f64 = forces().map(|(k, n)| n * line.ahead(i - 1, k)).sum();
+        0.5 * (of_middle(i - 1) + of_middle(i)) + moved
     }
 }

@@ -227,7 +227,7 @@ impl DrawnStage {
             // A slice that carries on a part of its length grows as it comes to carry on all of it.
             let whole = slice.along * spring.load(usual)[1];
             let stiffness = growth[i].max(whole);
-            compliance[(i, i)] += spring.spread(0.0) + 1.0 / stiffness;
+            compliance[(i, i)] += 1.0 / stiffness;
         }
         let opened = &compliance * Mat::from_fn(slices.len(), 1, |i, _| forces[i]);
         let delta = balance.transmission_error;

@@ -4,8 +4,8 @@
 //! in which direction they push (`touch::gap_profile`). Along a slice stand nonlinear springs between
 //! the flanks ([`spring`]): Hertz's, or the plane's patches of cells where a tip edge, a fillet or a kink is near. The line load is
 //! integrated over the loaded part of the slice, so that it is continuous where the contact ends.
-//! The rest of the compliance is linear: the smooth yield of both gears ([`FlankCompliance`]), and the half space between
-//! the slices of one line (`compliance`). `balance` finds the depths to which the springs are pressed.
+//! The rest of the compliance is linear: the smooth yield of both gears ([`FlankCompliance`]), and the half space along
+//! each line, with images beyond the ends of the faces (`compliance`). `balance` finds the depths to which the springs are pressed.
 //!
 //! ```text
 //! p = δ w − g − H N,   N = ∫ q(p) dz,   ∫ w q(p) dz = F,   w = arm cos β_b
@@ -402,7 +402,7 @@ impl FaceModel {
             transmission_error: balance.transmission_error,
             touch: touches.fold(f64::INFINITY, f64::min),
             stiffness: balance.stiffness,
-            penetration: balance.penetration(slices),
+            penetration: balance.penetration(sliced),
             iterations: balance.iterations,
             ..MeshContact::of_spots(load, spots, gathered.peak())
         };
@@ -554,8 +554,8 @@ mod tests {
                     let (s_a, s_e) = section.path_of_contact();
                     let phases = [s_a, s_e].map(|s| model.pair().phase_at(s));
                     let lines = Stretches::whole(&model, eta, phases);
-                    let heavier = HEAVIER;
-                    let slicer = Slicer::new(&model, eta, &lines, Loading { load, heavier });
+                    let heaviest = HEAVIER * lines.mean_load(load);
+                    let slicer = Slicer::new(&model, eta, &lines, Loading { load, heaviest });
                     let sliced = Sliced::new(&model, slicer, &lines).expect("slices");
                     let compliance = sliced.compliance(&model, 0);
                     let balance = balance(&compliance, &sliced.slices, load, None);

@@ -13,7 +13,8 @@ use crate::gear::{Member, PairDeviations, SolidPair};
 /// How the flanks of one gear give way, smoothly, to forces normal to them.
 ///
 /// z runs from the middle of the gear's own face. The displacement of tooth i at (s, z) into the tooth, under the force N on tooth j at (s', z'), is basis(s,
-/// z)ᵀ smooth_ij basis(s', z') N, and of one tooth also that of a half space, which the contact adds, and the further compliance at its ends.
+/// z)ᵀ smooth_ij basis(s', z') N, and of one tooth also that of a half space with images of the force beyond both ends of the face, which the contact adds, and
+/// the further compliance at its ends.
 pub trait FlankCompliance: Send + Sync {
     /// The number of functions over a flank.
     fn basis_len(&self) -> usize;
@@ -27,8 +28,8 @@ pub trait FlankCompliance: Send + Sync {
     /// The number of teeth after which all that they yield repeats.
     fn repeats_after(&self) -> usize;
 
-    /// Displacement of a point of a tooth, a roll length and a height, by a unit force on the same tooth beside the smooth compliance and a half space, if it
-    /// is spread over a piece of a contact line of the length `along` about another such point.
+    /// Displacement of a piece of a contact line of the length `along` about a point of a tooth, a roll length and a height, by a unit force that is spread
+    /// over another such piece of the same tooth, beside the smooth compliance and the half space.
     fn at_ends(&self, point: (f64, f64), loaded: (f64, f64), along: f64) -> f64;
 }
 

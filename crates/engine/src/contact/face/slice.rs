@@ -3,14 +3,14 @@
 use std::sync::Arc;
 
 use super::FaceModel;
-use super::spring::{Line, Spring};
+use super::spring::{Line, Spring, blur};
 use crate::flank::half_plane::{hertz, logarithm_factor};
 use crate::gear::ContactLine;
 use crate::touch::gap_profile::GapProfile;
 use crate::touch::placement::Section;
 
-/// No slice is shorter than so many half-widths of its contact: a line that short is none.
-const SHORTEST: f64 = 2.0;
+/// No slice is shorter than this part of the blur of lines: equal and opposite forces on shorter ones hardly move anything.
+pub(super) const SHORTEST: f64 = 0.5;
 
 /// One slice.
 #[derive(Clone)]
@@ -25,8 +25,8 @@ pub(super) struct Slice {
     /// Values in its middle, and its ends along the axis.
     pub(super) middle: Place,
     pub(super) ends: [Place; 2],
-    /// Σ 2(1 − ν²)/(πE).
-    pub(super) factor: f64,
+    /// 2(1 − ν²)/(πE) of both gears.
+    pub(super) factors: [f64; 2],
 }
 
 /// A place of a contact line.
@@ -75,9 +75,9 @@ pub(super) struct Carried {
 pub(super) struct Loading {
     /// The load.
     pub(super) load: f64,
-    /// The largest line load that is expected, over the mean one. Under it the contact is so wide that an edge beside it is looked for, and no slice is
-    /// shorter than that width.
-    pub(super) heavier: f64,
+    /// The largest line load that is expected. Under it the contact is so wide that an edge beside it is looked for, and lines are blurred by more than that
+    /// width.
+    pub(super) heaviest: f64,
 }
 
 /// Lines that are cut into slices.
@@ -86,7 +86,7 @@ pub(super) struct Stretches {
     lines: Vec<ContactLine>,
     /// No slice is longer along the axis.
     longest: f64,
-    /// At least so many slices a line, unless they would be shorter than their contact is wide.
+    /// At least so many slices a line, unless they would be shorter than [`SHORTEST`].
     least: f64,
 }
 
@@ -139,6 +139,11 @@ impl Stretches {
         })
     }
 
+    /// The mean line load under `load`: for each length of a contact line normal to it, as along the axis in the transverse section.
+    pub(super) fn mean_load(&self, load: f64) -> f64 {
+        load / length(&self.lines)
+    }
+
     /// True if one of the loaded `slices` of these lies at the end of its line, where the `whole` line goes on.
     pub(super) fn end_under_load(
         &self,
@@ -174,7 +179,11 @@ pub(super) struct Slicer<'a> {
     model: &'a FaceModel,
     eta: f64,
     cosine: f64,
+    /// 2(1 − ν²)/(πE) of both gears, and their sum.
+    factors: [f64; 2],
     factor: f64,
+    /// The blur of lines.
+    pub(super) blur: f64,
     /// The line loads for which springs are made: in the mean, and at most.
     densities: [f64; 2],
 }
@@ -185,19 +194,28 @@ impl<'a> Slicer<'a> {
         model: &'a FaceModel,
         eta: f64,
         stretches: &Stretches,
-        Loading { load, heavier }: Loading,
+        Loading { load, heaviest }: Loading,
     ) -> Self {
-        // For each length along a contact line.
-        let total = length(&stretches.lines);
         let moduli = model.flanks.moduli();
         let factors = moduli.map(|modulus| logarithm_factor(modulus, 1.0));
+        let factor = factors[0] + factors[1];
+        let cosine = model.pair().base_helix_angle().cos();
+        let densities = [stretches.mean_load(load), heaviest];
+        let radius = 0.25 * model.pair().section().line_of_action() / cosine;
         Self {
             model,
             eta,
-            cosine: model.pair().base_helix_angle().cos(),
-            factor: factors[0] + factors[1],
-            densities: [1.0, heavier].map(|times| times * load / total),
+            cosine,
+            factors,
+            factor,
+            blur: blur(densities[1], radius, factor),
+            densities,
         }
+    }
+
+    /// True if no line of `stretches` is longer than the blur.
+    pub(super) fn is_no_line(&self, stretches: &Stretches) -> bool {
+        length(&stretches.lines) <= self.blur * self.cosine
     }
 
     /// The slices of `stretches`. Those of one line are equally long, so that they move with it.
@@ -208,13 +226,10 @@ impl<'a> Slicer<'a> {
 
     fn line(&self, stretches: &Stretches, line: &ContactLine) -> Vec<Slice> {
         let [from, to] = line.heights;
-        let pair = self.model.pair();
-        let radius = 0.25 * pair.section().line_of_action() / self.cosine;
-        let half_width = hertz(self.densities[1], radius, self.factor, 1.0).0;
         let longest = ((to - from) / stretches.longest - 1e-9)
             .ceil()
             .max(stretches.least);
-        let shortest = ((to - from) / (SHORTEST * half_width * self.cosine)).floor();
+        let shortest = ((to - from) / (SHORTEST * self.blur * self.cosine)).floor();
         let count = longest.min(shortest).max(1.0);
         let length = (to - from) / count;
         let along = length / self.cosine;
@@ -223,7 +238,7 @@ impl<'a> Slicer<'a> {
             let section = self.section(line.pair, z);
             // Straight teeth without leads face each other alike in all sections.
             if known.as_ref().is_none_or(|(of, _)| *of != section) {
-                known = self.place(section, along).map(|place| (section, place));
+                known = self.place(section).map(|place| (section, place));
             }
             let (_, place) = known.as_ref()?;
             Some(self.standing(place.clone(), z))
@@ -244,7 +259,7 @@ impl<'a> Slicer<'a> {
                     along,
                     ends: ends.map(|end| end.unwrap_or_else(|| middle.clone())),
                     middle,
-                    factor: self.factor,
+                    factors: self.factors,
                 })
             })
             .collect()
@@ -296,13 +311,13 @@ impl<'a> Slicer<'a> {
     /// A place of `slice`, from its beginning (−1) to its end (1); `None` where flanks do not face each other there.
     pub(super) fn within(&self, slice: &Slice, at: f64) -> Option<Within> {
         let z = slice.z + at * 0.5 * slice.length;
-        let place = self.place(self.section(slice.pair, z), slice.along)?;
+        let place = self.place(self.section(slice.pair, z))?;
         let place = self.standing(place, z);
         Some(Within { at, z, place })
     }
 
-    /// The place of a line in a `section`, on a slice so long `along` the line; `None` where flanks do not face each other.
-    fn place(&self, section: Section, along: f64) -> Option<Place> {
+    /// The place of a line in a `section`; `None` where flanks do not face each other.
+    fn place(&self, section: Section) -> Option<Place> {
         let touching = self.model.flanks.touching(section)?;
         let (view, facing) = (&touching.view, &touching.facing);
         let minimum = &facing.minima[0];
@@ -312,12 +327,13 @@ impl<'a> Slicer<'a> {
             one * other / (one + other)
         };
         let of = Line {
-            along,
+            blur: self.blur,
             radius,
             factor: self.factor,
         };
-        let (spring, gap) = if self.needs_cells(facing, self.densities[1], radius) {
-            Spring::patch(view, facing, self.cosine, of, self.densities)
+        let free = self.free_under(facing, radius);
+        let (spring, gap) = if self.densities[1] >= free {
+            Spring::patch(view, facing, self.cosine, of, self.densities, free)
         } else {
             let spring = Spring::hertz(of, self.densities);
             (spring, minimum.touch * weights[1])
@@ -330,17 +346,21 @@ impl<'a> Slicer<'a> {
         })
     }
 
-    /// True if a contact under `density` may reach an end of the flanks or a kink, or is not that of two parabolas.
-    fn needs_cells(&self, facing: &GapProfile, density: f64, radius: f64) -> bool {
+    /// The line load below which a contact is that of two parabolas and reaches no end of the flanks and no kink; 0 where there is none.
+    fn free_under(&self, facing: &GapProfile, radius: f64) -> f64 {
         const BESIDE: f64 = 1.1;
         const COMMON_TANGENT: f64 = 0.02;
-        let (half_width, _) = hertz(density, radius, self.factor, 1.0);
+        let (usual, _) = hertz(self.densities[1], radius, self.factor, 1.0);
         let minimum = &facing.minima[0];
-        let near = |place: &f64| (place - minimum.arc).abs() < BESIDE * half_width;
-        let inclined = |angle: &f64| *angle * radius > COMMON_TANGENT * half_width;
-        [facing.range.from, facing.range.to].iter().any(near)
-            || facing.kinks.iter().any(near)
-            || minimum.openings.iter().any(inclined)
-            || facing.minima.len() > 1
+        let inclined = |angle: &f64| *angle * radius > COMMON_TANGENT * usual;
+        if minimum.openings.iter().any(inclined) || facing.minima.len() > 1 {
+            return 0.0;
+        }
+        let ends = [facing.range.from, facing.range.to];
+        let nearest = (ends.iter().chain(&facing.kinks))
+            .map(|place| (place - minimum.arc).abs())
+            .fold(f64::INFINITY, f64::min);
+        // The half width grows with the root of the load.
+        self.densities[1] * (nearest / (BESIDE * usual)).powi(2)
     }
 }

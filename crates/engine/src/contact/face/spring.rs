@@ -1,7 +1,8 @@
-//! The spring of a slice: how far the flanks close up near a short piece of a contact line.
+//! The spring at a place of a contact line: how much farther the flanks close up there than where the line load is blurred.
 //!
-//! A line load q, spread over the contact's width, presses the middle of a slice of the length h by K q asinh(h/(2 ρ)), K = Σ 2(1 − ν²)/(πE) of both bodies:
-//! the half space under that slice alone. ρ is the width of a contact of no shape, (a/2) e^(−1/2) of Hertz's; for any other contact the plane's cells give it.
+//! The linear compliance has the half space's 1/√(x² + ρ_0²) along lines, with one blur ρ_0 for all. A line load q, spread over a contact of the width ρ,
+//! presses the flanks farther together by K q ln(ρ_0/ρ), K = Σ 2(1 − ν²)/(πE) of both bodies. ρ is the width of a contact of no shape, (a/2) e^(−1/2) of
+//! Hertz's; for any other contact the plane's cells give it. It grows with the load: the closing rises only as far as ρ is below ρ_0 e^(−1/2).
 
 use std::f64::consts::LN_2;
 use std::sync::{Mutex, OnceLock, PoisonError};
@@ -20,8 +21,8 @@ const CELLS: usize = 24;
 /// Below this part of the density that a spring was made for it is taken to be linear.
 const LEAST: f64 = 1e-6;
 
-/// The part of the half space under a slice that belongs to its mean load, in K q; the rest follows the load at each point.
-const SPREAD: f64 = 1.0;
+/// The growth of the closing with the load, in K, under the largest load for which the blur of lines is chosen.
+const STIFFEST: f64 = 0.1;
 
 /// The line loads at which cells are solved: that for which they are made times powers of this, from `LIGHTEST` such steps below it on.
 const STEP: f64 = 4.0;
@@ -31,8 +32,8 @@ const SOLVED: usize = LIGHTEST as usize + 3;
 /// The piece of a contact line that a spring stands for.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Line {
-    /// Its length along the contact line.
-    pub(super) along: f64,
+    /// The blur ρ_0 of lines.
+    pub(super) blur: f64,
     /// The relative radius of both flanks.
     pub(super) radius: f64,
     /// Σ 2(1 − ν²)/(πE).
@@ -45,11 +46,12 @@ pub(super) struct Spring {
     /// The least load a length for which it is evaluated, and that beyond which it goes on straight.
     least: f64,
     most: f64,
-    /// The logarithms of the latter and of the factor.
+    /// The logarithms of the latter, of the factor and of the blur.
     ln_most: f64,
     ln_factor: f64,
-    /// The part of asinh(h/(2 ρ)) that is [`Spring::spread`].
-    spread: f64,
+    ln_blur: f64,
+    /// The load a length below which its pressure is that of two cylinders.
+    free_under: f64,
     contact: Contact,
 }
 
@@ -86,22 +88,24 @@ pub(super) struct Pressed {
     pub(super) fillet: Option<Member>,
 }
 
+/// The blur of lines for a largest line load: of Hertz's contact under it, of which no relative radius is larger than `radius`, the closing grows by
+/// [`STIFFEST`] still.
+pub(super) fn blur(heaviest: f64, radius: f64, factor: f64) -> f64 {
+    // K q ln(ρ_0/ρ) grows with q by K (ln(ρ_0/ρ) − 1/2), and ρ = (a/2) e^(−1/2).
+    0.5 * hertz(heaviest, radius, factor, 1.0).0 * STIFFEST.exp()
+}
+
 impl Spring {
     fn new(line: Line, [density, heaviest]: [f64; 2], contact: Contact) -> Self {
-        // u = h/(2 ρ) of Hertz's contact is √(q_0/q), and K q asinh u grows with q by K (asinh u − u/(2 √(1 + u²))).
-        let square = line.along * line.along;
-        let unit = square * std::f64::consts::E / (2.0 * line.radius * line.factor);
-        let u = (unit / heaviest).sqrt();
-        let grown = u.asinh() - 0.5 * u / (1.0 + u * u).sqrt();
-        let spread = SPREAD.min(0.75 * grown);
-        let narrowest = u.min(0.5 * (1.2 * spread + 0.5).exp());
+        let most = heaviest.max(density);
         Self {
             line,
             least: LEAST * density,
-            most: unit / (narrowest * narrowest),
-            ln_most: (unit / (narrowest * narrowest)).ln(),
+            most,
+            ln_most: most.ln(),
             ln_factor: line.factor.ln(),
-            spread,
+            ln_blur: line.blur.ln(),
+            free_under: 0.0,
             contact,
         }
     }
@@ -113,13 +117,14 @@ impl Spring {
         Self::new(of, densities, Contact::Hertz { ln_width })
     }
 
-    /// As [`Spring::hertz`], of the flanks of `facing` as `view` sees them, of slices one meter long; and the normal gap between them.
+    /// As [`Spring::hertz`], of the flanks of `facing` as `view` sees them, which stand free under less than a load a length; and the normal gap between them.
     pub(super) fn patch(
         view: &Pose<'_>,
         facing: &GapProfile,
         cosine: f64,
         of: Line,
         densities: [f64; 2],
+        free_under: f64,
     ) -> (Self, f64) {
         let extent = Extent {
             minima: facing.minima.len(),
@@ -150,21 +155,15 @@ impl Spring {
                     problem,
                 };
                 let contact = Contact::Patch(Box::new(cells));
-                (Self::new(of, densities, contact), least)
+                let spring = Self {
+                    free_under,
+                    ..Self::new(of, densities, contact)
+                };
+                (spring, least)
             }
             // There is no room for a cell.
             Err(_) => (Self::hertz(of, densities), cosine * facing.minima[0].touch),
         }
-    }
-
-    /// Closing of the slice by a force spread over it beside [`Spring::load`], and `more` in K q, in m/N.
-    pub(super) fn spread(&self, more: f64) -> f64 {
-        self.line.factor * (self.spread + more) / self.line.along
-    }
-
-    /// True if its table covers the load `q` a length; beyond, it is extrapolated.
-    pub(super) fn covers(&self, q: f64) -> bool {
-        q <= self.most
     }
 
     /// True if it is that of two cylinders.
@@ -209,26 +208,22 @@ impl Spring {
     fn closed(&self, ln_q: f64) -> [f64; 2] {
         const FLATTEST: f64 = 0.05;
         let [ln_rho, exponent] = self.width(ln_q);
-        let u = 0.5 * self.line.along * (-ln_rho).exp();
-        let root = (1.0 + u * u).sqrt();
-        // asinh u.
-        let part = (u + root).ln() - self.spread;
+        let part = self.ln_blur - ln_rho;
         if part < FLATTEST {
             return [ln_q + FLATTEST.ln(), 1.0];
         }
-        let rise = 1.0 - exponent * u / (root * part);
+        let rise = 1.0 - exponent / part;
         [ln_q + part.ln(), rise.max(FLATTEST)]
     }
 
-    /// How far it closes up under `force` at an end of its slice.
-    pub(super) fn closing_at_end(&self, force: f64) -> f64 {
-        if force <= 0.0 {
+    /// How far it closes up under the load `q` a length.
+    pub(super) fn closing(&self, q: f64) -> f64 {
+        if q <= 0.0 {
             return 0.0;
         }
-        let q = (force / self.line.along).max(self.least);
-        let [ln_rho, _] = self.width(q.ln());
-        0.5 * self.line.factor * force / self.line.along
-            * (self.line.along * (-ln_rho).exp()).asinh()
+        let known = q.clamp(self.least, self.most);
+        let [closed, _] = self.closed(known.ln());
+        (closed + self.ln_factor).exp() * q / known
     }
 
     /// ln ρ under a load a length of this logarithm, and d ln ρ/d ln q.
@@ -242,7 +237,9 @@ impl Spring {
     /// Response to the load `q` a length beside the closing.
     pub(super) fn pressed(&self, q: f64) -> Pressed {
         match &self.contact {
-            Contact::Hertz { .. } => {
+            Contact::Patch(cells) if q >= self.free_under => cells.pressed(q),
+            // Cells are as fine as the usual load wants.
+            Contact::Hertz { .. } | Contact::Patch(_) => {
                 let (half_width, pressure) = hertz(q, self.line.radius, self.line.factor, 1.0);
                 Pressed {
                     pressure: Some(pressure),
@@ -251,7 +248,6 @@ impl Spring {
                     ..Pressed::default()
                 }
             }
-            Contact::Patch(cells) => cells.pressed(q),
         }
     }
 }
@@ -347,17 +343,17 @@ mod tests {
         (pair.plane_strain(), 2.0 * logarithm_factor(modulus, 1.0))
     }
 
-    fn patch(phase: f64, along: f64) -> (Spring, f64) {
+    fn patch(phase: f64, blur: f64) -> (Spring, f64) {
         let (pair, factor) = pair();
         let facing = GapProfile::drawn(&pair, phase).expect("they face each other");
         let view = Pose::drawn(&pair, phase, facing.primary);
         let [s, other] = facing.minima[0].roll_lengths.map(|s| s / COSINE);
         let of = Line {
-            along,
+            blur,
             radius: s * other / (s + other),
             factor,
         };
-        Spring::patch(&view, &facing, COSINE, of, [DENSITY, 2.5 * DENSITY])
+        Spring::patch(&view, &facing, COSINE, of, [DENSITY, 2.5 * DENSITY], 0.0)
     }
 
     /// How far `spring` closes up under the load `q` a length.
@@ -367,14 +363,14 @@ mod tests {
 
     #[test]
     fn cells_where_flanks_stand_free_are_hertzs_contact() {
-        let along = 0.5e-3;
-        let (cells, gap) = patch(0.1, along);
+        let blur = 0.2e-3;
+        let (cells, gap) = patch(0.1, blur);
         assert!(gap < 4e-9, "the mean over a cell: {gap}");
         let (pair, factor) = pair();
         let s = pair.roll_length_of(0.1) / COSINE;
         let other = (pair.line_of_action() / COSINE) - s;
         let of = Line {
-            along,
+            blur,
             radius: s * other / (s + other),
             factor,
         };
@@ -396,21 +392,21 @@ mod tests {
 
     #[test]
     fn every_spring_takes_loads_that_grow_as_it_says_and_stiffens() {
-        let along = 0.5e-3;
+        let blur = 0.2e-3;
         let (pair, factor) = pair();
         let (s_a, s_e) = pair.path_of_contact();
         let periods = |s: f64| (s - pair.pitch_roll_length()) / pair.base_pitch();
         let hertz = Spring::hertz(
             Line {
-                along,
+                blur,
                 radius: 9e-3,
                 factor,
             },
             [DENSITY, 2.5 * DENSITY],
         );
         // Just inside the path of contact, where a tip corner is near, and beyond its end.
-        let at_tip = patch(periods(s_e) - 0.01, along).0;
-        let beyond = patch(periods(s_a) - 0.05, along).0;
+        let at_tip = patch(periods(s_e) - 0.01, blur).0;
+        let beyond = patch(periods(s_a) - 0.05, blur).0;
         let thin = patch(periods(s_e) - 0.01, 2e-6).0;
         for (number, spring) in [hertz, at_tip, beyond, thin].iter().enumerate() {
             let mut last: Option<[f64; 2]> = None;
@@ -431,7 +427,7 @@ mod tests {
                     (spring.load(depth + step)[0] - spring.load(depth - step)[0]) / (2.0 * step);
                 let beyond = [depth - step, depth + step].map(|depth| spring.load(depth)[0]);
                 let turns = beyond.iter().any(|q| *q < 2.0 * spring.least)
-                    || spring.covers(beyond[0]) != spring.covers(beyond[1]);
+                    || (beyond[0] <= spring.most) != (beyond[1] <= spring.most);
                 assert!(
                     turns || (growth / slope - 1.0).abs() < 1e-5,
                     "{i}: {slope} {growth}"
@@ -451,7 +447,7 @@ mod tests {
         assert_eq!(pressed.pressure, None);
         assert_eq!(pressed.tip_corner, Some(Member::Driving));
         // A corner is softer than two cylinders.
-        let free = patch(0.1, 0.5e-3).0;
+        let free = patch(0.1, 0.2e-3).0;
         assert!(depth(&spring, 0.2 * DENSITY) > depth(&free, 0.2 * DENSITY));
     }
 }

@@ -9,15 +9,19 @@ use std::sync::{Arc, OnceLock};
 use faer::Mat;
 
 use super::FaceModel;
-use super::balance::{Balance, Start, balance, softened_balance};
+use super::balance::{Balance, Start, balance};
 use super::compliance::SliceCompliance;
 use super::slice::{Loading, NearKink, Slice, Slicer, Stretches, Within};
 use crate::contact::positions::stages;
 use crate::contact::{ContactError, PositionError};
 
-/// Slices are first made for a line load of so many times its mean, and for so many times at most.
-pub(super) const HEAVIER: f64 = 2.5;
-const HEAVIEST: f64 = 200.0;
+/// Slices are first made for a line load of so many times the mean over whole lines, and where they carry more, for this times a power of [`RUNG`]: positions
+/// whole mesh periods apart have few kinds of slices.
+pub(super) const HEAVIER: f64 = 3.5;
+const RUNG: f64 = 1.1;
+
+/// So many rungs farther slices are made where their compliance is not positive definite: they are longer by the root of 2.6.
+const LONGER: i32 = 10;
 
 /// How many times the loaded parts of lines are cut finer, at most.
 const FINEST: usize = 4;
@@ -27,7 +31,7 @@ pub(super) struct Sliced<'a> {
     pub(super) slicer: Slicer<'a>,
     /// Of pairs counted from the mesh period.
     pub(super) slices: Vec<Slice>,
-    compliance: SliceCompliance,
+    pub(super) compliance: SliceCompliance,
     /// Where kinks stand in the middle of the contact on each slice: slice by slice. A kink is near in all mesh periods if it is in one.
     at_kinks: Vec<OnceLock<Option<Within>>>,
 }
@@ -45,7 +49,7 @@ pub(super) struct Balanced<'a> {
 /// Slices that were made, and the balance that was found on them last.
 struct Made<'a> {
     stretches: Stretches,
-    heavier: f64,
+    rung: i32,
     /// `None` where nothing is to be sliced.
     sliced: Option<Arc<Sliced<'a>>>,
     last: Option<Start>,
@@ -56,8 +60,8 @@ pub(super) struct Stage<'a> {
     model: &'a FaceModel,
     eta: f64,
     load: f64,
-    /// Phases of sections that may touch.
-    phases: [f64; 2],
+    /// The lines of sections that may touch.
+    whole: Stretches,
     made: Vec<Made<'a>>,
 }
 
@@ -79,7 +83,7 @@ impl<'a> Stage<'a> {
             model,
             eta,
             load,
-            phases,
+            whole: Stretches::whole(model, eta, phases),
             made: Vec::new(),
         }
     }
@@ -88,13 +92,14 @@ impl<'a> Stage<'a> {
     ///
     /// Where few slices carry load, the loaded part of each line is cut into finer ones.
     pub(super) fn contact(&mut self, period: i64) -> Result<Balanced<'a>, PositionError> {
-        let whole = Stretches::whole(self.model, self.eta, self.phases);
-        let mut balanced = self.balanced(&whole, period)?;
+        let whole = self.whole.clone();
+        let mut balanced = self.balanced(&whole, period, 0.0)?;
         let mut loaded = balanced.loaded(self.model, &whole);
         for _ in 0..FINEST {
             let Some(stretches) = loaded else { break };
-            // Where a line is too short for finer slices, the longer ones are kept.
-            let Ok(finer) = self.balanced(&stretches, period) else {
+            // Where finer slices come to no balance, the longer ones are kept.
+            let heaviest = balanced.balance.heaviest;
+            let Ok(finer) = self.balanced(&stretches, period, heaviest) else {
                 break;
             };
             if stretches.end_under_load(&finer.sliced.slices, &finer.balance.carried, &whole) {
@@ -108,27 +113,35 @@ impl<'a> Stage<'a> {
 
     /// The balance of the slices of whole lines, not cut finer.
     pub(super) fn whole(&mut self, period: i64) -> Result<Balanced<'a>, PositionError> {
-        let whole = Stretches::whole(self.model, self.eta, self.phases);
-        self.balanced(&whole, period)
+        self.balanced(&self.whole.clone(), period, 0.0)
     }
 
-    /// The balance of the slices of `stretches`.
+    /// The rung of a line load, and the line load of a rung.
+    fn rung_of(&self, line_load: f64) -> i32 {
+        let over = line_load / self.heaviest(0);
+        (over.ln() / RUNG.ln()).ceil().max(0.0) as i32
+    }
+
+    fn heaviest(&self, rung: i32) -> f64 {
+        HEAVIER * self.whole.mean_load(self.load) * RUNG.powi(rung)
+    }
+
+    /// The balance of the slices of `stretches`, which are to carry a line load of `expected` at most.
     ///
-    /// No slice is shorter than its contact is wide. Where few of many slices carry, their contact is wider than that of the load for which they were
-    /// made: then longer ones are made.
+    /// Lines are blurred by more than their contact is wide. Where it is wider than that of the line load for which they were made, others are made, until a
+    /// line would be a point.
     fn balanced(
         &mut self,
         stretches: &Stretches,
         period: i64,
+        expected: f64,
     ) -> Result<Balanced<'a>, PositionError> {
         let model = self.model;
-        let mut heavier = HEAVIER;
-        let mut shorter = None;
-        let (sliced, compliance) = loop {
-            let made = self.made(stretches, heavier);
-            let Some(sliced) = made.sliced.clone() else {
-                break shorter.ok_or(PositionError::NoContact)?;
-            };
+        let mut rung = self.rung_of(expected);
+        loop {
+            let made = self.made(stretches, rung);
+            let sliced = made.sliced.clone().ok_or(PositionError::NoContact)?;
+            let start = made.last.clone();
             let apart = sliced.pairs_apart();
             if apart > model.coupled {
                 return Err(PositionError::TooFarApart {
@@ -137,13 +150,10 @@ impl<'a> Stage<'a> {
                 });
             }
             let compliance = sliced.compliance.of_teeth(model, period);
-            if heavier >= HEAVIEST {
-                break (sliced, compliance);
-            }
-            let start = made.last.clone();
+            let is_point = sliced.slicer.is_no_line(stretches);
             match balance(&compliance, &sliced.slices, self.load, start.as_ref()) {
-                Ok(balance) if !balance.is_beyond_range => {
-                    self.made(stretches, heavier).last = Some(balance.start());
+                Ok(balance) if is_point || balance.heaviest <= self.heaviest(rung) => {
+                    self.made(stretches, rung).last = Some(balance.start());
                     return Ok(Balanced {
                         sliced,
                         period,
@@ -151,34 +161,30 @@ impl<'a> Stage<'a> {
                         balance,
                     });
                 }
-                Ok(_) | Err(PositionError::Contact(ContactError::NotPositiveDefinite { .. })) => {
-                    heavier *= HEAVIER;
-                    shorter = Some((sliced, compliance));
+                Ok(balance) => rung = self.rung_of(balance.heaviest).saturating_add(1),
+                Err(PositionError::Contact(ContactError::NotPositiveDefinite { .. }))
+                    if !is_point =>
+                {
+                    rung = rung.saturating_add(LONGER);
                 }
                 Err(error) => return Err(error),
             }
-        };
-        Ok(Balanced {
-            balance: softened_balance(&compliance, &sliced.slices, self.load)?,
-            sliced,
-            period,
-            compliance,
-        })
+        }
     }
 
-    /// The slices of `stretches` with springs for a line load so many times `heavier` than the mean.
-    fn made(&mut self, stretches: &Stretches, heavier: f64) -> &mut Made<'a> {
-        let known = |made: &Made<'_>| made.heavier == heavier && made.stretches == *stretches;
+    /// The slices of `stretches` with springs for the line load of this `rung`.
+    fn made(&mut self, stretches: &Stretches, rung: i32) -> &mut Made<'a> {
+        let known = |made: &Made<'_>| made.rung == rung && made.stretches == *stretches;
         let known = self.made.iter().position(known);
         let place = known.unwrap_or_else(|| {
             let loading = Loading {
                 load: self.load,
-                heavier,
+                heaviest: self.heaviest(rung),
             };
             let slicer = Slicer::new(self.model, self.eta, stretches, loading);
             self.made.push(Made {
                 stretches: stretches.clone(),
-                heavier,
+                rung,
                 sliced: Sliced::new(self.model, slicer, stretches).map(Arc::new),
                 last: None,
             });
@@ -198,7 +204,7 @@ impl<'a> Sliced<'a> {
         let slices = slicer.slices(stretches);
         let kinks = slices.len() * slicer.kink_count();
         (!slices.is_empty()).then(|| Self {
-            compliance: SliceCompliance::new(model, &slices),
+            compliance: SliceCompliance::new(model, &slices, slicer.blur),
             at_kinks: std::iter::repeat_with(OnceLock::new).take(kinks).collect(),
             slicer,
             slices,
