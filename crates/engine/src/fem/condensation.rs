@@ -12,7 +12,7 @@ use super::dense::mirror_lower;
 use super::element::{self, COMPONENTS, ElementStiffness};
 use super::factor::Factor;
 use super::recovery::Functional;
-use super::sparse::{BlockMatrix, Numbering};
+use super::sparse::{BlockMatrix, Numbering, by_entries};
 use crate::gear::Material;
 use crate::grid::Grid;
 
@@ -70,7 +70,11 @@ pub fn condense(
         .iter()
         .zip(element_stiffnesses(grid, material, thickness))
     {
-        matrix.add(element, |i, j| k[(i, j)], &numbering);
+        matrix.add(
+            element,
+            by_entries(COMPONENTS, |i, j| k[(i, j)]),
+            &numbering,
+        );
     }
     // Springs on the kept unknowns make a floating grid definite; they add to the Schur complement exactly and are taken
     // off again below.

@@ -5,7 +5,8 @@ use faer::linalg::cholesky::llt;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::triangular_solve;
 use faer::traits::ComplexField;
-use faer::{Accum, Mat, MatMut, Par};
+use faer::traits::math_utils::{conj, neg, one};
+use faer::{Accum, Mat, MatMut, MatRef, Par};
 
 use crate::run::{Run, Stopped};
 
@@ -51,6 +52,13 @@ impl<T: ComplexField> Cholesky<T> {
     /// Overwrites `b` with L⁻¹ b, so that bᴴ A⁻¹ b becomes a plain product.
     pub(crate) fn half_solve_in_place(&self, b: MatMut<'_, T>) {
         triangular_solve::solve_lower_triangular_in_place(self.0.as_ref(), b, Par::Seq);
+    }
+
+    /// Overwrites `b`, the rows from `first` on of a matrix that is zero above, with those of L⁻¹ times that matrix.
+    pub(crate) fn half_solve_from(&self, first: usize, b: MatMut<'_, T>) {
+        let rest = self.0.nrows() - first;
+        let factor = self.0.submatrix(first, first, rest, rest);
+        triangular_solve::solve_lower_triangular_in_place(factor, b, Par::Seq);
     }
 
     /// Overwrites `b` with L⁻ᴴ b.
@@ -117,13 +125,40 @@ pub(crate) fn entries(a: &Mat<f64>) -> usize {
     a.nrows() * a.ncols()
 }
 
-/// Copies the lower triangle of `a` to its upper one.
-pub(crate) fn mirror_lower(a: &mut Mat<f64>) {
+/// Replaces the upper triangle of `a` by the adjoint of its lower one.
+pub(crate) fn mirror_lower<T: ComplexField>(a: &mut Mat<T>) {
     for j in 0..a.ncols() {
         for i in 0..j {
-            a[(i, j)] = a[(j, i)];
+            a[(i, j)] = conj(&a[(j, i)]);
         }
     }
+}
+
+/// `half`ᴴ `half`, Hermitian.
+pub(crate) fn product<T: ComplexField>(half: MatRef<'_, T>) -> Mat<T> {
+    let mut product = Mat::zeros(half.ncols(), half.ncols());
+    add_product(&mut product, half, one());
+    product
+}
+
+/// Subtracts `half`ᴴ `half` from the lower triangle of a Hermitian matrix, and makes its upper one the adjoint of that.
+pub(crate) fn subtract_product<T: ComplexField>(from: &mut Mat<T>, half: MatRef<'_, T>) {
+    add_product(from, half, neg(&one::<T>()));
+}
+
+fn add_product<T: ComplexField>(sum: &mut Mat<T>, half: MatRef<'_, T>, share: T) {
+    triangular::matmul(
+        sum.as_mut(),
+        BlockStructure::TriangularLower,
+        Accum::Add,
+        half.adjoint(),
+        BlockStructure::Rectangular,
+        half,
+        BlockStructure::Rectangular,
+        share,
+        Par::Seq,
+    );
+    mirror_lower(sum);
 }
 
 /// Replaces both triangles of `a` by their mean.

@@ -7,7 +7,7 @@ use super::condensation::element_stiffnesses;
 use super::element::COMPONENTS;
 use super::factor::Factor;
 use super::prism::{Prism, TakeElement};
-use super::sparse::{BlockMatrix, Numbering};
+use super::sparse::{BlockMatrix, Numbering, by_entries};
 use crate::gear::{Material, Vector};
 use crate::grid::Grid;
 
@@ -40,7 +40,7 @@ pub fn displacements(
     let each = |take: &mut TakeElement<'_>| {
         let stiffnesses = element_stiffnesses(grid, material, thickness);
         for (element, stiffness) in grid.elements.iter().zip(stiffnesses) {
-            take(element, &|i, j| stiffness[(i, j)]);
+            take(element, &by_entries(COMPONENTS, |i, j| stiffness[(i, j)]));
         }
     };
     let answers = solve(part, (grid, COMPONENTS), each, moved, loads)?;
@@ -87,8 +87,9 @@ fn solve(
     let mut matrix = BlockMatrix::new(size, &grid.elements, &numbering);
     // The elements that reach a moved node pull at the free ones.
     let mut pulls = Mat::<f64>::zeros(size * numbering.count, loads.len());
-    each_element(&mut |element, k| {
-        matrix.add(element, k, &numbering);
+    let mut between = vec![0.0; size * size];
+    each_element(&mut |element, fill| {
+        matrix.add(element, fill, &numbering);
         for (b, node) in element.nodes().iter().enumerate() {
             let moved = places[*node as usize];
             if moved == usize::MAX {
@@ -98,9 +99,9 @@ fn solve(
                 let Some(place) = numbering.place(*node) else {
                     continue;
                 };
-                for d in 0..size {
-                    for c in 0..size {
-                        let stiffness = k(size * a + c, size * b + d);
+                fill([a, b], &mut between);
+                for (d, column) in between.chunks_exact(size).enumerate() {
+                    for (c, stiffness) in column.iter().enumerate() {
                         for (j, load) in loads.iter().enumerate() {
                             pulls[(size * place + c, j)] -=
                                 stiffness * load.moves[size * moved + d];

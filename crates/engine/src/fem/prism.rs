@@ -92,8 +92,8 @@ pub struct CondensationCost {
     pub operations: f64,
 }
 
-/// Takes an element and its stiffness by its unknowns.
-pub(super) type TakeElement<'a> = dyn FnMut(&Element, &dyn Fn(usize, usize) -> f64) + 'a;
+/// Takes an element, and what fills the stiffness between two of its nodes, column by column.
+pub(super) type TakeElement<'a> = dyn FnMut(&Element, &dyn Fn([usize; 2], &mut [f64])) + 'a;
 
 /// Unknowns that go through the factor together, about.
 const ROWS_AT_ONCE: usize = 64;
@@ -205,25 +205,74 @@ impl Prism<'_> {
 
     /// Hands each element with its stiffness to `take`.
     pub(super) fn each_element(&self, take: &mut TakeElement<'_>) {
+        let all: Vec<usize> = (0..self.unknowns_of_node()).collect();
+        self.each_element_of(&all, take);
+    }
+
+    /// Hands each element to `take`, with its stiffness on some `unknowns` of each node, which rise.
+    fn each_element_of(&self, unknowns: &[usize], take: &mut TakeElement<'_>) {
         let law = Law3::new(self.material);
-        let AxialMatrices { slope, slopes } = self.axial.matrices();
         let functions = self.axial.len();
+        let own = [0, 1, 2].map(|component| -> Vec<usize> {
+            let all = component * functions..(component + 1) * functions;
+            let own = unknowns.iter().filter(|unknown| all.contains(unknown));
+            own.map(|unknown| unknown - all.start).collect()
+        });
+        let matrices = self.axial.matrices();
+        let products: Vec<Products> = (0..COMPONENTS * COMPONENTS)
+            .map(|pair| {
+                let [p, q] = [pair / COMPONENTS, pair % COMPONENTS].map(|c| own[c].as_slice());
+                Products::new(&matrices, p, q)
+            })
+            .collect();
         for element in &self.grid.elements {
-            let SectionMatrices {
-                plain,
-                mixed,
-                axial,
-            } = section_matrices(element, self.grid, &law, self.twist);
-            take(element, &|i, j| {
-                let ((a, p), (b, q)) = (
-                    (i / functions, i % functions),
-                    (j / functions, j % functions),
-                );
-                let same = if p == q { plain[(a, b)] } else { 0.0 };
-                same + mixed[(a, b)] * slope[(p, q)]
-                    + mixed[(b, a)] * slope[(q, p)]
-                    + axial[(a, b)] * slopes[(p, q)]
+            let section = section_matrices(element, self.grid, &law, self.twist);
+            take(element, &|[a, b], between| {
+                let mut columns = between.chunks_exact_mut(unknowns.len());
+                for (d, of_component) in own.iter().enumerate() {
+                    for (column, to) in (0..of_component.len()).zip(&mut columns) {
+                        let mut first = 0;
+                        for (c, rows) in own.iter().enumerate() {
+                            let to = &mut to[first..first + rows.len()];
+                            let at = [COMPONENTS * a + c, COMPONENTS * b + d];
+                            products[COMPONENTS * c + d].fill(&section, at, column, to);
+                            first += rows.len();
+                        }
+                    }
+                }
             });
+        }
+    }
+}
+
+/// Products of some functions along the axis with others, integrated: M, C, Cᵀ and D.
+struct Products([Mat<f64>; 4]);
+
+impl Products {
+    fn new(AxialMatrices { slope, slopes }: &AxialMatrices, p: &[usize], q: &[usize]) -> Self {
+        let of = |value: &dyn Fn(usize, usize) -> f64| {
+            Mat::from_fn(p.len(), q.len(), |i, j| value(p[i], q[j]))
+        };
+        Self([
+            of(&|p, q| if p == q { 1.0 } else { 0.0 }),
+            of(&|p, q| slope[(p, q)]),
+            of(&|p, q| slope[(q, p)]),
+            of(&|p, q| slopes[(p, q)]),
+        ])
+    }
+
+    /// Fills `to` with a column of the stiffness between two unknowns of a section.
+    fn fill(&self, section: &SectionMatrices, [i, j]: [usize; 2], column: usize, to: &mut [f64]) {
+        let SectionMatrices {
+            plain,
+            mixed,
+            axial,
+        } = section;
+        let shares = [plain[(i, j)], mixed[(i, j)], mixed[(j, i)], axial[(i, j)]];
+        let [same, slope, back, slopes] = self.0.each_ref().map(|of| of.col_as_slice(column));
+        let values = same.iter().zip(slope).zip(back.iter().zip(slopes));
+        for (to, ((same, slope), (back, slopes))) in to.iter_mut().zip(values) {
+            *to = shares[0] * same + shares[1] * slope + shares[2] * back + shares[3] * slopes;
         }
     }
 }
@@ -251,9 +300,8 @@ impl Independent<'_> {
         } = self;
         let (size, all) = (unknowns.len(), prism.unknowns_of_node());
         let mut matrix = BlockMatrix::new(size, &prism.grid.elements, numbering);
-        prism.each_element(&mut |element, k| {
-            let place = |i: usize| all * (i / size) + unknowns[i % size];
-            matrix.add(element, |i, j| k(place(i), place(j)), numbering);
+        prism.each_element_of(unknowns, &mut |element, fill| {
+            matrix.add(element, fill, numbering);
         });
         // Springs on the kept unknowns make a floating grid definite; they add to the Schur complement exactly and are taken
         // off again below.
@@ -591,12 +639,17 @@ mod tests {
     fn energy(prism: &Prism<'_>, u: &[f64]) -> f64 {
         let size = prism.unknowns_of_node();
         let mut energy = 0.0;
-        prism.each_element(&mut |element, k| {
-            let place = |i: usize| size * element.nodes()[i / size] as usize + i % size;
-            let count = size * element.nodes().len();
-            for j in 0..count {
-                for i in 0..count {
-                    energy += 0.5 * u[place(i)] * k(i, j) * u[place(j)];
+        let mut between = vec![0.0; size * size];
+        prism.each_element(&mut |element, fill| {
+            for (b, column_node) in element.nodes().iter().enumerate() {
+                for (a, node) in element.nodes().iter().enumerate() {
+                    fill([a, b], &mut between);
+                    let [rows, columns] = [*node, *column_node].map(|node| size * node as usize);
+                    for (c, column) in between.chunks_exact(size).enumerate() {
+                        for (r, k) in column.iter().enumerate() {
+                            energy += 0.5 * u[rows + r] * k * u[columns + c];
+                        }
+                    }
                 }
             }
         });

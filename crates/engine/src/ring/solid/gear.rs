@@ -10,7 +10,7 @@ use super::sector::SolidSector;
 use super::tooth::SolidTooth;
 use super::web::of_order;
 use crate::fem::FemError;
-use crate::fem::dense::Cholesky;
+use crate::fem::dense::{Cholesky, product};
 use crate::run::Run;
 
 /// Response of the flanks of all teeth, and of the interface circle, to loads on the flank of tooth 0, class by class.
@@ -47,15 +47,14 @@ pub(crate) fn answers(
 ) -> Result<Vec<ClassAnswers>, FemError> {
     each_class(sector, rows, below, run, |ring, mut half| {
         ring.factor.half_solve_in_place(half.as_mut());
-        let flank = half.adjoint() * &half;
-        let (orders, mut unit) = ring.units(sector, wanted);
-        ring.factor.half_solve_in_place(unit.as_mut());
+        let units = ring.units(sector, wanted);
+        let below = half.subrows(units.first, units.half.nrows());
         ClassAnswers {
             class: ring.class,
-            orders,
-            circle: unit.adjoint() * &half,
-            compliance: unit.adjoint() * &unit,
-            flank,
+            circle: units.half.adjoint() * below,
+            compliance: product(units.half.as_ref()),
+            flank: product(half.as_ref()),
+            orders: units.orders,
         }
     })
 }
@@ -112,24 +111,36 @@ impl ClassOfRing {
         })
     }
 
-    /// Unit forces on the orders up to `wanted` of the interface circle, and these orders.
-    fn units(&self, sector: &SolidSector, wanted: Option<usize>) -> (Vec<i64>, Mat<c64>) {
+    /// Unit forces on the orders up to `wanted` of the interface circle.
+    fn units(&self, sector: &SolidSector, wanted: Option<usize>) -> Units {
         let (size, sides) = (sector.size, sector.size * sector.side_nodes);
-        let kept: Vec<usize> = self
-            .orders
-            .iter()
-            .enumerate()
-            .filter(|(_, n)| wanted.is_some_and(|most| n.unsigned_abs() as usize <= most))
-            .map(|(k, _)| k)
+        let is_wanted = |n: &i64| wanted.is_some_and(|most| n.unsigned_abs() as usize <= most);
+        let kept: Vec<usize> = (0..self.orders.len())
+            .filter(|k| is_wanted(&self.orders[*k]))
             .collect();
-        let mut unit = Mat::<c64>::zeros(self.unknowns, kept.len() * size);
+        let first = kept.first().map_or(self.unknowns, |k| sides + k * size);
+        let mut half = Mat::<c64>::zeros(self.unknowns - first, kept.len() * size);
         for (place, k) in kept.iter().enumerate() {
             for c in 0..size {
-                unit[(sides + k * size + c, place * size + c)] = c64::new(1.0, 0.0);
+                half[(sides + k * size + c - first, place * size + c)] = c64::new(1.0, 0.0);
             }
         }
-        (kept.iter().map(|k| self.orders[*k]).collect(), unit)
+        self.factor.half_solve_from(first, half.as_mut());
+        Units {
+            orders: kept.iter().map(|k| self.orders[*k]).collect(),
+            first,
+            half,
+        }
     }
+}
+
+/// Unit forces on orders of the interface circle.
+struct Units {
+    orders: Vec<i64>,
+    /// The first unknown of the class on which they act.
+    first: usize,
+    /// Their products with the inverse of the factor, from that unknown on: all above vanishes.
+    half: Mat<c64>,
 }
 
 /// Motion of the interfaces of all teeth in one class.
@@ -166,8 +177,14 @@ pub(crate) fn motions(
         run,
         |ring, mut by_flank| {
             ring.factor.solve_in_place(by_flank.as_mut());
-            let (wanted, mut by_circle) = ring.units(&tooth.sector, wanted);
-            ring.factor.solve_in_place(by_circle.as_mut());
+            let Units {
+                orders: wanted,
+                first,
+                half,
+            } = ring.units(&tooth.sector, wanted);
+            let mut by_circle = Mat::zeros(ring.unknowns, half.ncols());
+            by_circle.subrows_mut(first, half.nrows()).copy_from(&half);
+            ring.factor.other_half_solve_in_place(by_circle.as_mut());
             ClassMotion {
                 class: ring.class,
                 orders: ring.orders,

@@ -4,12 +4,13 @@
 //! problem in the radius for each order n, Hermitian, whose unknowns stand circle by circle, component by component, function by
 //! function.
 
+use faer::traits::ComplexField;
 use faer::{Mat, c64};
 use nalgebra::SMatrix;
 
 use crate::fem::FemError;
 use crate::fem::axial::{AxialBasis, AxialMatrices};
-use crate::fem::dense::Cholesky;
+use crate::fem::dense::{Cholesky, mirror_lower, subtract_product};
 use crate::fem::prism::{COMPONENTS, Law3};
 use crate::gear::Material;
 use crate::quadrature::{gauss_legendre, parabola};
@@ -81,8 +82,77 @@ impl Circles {
     }
 }
 
-type Radial = SMatrix<nalgebra::Complex<f64>, 9, 9>;
-type RadialStrains = SMatrix<nalgebra::Complex<f64>, 6, 9>;
+type Radial = SMatrix<f64, 9, 9>;
+type RadialStrains = SMatrix<f64, 6, 9>;
+
+/// The stiffness of one element in an order, on amplitudes of which the tangential ones are counted in parts of i: real but for the turn of its frame.
+///
+/// With the radial strains b_r and the strains b_z that a slope along the axis makes, both real, and D the law, the unknowns (a, p) and (b, q) have
+///
+/// ```text
+/// b_rᵀ D b_r δ_pq + b_rᵀ D b_z (C_pq − iθ δ_pq) + b_zᵀ D b_r (C_qp + iθ δ_pq) + b_zᵀ D b_z (D_pq + θ² δ_pq + iθ (C_pq − C_qp)),   θ = n τ
+/// ```
+struct RadialElement<'a> {
+    /// b_rᵀ D b_r + θ² b_zᵀ D b_z.
+    plain: Radial,
+    /// b_rᵀ D b_z.
+    mixed: Radial,
+    /// b_zᵀ D b_z.
+    slopes: Radial,
+    /// θ.
+    turn: f64,
+    axial: &'a AxialMatrices,
+}
+
+impl RadialElement<'_> {
+    /// The real parts of the lower triangle.
+    fn real(&self) -> Mat<f64> {
+        let axial = self.axial;
+        self.lower(|(a, p), (b, q)| {
+            let same = if p == q { self.plain[(a, b)] } else { 0.0 };
+            same + self.mixed[(a, b)] * axial.slope[(p, q)]
+                + self.mixed[(b, a)] * axial.slope[(q, p)]
+                + self.slopes[(a, b)] * axial.slopes[(p, q)]
+        })
+    }
+
+    /// The imaginary parts of the lower triangle.
+    fn imaginary(&self) -> Mat<f64> {
+        let axial = self.axial;
+        self.lower(|(a, p), (b, q)| {
+            let between = axial.slope[(p, q)] - axial.slope[(q, p)];
+            let same = if p == q {
+                self.mixed[(b, a)] - self.mixed[(a, b)]
+            } else {
+                0.0
+            };
+            self.turn * (same + self.slopes[(a, b)] * between)
+        })
+    }
+
+    /// The lower triangle of a matrix whose entries are told by components of nodes and functions.
+    fn lower(&self, of: impl Fn((usize, usize), (usize, usize)) -> f64) -> Mat<f64> {
+        let functions = self.axial.slope.nrows();
+        let mut lower = Mat::zeros(9 * functions, 9 * functions);
+        for (b, q) in (0..9).flat_map(|b| (0..functions).map(move |q| (b, q))) {
+            let column = lower.col_as_slice_mut(b * functions + q);
+            for a in b..9 {
+                for p in 0..functions {
+                    column[a * functions + p] = of((a, p), (b, q));
+                }
+            }
+        }
+        lower
+    }
+}
+
+/// The factor i of the tangential amplitude among the `functions` of each component, and 1 of the others.
+fn in_parts(unknown: usize, functions: usize) -> c64 {
+    match unknown / functions % COMPONENTS {
+        1 => c64::new(0.0, 1.0),
+        _ => c64::new(1.0, 0.0),
+    }
+}
 
 impl Revolution<'_> {
     /// The unknowns of one circle.
@@ -96,11 +166,37 @@ impl Revolution<'_> {
     ///
     /// [`FemError::NotPositiveDefinite`].
     pub fn on_outer(&self, order: i64, below: Option<&Mat<c64>>) -> Result<Mat<c64>, FemError> {
-        let size = self.size();
         let matrices = self.axial.matrices();
-        let mut carried = below.cloned();
+        if self.twist != 0.0 {
+            let of = |ends| self.element(order, ends, &matrices);
+            return self.stacked(order, below.cloned(), of);
+        }
+        // A still frame is its own image in each plane through the axis, and so is all below.
+        let functions = self.axial.len();
+        let parts = |i: usize, j: usize| in_parts(i, functions) * in_parts(j, functions).conj();
+        let below = below.map(|below| {
+            Mat::from_fn(below.nrows(), below.ncols(), |i, j| {
+                (below[(i, j)] * parts(j, i)).re
+            })
+        });
+        let of = |ends| self.radial_element(order, ends, &matrices).real();
+        let real = self.stacked(order, below, of)?;
+        Ok(Mat::from_fn(real.nrows(), real.ncols(), |i, j| {
+            parts(i, j) * real[(i, j)]
+        }))
+    }
+
+    /// The stiffness of `order` on the outer circle with `below` under the inner one, of elements that are made between two radii.
+    fn stacked<T: ComplexField>(
+        &self,
+        order: i64,
+        below: Option<Mat<T>>,
+        element: impl Fn([f64; 2]) -> Mat<T>,
+    ) -> Result<Mat<T>, FemError> {
+        let size = self.size();
+        let mut carried = below;
         for ends in self.elements(order).windows(2) {
-            let mut k = self.element(order, [ends[0], ends[1]], &matrices);
+            let mut k = element([ends[0], ends[1]]);
             carried = Some(match &carried {
                 Some(below) => {
                     add_block(&mut k, 0, below);
@@ -269,41 +365,54 @@ impl Revolution<'_> {
     }
 
     /// The stiffness of one element on its inner circle, its middle and its outer circle.
-    pub(super) fn element(
+    pub(super) fn element(&self, order: i64, ends: [f64; 2], axial: &AxialMatrices) -> Mat<c64> {
+        let element = self.radial_element(order, ends, axial);
+        let real = element.real();
+        let imaginary = (self.twist != 0.0).then(|| element.imaginary());
+        let functions = self.axial.len();
+        let mut k = Mat::<c64>::zeros(real.nrows(), real.ncols());
+        for j in 0..k.ncols() {
+            let of_column = in_parts(j, functions).conj();
+            for i in j..k.nrows() {
+                let imaginary = imaginary.as_ref().map_or(0.0, |of| of[(i, j)]);
+                k[(i, j)] = c64::new(real[(i, j)], imaginary) * in_parts(i, functions) * of_column;
+            }
+        }
+        mirror_lower(&mut k);
+        k
+    }
+
+    /// The stiffness of one element.
+    fn radial_element<'a>(
         &self,
         order: i64,
         [from, to]: [f64; 2],
-        axial: &AxialMatrices,
-    ) -> Mat<c64> {
+        axial: &'a AxialMatrices,
+    ) -> RadialElement<'a> {
         let law = Law3::new(self.material);
-        let (n, functions) = (order as f64, self.axial.len());
-        let i = |x: f64| nalgebra::Complex::new(0.0, x);
-        let real = |x: f64| nalgebra::Complex::new(x, 0.0);
+        let n = order as f64;
         let [mut plain, mut mixed, mut slopes] = [Radial::zeros(); 3];
         let (middle, half) = (f64::midpoint(from, to), (to - from) / 2.0);
         for (x, w) in gauss_legendre(4) {
             let radius = middle + half * x;
-            let weight = real(std::f64::consts::TAU * radius * w * half);
+            let weight = std::f64::consts::TAU * radius * w * half;
             let values = [x * (x - 1.0) / 2.0, 1.0 - x * x, x * (x + 1.0) / 2.0];
             let by_radius = [(x - 0.5) / half, -2.0 * x / half, (x + 0.5) / half];
-            let (mut b_0, mut b_1) = (RadialStrains::zeros(), RadialStrains::zeros());
+            let (mut radial, mut along) = (RadialStrains::zeros(), RadialStrains::zeros());
             for (node, (value, by_radius)) in values.into_iter().zip(by_radius).enumerate() {
                 let [r, t, z] = [3 * node, 3 * node + 1, 3 * node + 2];
-                let around = i(n * value / radius);
-                let turned = i(-self.twist * n * value);
-                b_0[(0, r)] = real(by_radius);
-                b_0[(1, r)] = real(value / radius);
-                b_0[(1, t)] = around;
-                b_0[(2, z)] = turned;
-                b_0[(3, t)] = real(by_radius - value / radius);
-                b_0[(3, r)] = around;
-                b_0[(4, z)] = real(by_radius);
-                b_0[(4, r)] = turned;
-                b_0[(5, z)] = around;
-                b_0[(5, t)] = turned;
-                b_1[(2, z)] = real(value);
-                b_1[(4, r)] = real(value);
-                b_1[(5, t)] = real(value);
+                let around = n * value / radius;
+                // Shears of the tangential direction are counted in parts of i too.
+                radial[(0, r)] = by_radius;
+                radial[(1, r)] = value / radius;
+                radial[(1, t)] = -around;
+                radial[(3, t)] = by_radius - value / radius;
+                radial[(3, r)] = around;
+                radial[(4, z)] = by_radius;
+                radial[(5, z)] = around;
+                along[(2, z)] = value;
+                along[(4, r)] = value;
+                along[(5, t)] = value;
             }
             let stressed = |strains: &RadialStrains| {
                 let mut stresses = RadialStrains::zeros();
@@ -315,41 +424,24 @@ impl Revolution<'_> {
                 }
                 stresses
             };
-            let (s_0, s_1) = (stressed(&b_0), stressed(&b_1));
-            plain += b_0.adjoint() * s_0;
-            mixed += b_0.adjoint() * s_1;
-            slopes += b_1.adjoint() * s_1;
+            let by_slopes = stressed(&along);
+            plain += radial.transpose() * stressed(&radial);
+            mixed += radial.transpose() * by_slopes;
+            slopes += along.transpose() * by_slopes;
         }
-        let unknowns = 9 * functions;
-        let mut k = Mat::<c64>::zeros(unknowns, unknowns);
-        for b in 0..9 {
-            for a in 0..9 {
-                let at = |m: &Radial, a: usize, b: usize| c64::new(m[(a, b)].re, m[(a, b)].im);
-                let (of, mix, back, slope) = (
-                    at(&plain, a, b),
-                    at(&mixed, a, b),
-                    at(&mixed, b, a).conj(),
-                    at(&slopes, a, b),
-                );
-                for q in 0..functions {
-                    for p in 0..functions {
-                        let mut value = mix * axial.slope[(p, q)]
-                            + back * axial.slope[(q, p)]
-                            + slope * axial.slopes[(p, q)];
-                        if p == q {
-                            value += of;
-                        }
-                        k[(a * functions + p, b * functions + q)] = value;
-                    }
-                }
-            }
+        let turn = n * self.twist;
+        RadialElement {
+            plain: plain + slopes * (turn * turn),
+            mixed,
+            slopes,
+            turn,
+            axial,
         }
-        k
     }
 }
 
-/// Schur complement of `k` on its last `kept` unknowns, the others free.
-pub(crate) fn last_of(k: &Mat<c64>, kept: usize) -> Result<Mat<c64>, FemError> {
+/// Schur complement of `k`, of which the lower triangle is read, on its last `kept` unknowns, the others free.
+pub(crate) fn last_of<T: ComplexField>(k: &Mat<T>, kept: usize) -> Result<Mat<T>, FemError> {
     let free = k.nrows() - kept;
     let factor = Cholesky::new(k.submatrix(0, 0, free, free).to_owned()).ok_or(
         FemError::NotPositiveDefinite {
@@ -357,18 +449,18 @@ pub(crate) fn last_of(k: &Mat<c64>, kept: usize) -> Result<Mat<c64>, FemError> {
             unknowns: free,
         },
     )?;
-    let mut half = k.submatrix(0, free, free, kept).to_owned();
+    let mut half = k.submatrix(free, 0, kept, free).adjoint().to_owned();
     factor.half_solve_in_place(half.as_mut());
-    Ok(k.submatrix(free, free, kept, kept) - half.adjoint() * &half)
+    let mut last = k.submatrix(free, free, kept, kept).to_owned();
+    subtract_product(&mut last, half.as_ref());
+    Ok(last)
 }
 
 /// Adds `block` to `k` from the unknown `first` on.
-pub(crate) fn add_block(k: &mut Mat<c64>, first: usize, block: &Mat<c64>) {
-    for j in 0..block.ncols() {
-        for i in 0..block.nrows() {
-            k[(first + i, first + j)] += block[(i, j)];
-        }
-    }
+pub(crate) fn add_block<T: ComplexField>(k: &mut Mat<T>, first: usize, block: &Mat<T>) {
+    let size = block.nrows();
+    let mut at = k.submatrix_mut(first, first, size, size);
+    at += block;
 }
 
 /// Radii with the middle between each two.

@@ -8,7 +8,7 @@ use super::revolution::{add_block, last_of};
 use super::sector::{Arc, SolidSector};
 use crate::fem::FemError;
 use crate::fem::Followers;
-use crate::fem::dense::Cholesky;
+use crate::fem::dense::{Cholesky, mirror_lower};
 use crate::fem::divided::DividedPrism;
 use crate::fem::prism::{CondensationCost, Interface, Prism};
 use crate::grid::BlankGrid;
@@ -205,12 +205,14 @@ impl<'a> HoledRing<'a> {
     /// [`FemError`].
     pub fn on_outer(&self, phase: f64, run: &Run) -> Result<Vec<ClassStiffness>, FemError> {
         let size = self.sector.size;
-        self.each_class(run, |_, orders, stiffness| {
+        self.each_class(run, |_, orders, mut stiffness| {
             let kept = orders.len() * size;
             // Nothing is to be eliminated of a whole ring on its bore.
-            let mut outer = match stiffness.nrows() == kept {
-                true => stiffness,
-                false => last_of(&stiffness, kept)?,
+            let mut outer = if stiffness.nrows() == kept {
+                mirror_lower(&mut stiffness);
+                stiffness
+            } else {
+                last_of(&stiffness, kept)?
             };
             for j in 0..outer.ncols() {
                 for i in 0..outer.nrows() {
@@ -303,7 +305,8 @@ impl<'a> HoledRing<'a> {
         })
     }
 
-    /// Result of `of` for each class that has orders: its number, these orders, and the stiffness of the ring on its unknowns, the outer circle last.
+    /// Result of `of` for each class that has orders: its number, these orders, and the stiffness of the ring on its unknowns, the outer circle last: its
+    /// lower triangle.
     fn each_class<T: Send>(
         &self,
         run: &Run,
@@ -346,7 +349,10 @@ fn following(stiffness: &Mat<c64>, outer: usize) -> Result<Mat<c64>, FemError> {
         part: "the web",
         unknowns: inner,
     })?;
-    let mut follows = -stiffness.submatrix(0, inner, inner, outer).to_owned();
+    let mut follows = -stiffness
+        .submatrix(inner, 0, outer, inner)
+        .adjoint()
+        .to_owned();
     factor.solve_in_place(follows.as_mut());
     Ok(follows)
 }
