@@ -57,6 +57,44 @@ fn five_holes() -> (GearPair, f64) {
     (holed([23, 47], 0.0, 70.2e-3, holes), 120.0)
 }
 
+/// 30/48 teeth with small holes, whose order is 1 nm: 7 of them, 48 periods; and 6, 8 periods.
+fn small_holes() -> [(GearPair, f64); 2] {
+    let pair = |count, circle_radius, radius| {
+        let holes = HolePattern {
+            count,
+            circle_radius,
+            radius,
+            phase: 0.0,
+        };
+        (holed([30, 48], 0.0, 78.2e-3, holes), 5.0)
+    };
+    [pair(7, 27.47e-3, 2.38e-3), pair(6, 28.39e-3, 2.11e-3)]
+}
+
+#[test]
+fn small_orders_of_holes_are_those_of_many_positions() {
+    for (pair, torque) in small_holes() {
+        let holes = f64::from(pair.driven().hole_repeats());
+        let lines = |positions| {
+            let spectrum = curve(&pair, torque, positions).spectrum.expect("it closes");
+            [1.0, 2.0, 3.0].map(|multiple| {
+                let is_it = |order: &f64| (order - multiple * holes).abs() < 1e-9;
+                let place = spectrum.order.iter().position(is_it).expect("a line");
+                spectrum.transmission_error[place]
+            })
+        };
+        let right = lines(MANY);
+        for positions in [10, 12, 20] {
+            for (found, right) in lines(positions).into_iter().zip(right) {
+                assert!(
+                    (found - right).abs() <= (0.03 * right).max(5e-11),
+                    "{holes} holes, {positions} positions: {found:e} for {right:e}"
+                );
+            }
+        }
+    }
+}
+
 /// The peak-to-peak of δ.
 fn peak_to_peak(curve: &Curve) -> f64 {
     curve.transmission_error_statistics.peak_to_peak

@@ -10,25 +10,28 @@ const ELSEWHERE: f64 = 5.0;
 /// A further position stands no nearer to another one than this part of their step.
 const NEAREST: f64 = 1.0 / 32.0;
 
-/// Further positions of different mesh periods whose fractions differ by no more than this part of a step share a fraction: the common part of a pair there is
-/// computed once.
-const SHARED: f64 = 1.0 / 8.0;
+/// Fractions of the mesh period that are chosen in one round stand no nearer to each other than this part of a step: events of different mesh periods that
+/// are nearer are looked for at one of them.
+const APART: f64 = 1.0 / 8.0;
 
 /// An extreme at an event is believed once a position stands within this part of a step of it: from farther away both sides of an event may
 /// well agree about a wrong place. Until then it counts as one if it is within this part of the peak-to-peak of an extreme.
 const BELIEVED: (f64, f64) = (1.0 / 16.0, 0.02);
 
-/// Shares of the remaining positions that each round may use: later rounds have more evidence.
+/// Shares of the remaining fractions that each round may use: later rounds have more evidence.
 const ROUNDS: [f64; 5] = [0.4, 0.4, 0.5, 0.7, 1.0];
 
 /// Further positions that any curve may have, and how many it may have for each of its own.
 const FURTHER: (usize, f64) = (20, 0.2);
 
-/// Further positions that a curve may have for each event of a mesh period, in which one pair takes up the load and another one leaves it: over a long period with few
-/// positions each of its events is looked for by itself.
-const FURTHER_AT_EVENTS: usize = 2 * 3;
+/// Further positions that each mesh period may have: four for each of its two events, as one pair takes up the load and another one leaves it.
+const FURTHER_AT_EVENTS: usize = 2 * 4;
 
 /// Refinement of a curve between its positions.
+///
+/// A fraction of the mesh period that is solved further is solved in all mesh periods of the curve. What the refinement adds is then nearly the same in each, so it
+/// consists of mesh orders; if it were added in some periods alone, it would show in the orders of holes and of revolutions. Besides, the common part of a pair
+/// is computed once for all positions of a fraction.
 pub(in crate::analysis) struct Refinement {
     span: Span,
     /// Positions that may be solved further.
@@ -39,10 +42,11 @@ pub(in crate::analysis) struct Refinement {
     lattice: Option<u32>,
 }
 
-/// Largest number of further positions solved for a curve with a given number, over the mesh `periods` after which contact repeats.
+/// Largest number of further positions solved for a curve with a given number, over the mesh `periods` after which contact repeats: the end of a span that closes
+/// nowhere, and whole fractions in each of these mesh periods.
 pub(in crate::analysis) fn most_further(positions: usize, periods: u32) -> usize {
     let of_positions = (FURTHER.1 * positions as f64) as usize;
-    let at_events = FURTHER_AT_EVENTS * periods as usize;
+    let at_events = FURTHER_AT_EVENTS * periods as usize + 1;
     FURTHER.0.max(of_positions).max(at_events)
 }
 
@@ -90,57 +94,66 @@ impl Refinement {
             );
             left -= 1;
         }
+        let mut left = left / self.repeats_after as usize;
         let mut sections = Sections::new(self.span, &samples);
         for part in ROUNDS {
             let most = (part * left as f64).ceil() as usize;
-            let positions = self.chosen(candidates(&sections), &samples, most);
-            if positions.is_empty() {
+            let fractions = self.chosen(candidates(&sections), &samples, most);
+            if fractions.is_empty() {
                 break;
             }
-            left -= positions.len();
-            samples.extend(solve(&positions)?);
+            left -= fractions.len();
+            samples.extend(solve(&self.in_each_period(&fractions, &samples))?);
             samples.sort_by(|a, b| a.position.total_cmp(&b.position));
             sections = Sections::new(self.span, &samples);
         }
         Ok(sections)
     }
 
-    /// At most `most` of the `candidates`, the most urgent first, none of them beside a sample.
+    /// At most `most` fractions of the mesh period at which `candidates` stand, those of the most urgent first, none of them beside a sample.
     fn chosen(&self, mut candidates: Vec<Candidate>, samples: &[Sample], most: usize) -> Vec<f64> {
         candidates.sort_by(|a, b| {
             let urgent = b.priority.total_cmp(&a.priority);
             urgent.then(a.position.total_cmp(&b.position))
         });
         let (first, step) = (self.span.first, self.span.step());
-        let mut fractions: Vec<f64> = Vec::new();
         let mut chosen: Vec<f64> = Vec::new();
         for Candidate { position, .. } in candidates {
             if chosen.len() == most {
                 break;
             }
-            let fraction = (position - first).rem_euclid(1.0);
-            let near = |other: &&f64| (*other - fraction).abs() <= SHARED * step;
-            let known = fractions.iter().find(near).copied();
-            let shared = known.map_or(0.0, |known| known - fraction);
-            let repeats_after = f64::from(self.repeats_after);
-            let place = (position + shared - first).rem_euclid(repeats_after);
-            let place = first + self.span.on_lattice(place, self.lattice);
-            let beside = |other: f64| (other - place).abs() < NEAREST * step;
-            let i = samples.partition_point(|sample| sample.position < place);
-            let neighbors = samples[i.saturating_sub(1)..].iter().take(2);
-            if neighbors.map(|sample| sample.position).any(beside)
-                || chosen.iter().copied().any(beside)
-                || !(first..self.span.end()).contains(&place)
-            {
-                continue;
+            let place = (position - first).rem_euclid(f64::from(self.repeats_after));
+            let place = self.span.on_lattice(place, self.lattice);
+            let fraction = place.rem_euclid(1.0);
+            let is_near = |other: &f64| (other - fraction).abs() <= APART * step;
+            if !chosen.iter().any(is_near) && !self.is_beside(first + place, samples) {
+                chosen.push(fraction);
             }
-            if known.is_none() {
-                fractions.push(fraction);
-            }
-            chosen.push(place);
         }
-        chosen.sort_by(f64::total_cmp);
         chosen
+    }
+
+    /// True if `position` stands beside one of `samples` or outside the mesh periods after which contact repeats.
+    fn is_beside(&self, position: f64, samples: &[Sample]) -> bool {
+        let end = self.span.first + f64::from(self.repeats_after);
+        let nearest = NEAREST * self.span.step();
+        let i = samples.partition_point(|sample| sample.position < position);
+        let mut neighbors = samples[i.saturating_sub(1)..].iter().take(2);
+        neighbors.any(|sample| (sample.position - position).abs() < nearest)
+            || !(self.span.first..end).contains(&position)
+    }
+
+    /// The positions at these fractions in each of the mesh periods after which contact repeats, rising, without those beside a sample.
+    fn in_each_period(&self, fractions: &[f64], samples: &[Sample]) -> Vec<f64> {
+        let all = fractions.iter().flat_map(|fraction| {
+            let first = self.span.first + fraction;
+            (0..self.repeats_after).map(move |later| first + f64::from(later))
+        });
+        let mut positions: Vec<f64> = all
+            .filter(|position| !self.is_beside(*position, samples))
+            .collect();
+        positions.sort_by(f64::total_cmp);
+        positions
     }
 }
 
@@ -451,6 +464,44 @@ mod tests {
             "{} {expected}",
             range(&found)
         );
+    }
+
+    #[test]
+    fn what_is_solved_further_adds_mesh_orders_alone() {
+        // The springs over five mesh periods, on a wave of 0.1 nm over all of them, and nothing else below the order of the mesh.
+        const PERIODS: u32 = 5;
+        const WAVE: f64 = 1e-10;
+        let turn = std::f64::consts::TAU / f64::from(PERIODS);
+        let on_wave = |x: f64| {
+            let of_mesh = sample(x);
+            Sample {
+                transmission_error: of_mesh.transmission_error + WAVE * (turn * x).sin(),
+                ..of_mesh
+            }
+        };
+        for per_period in [10, 12, 20] {
+            let span = span(per_period, PERIODS, true);
+            let count = per_period * PERIODS;
+            let refinement = Refinement {
+                span,
+                most: most_further(count as usize, PERIODS),
+                repeats_after: PERIODS,
+                lattice: None,
+            };
+            let samples = (0..count).map(|i| on_wave(f64::from(i) * span.step()));
+            let sections = refinement.sections(samples.collect(), |further| {
+                Ok::<_, Infallible>(further.iter().copied().map(on_wave).collect())
+            });
+            let [delta, _] = sections.expect("nothing fails").resampled(2000);
+            let lines = crate::fourier::harmonics(&delta);
+            for (bin, expected) in [(1, WAVE), (2, 0.0), (3, 0.0), (4, 0.0)] {
+                let amplitude = lines[bin - 1].0;
+                assert!(
+                    (amplitude - expected).abs() < 0.03 * WAVE,
+                    "{per_period} positions, line {bin}: {amplitude:e}"
+                );
+            }
+        }
     }
 
     #[test]
