@@ -621,7 +621,7 @@ export async function shownSteps(service) {
 
   await opened("a spectrum has levels, and the shares of pairs have no colors of designs", async (page) => {
     const shared = await page.evaluate(async () => {
-      const { looks } = await import(new URL("web/draw/charts.js", document.baseURI).href);
+      const { looks } = await import(new URL("web/draw/looks.js", document.baseURI).href);
       const { series, parts } = looks();
       return parts.filter((color) => Array.from({ length: 12 }, (_, i) => series(i)).includes(color));
     });

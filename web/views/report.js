@@ -2,7 +2,7 @@
 // The report of a project on paper: the data sheet with materials, the one page of the design, its kept designs beside
 // it, curves, spectrum, contact pattern, run-up, robustness, warnings and evidence.
 
-import { looks } from "../draw/charts.js";
+import { looks } from "../draw/looks.js";
 import { h, table, tableRow } from "../draw/dom.js";
 import { drawingOf } from "../draw/download.js";
 import { figure } from "../draw/figure.js";
