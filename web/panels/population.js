@@ -105,7 +105,7 @@ export class Population extends StudyPanel {
     super(place, design, {
       id: "population",
       words: "Draw them",
-      inWords: (detail) => form.inWords(detail),
+      inWords: (detail) => form.names.inWords(detail),
       ignored: NOT_ASKED,
     });
     this.form = form;
@@ -455,7 +455,7 @@ export class Population extends StudyPanel {
   #influencesOf({ influences }) {
     if (!influences.length) return note("Nothing varies so far.");
     /** @type {(influence: QuantityResults["influences"][number]) => string} */
-    const name = ({ path, accuracy }) => (path ? this.form.named(path) : `teeth of the ${accuracy} gear`);
+    const name = ({ path, accuracy }) => (path ? this.form.names.named(path) : `teeth of the ${accuracy} gear`);
     const rows = influences.map((each) => {
       const [low, high] = [each.low ?? each.share, each.high ?? each.share];
       const bar = s(

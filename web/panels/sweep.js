@@ -42,7 +42,12 @@ export class Sweep extends StudyPanel {
    * @param {() => Warning[]} warnings
    */
   constructor(place, design, form, warnings) {
-    super(place, design, { id: "sweep", words: "Sweep", inWords: (detail) => form.inWords(detail), ignored: [TORQUE] });
+    super(place, design, {
+      id: "sweep",
+      words: "Sweep",
+      inWords: (detail) => form.names.inWords(detail),
+      ignored: [TORQUE],
+    });
     this.warnings = warnings;
     this.ends = ["from", "to"].map((end) => numeric({ id: `sweep-${end}` }));
     for (const input of this.ends)

@@ -2,7 +2,7 @@
 // What a part of the form begins with when it is asked for: values that fit the gear it is for, else defaults.
 
 import { USUAL_POSITIONS } from "./preview.js";
-import { kindOf, resolve } from "./schema.js";
+import { kindOf, lastOf, resolve } from "./schema.js";
 import { dedendumOf, rootRadius, toolShift } from "./tool.js";
 
 /** @import { Design } from "./design.js" */
@@ -10,8 +10,6 @@ import { dedendumOf, rootRadius, toolShift } from "./tool.js";
 /** @import { Api, Kind } from "./schema.js" */
 
 const TURN = Math.PI / 180;
-/** @type {(pointer: string) => string} */
-const lastOf = (pointer) => pointer.slice(pointer.lastIndexOf("/") + 1);
 /** @type {(value: number, digits?: number) => number} */
 const rounded = (value, digits = 3) => Number(value.toPrecision(digits));
 

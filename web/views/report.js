@@ -132,11 +132,13 @@ function dataOf({ live: { submission }, form, usual }) {
   const all = [...names].filter((name) => !isOfMaterial(name)).concat([...names].filter(isOfMaterial));
   const ofGears = all.map((name) => {
     const pointer = `/pair/driving/${name}`;
-    const title = form.named(pointer).replace(/, driving gear$/, "");
-    return tableRow(title, ...gears.map((gear) => valueOf(`/pair/${gear}/${name}`)), form.unitOf(pointer));
+    const title = form.names.named(pointer).replace(/, driving gear$/, "");
+    return tableRow(title, ...gears.map((gear) => valueOf(`/pair/${gear}/${name}`)), form.names.unitOf(pointer));
   });
   const others = [...flat].filter(([pointer]) => !/^\/pair\/(driving|driven)\//.test(pointer));
-  const ofPair = others.map(([pointer, value]) => tableRow(form.named(pointer), told(value), form.unitOf(pointer)));
+  const ofPair = others.map(([pointer, value]) =>
+    tableRow(form.names.named(pointer), told(value), form.names.unitOf(pointer)),
+  );
   return h(
     "div",
     {},
@@ -169,7 +171,7 @@ function designsOf(designs, { form, usual }) {
       values: values.map((value, i) => told(value ?? usual(designs[i].submission, pointer))),
     }))
     .filter(({ pointer, values }) => pointer !== "/tags" && values.some((value) => value !== values[0]))
-    .map(({ pointer, values }) => tableRow(form.titled(pointer), ...values));
+    .map(({ pointer, values }) => tableRow(form.names.titled(pointer), ...values));
   return h(
     "div",
     {},
@@ -280,7 +282,7 @@ function answersOf(answers) {
  */
 const warningsOf = ({ results: { warnings } }, form) =>
   warnings.length
-    ? h("ul", {}, ...warnings.map(({ detail }) => h("li", {}, form.inWords(detail))))
+    ? h("ul", {}, ...warnings.map(({ detail }) => h("li", {}, form.names.inWords(detail))))
     : h("p", {}, "None.");
 
 /** @param {NamedDesign} live */
