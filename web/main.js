@@ -263,7 +263,7 @@ class Page {
     });
     return {
       "run-up": runUp,
-      sweep: new Sweep(byId("sweep"), design, form, () => this.#store.current?.results.warnings ?? []),
+      sweep: new Sweep(byId("sweep"), design, form, () => this.#store.current),
       study: new StudyOfAxes(byId("study"), design, form, open),
       sensitivity: new Sensitivity(byId("sensitivity"), design, form, () => this.#current()),
       population: new Population(byId("population"), design, form, limits, open),
@@ -444,7 +444,7 @@ class Page {
     const { tabs } = this;
     if (!tabs) return;
     this.#ask(tabs.question);
-    if (["export", "run-up", "population"].some((id) => tabs.shows(id))) tabs.refresh();
+    if (["export", "run-up", "population", "sweep"].some((id) => tabs.shows(id))) tabs.refresh();
   }
 
   #showAgain() {
