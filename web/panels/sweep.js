@@ -52,7 +52,7 @@ export class Sweep extends StudyPanel {
       ignored: [TORQUE],
     });
     this.current = current;
-    this.ends = ["from", "to"].map((end) => numeric({ id: `sweep-${end}` }));
+    this.ends = ["from", "to"].map((end) => numeric({ id: `sweep-${end}`, ariaLabel: `Torque ${end}` }));
     for (const input of this.ends)
       input.addEventListener("input", () => {
         input.dataset.typed = "yes";
@@ -72,7 +72,7 @@ export class Sweep extends StudyPanel {
     this.refresh();
   }
 
-  /** From a tenth of the design's torque to twice as much, until somebody types other ones; marks that are known now. */
+  /** Shows from a tenth to twice the torque of the design, until others are typed, and the marks that are known now. */
   refresh() {
     if (this.last && !this.#warnings && this.#learn()) this.show(this.last.found);
     const torque = this.design.get(`${TORQUE}/0`) ?? 100;

@@ -136,8 +136,8 @@ export class Geometry {
         ),
       );
     this.out.replaceChildren(
-      table(["", "Driving", "Driven", ""], rows(gears), "Gears"),
-      table(["", "", ""], rows(both), "Pair"),
+      table(["Quantity", "Driving", "Driven", "Unit"], rows(gears), "Gears"),
+      table(["Quantity", "Value", "Unit"], rows(both), "Pair"),
     );
   }
 }
