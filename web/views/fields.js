@@ -29,6 +29,9 @@ import { turnByKey, turnByName } from "./turned.js";
  * @property {string | null} described
  */
 
+/** A choice of so many letters stands beside its name. */
+const LONGEST_BESIDE = 16;
+
 export class Fields {
   /**
    * The fields that are shown.
@@ -131,7 +134,7 @@ export class Fields {
       words && aboutOf(input, kind, name, words),
       clear,
     );
-    const element = h("div", { className: `field ${kind.kind}` }, row, words);
+    const element = h("div", { className: `field ${kind.kind}${isLong(input) ? " long" : ""}` }, row, words);
     const show = () => {
       if (!needed && "placeholder" in input) {
         input.placeholder = this.#usual(pointer, schema);
@@ -283,7 +286,7 @@ export class Fields {
     const label = h("label", { htmlFor: id, title: help(schema) }, schema.title);
     const row = h("div", { className: "row" }, label, select, h("span", { className: "unit" }));
     const fields = index < 0 ? [] : this.#within(pointer, kindOf(this.api, variants[index]));
-    const element = h("div", { className: "field variants" }, row, ...fields);
+    const element = h("div", { className: `field variants${isLong(select) ? " long" : ""}` }, row, ...fields);
     return this.#register(pointer, element, schema, () => {
       select.value = index < 0 ? "" : String(index);
     });
@@ -363,6 +366,14 @@ function aboutOf(input, { kind }, name, words) {
     });
   return about;
 }
+
+/**
+ * Whether what is chosen needs a line of its own to be read in full.
+ *
+ * @type {(input: HTMLElement) => boolean}
+ */
+const isLong = (input) =>
+  input instanceof HTMLSelectElement && [...input.options].some(({ text }) => text.length > LONGEST_BESIDE);
 
 /**
  * The title of a variant as one choice of several.
