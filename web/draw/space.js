@@ -9,14 +9,13 @@ import { pixelOf, Raster } from "./raster.js";
 import { alongAxis, contactAt, contactLines, surfaceOf } from "./solid.js";
 import { ViewJob } from "./viewjob.js";
 import { json } from "../state/api.js";
+import { MEMBERS } from "../state/design.js";
 import { extent, fixed, number } from "../state/numbers.js";
 
 /** @import { Along } from "./solid.js" */
 /** @import { Curve, GearName, NamedDesign, Pair, PairOutline, PatternCurve } from "../state/documents.js" */
 
 const TURN = Math.PI / 180;
-/** @type {GearName[]} */
-const MEMBERS = ["driving", "driven"];
 /** The view that it begins with: from the side of +z, a little from above and from the right. */
 const VIEW = { yaw: -32, pitch: 24, zoom: 1 };
 /** How much a place beside the middle rises in it. */

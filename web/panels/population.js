@@ -22,7 +22,7 @@ import { allGiven, given, numeric, put } from "../draw/inputs.js";
 import { FieldChoice, options } from "./offer.js";
 import { mostOften, StudyPanel } from "./panel.js";
 import { foreseen, json, ProblemError } from "../state/api.js";
-import { apart, at, nameOf } from "../state/design.js";
+import { apart, at, MEMBERS, nameOf } from "../state/design.js";
 import { fixed, number, timeOf } from "../state/numbers.js";
 import { inUnit, inWords, quantityOf, shown } from "../state/quantities.js";
 
@@ -64,9 +64,6 @@ const NOT_ASKED = [
   "/pair/driving/tooth_deviations",
   "/pair/driven/tooth_deviations",
 ];
-
-/** @type {GearName[]} */
-const MEMBERS = ["driving", "driven"];
 
 const CLASSES = Array.from({ length: 11 }, (_, i) => i + 1);
 

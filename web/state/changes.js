@@ -1,7 +1,7 @@
 // @ts-check
 // What a change of one field of the design brings with it: what it stands in place of, and what keeps its proportion.
 
-import { HELIX } from "./design.js";
+import { HELIX, MEMBERS } from "./design.js";
 import { helix, intoPlane, intoSolid, isSolid } from "./dimensions.js";
 import { number } from "./numbers.js";
 import { insteadOf, lastOf, schemaAt, titleAt } from "./schema.js";
@@ -10,9 +10,6 @@ import { insteadOf, lastOf, schemaAt, titleAt } from "./schema.js";
 /** @import { Step } from "./dimensions.js" */
 /** @import { GearName } from "./documents.js" */
 /** @import { Api } from "./schema.js" */
-
-/** @type {GearName[]} */
-export const MEMBERS = ["driving", "driven"];
 
 /** Fields that both gears have to have alike: they stand once, with the pair, until they are unlocked. */
 export const ALIKE = ["module_mm", "pressure_angle_deg"];

@@ -1,6 +1,7 @@
 // @ts-check
 // What the curves of designs are made of: their points, names, units and what a listener should know of them.
 
+import { MEMBERS } from "./design.js";
 import { fixed, number } from "./numbers.js";
 import { apart, withPoints } from "./points.js";
 import { shown } from "./quantities.js";
@@ -133,9 +134,8 @@ function largestShare(curve) {
  */
 export function stresses({ stress }) {
   if (!stress) return [];
-  const gears = /** @type {const} */ (["driving", "driven"]);
   return /** @type {const} */ (["root", "hole"]).flatMap((place) =>
-    gears.flatMap((gear) => {
+    MEMBERS.flatMap((gear) => {
       const values = stress[gear][`${place}_mpa`];
       return values ? [{ name: `${place}, ${gear} gear`, values }] : [];
     }),

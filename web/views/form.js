@@ -3,8 +3,8 @@
 
 import { around, button, h } from "../draw/dom.js";
 import { Beginnings } from "../state/beginnings.js";
-import { Changes, MEMBERS } from "../state/changes.js";
-import { HELIX } from "../state/design.js";
+import { Changes } from "../state/changes.js";
+import { HELIX, MEMBERS } from "../state/design.js";
 import { isSolid, kindOfTeeth, offers } from "../state/dimensions.js";
 import { number } from "../state/numbers.js";
 import { insteadOf } from "../state/schema.js";

@@ -6,7 +6,7 @@ import { looks } from "../draw/looks.js";
 import { h, table, tableRow } from "../draw/dom.js";
 import { drawingOf } from "../draw/download.js";
 import { figure } from "../draw/figure.js";
-import { differences, flattened, told } from "../state/design.js";
+import { differences, flattened, MEMBERS, told } from "../state/design.js";
 import { markOf } from "../state/marks.js";
 import { fixed, number } from "../state/numbers.js";
 import { calledOf, shown } from "../state/quantities.js";
@@ -117,7 +117,6 @@ function titleOf({ title, live, drawing }) {
  */
 function dataOf({ live: { submission }, form, usual }) {
   const flat = flattened(submission);
-  const gears = /** @type {const} */ (["driving", "driven"]);
   const names = new Set(OF_MATERIAL);
   for (const pointer of flat.keys()) {
     const name = /^\/pair\/(?:driving|driven)\/(.+)$/.exec(pointer)?.[1];
@@ -133,7 +132,7 @@ function dataOf({ live: { submission }, form, usual }) {
   const ofGears = all.map((name) => {
     const pointer = `/pair/driving/${name}`;
     const title = form.names.named(pointer).replace(/, driving gear$/, "");
-    return tableRow(title, ...gears.map((gear) => valueOf(`/pair/${gear}/${name}`)), form.names.unitOf(pointer));
+    return tableRow(title, ...MEMBERS.map((gear) => valueOf(`/pair/${gear}/${name}`)), form.names.unitOf(pointer));
   });
   const others = [...flat].filter(([pointer]) => !/^\/pair\/(driving|driven)\//.test(pointer));
   const ofPair = others.map(([pointer, value]) =>

@@ -2,7 +2,8 @@
 // The sections of the form: the pair, each gear, load and method, and the order of the fields in them.
 
 import { button, h } from "../draw/dom.js";
-import { ALIKE, MEMBERS } from "../state/changes.js";
+import { ALIKE } from "../state/changes.js";
+import { MEMBERS } from "../state/design.js";
 import { teeth } from "../state/dimensions.js";
 import { kindOf, resolve, SUBMISSION } from "../state/schema.js";
 import { deviations } from "./deviations.js";
