@@ -94,7 +94,7 @@ class Page {
     onEveryPosition: () => this.#design.set("/face_load", "positions", "mend"),
   });
   #pattern = new Pattern(byId("pattern"), { live: () => this.#current() });
-  #headline = new Headline(byId("headline"), (detail) => this.#form?.inWords(detail) ?? detail);
+  #headline = new Headline(byId("headline"), (detail) => this.#form?.names.inWords(detail) ?? detail);
   #geometry = new Geometry(byId("geometry"), {
     onPrint: () => void this.#paper?.print(true),
     onReport: () => void this.#paper?.print(false),
@@ -104,7 +104,7 @@ class Page {
     onKept: (index, change) => this.#store.changeKept(index, change),
     onOpen: ({ submission, results, asked }) => this.#open(submission, results, asked),
     onMethods: () => void this.#compareMethods(),
-    named: (pointer) => this.#form?.named(pointer) ?? pointer,
+    named: (pointer) => this.#form?.names.named(pointer) ?? pointer,
     usual: (submission, pointer) => (this.#form ? usualAt(this.#form.api, submission, pointer) : undefined),
   });
   #follower = new Follower({
@@ -248,11 +248,11 @@ class Page {
     const designs = () => this.#store.designs;
     const runUp = new RunUp(byId("run-up"), {
       designs,
-      ask: () => form.begin("/dynamics"),
+      ask: () => form.fields.begin("/dynamics"),
       asked: () => Boolean(design.get("/dynamics")),
       refused: () => {
         const { problem } = this.#store.answer;
-        return problem && form.inWords(reasonOf(problem));
+        return problem && form.names.inWords(reasonOf(problem));
       },
       focus: () => form.focus("/dynamics/driving_speed_rpm"),
       stage: {
@@ -263,7 +263,7 @@ class Page {
     });
     return {
       "run-up": runUp,
-      sweep: new Sweep(byId("sweep"), design, form, () => this.#store.current?.results.warnings ?? []),
+      sweep: new Sweep(byId("sweep"), design, form, () => this.#store.current),
       study: new StudyOfAxes(byId("study"), design, form, open),
       sensitivity: new Sensitivity(byId("sensitivity"), design, form, () => this.#current()),
       population: new Population(byId("population"), design, form, limits, open),
@@ -444,7 +444,7 @@ class Page {
     const { tabs } = this;
     if (!tabs) return;
     this.#ask(tabs.question);
-    if (["export", "run-up", "population"].some((id) => tabs.shows(id))) tabs.refresh();
+    if (["export", "run-up", "population", "sweep"].some((id) => tabs.shows(id))) tabs.refresh();
   }
 
   #showAgain() {

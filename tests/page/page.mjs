@@ -710,9 +710,18 @@ for (const [width, height] of WIDTHS) {
         await tab(page, "noise");
         // The numbers of a part stand below each other, and the letters of the drawing are those of the page.
         const lefts = await page
-          .locator('#form [data-pointer="/pair"] > .fields > :is(.number, .alike) > .row > input:visible')
+          .locator(
+            '#form [data-pointer="/pair"] > .fields > :is(.number, .alike, .choice) > .row > :is(input, select):visible',
+          )
           .evaluateAll((all) => all.map((input) => Math.round(input.getBoundingClientRect().left)));
         assert.ok(lefts.length > 3 && new Set(lefts).size === 1, `at ${lefts} px`);
+        // From 1280 px on the curves and the beginning of the spectrum are seen before anything is scrolled.
+        if (width >= 1280) {
+          const begins = await page
+            .locator("#chart-spectrum .canvas")
+            .evaluate((each) => each.getBoundingClientRect().top);
+          assert.ok(begins < height, `the spectrum begins at ${begins} px of ${height}`);
+        }
         const letters = await page.locator(".dimension").evaluateAll((all) =>
           all
             .filter((text) => text.checkVisibility())

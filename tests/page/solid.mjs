@@ -416,6 +416,14 @@ export async function solidSteps(service) {
             JSON.stringify([drawn, told]),
           );
       }
+      if (process.argv.includes("--screenshots")) {
+        await page.setViewportSize({ width: 1180, height: 960 });
+        await tab(page, "contact");
+        await next(() => page.locator("#position").fill("0.3"));
+        for (let i = 0; i < 4; i += 1) await page.locator(".brush [aria-label='Zoom in']").click();
+        await page.locator("#chart-face").scrollIntoViewIfNeeded();
+        await page.screenshot({ path: `${process.env.PICTURES}/page-helical.png` });
+      }
       // Away with it: the drawing is back, and nothing is painted any more.
       await page.locator("button[data-view=pair]").click();
       assert.ok(await page.locator("#drawing svg.gears").isVisible());

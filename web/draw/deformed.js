@@ -4,6 +4,7 @@
 import { debounced, h, s } from "./dom.js";
 import { ViewJob } from "./viewjob.js";
 import { json } from "../state/api.js";
+import { MEMBERS } from "../state/design.js";
 import { isSolid } from "../state/dimensions.js";
 import { number } from "../state/numbers.js";
 
@@ -121,7 +122,7 @@ function words({ output_torque_n_m: torque, mesh_position: position, driving, dr
  * @type {(edges: LoadedEdges, outline: PairOutline) => { element: SVGGElement, scale: number, top: number }}
  */
 export function deformedShape(edges, outline) {
-  const gears = /** @type {GearName[]} */ (["driving", "driven"]).map((member) => moved(edges, outline, member));
+  const gears = MEMBERS.map((member) => moved(edges, outline, member));
   const all = gears.flatMap(({ teeth, openings }) => [...teeth, ...openings]);
   const { tip_mm: tip, root_mm: root } = outline.driving.circles;
   const scale = rounded((REACH * (tip - root)) / Math.max(...all.flatMap(({ by }) => by.map((u) => Math.hypot(...u)))));

@@ -224,3 +224,23 @@ export function debounced(wait, work) {
     timer = setTimeout(() => work(...parameters), wait);
   };
 }
+
+/**
+ * What an element is folded away in.
+ *
+ * @type {(element: HTMLElement) => HTMLDetailsElement[]}
+ */
+export function around(element) {
+  const parent = element.closest("details");
+  return parent ? [parent, ...(parent.parentElement ? around(parent.parentElement) : [])] : [];
+}
+
+/**
+ * Shows words or hides them, and tells the button for it.
+ *
+ * @type {(button: HTMLElement, words: HTMLElement) => void}
+ */
+export function toggle(button, words) {
+  words.hidden = !words.hidden;
+  button.setAttribute("aria-expanded", String(!words.hidden));
+}

@@ -4,14 +4,13 @@
 import { deformedShape } from "./deformed.js";
 import { dress, s } from "./dom.js";
 import { HoleHandles, openingsOf } from "./holes.js";
+import { MEMBERS } from "../state/design.js";
 import { number } from "../state/numbers.js";
 
 /** @import { Design } from "../state/design.js" */
 /** @import { Curve, GearName, GearOutline, LoadedEdges, PairOutline } from "../state/documents.js" */
 
 const TURN = Math.PI / 180;
-/** @type {GearName[]} */
-const MEMBERS = ["driving", "driven"];
 /** What a line may lie beside the profile where both gears are in view, in mm: a tenth of a pixel. */
 const FROM_AFAR = 0.02;
 

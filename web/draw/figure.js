@@ -284,10 +284,11 @@ export function figure({
     }
     if (point.strong) {
       const atEnd = px(point.x) > width * 0.75;
+      const others = points.filter((other) => other !== point).map((other) => [px(other.x), py(other.y)]);
       svg.append(
         words(point.label, {
           x: px(point.x) + (atEnd ? -8 : 8),
-          y: py(point.y) - 7,
+          y: py(point.y) + (isFreeAbove(point.label, [px(point.x), py(point.y)], atEnd, others) ? -7 : 17),
           "text-anchor": atEnd ? "end" : "start",
           class: "name",
         }),
@@ -303,6 +304,19 @@ export function figure({
     bottom: height - frame.bottom,
   };
   return Object.assign(svg, { frame: placed });
+}
+
+/**
+ * Whether the name of a point at a place, which begins or ends there, covers none of the others where it stands above.
+ *
+ * @type {(name: string, at: number[], ends: boolean, others: number[][]) => boolean}
+ */
+function isFreeAbove(name, [x, y], ends, others) {
+  const reach = 8 + 0.6 * LETTER * name.length;
+  return !others.some(([x1, y1]) => {
+    const along = ends ? x - x1 : x1 - x;
+    return along > 0 && along < reach && y1 > y - 2 * LETTER && y1 < y;
+  });
 }
 
 /**

@@ -9,16 +9,17 @@ import { pixelOf, Raster } from "./raster.js";
 import { alongAxis, contactAt, contactLines, surfaceOf } from "./solid.js";
 import { ViewJob } from "./viewjob.js";
 import { json } from "../state/api.js";
+import { MEMBERS } from "../state/design.js";
 import { extent, fixed, number } from "../state/numbers.js";
 
 /** @import { Along } from "./solid.js" */
 /** @import { Curve, GearName, NamedDesign, Pair, PairOutline, PatternCurve } from "../state/documents.js" */
 
 const TURN = Math.PI / 180;
-/** @type {GearName[]} */
-const MEMBERS = ["driving", "driven"];
 /** The view that it begins with: from the side of +z, a little from above and from the right. */
 const VIEW = { yaw: -32, pitch: 24, zoom: 1 };
+/** How much a place beside the middle rises in it. */
+const RISE = Math.sin(VIEW.pitch * TURN) * Math.abs(Math.sin(VIEW.yaw * TURN));
 const MOST_ZOOM = 12;
 /** Pixels that are painted while something moves, and when it rests. */
 const MOVING = 260_000;
@@ -308,8 +309,11 @@ export class Space {
     // Nearer is nearer to where the teeth meet.
     const pitchPoint = line.points[2].at_mm;
     const part = 1 - 1 / Math.max(1, this.#view.zoom) ** 2;
-    const middle = [(a + r2 - r1) / 2, 0].map((value, i) => value + part * (pitchPoint[i] - value));
-    const size = this.#view.zoom * Math.min(width / (1.04 * (r1 + a + r2)), height / (2.2 * Math.max(r1, r2)));
+    const center = (a + r2 - r1) / 2;
+    const middle = [center, 0].map((value, i) => value + part * (pitchPoint[i] - value));
+    // As it is seen first one gear stands higher than the other.
+    const tall = Math.max(r1 + RISE * Math.abs(center), r2 + RISE * Math.abs(a - center));
+    const size = this.#view.zoom * Math.min(width / (1.04 * (r1 + a + r2)), height / (2.08 * tall));
     return {
       size,
       point: (x, y, z) => {

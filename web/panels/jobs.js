@@ -178,7 +178,7 @@ export class Jobs extends Panel {
     const others = all.length > 1 ? all.filter(({ pointer }) => pointer !== "/resolution/span_mesh_periods") : all;
     const shown = others
       .slice(0, FIELDS)
-      .map(({ pointer, values: [, value] }) => `${this.form.named(pointer)} ${told(value)}`);
+      .map(({ pointer, values: [, value] }) => `${this.form.names.named(pointer)} ${told(value)}`);
     const rest = others.length - shown.length;
     cell.append(
       h(

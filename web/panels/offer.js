@@ -52,7 +52,7 @@ export class FieldChoice {
 
   /** The field as the form has it; undefined where it has none. */
   get known() {
-    return this.form.fields().find(({ pointer }) => pointer === this.field.value);
+    return this.form.offered().find(({ pointer }) => pointer === this.field.value);
   }
 
   /** The value of the field in the design. */
@@ -62,7 +62,7 @@ export class FieldChoice {
 
   /** The fields that have a number in the design. */
   numbers() {
-    return this.form.fields().filter(({ pointer }) => typeof at(this.design.submission, pointer) === "number");
+    return this.form.offered().filter(({ pointer }) => typeof at(this.design.submission, pointer) === "number");
   }
 
   /**

@@ -229,10 +229,19 @@ export class StudyPanel extends Panel {
   }
 
   #lookWhetherOutdated() {
+    this.outdated.hidden = this.#of === null || this.isOf(this.design.submission);
+  }
+
+  /**
+   * Whether the answers are those of a design.
+   *
+   * @param {Submission} submission
+   */
+  isOf(submission) {
     /** @type {(submission: Submission) => Submission} */
     const bare = (submission) =>
       this.ignored.reduce((rest, pointer) => withValue(rest, pointer, undefined), apart(submission).curves);
-    this.outdated.hidden = this.#of === null || same(bare(this.#of), bare(this.design.submission));
+    return this.#of !== null && same(bare(this.#of), bare(submission));
   }
 }
 

@@ -22,7 +22,7 @@ import { allGiven, given, numeric, put } from "../draw/inputs.js";
 import { FieldChoice, options } from "./offer.js";
 import { mostOften, StudyPanel } from "./panel.js";
 import { foreseen, json, ProblemError } from "../state/api.js";
-import { apart, at, nameOf } from "../state/design.js";
+import { apart, at, MEMBERS, nameOf } from "../state/design.js";
 import { fixed, number, timeOf } from "../state/numbers.js";
 import { inUnit, inWords, quantityOf, shown } from "../state/quantities.js";
 
@@ -65,9 +65,6 @@ const NOT_ASKED = [
   "/pair/driven/tooth_deviations",
 ];
 
-/** @type {GearName[]} */
-const MEMBERS = ["driving", "driven"];
-
 const CLASSES = Array.from({ length: 11 }, (_, i) => i + 1);
 
 /**
@@ -105,7 +102,7 @@ export class Population extends StudyPanel {
     super(place, design, {
       id: "population",
       words: "Draw them",
-      inWords: (detail) => form.inWords(detail),
+      inWords: (detail) => form.names.inWords(detail),
       ignored: NOT_ASKED,
     });
     this.form = form;
@@ -455,7 +452,7 @@ export class Population extends StudyPanel {
   #influencesOf({ influences }) {
     if (!influences.length) return note("Nothing varies so far.");
     /** @type {(influence: QuantityResults["influences"][number]) => string} */
-    const name = ({ path, accuracy }) => (path ? this.form.named(path) : `teeth of the ${accuracy} gear`);
+    const name = ({ path, accuracy }) => (path ? this.form.names.named(path) : `teeth of the ${accuracy} gear`);
     const rows = influences.map((each) => {
       const [low, high] = [each.low ?? each.share, each.high ?? each.share];
       const bar = s(

@@ -2,7 +2,7 @@
 // The motion of the gears over speed: both branches beside those of kept designs, a waterfall of orders with their
 // resonances named, and one speed that is looked at, turned and heard.
 
-import { looks } from "../draw/charts.js";
+import { looks } from "../draw/looks.js";
 import {
   button,
   debounced,

@@ -77,7 +77,7 @@ export class Search extends StudyPanel {
    * @param {Open} onOpen
    */
   constructor(place, design, form, onOpen) {
-    super(place, design, { id: "search", words: "Search", inWords: (detail) => form.inWords(detail) });
+    super(place, design, { id: "search", words: "Search", inWords: (detail) => form.names.inWords(detail) });
     this.form = form;
     this.onOpen = onOpen;
     this.variables = Array.from({ length: VARIABLES }, (_, i) => new Variable(design, form, i));
@@ -200,12 +200,12 @@ export class Search extends StudyPanel {
     const missing = h("p", { className: "outdated", hidden: !failed.length }, failed.join(" "));
     if (!best) return this.out.replaceChildren(missing);
     const rows = Object.entries(best.values).map(([path, value]) =>
-      tableRow(this.form.named(path), number(at(about.base, path) ?? null, 5), number(value, 5)),
+      tableRow(this.form.names.named(path), number(at(about.base, path) ?? null, 5), number(value, 5)),
     );
 
     const atEnd = about.search.variables
       .filter(({ path, low, high }) => [low, high].includes(at(best, "/values")?.[path]))
-      .map(({ path }) => this.form.named(path));
+      .map(({ path }) => this.form.names.named(path));
     /** @type {(row: number) => Promise<void>} */
     const open = async (row) =>
       void this.onOpen({ ...(await json(`${address}/designs/${row}`)), ...this.#further }, null);

@@ -45,7 +45,11 @@ export class Sensitivity extends StudyPanel {
    * @param {() => Promise<NamedDesign | null>} live
    */
   constructor(place, design, form, live) {
-    super(place, design, { id: "sensitivity", words: "Show the bars", inWords: (detail) => form.inWords(detail) });
+    super(place, design, {
+      id: "sensitivity",
+      words: "Show the bars",
+      inWords: (detail) => form.names.inWords(detail),
+    });
     this.live = live;
     this.torque = numeric({ id: "sensitivity-torque", value: String(PERCENT) });
     this.distance = numeric({ id: "sensitivity-distance" });

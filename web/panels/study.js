@@ -68,7 +68,7 @@ export class StudyOfAxes extends StudyPanel {
    * @param {Open} onOpen
    */
   constructor(place, design, form, onOpen) {
-    super(place, design, { id: "study", words: "Run the study", inWords: (detail) => form.inWords(detail) });
+    super(place, design, { id: "study", words: "Run the study", inWords: (detail) => form.names.inWords(detail) });
     this.form = form;
     this.onOpen = onOpen;
     this.axes = [0, 1].map((index) => new Axis(design, form, index));
@@ -266,7 +266,7 @@ export class StudyOfAxes extends StudyPanel {
   #nameOfRow({ label, changes }) {
     const words = Object.entries(/** @type {Record<string, unknown>} */ (changes)).map(
       ([pointer, value]) =>
-        `${this.form.named(pointer)} ${typeof value === "number" ? number(value, 5) : Array.isArray(value) ? value.join(", ") : String(value).replace(/_/g, " ")}`,
+        `${this.form.names.named(pointer)} ${typeof value === "number" ? number(value, 5) : Array.isArray(value) ? value.join(", ") : String(value).replace(/_/g, " ")}`,
     );
     return words.join("; ") || label;
   }
@@ -340,14 +340,17 @@ class Axis extends FieldChoice {
   }
 
   refresh() {
-    const fields = this.form.fields().filter(({ pointer }) => pointer !== "/tags");
+    const fields = this.form.offered().filter(({ pointer }) => pointer !== "/tags");
     // Several patterns have fields of their own, and none of one pattern.
     const absent = LACKING.filter(
       (pointer) =>
         !fields.some((each) => each.pointer === pointer) &&
         !Array.isArray(this.design.get(PART.exec(pointer)?.[1] ?? "")),
     );
-    const all = [...[...absent, TORQUE].map((pointer) => ({ pointer, title: this.form.titled(pointer) })), ...fields];
+    const all = [
+      ...[...absent, TORQUE].map((pointer) => ({ pointer, title: this.form.names.titled(pointer) })),
+      ...fields,
+    ];
     const before = this.field.value;
     // The field that was chosen may not be there any more.
     if (!this.offer(all)) this.values.value = "";

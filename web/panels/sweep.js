@@ -7,18 +7,20 @@ import { figure, roomIn } from "../draw/figure.js";
 import { given, numeric, put } from "../draw/inputs.js";
 import { StudyPanel } from "./panel.js";
 import { ProblemError } from "../state/api.js";
-import { apart, nameOf } from "../state/design.js";
+import { apart, nameOf, withValue } from "../state/design.js";
 import { markOf } from "../state/marks.js";
 import { fixed, number } from "../state/numbers.js";
 
 /** @import { Dot, Figure } from "../draw/figure.js" */
 /** @import { Design } from "../state/design.js" */
-/** @import { AskedStudy, StudyResults, Warning } from "../state/documents.js" */
+/** @import { AskedStudy, NamedDesign, StudyResults, Warning } from "../state/documents.js" */
 /** @import { Form } from "../views/form.js" */
 
 const MOST_TORQUES = 24;
 const TORQUE = "/output_torques_n_m";
 const PEAK_TO_PEAK = "transmission_error_um.peak_to_peak";
+/** The mark of a sweep that is found again while another design is shown. */
+const NOT_SHOWN = { word: "warnings not known", detail: "They come with the design of the sweep, once it is shown." };
 
 /**
  * The sweep of a design.
@@ -27,24 +29,30 @@ const PEAK_TO_PEAK = "transmission_error_um.peak_to_peak";
  */
 export class Sweep extends StudyPanel {
   /**
-   * The warnings of the design that is swept: rows tell none.
+   * The warnings of the design that is swept, which rows do not tell; null before it has been shown.
    *
-   * @type {Warning[]}
+   * @type {Warning[] | null}
    */
-  #warnings = [];
+  #warnings = null;
 
   /**
-   * The sweep of `design` in `place`; `form` names fields, and `warnings` gives those of its results.
+   * The sweep of `design` in `place`; `form` names fields, and `current` gives the design that is
+   * shown.
    *
    * @param {HTMLElement} place
    * @param {Design} design
    * @param {Form} form
-   * @param {() => Warning[]} warnings
+   * @param {() => NamedDesign | null} current
    */
-  constructor(place, design, form, warnings) {
-    super(place, design, { id: "sweep", words: "Sweep", inWords: (detail) => form.inWords(detail), ignored: [TORQUE] });
-    this.warnings = warnings;
-    this.ends = ["from", "to"].map((end) => numeric({ id: `sweep-${end}` }));
+  constructor(place, design, form, current) {
+    super(place, design, {
+      id: "sweep",
+      words: "Sweep",
+      inWords: (detail) => form.names.inWords(detail),
+      ignored: [TORQUE],
+    });
+    this.current = current;
+    this.ends = ["from", "to"].map((end) => numeric({ id: `sweep-${end}`, ariaLabel: `Torque ${end}` }));
     for (const input of this.ends)
       input.addEventListener("input", () => {
         input.dataset.typed = "yes";
@@ -64,8 +72,9 @@ export class Sweep extends StudyPanel {
     this.refresh();
   }
 
-  /** From a tenth of the design's torque to twice as much, until somebody types other ones. */
+  /** Shows from a tenth to twice the torque of the design, until others are typed, and the marks that are known now. */
   refresh() {
+    if (this.last && !this.#warnings && this.#learn()) this.show(this.last.found);
     const torque = this.design.get(`${TORQUE}/0`) ?? 100;
     for (const [i, part] of [0.1, 2].entries()) {
       const input = this.ends[i];
@@ -75,7 +84,14 @@ export class Sweep extends StudyPanel {
 
   clear() {
     super.clear();
-    this.#warnings = [];
+    this.#warnings = null;
+  }
+
+  /** Takes the warnings of the design that is swept, where it is the one that is shown. */
+  #learn() {
+    const now = this.current();
+    if (now && this.isOf(now.submission)) this.#warnings = now.results.warnings;
+    return this.#warnings !== null;
   }
 
   /** @returns {AskedStudy} */
@@ -83,6 +99,7 @@ export class Sweep extends StudyPanel {
     const [low = 0, high = 0] = this.ends.map(given);
     if (!(low > 0 && high > low))
       throw new ProblemError({ detail: "The torques have to be positive, the second larger than the first." });
+    this.#learn();
     this.say("Computing");
     const torques = Array.from({ length: MOST_TORQUES }, (_, i) =>
       Number((low + ((high - low) * i) / (MOST_TORQUES - 1)).toPrecision(6)),
@@ -123,7 +140,7 @@ export class Sweep extends StudyPanel {
 
   /** @param {StudyResults} found */
   show({ rows, status }) {
-    if (this.outdated.hidden) this.#warnings = this.warnings();
+    this.#learn();
     const points = rows
       .flatMap((row) =>
         row.curves.map((curve) => ({
@@ -139,6 +156,16 @@ export class Sweep extends StudyPanel {
   }
 
   /**
+   * Gives the design the torque, or opens the one that was swept.
+   *
+   * @param {number} torque
+   */
+  #open(torque) {
+    if (!this.about || this.isOf(this.design.submission)) return this.design.set(TORQUE, [torque], "mend");
+    this.design.replace(withValue(this.about.base, TORQUE, [torque]), "open");
+  }
+
+  /**
    * The least of the points in words; its point is larger than the others, unless a warning limits what they say.
    *
    * @param {Dot[]} points
@@ -146,22 +173,13 @@ export class Sweep extends StudyPanel {
   #leastOf(points) {
     const least = points.reduce((best, point) => (point.y < best.y ? point : best));
     const told = `${fixed(least.y, 3)} µm at ${number(least.x)} N m`;
-    const use = button(`Show ${number(least.x)} N m`, () => this.design.set(TORQUE, [least.x], "mend"));
+    const use = button(`Show ${number(least.x)} N m`, () => this.#open(least.x));
     const atEnd = least === points[0] || least === points.at(-1);
     const words = atEnd ? "The least lies at an end of the sweep; a wider one may find less." : "";
-    const mark = markOf(PEAK_TO_PEAK, this.#warnings);
+    const mark = this.#warnings ? markOf(PEAK_TO_PEAK, this.#warnings) : NOT_SHOWN;
     if (mark) {
-      const why = h("span", { className: "mark" }, mark.word);
-      return [
-        h(
-          "p",
-          {},
-          `Smallest number of these torques: ${told}, which is not called the least: `,
-          why,
-          ` ${mark.detail} `,
-          use,
-        ),
-      ];
+      const said = `Smallest number of these torques: ${told}, which is not called the least: `;
+      return [h("p", {}, said, h("span", { className: "mark" }, mark.word), ` ${mark.detail} `, use)];
     }
     least.strong = true;
     least.label = `least: ${told}`;

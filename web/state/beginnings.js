@@ -1,19 +1,16 @@
 // @ts-check
 // What a part of the form begins with when it is asked for: values that fit the gear it is for, else defaults.
 
+import { between, OPENINGS, reachOf, rounded, slotOf } from "./openings.js";
 import { USUAL_POSITIONS } from "./preview.js";
-import { kindOf, resolve } from "./schema.js";
+import { kindOf, lastOf, resolve } from "./schema.js";
 import { dedendumOf, rootRadius, toolShift } from "./tool.js";
 
 /** @import { Design } from "./design.js" */
-/** @import { Blank, Gear, GearName, Holes, Limits, Results } from "./documents.js" */
+/** @import { Gear, GearName, Limits, Results } from "./documents.js" */
 /** @import { Api, Kind } from "./schema.js" */
 
 const TURN = Math.PI / 180;
-/** @type {(pointer: string) => string} */
-const lastOf = (pointer) => pointer.slice(pointer.lastIndexOf("/") + 1);
-/** @type {(value: number, digits?: number) => number} */
-const rounded = (value, digits = 3) => Number(value.toPrecision(digits));
 
 /** A run-up begins with so many speeds, up to so many times that of the resonance at the mesh order. */
 const SPEEDS = 100;
@@ -100,9 +97,7 @@ export class Beginnings {
     if (pointer.endsWith("/lead_modifications")) return { kind: "crowning", amount_um: 5 };
     if (!pointer.endsWith("/holes")) return this.#begin(kind.items);
     const gear = this.#gear(pointer);
-    return values.length && gear
-      ? between(values.at(-1), 1.2 * this.limits.least_ligament_modules * gear.module_mm)
-      : this.object(pointer, kind);
+    return values.length && gear ? between(values.at(-1), this.#ligament(gear.module_mm)) : this.object(pointer, kind);
   }
 
   /**
@@ -128,29 +123,10 @@ export class Beginnings {
     const { web, holes } = gear.blank ?? {};
     // It stands in place of the bore.
     if (name === "shaft") return { radius_mm: rounded(bore) };
-    if (name === "holes") {
-      // Within the web, where there is one: no hole crosses its edges.
+    const opening = OPENINGS[name];
+    if (opening) {
       const [inner, outer] = web ? [web.inner_radius_mm, web.outer_radius_mm] : [bore, root];
-      const circle = rounded((outer + inner) / 2);
-      return {
-        count: 6,
-        circle_radius_mm: circle,
-        radius_mm: rounded(Math.min((web ? 0.4 : 0.27) * (outer - inner), 0.27 * (root - bore), 0.3 * circle), 2),
-        phase_deg: 0,
-      };
-    }
-    if (name === "spokes") {
-      const [inner, outer] = web ? [web.inner_radius_mm, web.outer_radius_mm] : [bore, root];
-      /** @type {(part: number) => number} */
-      const at = (part) => rounded(inner + part * (outer - inner));
-      return {
-        count: 5,
-        width_mm: rounded(Math.max(0.15 * at(0.2), 1.2 * this.limits.least_ligament_modules * module)),
-        fillet_radius_mm: rounded(0.06 * (outer - inner), 2),
-        inner_radius_mm: at(0.2),
-        outer_radius_mm: at(0.75),
-        phase_deg: 0,
-      };
+      return opening({ inner, outer, isWeb: Boolean(web), whole: root - bore, ligament: this.#ligament(module) });
     }
     const [low, high] = reachOf(holes);
     if (name === "tip_relief")
@@ -166,6 +142,15 @@ export class Beginnings {
       outer_radius_mm: rounded(outer),
       thickness_mm: rounded(gear.face_width_mm / 2),
     };
+  }
+
+  /**
+   * As much material between openings, in mm, as is computed without a warning, and a fifth more.
+   *
+   * @param {number} module
+   */
+  #ligament(module) {
+    return 1.2 * this.limits.least_ligament_modules * module;
   }
 
   /**
@@ -317,21 +302,6 @@ function circlesOf(gear) {
 }
 
 /**
- * Between which radii the holes of a blank lie, in mm.
- *
- * @type {(holes: Blank["holes"]) => [number, number]}
- */
-function reachOf(holes) {
-  const patterns = [holes ?? []]
-    .flat()
-    .map(({ circle_radius_mm: circle, radius_mm: radius, slot }) => [circle, radius ?? (slot?.width_mm ?? NaN) / 2]);
-  return [
-    Math.min(...patterns.map(([circle, half]) => circle - half)),
-    Math.max(0, ...patterns.map(([circle, half]) => circle + half)),
-  ];
-}
-
-/**
  * The involute of a gear: roll lengths of its form circle and its tip, and one measure of a place on it as another.
  *
  * @param {Gear} gear
@@ -368,43 +338,4 @@ function flankOf(gear) {
       radial_length_mm: atRoot ? radius - formRadius : tipRadius - radius,
     })[name];
   return { form, tip, formRadius, tipRadius, radiusAt, radiusOf, said };
-}
-
-/** @type {(pattern: Holes) => number} */
-const numberOf = (pattern) => pattern.count ?? pattern.at_deg?.length ?? 1;
-/** @type {(value: number) => number} */
-const twoDigits = (value) => Number(value.toPrecision(2));
-
-/**
- * Slots in place of the round holes of a pattern, with material left between them.
- *
- * @param {Holes} pattern
- */
-function slotOf(pattern) {
-  return {
-    width_mm: twoDigits(pattern.radius_mm ?? pattern.circle_radius_mm / 10),
-    angle_deg: twoDigits(180 / Math.max(numberOf(pattern), 3)),
-  };
-}
-
-/**
- * A further pattern: small round holes midway between those of `pattern`, so small that `left` mm of material stay
- * between them.
- *
- * @param {Holes} pattern
- * @param {number} left
- */
-function between(pattern, left) {
-  const half = 180 / numberOf(pattern);
-  const places = pattern.at_deg
-    ? { at_deg: pattern.at_deg.map((angle) => angle + half) }
-    : { count: pattern.count, phase_deg: (pattern.phase_deg ?? 0) + half };
-  const radius = pattern.radius_mm ?? (pattern.slot?.width_mm ?? NaN) / 2;
-  const room =
-    2 * pattern.circle_radius_mm * Math.sin((0.5 * half - 0.25 * (pattern.slot?.angle_deg ?? 0)) * TURN) - radius;
-  return {
-    ...places,
-    circle_radius_mm: pattern.circle_radius_mm,
-    radius_mm: twoDigits(Math.max(0.1, Math.min(0.4 * radius, room - left))),
-  };
 }

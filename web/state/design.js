@@ -6,6 +6,13 @@
 /** @import { RememberedProject } from "./project.js" */
 
 /**
+ * The gears of a pair.
+ *
+ * @type {GearName[]}
+ */
+export const MEMBERS = ["driving", "driven"];
+
+/**
  * What changed a design.
  *
  * @typedef {"start" | "open" | "form" | "mend" | "drag" | "snap" | "undo" | "kept" | "confirm"} Cause

@@ -1,11 +1,10 @@
 // @ts-check
 // What has an extent along the axis: which fields need three dimensions, and the steps into the third one and back.
 
-import { HELIX } from "./design.js";
+import { HELIX, MEMBERS } from "./design.js";
 import { number } from "./numbers.js";
 
 /** @import { Design } from "./design.js" */
-/** @import { GearName } from "./documents.js" */
 
 /**
  * Changes that belong together, and what is said of them.
@@ -18,8 +17,6 @@ const SOLID = "three_dimensional";
 const PLANE = "flexible";
 /** A helix begins with so many degrees. */
 const USUAL_HELIX = 15;
-/** @type {GearName[]} */
-const MEMBERS = ["driving", "driven"];
 
 /**
  * The fields that plane methods refuse, once the schema has told them.

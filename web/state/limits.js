@@ -1,7 +1,9 @@
 // @ts-check
 // The sizes of a pair that decide its backlash, and their limits; the load by the torque of either gear, or by power.
 
-/** @import { GearName, Pair } from "./documents.js" */
+import { MEMBERS } from "./design.js";
+
+/** @import { Pair } from "./documents.js" */
 
 /**
  * A size between two limits: its pointer, what it is called, its unit, its value in the pair, and whether the backlash
@@ -30,7 +32,7 @@ const at = (object, path) => path.split("/").reduce((part, name) => part?.[name]
  * @type {(pair: Pair) => Size[]}
  */
 export function sizesOf(pair) {
-  const thicknesses = /** @type {GearName[]} */ (["driving", "driven"]).map((gear) => {
+  const thicknesses = MEMBERS.map((gear) => {
     const [path, name, unit] =
       THICKNESS.find(([each]) => typeof at(pair[gear], each) === "number") ?? THICKNESS[THICKNESS.length - 1];
     const value = at(pair[gear], path) ?? 0;

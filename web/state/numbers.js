@@ -21,6 +21,14 @@ export function fixed(value, decimals) {
 }
 
 /**
+ * A number with so many significant digits, zeros at its end among them, and none that stands for a power of ten.
+ *
+ * @type {(value: number, digits: number) => string}
+ */
+export const significant = (value, digits) =>
+  fixed(value, Math.min(6, Math.max(0, digits - 1 - Math.floor(Math.log10(Math.abs(value) || 1)))));
+
+/**
  * The least and the most of any number of values; those that are no numbers are left out. Null where none is left.
  *
  * @param {Iterable<number | null | undefined>} values

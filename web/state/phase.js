@@ -2,6 +2,7 @@
 // The phase of the holes of the driving gear against those of the driven one.
 
 import { number } from "./numbers.js";
+import { anglesOf } from "./openings.js";
 
 /** @import { Blank, Schemas } from "./documents.js" */
 
@@ -13,26 +14,6 @@ const DIGITS = 4;
 
 /** @type {(degrees: number) => number} */
 const round = (degrees) => Number(degrees.toFixed(DIGITS));
-
-/**
- * The angles that say how a blank stands, by their pointers; null where they do not say it all: an outline stands as it
- * is drawn.
- *
- * @type {(blank: Blank | undefined) => Record<string, number | number[]> | null}
- */
-function anglesOf(blank) {
-  if (!blank || blank.outline) return null;
-  const { holes, spokes } = blank;
-  /** @type {[string, number | number[]][]} */
-  const patterns = (holes ? [holes].flat() : []).map((pattern, i) => {
-    const place = `${BLANK}/holes${Array.isArray(holes) ? `/${i}` : ""}`;
-    return pattern.at_deg ? [`${place}/at_deg`, pattern.at_deg] : [`${place}/phase_deg`, pattern.phase_deg ?? 0];
-  });
-  return Object.fromEntries([
-    ...patterns,
-    .../** @type {[string, number][]} */ (spokes ? [[`${BLANK}/spokes/phase_deg`, spokes.phase_deg ?? 0]] : []),
-  ]);
-}
 
 /**
  * Where the blank of the driving gear stands, in degrees from any place of its own; null where no field says it.
@@ -52,7 +33,7 @@ export function phaseOf(blank) {
 export const turnedBy = (blank, by) =>
   Object.fromEntries(
     Object.entries(anglesOf(blank) ?? {}).map(([pointer, angle]) => [
-      pointer,
+      `${BLANK}/${pointer}`,
       Array.isArray(angle) ? angle.map((each) => round(each + by)) : round(angle + by),
     ]),
   );

@@ -4,6 +4,7 @@
 import { checked, hasEnded, isAborted, isPassing, json, post, ProblemError, request, solved } from "./api.js";
 import { nameOf } from "./design.js";
 import { isSolid } from "./dimensions.js";
+import { hasMoreThanHoles } from "./openings.js";
 import { begin, methodOf, tellsOf } from "./work.js";
 
 /** @import { Cause } from "./design.js" */
@@ -463,7 +464,7 @@ export class Follower {
    */
   async #outline(submission) {
     const shape = JSON.stringify(submission.pair, function (/** @type {string} */ name, /** @type {unknown} */ value) {
-      return name === "holes" && !this.spokes && !this.outline ? undefined : value;
+      return name === "holes" && !hasMoreThanHoles(this) ? undefined : value;
     });
     if (shape === this.#drawn) return;
     try {

@@ -150,6 +150,16 @@ export function schemaAt(api, pointer) {
   return found ? kindOf(api, found).schema : null;
 }
 
+/** @type {(pointer: string) => string} */
+export const lastOf = (pointer) => pointer.slice(pointer.lastIndexOf("/") + 1);
+
+/**
+ * What the field at a pointer is called.
+ *
+ * @type {(api: Api, pointer: string) => string}
+ */
+export const titleAt = (api, pointer) => schemaAt(api, pointer)?.title ?? lastOf(pointer).replace(/_/g, " ");
+
 /** @type {(words: string) => string[]} */
 const stems = (words) =>
   words
@@ -316,4 +326,24 @@ export function beyondPlane(api) {
     return Object.entries(schema.properties ?? {}).flatMap(([name, each]) => within(each, `${pointer}/${name}`));
   };
   return within(SUBMISSION, "");
+}
+
+/**
+ * Whether a value is of one of several variants.
+ *
+ * @param {Schema} variant
+ * @param {any} value that of the field
+ */
+export function fits(variant, value) {
+  if (variant.enum) return variant.enum.includes(value);
+  if (variant.type === "array") return Array.isArray(value);
+  if (variant.type === "number") return typeof value === "number";
+  /** @type {(field: [string, Schema]) => boolean} */
+  const word = ([name, schema]) => schema.enum?.length !== 1 || value[name] === schema.enum[0];
+  return (
+    typeof value === "object" &&
+    !Array.isArray(value) &&
+    (variant.required ?? []).every((name) => name in value) &&
+    Object.entries(variant.properties ?? {}).every(word)
+  );
 }

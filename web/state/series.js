@@ -1,6 +1,7 @@
 // @ts-check
 // What the curves of designs are made of: their points, names, units and what a listener should know of them.
 
+import { MEMBERS } from "./design.js";
 import { fixed, number } from "./numbers.js";
 import { apart, withPoints } from "./points.js";
 import { shown } from "./quantities.js";
@@ -133,9 +134,8 @@ function largestShare(curve) {
  */
 export function stresses({ stress }) {
   if (!stress) return [];
-  const gears = /** @type {const} */ (["driving", "driven"]);
   return /** @type {const} */ (["root", "hole"]).flatMap((place) =>
-    gears.flatMap((gear) => {
+    MEMBERS.flatMap((gear) => {
       const values = stress[gear][`${place}_mpa`];
       return values ? [{ name: `${place}, ${gear} gear`, values }] : [];
     }),
@@ -251,10 +251,15 @@ export function placedNames(names, { stems = [], mark = 0, px, py, left, right, 
     .sort((a, b) => rank(a) - rank(b) || b.value - a.value)
     .flatMap(({ label, order, value }) => {
       const width = widthOf(label);
-      const x = Math.min(Math.max(px(order), left + width / 2), right - width / 2);
       // Stems reach from their mark to the foot: above the highest of those below the name there is room.
-      const beside = marks.filter(([at]) => Math.abs(at - x) < width / 2 + 2 + mark).map(([, level]) => level);
-      let y = Math.min(py(value), ...beside) - 0.5 * letter - mark;
+      const places = [0, width / 2, -width / 2].map((aside) => {
+        const x = Math.min(Math.max(px(order) + aside, left + width / 2), right - width / 2);
+        const below = marks.filter(([at]) => Math.abs(at - x) < width / 2 + 2 + mark).map(([, level]) => level);
+        return { x, foot: Math.min(py(value), ...below) };
+      });
+      // Beside its line, where it would stand above a much higher one.
+      const { x, foot } = places.find(({ foot }) => py(value) - foot < letter) ?? places[0];
+      let y = foot - 0.5 * letter - mark;
       /** @type {(level: number) => Box} */
       const boxAt = (level) => [x - width / 2 - 2, level - letter, x + width / 2 + 2, level + 2];
       /** @type {(box: Box) => Box | undefined} */
@@ -382,7 +387,7 @@ export function wordsAt(curve, i) {
     `Transmission error ${fixed(curve.transmission_error_um[i], 3)} µm`,
     `stiffness ${fixed(curve.mesh_stiffness_tangent_n_per_m[i] * 1e-6, 1)} N/µm`,
     `${pairs} ${pairs === 1 ? "pair" : "pairs"} in contact`,
-    pressure === null ? "a tip corner carries" : `${fixed(pressure, 0)} MPa`,
+    pressure === null ? "a tip corner carries" : `pressure ${fixed(pressure, 0)} MPa`,
   ];
   return `${parts.join(", ")}.${curve.stress ? ` Stress in MPa: ${stressed.join(", ")}.` : ""}`;
 }

@@ -1,6 +1,7 @@
 // @ts-check
 // Results as tables, and the names of files.
 
+import { MEMBERS } from "./design.js";
 import { withPoints } from "./points.js";
 
 /** @import { Curve, Results } from "./documents.js" */
@@ -36,7 +37,7 @@ export function columnsOf(curves) {
 }
 
 const PLACES = ["root", "root_tension", "root_compression", "hole"];
-const STRESSES = ["driving", "driven"].flatMap((gear) =>
+const STRESSES = MEMBERS.flatMap((gear) =>
   PLACES.flatMap((place) => ["mpa", "angle_deg", "z_mm"].map((unit) => `stress.${gear}.${place}_${unit}`)),
 );
 

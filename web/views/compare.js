@@ -1,7 +1,7 @@
 // @ts-check
 // Designs beside each other: their numbers under names that the user gives, and the fields in which they differ.
 
-import { looks } from "../draw/charts.js";
+import { looks } from "../draw/looks.js";
 import { button, h, note } from "../draw/dom.js";
 import { saveTable } from "../draw/download.js";
 import { differences, told } from "../state/design.js";

@@ -2,7 +2,7 @@
 // What is on the screen for other programs: curves, orders, tables, pictures, files of a job, and the request as a
 // program.
 
-import { looks } from "../draw/charts.js";
+import { looks } from "../draw/looks.js";
 import { button, h, inLine, labelled, note } from "../draw/dom.js";
 import { chooseCommas, copied, drawingOf, hasCommas, save, saveTable } from "../draw/download.js";
 import { captioned, fileOf, pictureOf, stacked } from "../draw/figure.js";

@@ -8,9 +8,10 @@
  */
 
 import { button, h, note, table } from "../draw/dom.js";
+import { MEMBERS } from "../state/design.js";
 import { fixed, number } from "../state/numbers.js";
 
-/** @import { Gear, GearName, NamedDesign, Pair, Results } from "../state/documents.js" */
+/** @import { Gear, NamedDesign, Pair, Results } from "../state/documents.js" */
 
 /** @type {(radius: number) => number} */
 const twice = (radius) => 2 * radius;
@@ -82,9 +83,8 @@ export const OF_PAIRS = [
  */
 export function rowsOf({ results, submission }) {
   const { pair } = results;
-  const members = /** @type {GearName[]} */ (["driving", "driven"]);
   const ofGears = OF_GEARS.map(([name, symbol, unit, read]) => {
-    const values = members.map((member) => read(pair[member], submission.pair[member]));
+    const values = MEMBERS.map((member) => read(pair[member], submission.pair[member]));
     return /** @type {Row} */ ([name, symbol, unit, ...values]);
   });
   const gears = ofGears.filter(([, , , ...values]) => values.some((value) => value !== "–"));
@@ -136,8 +136,8 @@ export class Geometry {
         ),
       );
     this.out.replaceChildren(
-      table(["", "Driving", "Driven", ""], rows(gears), "Gears"),
-      table(["", "", ""], rows(both), "Pair"),
+      table(["Quantity", "Driving", "Driven", "Unit"], rows(gears), "Gears"),
+      table(["Quantity", "Value", "Unit"], rows(both), "Pair"),
     );
   }
 }

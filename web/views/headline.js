@@ -4,7 +4,7 @@
 
 import { button, h } from "../draw/dom.js";
 import { markOf } from "../state/marks.js";
-import { fixed, number } from "../state/numbers.js";
+import { fixed, number, significant } from "../state/numbers.js";
 import { inCurve, quantityOf } from "../state/quantities.js";
 
 /** @import { Curve, GearName, Warning } from "../state/documents.js" */
@@ -134,7 +134,7 @@ export const ANSWERS = [
     name: "H_N",
     unit: "µm",
     quantity: "hole_order_um",
-    print: (value) => number(value, 3),
+    print: (value) => significant(value, 3),
     about:
       "The part of the transmission error that repeats with the holes: its amplitude at as many waves in a revolution of the driven gear as there are holes. None without holes.",
   },
@@ -144,7 +144,7 @@ export const ANSWERS = [
     name: "H_Z2",
     unit: "µm",
     quantity: "mesh_order_um",
-    print: (value) => number(value, 3),
+    print: (value) => significant(value, 3),
     about: "The part that repeats with every tooth: its amplitude at the mesh order.",
   },
   {

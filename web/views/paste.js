@@ -3,7 +3,7 @@
 // form.
 
 import { button, byId, debounced, h, inLine, labelled, note, region, table, tableRow } from "../draw/dom.js";
-import { withValue } from "../state/design.js";
+import { MEMBERS, withValue } from "../state/design.js";
 import { materialIn } from "../state/materials.js";
 import { read, valuesOfPasted } from "../state/pasted.js";
 import { newPair } from "./start.js";
@@ -105,7 +105,7 @@ export function setUpPaste(design) {
     const values = valuesOfPasted(pasted(), base, materialIn);
     for (const [pointer, value] of Object.entries(values)) next = withValue(next, pointer, value);
     if (anew.checked)
-      for (const gear of /** @type {const} */ (["driving", "driven"])) {
+      for (const gear of MEMBERS) {
         const pointer = `/pair/${gear}/blank/bore_radius_mm`;
         const { module_mm: module, tooth_count: teeth } = next.pair[gear];
         if (!(pointer in values)) next = withValue(next, pointer, Number(((BORE * module * teeth) / 2).toPrecision(2)));

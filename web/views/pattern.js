@@ -6,7 +6,7 @@ import { button, h, note, s } from "../draw/dom.js";
 import { cssOf, scaleOf } from "../draw/face.js";
 import { figure } from "../draw/figure.js";
 import { checked, hasEnded, isAborted, json, patiently, ProblemError, request, solved } from "../state/api.js";
-import { same } from "../state/design.js";
+import { MEMBERS, same } from "../state/design.js";
 import { fixed, number, timeOf } from "../state/numbers.js";
 import { begin, tellsOf } from "../state/work.js";
 
@@ -131,10 +131,9 @@ export class Pattern {
   #draw(pattern) {
     const [{ largest_pressure_mpa: most, output_torque_n_m: torque, ...curve }] = pattern.curves;
     this.legend.replaceChildren(scaleOf(most, "MPa"));
-    const gears = /** @type {GearName[]} */ (["driving", "driven"]);
-    const sharp = gears.some((gear) => curve[gear].pressure_mpa.flat().includes(null));
+    const sharp = MEMBERS.some((gear) => curve[gear].pressure_mpa.flat().includes(null));
     this.state.textContent = `At ${number(torque)} N m, from the form diameter to the tip. Empty: nothing touches.${sharp ? " Hatched: a sharp tip edge carries, where the pressure has no limit." : ""}`;
-    this.flanks.replaceChildren(...gears.map((gear) => flankOf(gear, pattern, curve[gear].pressure_mpa, most)));
+    this.flanks.replaceChildren(...MEMBERS.map((gear) => flankOf(gear, pattern, curve[gear].pressure_mpa, most)));
   }
 }
 

@@ -44,7 +44,7 @@ export class ProblemBox {
       return h(
         "li",
         {},
-        form?.inWords(error.detail) ?? error.detail,
+        form?.names.inWords(error.detail) ?? error.detail,
         " ",
         button("Show the field", focus, { className: "mend" }),
       );
@@ -65,7 +65,7 @@ export class ProblemBox {
    */
   #dimensions(codes) {
     /** @type {(inSolid: boolean, words: string) => HTMLElement} */
-    const turn = (inSolid, words) => button(words, () => this.form()?.compute(inSolid));
+    const turn = (inSolid, words) => button(words, () => this.form()?.changes.compute(inSolid));
     /** @type {(solid: string, plane: string) => HTMLElement[]} */
     const both = (solid, plane) => [h("p", {}, turn(true, solid), " ", turn(false, plane))];
     if (codes.has("needs_three_dimensions"))

@@ -2,11 +2,11 @@
 // The report of a project on paper: the data sheet with materials, the one page of the design, its kept designs beside
 // it, curves, spectrum, contact pattern, run-up, robustness, warnings and evidence.
 
-import { looks } from "../draw/charts.js";
+import { looks } from "../draw/looks.js";
 import { h, table, tableRow } from "../draw/dom.js";
 import { drawingOf } from "../draw/download.js";
 import { figure } from "../draw/figure.js";
-import { differences, flattened, told } from "../state/design.js";
+import { differences, flattened, MEMBERS, told } from "../state/design.js";
 import { markOf } from "../state/marks.js";
 import { fixed, number } from "../state/numbers.js";
 import { calledOf, shown } from "../state/quantities.js";
@@ -117,7 +117,6 @@ function titleOf({ title, live, drawing }) {
  */
 function dataOf({ live: { submission }, form, usual }) {
   const flat = flattened(submission);
-  const gears = /** @type {const} */ (["driving", "driven"]);
   const names = new Set(OF_MATERIAL);
   for (const pointer of flat.keys()) {
     const name = /^\/pair\/(?:driving|driven)\/(.+)$/.exec(pointer)?.[1];
@@ -132,11 +131,13 @@ function dataOf({ live: { submission }, form, usual }) {
   const all = [...names].filter((name) => !isOfMaterial(name)).concat([...names].filter(isOfMaterial));
   const ofGears = all.map((name) => {
     const pointer = `/pair/driving/${name}`;
-    const title = form.named(pointer).replace(/, driving gear$/, "");
-    return tableRow(title, ...gears.map((gear) => valueOf(`/pair/${gear}/${name}`)), form.unitOf(pointer));
+    const title = form.names.named(pointer).replace(/, driving gear$/, "");
+    return tableRow(title, ...MEMBERS.map((gear) => valueOf(`/pair/${gear}/${name}`)), form.names.unitOf(pointer));
   });
   const others = [...flat].filter(([pointer]) => !/^\/pair\/(driving|driven)\//.test(pointer));
-  const ofPair = others.map(([pointer, value]) => tableRow(form.named(pointer), told(value), form.unitOf(pointer)));
+  const ofPair = others.map(([pointer, value]) =>
+    tableRow(form.names.named(pointer), told(value), form.names.unitOf(pointer)),
+  );
   return h(
     "div",
     {},
@@ -169,7 +170,7 @@ function designsOf(designs, { form, usual }) {
       values: values.map((value, i) => told(value ?? usual(designs[i].submission, pointer))),
     }))
     .filter(({ pointer, values }) => pointer !== "/tags" && values.some((value) => value !== values[0]))
-    .map(({ pointer, values }) => tableRow(form.titled(pointer), ...values));
+    .map(({ pointer, values }) => tableRow(form.names.titled(pointer), ...values));
   return h(
     "div",
     {},
@@ -280,7 +281,7 @@ function answersOf(answers) {
  */
 const warningsOf = ({ results: { warnings } }, form) =>
   warnings.length
-    ? h("ul", {}, ...warnings.map(({ detail }) => h("li", {}, form.inWords(detail))))
+    ? h("ul", {}, ...warnings.map(({ detail }) => h("li", {}, form.names.inWords(detail))))
     : h("p", {}, "None.");
 
 /** @param {NamedDesign} live */

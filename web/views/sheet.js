@@ -67,12 +67,12 @@ function givenOf(submission, form) {
     ["Pair and method", ""],
   ];
   /** @type {(pointer: string) => number} */
-  const partOf = (pointer) => parts.findIndex(([, end]) => form.named(pointer).endsWith(end));
+  const partOf = (pointer) => parts.findIndex(([, end]) => form.names.named(pointer).endsWith(end));
   return parts.flatMap(([title, end], i) => {
     const own = fields
       .filter(([pointer]) => partOf(pointer) === i)
       .map(([pointer, value]) =>
-        `${form.named(pointer).slice(0, -end.length || undefined)} ${told(value)} ${form.unitOf(pointer)}`.trim(),
+        `${form.names.named(pointer).slice(0, -end.length || undefined)} ${told(value)} ${form.names.unitOf(pointer)}`.trim(),
       );
     return own.length ? [`${title}: ${own.join("; ")}.`] : [];
   });
@@ -168,7 +168,9 @@ export function sheetOf({ live, drawing, charts, form }) {
   }
 
   page.append(words("Warnings", 510, down, { "font-weight": 600 }));
-  const warnings = results.warnings.length ? results.warnings.map(({ detail }) => form.inWords(detail)) : ["None."];
+  const warnings = results.warnings.length
+    ? results.warnings.map(({ detail }) => form.names.inWords(detail))
+    : ["None."];
   for (const line of fitting(
     warnings.flatMap((warning) => wrapped(warning, SIDE)),
     18,

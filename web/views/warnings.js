@@ -37,17 +37,17 @@ export class Warnings {
     const form = this.form();
     // What would mend it, by the pointers of the fields.
     const values = Object.entries(changes).map(
-      ([pointer, value]) => `${form?.named(pointer) ?? pointer} ${number(value, 7)}`,
+      ([pointer, value]) => `${form?.names.named(pointer) ?? pointer} ${number(value, 7)}`,
     );
     return h(
       "li",
       {},
-      form?.inWords(detail) ?? detail,
+      form?.names.inWords(detail) ?? detail,
       ...(guide ? [" ", h("a", { href: guide.replace(/^\//, "") }, "The guide says why")] : []),
       ...(code === "web_outside_plane_model"
-        ? [" ", button("Compute it in three dimensions", () => form?.compute(true))]
+        ? [" ", button("Compute it in three dimensions", () => form?.changes.compute(true))]
         : []),
-      ...(values.length ? [" ", button(`Use ${values.join(", ")}`, () => form?.take(changes))] : []),
+      ...(values.length ? [" ", button(`Use ${values.join(", ")}`, () => form?.changes.take(changes))] : []),
     );
   }
 

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { allGiven, given, put } from "../../../web/draw/inputs.js";
-import { extent, fixed, number, remaining, timeOf, unit } from "../../../web/state/numbers.js";
+import { extent, fixed, number, remaining, significant, timeOf, unit } from "../../../web/state/numbers.js";
 import {
   chooseReading,
   inOtherUnit,
@@ -103,6 +103,10 @@ test("an arrow key turns the last digit that was typed, within the bounds of the
 test("numbers are printed with the digits that they are asked for; what is none is a dash", () => {
   assert.deepEqual([number(13.8251), number(0.1, 8), number(1e-9), number(null)], ["13.83", "0.1", "1e-9", "–"]);
   assert.deepEqual([fixed(2, 2), fixed(NaN, 1), fixed(undefined, 1)], ["2.00", "–", "–"]);
+  assert.deepEqual(
+    [0.11, 0.0123, 12.34, 1234, 0].map((value) => significant(value, 3)),
+    ["0.110", "0.0123", "12.3", "1234", "0.00"],
+  );
   assert.deepEqual([unit("um"), unit("1"), unit("kg m^2"), unit(undefined)], ["µm", "", "kg m²", ""]);
   assert.deepEqual(
     [timeOf(200), timeOf(61_000), timeOf(600_000), timeOf(9_000_000)],

@@ -2,7 +2,10 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { hasMoreThanHoles, OPENINGS } from "../../../web/state/openings.js";
 import { amplitudeAt, phaseOf, pitchOf, turnedBy, within, wordsOf } from "../../../web/state/phase.js";
+import { resolve } from "../../../web/state/schema.js";
+import { api } from "./contract.mjs";
 
 const phase = {
   output_torque_n_m: 115,
@@ -50,4 +53,28 @@ test("words tell the turn that is left, what a degree costs, and the other flank
     wordsOf(phase, 8),
     /0.01 µm .* turned by 20° more; 1° off leaves 0.1 µm.*other flanks the best turn is 0°/,
   );
+});
+
+test("every shape of openings that the schema has begins with what it requires", () => {
+  const blank = api.components.schemas.Blank;
+  const shapes = Object.entries(blank.properties).flatMap(([name, { oneOf = [] }]) =>
+    oneOf.map((each) => [name, resolve(api, each)]).filter(([, { properties }]) => properties?.phase_deg),
+  );
+  assert.deepEqual(shapes.map(([name]) => name).sort(), Object.keys(OPENINGS).sort());
+  const room = { inner: 20, outer: 40, isWeb: false, whole: 20, ligament: 1 };
+  for (const [name, { required, properties }] of shapes) {
+    const begun = OPENINGS[name](room);
+    assert.deepEqual(
+      required.filter((field) => !(field in begun)),
+      [],
+      name,
+    );
+    for (const [field, value] of Object.entries(begun))
+      assert.ok(value >= properties[field].minimum && value <= properties[field].maximum, `${name} ${field} ${value}`);
+  }
+  assert.deepEqual([{ holes: {} }, { spokes: {} }, { holes: {}, outline: [] }].map(hasMoreThanHoles), [
+    false,
+    true,
+    true,
+  ]);
 });

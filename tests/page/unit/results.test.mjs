@@ -101,13 +101,21 @@ test("the names of orders cross no mark, and the most that any design has there 
     stems.some(({ order, value }) => Math.abs(2 * order - x) < 3.5 * label.length + 3 && 300 - 300 * value - 3 < y);
   assert.ok(placed.length >= 3);
   assert.deepEqual(placed.filter(crosses), []);
+  // A low line beside a high one has its name beside it, not above the high one.
+  const [high, low] = [
+    { order: 50, value: 0.7, label: "H_N" },
+    { order: 56, value: 0.05, label: "H_2N" },
+  ];
+  const [, beside] = placedNames([high, low], { stems: [high, low], mark: 3, letter: 11, widthOf, ...place });
+  assert.equal(beside.label, "H_2N");
+  assert.ok(place.py(low.value) - beside.y < 2 * 11, `${place.py(low.value) - beside.y} px above its mark`);
   const spectra = [0.2, 0.4].map((value) => ({
     named: [{ order: 50, label: "H_Z2", transmission_error_um: value }],
     orders: [[50, value]],
   }));
   assert.deepEqual(namesOf(spectra, 100), [{ order: 50, label: "H_Z2", value: 0.4 }]);
   // Of two lines at 1 and 3 % of the largest the one is too short to be named.
-  const low = {
+  const short = {
     named: [
       [60, 0.004],
       [70, 0.012],
@@ -118,7 +126,7 @@ test("the names of orders cross no mark, and the most that any design has there 
     ],
   };
   assert.deepEqual(
-    namesOf([...spectra, low], 100, 0.02).map(({ label }) => label),
+    namesOf([...spectra, short], 100, 0.02).map(({ label }) => label),
     ["H_Z2", "H_70"],
   );
 });
