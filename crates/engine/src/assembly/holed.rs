@@ -31,6 +31,8 @@ const USUAL_ELEMENTS: f64 = 70.0;
 const ELEMENTS_PER_HIGH_ORDER: f64 = 2.0;
 /// The thinnest ligament, in half widths of the narrowest hole, whose bending a coarse grid follows: thinner ones are divided twice as finely.
 const THIN: f64 = 0.35;
+/// Answers of a circle that differ from sums of others by less than this part of the largest are these sums.
+const DEPENDENT: f64 = 1e-13;
 
 /// The outer circle of a web as the teeth see it, while the web has no holes.
 #[derive(Debug)]
@@ -56,8 +58,11 @@ pub(crate) struct HoledChange {
     tooth_count: usize,
     largest: usize,
     size: usize,
+    /// Independent answers of the circle to loads on tooth 0, a column each.
     answers: Mat<f64>,
-    /// −(I + ΔS C)⁻¹ ΔS q_j, of the teeth after which all repeats.
+    /// The part of each in the answer to each function on the flank.
+    shares: Mat<f64>,
+    /// −(I + ΔS C)⁻¹ ΔS times the independent answers, of the teeth after which all repeats.
     changes: Vec<Mat<f64>>,
 }
 
@@ -199,9 +204,9 @@ impl HoledChange {
             largest,
             size,
             tooth_count: z,
-            ref answers,
             ..
         } = web;
+        let [answers, shares] = independent(&web.answers);
         let holed = HoledSection::new(stack, section, largest)?;
         let mut change = holed.ring(&[], run)?.on_outer(holed.phase, run)?;
         for class in &mut change {
@@ -220,12 +225,16 @@ impl HoledChange {
             let coupled = Mat::<f64>::identity(change.nrows(), change.nrows())
                 + web.compliance.after(&change, orders);
             let factor = coupled.partial_piv_lu();
-            let own = rows_of(answers, orders, size);
-            let of_tooth = |tooth: usize| {
+            let own = rows_of(&answers, orders, size);
+            let turned = |tooth: usize| {
                 let angle = TAU * tooth as f64 / z as f64;
-                let turned = turned(&own, orders.iter().copied(), size, angle);
-                -factor.solve(&change * turned)
+                turned(&own, orders.iter().copied(), size, angle)
             };
+            if known * own.ncols() > change.nrows() {
+                let of_motion = -factor.solve(change);
+                return Ok((0..known).map(|tooth| &of_motion * turned(tooth)).collect());
+            }
+            let of_tooth = |tooth| -factor.solve(&change * turned(tooth));
             Ok((0..known).map(of_tooth).collect())
         };
         let sets = sets_of_orders(largest, repeats);
@@ -244,7 +253,8 @@ impl HoledChange {
             largest,
             size,
             changes,
-            answers: answers.clone(),
+            answers,
+            shares,
         })
     }
 
@@ -277,7 +287,13 @@ impl HoledChange {
         let (z, known) = (self.tooth_count, j % self.changes.len());
         let seen = (i + z - (j - known)) % z;
         let turned = self.turned(&self.answers, TAU * seen as f64 / z as f64);
-        turned.transpose() * &self.changes[known]
+        let between = turned.transpose() * &self.changes[known];
+        self.shares.transpose() * between * &self.shares
+    }
+
+    /// The parts of the independent answers in that to a load on the functions of a flank.
+    fn shares_of(&self, load: &[f64]) -> Mat<f64> {
+        &self.shares * Mat::from_fn(load.len(), 1, |i, _| load[i])
     }
 
     /// The forces on the web's outer circle by which holes act like a change of the web, under loads on the functions of some teeth, each
@@ -286,7 +302,7 @@ impl HoledChange {
         let mut sum = Mat::zeros(self.answers.nrows(), 1);
         for (tooth, load) in loads {
             let known = tooth % self.changes.len();
-            let load = Mat::from_fn(load.len(), 1, |i, _| load[i]);
+            let load = self.shares_of(load);
             let ahead = TAU * (tooth - known) as f64 / self.tooth_count as f64;
             sum += self.turned(&(&self.changes[known] * load), ahead);
         }
@@ -300,7 +316,7 @@ impl HoledChange {
         let forces = Mat::from_fn(forces.len(), 1, |i, _| forces[i]);
         let mut moved = web.compliance.times(&forces);
         for (tooth, load) in loads {
-            let load = Mat::from_fn(load.len(), 1, |i, _| load[i]);
+            let load = self.shares_of(load);
             let angle = TAU * *tooth as f64 / self.tooth_count as f64;
             moved += self.turned(&(&self.answers * load), angle);
         }
@@ -316,8 +332,22 @@ impl HoledChange {
 
     /// The number of entries, for the size limit of the cache.
     pub(crate) fn entries(&self) -> usize {
-        self.answers.nrows() * self.answers.ncols() * (1 + self.changes.len())
+        entries(&self.answers) * (1 + self.changes.len()) + entries(&self.shares)
     }
+}
+
+/// Orthogonal columns of which those of `answers` are sums but for [`DEPENDENT`] parts, and the part of each in each answer.
+fn independent(answers: &Mat<f64>) -> [Mat<f64>; 2] {
+    let parted = answers.col_piv_qr();
+    let triangle = parted.thin_R();
+    // They fall.
+    let sizes: Vec<f64> = (0..triangle.nrows())
+        .map(|i| triangle[(i, i)].abs())
+        .collect();
+    let count = sizes.partition_point(|size| *size > DEPENDENT * sizes[0]);
+    let columns = parted.compute_thin_Q().subcols(0, count).to_owned();
+    let shares = columns.transpose() * answers;
+    [columns, shares]
 }
 
 /// The section of a web with its holes, and its support.

@@ -19,10 +19,39 @@ pub struct AxialBasis {
 /// Integrals of a basis over its width: C_pq = ∫ f_p f_q' dz and D_pq = ∫ f_p' f_q' dz; ∫ f_p f_q dz is the identity.
 #[derive(Debug, Clone)]
 pub struct AxialMatrices {
+    /// The identity.
+    pub same: Mat<f64>,
     /// C.
     pub slope: Mat<f64>,
+    /// Cᵀ.
+    pub back: Mat<f64>,
     /// D.
     pub slopes: Mat<f64>,
+}
+
+impl AxialMatrices {
+    /// Those of the functions `rows` with the functions `columns`.
+    pub fn between(&self, rows: &[usize], columns: &[usize]) -> Self {
+        let part = |of: &Mat<f64>| {
+            Mat::from_fn(rows.len(), columns.len(), |i, j| of[(rows[i], columns[j])])
+        };
+        Self {
+            same: part(&self.same),
+            slope: part(&self.slope),
+            back: part(&self.back),
+            slopes: part(&self.slopes),
+        }
+    }
+
+    /// Fills `to` with a column of the sum of I, C, Cᵀ and D, of each so much.
+    pub fn fill(&self, shares: [f64; 4], column: usize, to: &mut [f64]) {
+        let all = [&self.same, &self.slope, &self.back, &self.slopes];
+        let [same, slope, back, slopes] = all.map(|of| of.col_as_slice(column));
+        let values = same.iter().zip(slope).zip(back.iter().zip(slopes));
+        for (to, ((same, slope), (back, slopes))) in to.iter_mut().zip(values) {
+            *to = shares[0] * same + shares[1] * slope + shares[2] * back + shares[3] * slopes;
+        }
+    }
 }
 
 impl AxialBasis {
@@ -109,20 +138,22 @@ impl AxialBasis {
     /// C and D.
     pub fn matrices(&self) -> AxialMatrices {
         let count = self.len();
-        let mut matrices = AxialMatrices {
-            slope: Mat::zeros(count, count),
-            slopes: Mat::zeros(count, count),
-        };
+        let [mut slope, mut slopes] = [(); 2].map(|()| Mat::zeros(count, count));
         for (z, w) in self.rule(self.degree + 1) {
             let (f, g) = (self.values(z), self.slopes(z));
             for q in 0..count {
                 for p in 0..count {
-                    matrices.slope[(p, q)] += w * f[p] * g[q];
-                    matrices.slopes[(p, q)] += w * g[p] * g[q];
+                    slope[(p, q)] += w * f[p] * g[q];
+                    slopes[(p, q)] += w * g[p] * g[q];
                 }
             }
         }
-        matrices
+        AxialMatrices {
+            same: Mat::identity(count, count),
+            back: slope.transpose().to_owned(),
+            slope,
+            slopes,
+        }
     }
 
     /// ∫ f_p g_q `weight` dz over this width, f of this basis and g of `other`.

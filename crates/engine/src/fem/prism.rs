@@ -219,14 +219,15 @@ impl Prism<'_> {
             own.map(|unknown| unknown - all.start).collect()
         });
         let matrices = self.axial.matrices();
-        let products: Vec<Products> = (0..COMPONENTS * COMPONENTS)
-            .map(|pair| {
-                let [p, q] = [pair / COMPONENTS, pair % COMPONENTS].map(|c| own[c].as_slice());
-                Products::new(&matrices, p, q)
-            })
+        let products: Vec<AxialMatrices> = (0..COMPONENTS * COMPONENTS)
+            .map(|pair| matrices.between(&own[pair / COMPONENTS], &own[pair % COMPONENTS]))
             .collect();
         for element in &self.grid.elements {
-            let section = section_matrices(element, self.grid, &law, self.twist);
+            let SectionMatrices {
+                plain,
+                mixed,
+                axial,
+            } = section_matrices(element, self.grid, &law, self.twist);
             take(element, &|[a, b], between| {
                 let mut columns = between.chunks_exact_mut(unknowns.len());
                 for (d, of_component) in own.iter().enumerate() {
@@ -234,45 +235,15 @@ impl Prism<'_> {
                         let mut first = 0;
                         for (c, rows) in own.iter().enumerate() {
                             let to = &mut to[first..first + rows.len()];
-                            let at = [COMPONENTS * a + c, COMPONENTS * b + d];
-                            products[COMPONENTS * c + d].fill(&section, at, column, to);
+                            let [i, j] = [COMPONENTS * a + c, COMPONENTS * b + d];
+                            let shares =
+                                [plain[(i, j)], mixed[(i, j)], mixed[(j, i)], axial[(i, j)]];
+                            products[COMPONENTS * c + d].fill(shares, column, to);
                             first += rows.len();
                         }
                     }
                 }
             });
-        }
-    }
-}
-
-/// Products of some functions along the axis with others, integrated: M, C, Cᵀ and D.
-struct Products([Mat<f64>; 4]);
-
-impl Products {
-    fn new(AxialMatrices { slope, slopes }: &AxialMatrices, p: &[usize], q: &[usize]) -> Self {
-        let of = |value: &dyn Fn(usize, usize) -> f64| {
-            Mat::from_fn(p.len(), q.len(), |i, j| value(p[i], q[j]))
-        };
-        Self([
-            of(&|p, q| if p == q { 1.0 } else { 0.0 }),
-            of(&|p, q| slope[(p, q)]),
-            of(&|p, q| slope[(q, p)]),
-            of(&|p, q| slopes[(p, q)]),
-        ])
-    }
-
-    /// Fills `to` with a column of the stiffness between two unknowns of a section.
-    fn fill(&self, section: &SectionMatrices, [i, j]: [usize; 2], column: usize, to: &mut [f64]) {
-        let SectionMatrices {
-            plain,
-            mixed,
-            axial,
-        } = section;
-        let shares = [plain[(i, j)], mixed[(i, j)], mixed[(j, i)], axial[(i, j)]];
-        let [same, slope, back, slopes] = self.0.each_ref().map(|of| of.col_as_slice(column));
-        let values = same.iter().zip(slope).zip(back.iter().zip(slopes));
-        for (to, ((same, slope), (back, slopes))) in to.iter_mut().zip(values) {
-            *to = shares[0] * same + shares[1] * slope + shares[2] * back + shares[3] * slopes;
         }
     }
 }

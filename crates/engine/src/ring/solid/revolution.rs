@@ -107,39 +107,29 @@ struct RadialElement<'a> {
 impl RadialElement<'_> {
     /// The real parts of the lower triangle.
     fn real(&self) -> Mat<f64> {
-        let axial = self.axial;
-        self.lower(|(a, p), (b, q)| {
-            let same = if p == q { self.plain[(a, b)] } else { 0.0 };
-            same + self.mixed[(a, b)] * axial.slope[(p, q)]
-                + self.mixed[(b, a)] * axial.slope[(q, p)]
-                + self.slopes[(a, b)] * axial.slopes[(p, q)]
+        self.lower(|a, b| {
+            let mixed = [self.mixed[(a, b)], self.mixed[(b, a)]];
+            [self.plain[(a, b)], mixed[0], mixed[1], self.slopes[(a, b)]]
         })
     }
 
     /// The imaginary parts of the lower triangle.
     fn imaginary(&self) -> Mat<f64> {
-        let axial = self.axial;
-        self.lower(|(a, p), (b, q)| {
-            let between = axial.slope[(p, q)] - axial.slope[(q, p)];
-            let same = if p == q {
-                self.mixed[(b, a)] - self.mixed[(a, b)]
-            } else {
-                0.0
-            };
-            self.turn * (same + self.slopes[(a, b)] * between)
+        self.lower(|a, b| {
+            let same = self.turn * (self.mixed[(b, a)] - self.mixed[(a, b)]);
+            let between = self.turn * self.slopes[(a, b)];
+            [same, between, -between, 0.0]
         })
     }
 
-    /// The lower triangle of a matrix whose entries are told by components of nodes and functions.
-    fn lower(&self, of: impl Fn((usize, usize), (usize, usize)) -> f64) -> Mat<f64> {
-        let functions = self.axial.slope.nrows();
+    /// The lower triangle of a matrix with so much of I, C, Cᵀ and D between two components of nodes.
+    fn lower(&self, shares: impl Fn(usize, usize) -> [f64; 4]) -> Mat<f64> {
+        let functions = self.axial.same.nrows();
         let mut lower = Mat::zeros(9 * functions, 9 * functions);
         for (b, q) in (0..9).flat_map(|b| (0..functions).map(move |q| (b, q))) {
             let column = lower.col_as_slice_mut(b * functions + q);
-            for a in b..9 {
-                for p in 0..functions {
-                    column[a * functions + p] = of((a, p), (b, q));
-                }
+            for (a, to) in column.chunks_exact_mut(functions).enumerate().skip(b) {
+                self.axial.fill(shares(a, b), q, to);
             }
         }
         lower
