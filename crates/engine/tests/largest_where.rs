@@ -2,7 +2,7 @@
 
 mod cases;
 
-use cases::{along_faces, case, gear, helical, pair};
+use cases::{along_faces, case, gear, helical, holed, pair};
 use meshwright_engine::analysis::stress::StressedPlace;
 use meshwright_engine::analysis::{Analysis, Case, Curve, Warning, analyze, warnings};
 use meshwright_engine::assembly::FaceResolution;
@@ -168,9 +168,12 @@ fn along_a_misaligned_face_the_largest_pressure_stands_where_the_axes_close() {
 }
 
 #[test]
-fn fewer_than_twenty_positions_a_mesh_period_are_warned_of_where_orders_are_told() {
+fn fewer_than_twenty_positions_a_mesh_period_are_warned_of_over_any_span() {
+    let holes = holed(gear(48, 15e-3), 7, 30e-3, 4e-3, 0.0);
+    let part = pair(gear(30, 10e-3), holes, 78.2e-3);
     let told = |positions: u32, span: Option<u32>| {
-        let mut case = case(relieved(ReliefShape::Linear), &[200.0]);
+        let whole = relieved(ReliefShape::Linear);
+        let mut case = case(if span.is_some() { part.clone() } else { whole }, &[200.0]);
         case.resolution.positions_per_mesh_period = positions;
         case.resolution.span_mesh_periods = span;
         let few = Warning::FewPositions {
@@ -179,6 +182,34 @@ fn fewer_than_twenty_positions_a_mesh_period_are_warned_of_where_orders_are_told
         };
         warnings(&case).contains(&few)
     };
-    assert!(told(19, None) && told(8, Some(1)));
-    assert!(!told(20, None) && !told(40, None));
+    // Between few positions the peak-to-peak of k is open also where no orders are told.
+    assert!(told(19, None) && told(19, Some(1)));
+    assert!(!told(20, None) && !told(20, Some(1)));
+}
+
+#[test]
+fn a_tip_that_presses_into_a_fillet_between_two_positions_is_warned_of() {
+    // The tip of the driven gear reaches below the involute of a pinion of 16 teeth over a fraction of the mesh period that positions may step over.
+    let shifted = |teeth: u32, shift: f64| {
+        let mut data = gear(teeth, 3.5e-3);
+        data.rack.pressure_angle = 22.5_f64.to_radians();
+        data.profile_shift = shift;
+        data
+    };
+    let mut pinion = shifted(16, -0.106);
+    pinion.modifications = vec![ModificationData::Crowning { amount: 3.225e-6 }];
+    let of = pair(pinion, shifted(46, 0.285), 62.394e-3);
+    let fillet = Warning::ContactReachesFillet {
+        member: Member::Driving,
+    };
+    for positions in [20, 21, 22, 40] {
+        let mut case = case(of.clone(), &[61.0]);
+        case.resolution.positions_per_mesh_period = positions;
+        let found = analyze(&case, &Library::default(), &Run::unattended()).expect("solves");
+        assert!(
+            found.warnings.contains(&fillet),
+            "{positions}: {:?}",
+            found.warnings
+        );
+    }
 }

@@ -648,7 +648,7 @@ mod tests {
     }
 
     #[test]
-    fn few_positions_are_warned_of_before_anything_is_computed_where_orders_will_be_told() {
+    fn few_positions_are_warned_of_before_anything_is_computed() {
         let warned = |positions: u32| {
             let changes = [(
                 "/resolution",

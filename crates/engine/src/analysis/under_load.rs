@@ -99,6 +99,7 @@ impl UnderLoad<'_> {
             |sweep, run| {
                 let further = solve(sweep, run)?;
                 self.evidence.gather(&further.contacts, self.load);
+                warn_of_tips(self.warnings, &further.contacts);
                 further.check(case, sweep)?;
                 Ok(further)
             },

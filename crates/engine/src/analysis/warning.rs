@@ -32,7 +32,7 @@ const DOUBTFUL_DECOMPOSITION: f64 = 0.05;
 pub const FEW_POSITIONS: u32 = 20;
 
 /// Part of the peak-to-peak, and length in meters, above which the estimated error between positions is warned of.
-pub const OPEN_PEAK_TO_PEAK: (f64, f64) = (0.02, 2e-9);
+pub const OPEN_PEAK_TO_PEAK: (f64, f64) = (0.02, 1e-9);
 
 /// Part of the largest load of a table above which forces are warned of; up to this ratio the difference is rounding.
 const BEYOND: f64 = 1.0 + 1e-9;
@@ -241,7 +241,7 @@ pub fn warnings(case: &Case) -> Vec<Warning> {
         });
     }
     let positions = case.resolution.positions_per_mesh_period;
-    if case.covers_whole_periods() && positions < FEW_POSITIONS {
+    if positions < FEW_POSITIONS {
         warnings.push(Warning::FewPositions {
             positions,
             open: None,

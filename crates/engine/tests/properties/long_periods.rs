@@ -152,7 +152,7 @@ fn long_periods_have_their_peak_to_peak_from_ten_positions() {
             }
         }
     }
-    // Where they are off by more, their own estimate says so, and `few_positions` with it. Three curves of two smooth pairs, 4 to 14 nm off, are not told.
-    assert!(unsaid.len() <= 3, "{unsaid:#?} of {wrong:#?}");
-    assert!(wrong.len() <= 7, "{wrong:#?}");
+    // Where they are off by more, their own estimate says so, and `few_positions` with it. One curve of a smooth pair, 11 nm off, is not told.
+    assert!(unsaid.len() <= 1, "{unsaid:#?} of {wrong:#?}");
+    assert!(wrong.len() <= 4, "{wrong:#?}");
 }

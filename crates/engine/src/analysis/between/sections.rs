@@ -14,7 +14,7 @@ use crate::quadrature::gauss_legendre_panels;
 /// Samples from beyond either end of a curve that closes, so that its first and last sections have neighbors too.
 const OVERLAP: usize = 8;
 
-/// How much the error of a section with too few nodes for two cubics is less than the difference to the next lower degree.
+/// How much the error of a section is less than the difference to the next lower degree: cubics through nodes that are far apart may agree on what is wrong.
 const LOWER_DEGREE: f64 = 0.3;
 
 /// Largest excursion of a polynomial beyond both of its ends, as a multiple of that of another one through the nodes beside does: farther, it swings.
@@ -405,7 +405,8 @@ impl Event {
             return;
         }
         let (a, b) = (before.weight(), behind.weight());
-        self.error = apart(self.at).abs() * a.min(b) / (a + b);
+        let of_sides = (a * before.error + b * behind.error) / (a + b);
+        self.error = of_sides.max(apart(self.at).abs() * a.min(b) / (a + b));
         // A step of the secant over a small part of the way.
         let step = NEARBY * width;
         let rate = (apart(self.at + step) - apart(self.at - step)) / (2.0 * step);
@@ -428,6 +429,8 @@ struct Side {
     reliability: f64,
     /// How far from the event the nearest is.
     distance: f64,
+    /// By how much the curve differs there from that through one sample less; 0 where there is only one.
+    error: f64,
 }
 
 impl Side {
@@ -450,10 +453,14 @@ impl Side {
                 break;
             }
         }
+        let distance = (nodes.first()?.0 - place).abs();
+        let curve = Cubic::through(&nodes);
+        let fewer = Cubic::through(&nodes[..(nodes.len() - 1).max(1)]);
         Some(Self {
-            distance: (nodes.first()?.0 - place).abs(),
+            distance,
             reliability: RELIABILITIES[nodes.len() - 1],
-            curve: Cubic::through(&nodes),
+            error: (curve.at(place) - fewer.at(place)).abs(),
+            curve,
         })
     }
 
@@ -543,10 +550,20 @@ fn curve_of(nodes: &[(f64, f64)], i: usize) -> (Cubic, f64) {
         _ => even,
     };
     let difference = |other: Cubic| (other.at(middle) - even.at(middle)).abs();
-    let error = match (found.len(), degree) {
-        (1, 0 | 1) => UNKNOWN * (ends[1].1 - ends[0].1).abs(),
-        (1, _) => LOWER_DEGREE * windows(degree).map(difference).fold(0.0, f64::max),
-        _ => found.into_iter().map(difference).fold(0.0, f64::max),
+    let error = if degree < 2 {
+        UNKNOWN * (ends[1].1 - ends[0].1).abs()
+    } else {
+        let lower = windows(degree).map(difference);
+        // One through two nodes that stand close together swings; where there is a single cubic nothing else tells.
+        let lower = if found.len() > 1 {
+            lower.fold(f64::INFINITY, f64::min)
+        } else {
+            lower.fold(0.0, f64::max)
+        };
+        found
+            .into_iter()
+            .map(difference)
+            .fold(LOWER_DEGREE * lower, f64::max)
     };
     (curve, error)
 }
