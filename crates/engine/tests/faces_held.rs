@@ -630,6 +630,41 @@ fn rough(seeds: impl Iterator<Item = u64>, positions: usize) -> Vec<String> {
         .collect()
 }
 
+#[test]
+fn an_end_of_a_face_that_carries_a_light_load_alone_balances_at_kinks_and_corners() {
+    let gears = [20, 20].map(|teeth| {
+        let mut data = gear(teeth, 8e-3);
+        data.face_width = 16e-3;
+        data.modifications = vec![ModificationData::TipRelief(ReliefData {
+            amount: 8e-6,
+            shape: ReliefShape::Linear,
+            start: ReliefStart::RadialLength(1e-3),
+        })];
+        helical(data, 0.0, 0.0)
+    });
+    let alignment = Alignment {
+        in_plane: 200e-6,
+        ..Alignment::default()
+    };
+    let leads = [Vec::new(), Vec::new()];
+    let pair = SolidPair::new(gears, leads, 40.1e-3, alignment).expect("meshes");
+    let resolution = FaceResolution {
+        face_order: 6,
+        ..FaceResolution::STANDARD
+    };
+    let (yields, load) = (face_yields(&pair, resolution), pair.section().load(1.0));
+    // The last one is where flanks and a corner share the load of 80 slices.
+    let period = (0..20)
+        .map(|i| f64::from(i) / 20.0)
+        .chain([0.625, 0.5628363]);
+    let period: Vec<f64> = period.collect();
+    for slices in [20, 80] {
+        let model = FaceModel::new(pair.clone(), yields.clone(), slices, FARTHEST_COUPLED);
+        let solved = model.contacts(load, &period, &Run::unattended());
+        assert!(solved.is_ok(), "{slices}: {:?}", solved.err());
+    }
+}
+
 /// How much farther flanks are pressed in the mean and how much larger the largest pressure away from kinks and corners is with 160 slices than with 40, over
 /// both, under `torque` at these positions.
 fn with_finer_slices(pair: &SolidPair, torque: f64, face_order: usize, period: &[f64]) -> [f64; 2] {

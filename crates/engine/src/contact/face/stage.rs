@@ -20,7 +20,9 @@ use crate::contact::{ContactError, PositionError};
 pub(super) const HEAVIER: f64 = 3.5;
 const RUNG: f64 = 1.1;
 
-/// So many rungs farther slices are made where their compliance is not positive definite: they are longer by the root of 2.6.
+/// So many rungs farther slices are made where their compliance is not positive definite, and where they come to no balance: lines are blurred by 1.6 times as
+/// much. The closing of a spring at a kink or a corner may fall as its load grows, where the contact reaches another part of the flank; beside a wider blur it
+/// rises.
 const LONGER: i32 = 10;
 
 /// How many times the loaded parts of lines are cut finer, at most.
@@ -162,9 +164,9 @@ impl<'a> Stage<'a> {
                     });
                 }
                 Ok(balance) => rung = self.rung_of(balance.heaviest).saturating_add(1),
-                Err(PositionError::Contact(ContactError::NotPositiveDefinite { .. }))
-                    if !is_point =>
-                {
+                Err(PositionError::Contact(
+                    ContactError::NotPositiveDefinite { .. } | ContactError::NotConverged { .. },
+                )) if !is_point => {
                     rung = rung.saturating_add(LONGER);
                 }
                 Err(error) => return Err(error),
