@@ -62,9 +62,8 @@ impl<'a> Net<'a> {
                 let z = pair.own_height(member, slice.z);
                 of.basis(slice.roll_lengths[member.index()], z, &mut row);
                 let first = size * (slice.pair - pairs[0]) as usize;
-                let arm = arms(pair, slice.roll_lengths)[member.index()];
                 for (i, value) in row.iter().enumerate() {
-                    loads[(first + i, 0)] += value * arm * slice.normal[0];
+                    loads[(first + i, 0)] += value * slice.normal[0];
                 }
             }
             let teeth: Vec<usize> = (0..pairs.len()).collect();
@@ -166,12 +165,7 @@ impl<'a> Net<'a> {
         let cross = |a: Vector2<f64>, b: Vector2<f64>| a.x * b.y - a.y * b.x;
         // Both flanks stand clockwise of what they press on.
         let angle = cross(seen, there).atan2(seen.dot(&there));
-        let arms = arms(self.pair, rolls);
-        let at_tip = arms[primary.index()] != 1.0;
-        let arm = match at_tip {
-            true => other.base_radius(),
-            false => -cross(seen, normal),
-        };
+        let arm = -cross(seen, normal);
         let gap = arm * angle;
         let cosine = self.pair.base_helix_angle().cos();
         let teeth = section.teeth(n);
@@ -188,7 +182,7 @@ impl<'a> Net<'a> {
         if open >= 0.0 {
             return Some((0.0, rolls));
         }
-        Some((-open - self.yielded((n, z), rolls, arms), rolls))
+        Some((-open - self.yielded((n, z), rolls), rolls))
     }
 
     fn line(&self, n: i64) -> impl Iterator<Item = &SliceLoad> {
@@ -232,16 +226,13 @@ impl<'a> Net<'a> {
         })
     }
 
-    /// How far both flanks of pair `n` give way along the normal at the height `z` and these roll lengths, with the arms of a force there.
-    fn yielded(&self, (n, z): (i64, f64), rolls: [f64; 2], arms: [f64; 2]) -> f64 {
-        let of = Member::BOTH.map(|member| {
-            let i = member.index();
-            self.yielded_by(member, (n, z), (rolls[i], arms[i]))
-        });
+    /// How far both flanks of pair `n` give way along the normal at the height `z` and these roll lengths.
+    fn yielded(&self, (n, z): (i64, f64), rolls: [f64; 2]) -> f64 {
+        let of = Member::BOTH.map(|member| self.yielded_by(member, (n, z), rolls[member.index()]));
         of[0] + of[1]
     }
 
-    fn yielded_by(&self, member: Member, (n, z): (i64, f64), (s, arm): (f64, f64)) -> f64 {
+    fn yielded_by(&self, member: Member, (n, z): (i64, f64), s: f64) -> f64 {
         let yields = &self.yields[member.index()];
         let own = self.pair.own_height(member, z);
         let mut row = vec![0.0; yields.basis_len()];
@@ -279,26 +270,6 @@ impl<'a> Net<'a> {
                 half_space += factor * slice.normal[0] / PARTS as f64 * inverse;
             }
         }
-        arm * smooth + half_space
+        smooth + half_space
     }
-}
-
-/// The arms about both axes, over the base radii, of a force where flanks meet at these roll lengths: a tip edge is pressed along the normal of the other flank, and
-/// its gear turns and bends by the torque of the force.
-fn arms(pair: &SolidPair, rolls: [f64; 2]) -> [f64; 2] {
-    const AT_TIP: f64 = 1.0 - 1e-9;
-    let section = pair.section();
-    let a = section.center_distance();
-    Member::BOTH.map(|member| {
-        let (gear, mate) = (section.gear(member), section.gear(member.other()));
-        let (s, met) = (rolls[member.index()], rolls[member.other().index()]);
-        if s < AT_TIP * gear.tip_form_roll_length() {
-            return 1.0;
-        }
-        let [r, r_mate] = [(gear, s), (mate, met)].map(|(gear, s)| gear.base_radius().hypot(s));
-        // Angles at the axis of the mate: from the line of centers to the point, and on to the foot of the normal.
-        let to_point = ((a * a + r_mate * r_mate - r * r) / (2.0 * a * r_mate)).acos();
-        let to_foot = (met / mate.base_radius()).atan();
-        (a * (to_point + to_foot).cos() - mate.base_radius()) / gear.base_radius()
-    })
 }
