@@ -206,15 +206,6 @@ fn add_extremes(
         let mut is_extreme = false;
         for ((_, place), beyond) in extremes.into_iter().zip(beyond) {
             let doubted = sections.is_doubted(i, place);
-            // Beside an event with a position near it the other side may be open.
-            let look = || {
-                let at_event = [(place == section.from), (place == section.to)];
-                if !doubted && (0..2).any(|end| at_event[end] && section.events[end]) {
-                    section.middle()
-                } else {
-                    section.look(place)
-                }
-            };
             let slack = if doubted {
                 BELIEVED.1 * (high - low)
             } else {
@@ -223,7 +214,7 @@ fn add_extremes(
             if (doubted || urgency > 0.5) && beyond + 2.0 * section.error + slack >= 0.0 {
                 is_extreme = true;
                 candidates.push(Candidate {
-                    position: look(),
+                    position: section.look(place),
                     priority: priority + urgency,
                 });
             }

@@ -14,7 +14,7 @@ use crate::quadrature::gauss_legendre_panels;
 /// Samples from beyond either end of a curve that closes, so that its first and last sections have neighbors too.
 const OVERLAP: usize = 8;
 
-/// How much the error of a section is less than the difference to the next lower degree: cubics through nodes that are far apart may agree on what is wrong.
+/// How much the error of a section is less than the difference to the next lower degree.
 const LOWER_DEGREE: f64 = 0.3;
 
 /// Largest excursion of a polynomial beyond both of its ends, as a multiple of that of another one through the nodes beside does: farther, it swings.
@@ -64,8 +64,10 @@ pub(super) struct Section {
     pub(super) events: [bool; 2],
     pub(super) delta: Cubic,
     pub(super) stiffness: Cubic,
-    /// By how much δ may be off, about.
+    /// By how much δ may be off, about: the difference to curves through other nodes.
     pub(super) error: f64,
+    /// The same with what one node less changes: curves through nodes that are far apart may agree on what is wrong.
+    open: f64,
 }
 
 /// The smallest and the largest value, each with its place.
@@ -93,6 +95,8 @@ struct Event {
     /// As the side before it has it, and that behind it.
     delta: [f64; 2],
     error: f64,
+    /// The same with what one sample less changes on either side.
+    open: f64,
 }
 
 impl Sections {
@@ -272,10 +276,10 @@ impl Sections {
             each.fold(0.0, f64::max)
         };
         let low = open(&|section| {
-            known[0].0 - section.extremes(|section| section.delta)[0].0 + section.error
+            known[0].0 - section.extremes(|section| section.delta)[0].0 + section.open
         });
         let high = open(&|section| {
-            section.extremes(|section| section.delta)[1].0 + section.error - known[1].0
+            section.extremes(|section| section.delta)[1].0 + section.open - known[1].0
         });
         let each = self.sections.iter();
         let area: f64 = each
@@ -367,6 +371,7 @@ fn with_values(samples: &[Sample], close: f64) -> Vec<Event> {
             after,
             delta: [0.0; 2],
             error: 0.0,
+            open: 0.0,
         }));
     }
     let firsts: Vec<usize> = found.iter().map(|event| event.after + 1).collect();
@@ -396,6 +401,7 @@ impl Event {
             let known = before.or(behind).map(|side| side.curve);
             let curve = known.unwrap_or_else(|| Cubic::through(&beside));
             (self.delta, self.error) = ([curve.at(self.at); 2], unknown);
+            self.open = unknown;
             return;
         };
         let apart = |at: f64| before.curve.at(at) - behind.curve.at(at);
@@ -406,7 +412,8 @@ impl Event {
         }
         let (a, b) = (before.weight(), behind.weight());
         let of_sides = (a * before.error + b * behind.error) / (a + b);
-        self.error = of_sides.max(apart(self.at).abs() * a.min(b) / (a + b));
+        self.error = apart(self.at).abs() * a.min(b) / (a + b);
+        self.open = of_sides.max(self.error);
         // A step of the secant over a small part of the way.
         let step = NEARBY * width;
         let rate = (apart(self.at + step) - apart(self.at - step)) / (2.0 * step);
@@ -500,8 +507,8 @@ fn add_piece(
         let events = [i == 0 && begins.is_some(), i == last && ends.is_some()];
         let beside = [(events[0], begins), (events[1], ends)];
         let beside = beside.iter().filter(|(is_beside, _)| *is_beside);
-        let of_events = beside.filter_map(|(_, event)| Some(event.as_ref()?.error));
-        let (delta, error) = curve_of(&nodes, i);
+        let of_events: Vec<&Event> = beside.filter_map(|(_, event)| *event).collect();
+        let (delta, error, open) = curve_of(&nodes, i);
         let first = if range.is_empty() {
             Some(0)
         } else {
@@ -513,16 +520,21 @@ fn add_piece(
             events,
             delta,
             stiffness: stiffness_of(&stiffness, first, (pair[0].0, pair[1].0)),
-            error: of_events.fold(error, f64::max),
+            error: of_events
+                .iter()
+                .fold(error, |most, event| most.max(event.error)),
+            open: of_events
+                .iter()
+                .fold(open, |most, event| most.max(event.open)),
         });
     }
 }
 
-/// The curve of δ between the nodes `i` and `i + 1`, and by how much others through the nodes beside differ from it.
+/// The curve of δ between the nodes `i` and `i + 1`, by how much others through the nodes beside differ from it, and the same with those through a node less.
 ///
 /// Between two nodes that are no events a curve has an extreme that is smooth, on which polynomials through other nodes agree. A cubic whose nodes lie on both sides of
 /// a kink, or two of whose nodes are an event and a position beside it, swings in their place: then the one that goes least beyond both ends is taken.
-fn curve_of(nodes: &[(f64, f64)], i: usize) -> (Cubic, f64) {
+fn curve_of(nodes: &[(f64, f64)], i: usize) -> (Cubic, f64, f64) {
     let ends = [nodes[i], nodes[i + 1]];
     let middle = f64::midpoint(ends[0].0, ends[1].0);
     let degree = (nodes.len() - 1).min(3);
@@ -550,22 +562,24 @@ fn curve_of(nodes: &[(f64, f64)], i: usize) -> (Cubic, f64) {
         _ => even,
     };
     let difference = |other: Cubic| (other.at(middle) - even.at(middle)).abs();
-    let error = if degree < 2 {
-        UNKNOWN * (ends[1].1 - ends[0].1).abs()
-    } else {
-        let lower = windows(degree).map(difference);
-        // One through two nodes that stand close together swings; where there is a single cubic nothing else tells.
-        let lower = if found.len() > 1 {
-            lower.fold(f64::INFINITY, f64::min)
-        } else {
-            lower.fold(0.0, f64::max)
-        };
-        found
-            .into_iter()
-            .map(difference)
-            .fold(LOWER_DEGREE * lower, f64::max)
+    let lower = || windows(degree).map(difference);
+    let (error, open) = match (found.len(), degree) {
+        (1, 0 | 1) => {
+            let unknown = UNKNOWN * (ends[1].1 - ends[0].1).abs();
+            (unknown, unknown)
+        }
+        (1, _) => {
+            let error = LOWER_DEGREE * lower().fold(0.0, f64::max);
+            (error, error)
+        }
+        _ => {
+            let error = found.iter().copied().map(difference).fold(0.0, f64::max);
+            // One through two nodes that stand close together swings.
+            let least = lower().fold(f64::INFINITY, f64::min);
+            (error, error.max(LOWER_DEGREE * least))
+        }
     };
-    (curve, error)
+    (curve, error, open)
 }
 
 /// How far `curve` goes beyond both of its `ends` between them.
@@ -624,7 +638,7 @@ mod tests {
 
     /// The largest value of the curve between the nodes `i` and `i + 1`.
     fn largest(nodes: &[(f64, f64)], i: usize) -> f64 {
-        let (curve, _) = curve_of(nodes, i);
+        let (curve, ..) = curve_of(nodes, i);
         let within = curve.level_within(nodes[i].0, nodes[i + 1].0);
         let ends = [nodes[i].0, nodes[i + 1].0].into_iter();
         let values = ends.chain(within).map(|x| curve.at(x));
@@ -650,7 +664,7 @@ mod tests {
             (0.3, 1e-6),
             (0.35, 4e-6),
         ];
-        let (curve, error) = curve_of(&nodes, 2);
+        let (curve, error, _) = curve_of(&nodes, 2);
         assert!(curve.at(0.25) > 0.98e-6 && error > 0.1e-6, "{error:e}");
     }
 
