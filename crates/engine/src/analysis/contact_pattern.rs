@@ -184,7 +184,14 @@ impl Map<'_> {
         self.faces.pair.common_face_width() * ((strip as f64 + 0.5) / STRIPS as f64 - 0.5)
     }
 
-    /// The largest pressure that `contacts` at equally spaced positions of a `span` exert, and those between two of them by the way.
+    /// The strip in which `z` lies.
+    fn strip(&self, z: f64) -> usize {
+        let along = z / self.faces.pair.common_face_width() + 0.5;
+        ((along * STRIPS as f64).max(0.0) as usize).min(STRIPS - 1)
+    }
+
+    /// The largest pressure that `contacts` at equally spaced positions of a `span` exert, and those between two of them by the way. A slice that reaches over no
+    /// middle of a strip counts in the strip in which it lies.
     fn largest(&self, contacts: &[FaceContact], span: u32) -> [Vec<Vec<Pressure>>; 2] {
         let mut maps = [(); 2].map(|()| vec![vec![Pressure::Of(0.0); STRIPS]; BANDS]);
         for strip in 0..STRIPS {
@@ -218,6 +225,15 @@ impl Map<'_> {
                 }
             }
         }
+        for slice in contacts.iter().flat_map(|contact| &contact.slices) {
+            let Some(touch) = self.touch(slice) else {
+                continue;
+            };
+            let strip = self.strip(slice.z);
+            for (map, band) in maps.iter_mut().zip(touch.bands) {
+                map[band][strip] = map[band][strip].worse(touch.pressure);
+            }
+        }
         maps
     }
 
@@ -225,21 +241,22 @@ impl Map<'_> {
     fn touches(&self, contact: &FaceContact, z: f64) -> Vec<Touch> {
         let there = |slice: &&SliceLoad| (slice.z - z).abs() <= 0.5 * slice.length;
         let slices = contact.slices.iter().filter(there);
-        slices
-            .filter_map(|slice| {
-                let pressure = if slice.at_sharp_edge {
-                    Pressure::Unlimited
-                } else {
-                    Pressure::Of(slice.pressure?)
-                };
-                let band = |g: usize| self.flanks[g].band(slice.roll_lengths[g]);
-                Some(Touch {
-                    pair: slice.pair,
-                    bands: [band(0), band(1)],
-                    pressure,
-                })
-            })
-            .collect()
+        slices.filter_map(|slice| self.touch(slice)).collect()
+    }
+
+    /// Where `slice` touches, if it carries.
+    fn touch(&self, slice: &SliceLoad) -> Option<Touch> {
+        let pressure = if slice.at_sharp_edge {
+            Pressure::Unlimited
+        } else {
+            Pressure::Of(slice.pressure?)
+        };
+        let band = |g: usize| self.flanks[g].band(slice.roll_lengths[g]);
+        Some(Touch {
+            pair: slice.pair,
+            bands: [band(0), band(1)],
+            pressure,
+        })
     }
 }
 

@@ -454,7 +454,7 @@ fn what_is_wrong_with_a_search_is_refused_with_its_place() {
         with("seconds", json!(0)) => "/search/seconds", OutOfRange, 1.0;
         with("budget", json!(3)) => "/search/budget", UnknownField;
         with("population", population.clone()) => "/search/population", ConflictingFields;
-        both => "/search", OutOfRange;
+        both => "/search", ConflictingFields;
         of_members(&[("/evaluations", json!(3000)), ("/population/size", json!(50))])
             => "/search/evaluations", TooLarge, 1960.0;
         of_members(&[("/population/vary", json!([
