@@ -190,15 +190,13 @@ impl Map<'_> {
         ((along * STRIPS as f64).max(0.0) as usize).min(STRIPS - 1)
     }
 
-    /// The largest pressure that `contacts` at equally spaced positions of a `span` exert, and those between two of them by the way. A slice that reaches over no
-    /// middle of a strip counts in the strip in which it lies.
+    /// The largest pressure that `contacts` at equally spaced positions of a `span` exert, and those between two of them by the way.
     fn largest(&self, contacts: &[FaceContact], span: u32) -> [Vec<Vec<Pressure>>; 2] {
         let mut maps = [(); 2].map(|()| vec![vec![Pressure::Of(0.0); STRIPS]; BANDS]);
         for strip in 0..STRIPS {
-            let z = self.height(strip);
             let touches: Vec<Vec<Touch>> = contacts
                 .iter()
-                .map(|contact| self.touches(contact, z))
+                .map(|contact| self.touches(contact, strip))
                 .collect();
             for (i, now) in touches.iter().enumerate() {
                 // After the last position comes the first one again, with other numbers of its pairs.
@@ -225,21 +223,15 @@ impl Map<'_> {
                 }
             }
         }
-        for slice in contacts.iter().flat_map(|contact| &contact.slices) {
-            let Some(touch) = self.touch(slice) else {
-                continue;
-            };
-            let strip = self.strip(slice.z);
-            for (map, band) in maps.iter_mut().zip(touch.bands) {
-                map[band][strip] = map[band][strip].worse(touch.pressure);
-            }
-        }
         maps
     }
 
-    /// Where `contact` touches at the height `z`.
-    fn touches(&self, contact: &FaceContact, z: f64) -> Vec<Touch> {
-        let there = |slice: &&SliceLoad| (slice.z - z).abs() <= 0.5 * slice.length;
+    /// Where `contact` touches in a strip: by the slices that reach over its middle, and by those that lie in it, however short they are.
+    fn touches(&self, contact: &FaceContact, strip: usize) -> Vec<Touch> {
+        let middle = self.height(strip);
+        let there = |slice: &&SliceLoad| {
+            (slice.z - middle).abs() <= 0.5 * slice.length || self.strip(slice.z) == strip
+        };
         let slices = contact.slices.iter().filter(there);
         slices.filter_map(|slice| self.touch(slice)).collect()
     }
