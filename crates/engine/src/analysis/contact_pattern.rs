@@ -184,12 +184,6 @@ impl Map<'_> {
         self.faces.pair.common_face_width() * ((strip as f64 + 0.5) / STRIPS as f64 - 0.5)
     }
 
-    /// The strip in which `z` lies.
-    fn strip(&self, z: f64) -> usize {
-        let along = z / self.faces.pair.common_face_width() + 0.5;
-        ((along * STRIPS as f64).max(0.0) as usize).min(STRIPS - 1)
-    }
-
     /// The largest pressure that `contacts` at equally spaced positions of a `span` exert, and those between two of them by the way.
     fn largest(&self, contacts: &[FaceContact], span: u32) -> [Vec<Vec<Pressure>>; 2] {
         let mut maps = [(); 2].map(|()| vec![vec![Pressure::Of(0.0); STRIPS]; BANDS]);
@@ -205,19 +199,17 @@ impl Map<'_> {
                     None => (&touches[0], i64::from(span)),
                 };
                 for touch in now {
-                    let later = next.iter().find(|later| later.pair + renamed == touch.pair);
+                    let later = next.iter();
+                    let later = later.filter(|later| later.pair + renamed == touch.pair);
                     for (map, member) in maps.iter_mut().zip(Member::BOTH) {
                         let mut mark = |band: usize, pressure| {
                             map[band][strip] = map[band][strip].worse(pressure);
                         };
                         let from = touch.bands[member.index()];
                         mark(from, touch.pressure);
-                        if let Some(later) = later {
-                            between(
-                                (from, touch.pressure),
-                                (later.bands[member.index()], later.pressure),
-                                mark,
-                            );
+                        for later in later.clone() {
+                            let to = (later.bands[member.index()], later.pressure);
+                            between((from, touch.pressure), to, &mut mark);
                         }
                     }
                 }
@@ -226,11 +218,14 @@ impl Map<'_> {
         maps
     }
 
-    /// Where `contact` touches in a strip: by the slices that reach over its middle, and by those that lie in it, however short they are.
+    /// Where `contact` touches in a strip: by the slices that reach over its middle, and by those that lie in it, however short they are. One between two strips
+    /// lies in both.
     fn touches(&self, contact: &FaceContact, strip: usize) -> Vec<Touch> {
+        const ROUNDING: f64 = 1e-9;
         let middle = self.height(strip);
+        let width = self.faces.pair.common_face_width() / STRIPS as f64;
         let there = |slice: &&SliceLoad| {
-            (slice.z - middle).abs() <= 0.5 * slice.length || self.strip(slice.z) == strip
+            (slice.z - middle).abs() <= 0.5 * slice.length.max(width) * (1.0 + ROUNDING)
         };
         let slices = contact.slices.iter().filter(there);
         slices.filter_map(|slice| self.touch(slice)).collect()

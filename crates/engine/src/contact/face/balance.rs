@@ -17,7 +17,6 @@ use faer::{Accum, Mat, MatRef, Par};
 
 use super::compliance::BlurredLine;
 use super::slice::{Carried, Place, Slice, Within};
-use super::stage::Sliced;
 use crate::contact::{ContactError, PositionError};
 use crate::fem::dense::Cholesky;
 
@@ -584,13 +583,12 @@ fn product(h: MatRef<'_, f64>, values: &[f64]) -> Vec<f64> {
 }
 
 impl Balance {
-    /// The largest penetration in the middle of each of the slices of `sliced`, and between each two of a line.
-    pub(super) fn penetration(&self, sliced: &Sliced<'_>) -> f64 {
+    /// The largest penetration in the middle of each of `slices`, and between each two of one of their `lines`.
+    pub(super) fn penetration(&self, slices: &[Slice], lines: &[BlurredLine]) -> f64 {
         let inside = self.gaps.iter().fold(0.0, |most: f64, gap| most.max(-gap));
-        let lines = sliced.compliance.lines().iter();
-        lines
+        (lines.iter())
             .flat_map(|line| (1..line.range().len()).map(move |i| (line, i)))
-            .map(|(line, i)| -self.gap_before(&sliced.slices, line, i))
+            .map(|(line, i)| -self.gap_before(slices, line, i))
             .fold(inside, f64::max)
     }
 

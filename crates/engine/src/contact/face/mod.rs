@@ -402,7 +402,7 @@ impl FaceModel {
             transmission_error: balance.transmission_error,
             touch: touches.fold(f64::INFINITY, f64::min),
             stiffness: balance.stiffness,
-            penetration: balance.penetration(sliced),
+            penetration: balance.penetration(&sliced.slices, sliced.compliance.lines()),
             iterations: balance.iterations,
             ..MeshContact::of_spots(load, spots, gathered.peak())
         };
