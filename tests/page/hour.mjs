@@ -78,28 +78,38 @@ export async function hourSteps(service) {
       else assertAlike(found, said);
       begun = Date.now();
     };
-    /** The numbers of the headline that the guide tells next. */
+    /** The whole headline is what the guide says next: every name, number and unit that is shown, with its mark. */
     const headline = async () => {
       await settled(page);
-      const tiles = await page.evaluate(() =>
-        [...document.querySelectorAll(".tile:not([hidden])")].map((tile) =>
-          [...tile.querySelectorAll(".name, .value, small")].map((each) => each.textContent.trim()),
+      await answered(
+        await page.evaluate(() =>
+          [...document.querySelectorAll("#headline .tile:not([hidden])")]
+            .map((tile) =>
+              [...tile.querySelectorAll(".name, .value, small:not([hidden]), .mark:not([hidden])")]
+                .map((each) => (each.matches(".mark") ? `(${each.textContent})` : each.textContent.trim()))
+                .filter(Boolean)
+                .join(" "),
+            )
+            .join(", "),
         ),
       );
-      const wanted = process.env.HOUR_LOG
-        ? tiles.map(([name]) => name)
-        : answers[0].split(", ").map((each) => tiles.map(([name]) => name).find((name) => each.startsWith(name)));
-      await answered(
-        wanted
-          .map((name) =>
-            tiles
-              .find(([each]) => each === name)
-              .filter(Boolean)
-              .join(" "),
-          )
-          .join(", "),
-      );
     };
+    /** The headline of a tab is what the guide says next. */
+    const headlineOf = async (name) => {
+      await tab(page, name);
+      await headline();
+    };
+    /** A row of the study: its name, and the numbers below these heads of its table. */
+    const rowOfStudy = (index) =>
+      page.locator("#study table").evaluate((table, row) => {
+        const heads = [...table.querySelectorAll("thead th")].map((each) => each.textContent.trim());
+        const { children } = table.querySelectorAll("tbody tr")[row];
+        const cells = ["Mass of both gears kg", "STE p-p µm", "H_N µm"].map((head) => {
+          const [, name, unit] = head.match(/^(.*) (\S+)$/);
+          return `${name} ${children[heads.indexOf(head)]?.textContent} ${unit}`;
+        });
+        return `${children[0].textContent}: ${cells.join(", ")}`;
+      }, index);
     const typed = async (input, value) => {
       await input.click();
       await input.press("Control+a");
@@ -127,6 +137,8 @@ export async function hourSteps(service) {
       await type(`/pair/${name}`, value);
     await type("/output_torques_n_m", 150);
     await headline();
+    await headlineOf("contact");
+    await tab(page, "noise");
 
     // The web and its holes.
     const blank = "/pair/driven/blank";
@@ -156,18 +168,17 @@ export async function hourSteps(service) {
       (await field(page, "/pair/driving/profile_modifications/0")).selectOption({ label: "Crowning" }),
     );
     await headline();
+    await headlineOf("contact");
     await tab(page, "noise");
     await typed(page.locator("#sweep-from"), 25);
     await typed(page.locator("#sweep-to"), 300);
     await page.locator("#sweep button[type=submit]").click();
-    await page.locator("#sweep .scatter .strong").waitFor();
+    await page.locator("#sweep .scatter").waitFor();
     await answered(
-      (
-        await page
-          .locator("#sweep .out p")
-          .first()
-          .evaluate((line) => line.firstChild.textContent)
-      ).trim(),
+      await page
+        .locator("#sweep .out p")
+        .first()
+        .evaluate((line) => line.firstChild.textContent + line.querySelector(".mark").textContent),
     );
 
     // Two designs under names.
@@ -184,19 +195,10 @@ export async function hourSteps(service) {
     // A study, and a search.
     await tab(page, "designs");
     await page.locator("#axis-0").selectOption(`${blank}/web/thickness_mm`);
-    await typed(page.locator("#axis-0-values"), "6, 8, 10");
+    await typed(page.locator("#axis-0-values"), "6 8 10");
     await page.locator("#study-run").click();
     await ends(page, "#study-state", /3 of 3 designs, successful/);
-    for (const row of [0, 2])
-      await answered(
-        await page
-          .locator("#study tbody tr")
-          .nth(row)
-          .evaluate(
-            (line) =>
-              `${line.children[0].textContent}: ${line.children[2].textContent} kg, p-p ${line.children[6].textContent} µm, H_N ${line.children[8].textContent} µm`,
-          ),
-      );
+    for (const row of [0, 2]) await answered(await rowOfStudy(row));
     await page.locator("#search summary").click();
     await page.locator("#variable-0").selectOption("/pair/driving/profile_modifications/0/amount_um");
     await page.locator("#variable-1").selectOption("");
@@ -218,7 +220,8 @@ export async function hourSteps(service) {
         ),
     );
     await changing(page, () => press("#search-out", "Use this design"));
-    await headline();
+    await page.locator("#study .outdated", { hasText: "The design has changed since" }).first().waitFor();
+    await headlineOf("noise");
 
     // As it will be made.
     const tool = page.locator("#deviations-driven-class");
@@ -240,6 +243,7 @@ export async function hourSteps(service) {
     await page.locator("#run-up-ask").click();
     await page.locator("#run-up .waterfall").waitFor();
     await settled(page);
+    await headline();
     await answered((await page.locator("#speed-readout").innerText()).split(". ")[0]);
     const without = async () => {
       for (const name of ["dynamics", "force_table"])
@@ -278,17 +282,21 @@ export async function hourSteps(service) {
     assert.deepEqual(await designOf(page), last);
 
     // Helical, on a thin web at one side.
+    begun = Date.now();
     await page.locator("#start").selectOption({ label: "a new pair, all by default" });
     await settled(page);
     await changing(page, async () => (await field(page, "teeth")).selectOption("helical"));
-    await headline();
+    await headlineOf("noise");
+    await headlineOf("contact");
     await changing(page, async () => (await field(page, `${blank}/web`)).check());
     await type(`${blank}/web/thickness_mm`, 6);
     await type(`${blank}/web/offset_mm`, 4);
-    await headline();
+    await headlineOf("noise");
+    await headlineOf("contact");
     await answered((await page.locator("#cure").evaluate((line) => line.firstChild.textContent)).trim());
     await changing(page, () => page.locator("#cure button").click());
-    await headline();
+    await headlineOf("noise");
+    await headlineOf("contact");
     await page.locator('[data-view="space"]').click();
     const canvas = page.locator("canvas.space");
     await canvas.waitFor();
