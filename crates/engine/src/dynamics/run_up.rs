@@ -16,13 +16,13 @@ const SECONDS_A_LOOK: f64 = 22e-9;
 
 /// Time of a look over that of an oscillator where gear bodies vibrate, by itself and for each of their common modes, when a state is carried with its derivative
 /// now and then. Measured with 3 and 31 modes, as are the two below.
-const WITH_BODIES: [f64; 2] = [9.0, 0.62];
+const WITH_BODIES: [f64; 2] = [3.8, 0.26];
 
 /// The same of motions that settle, for each mode: no derivative is carried, and fewer motions have to settle, because bodies damp them.
 const SETTLES_WITH_BODIES: f64 = 0.025;
 
 /// Seconds of one core for each mode that the search for its resonances takes.
-const SECONDS_A_MODE: f64 = 0.3;
+const SECONDS_A_MODE: f64 = 0.12;
 
 /// How often a period is gone through at each speed, about; where the motion jumps, more often.
 const LOOKED_THROUGH: f64 = 8.0;
