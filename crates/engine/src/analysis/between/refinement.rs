@@ -29,7 +29,7 @@ const FURTHER_AT_EVENTS: usize = 2 * 4;
 
 /// Further fractions at extremes that are still open then, and how many of them are solved at a time: an extreme may stand beside a fraction that was chosen for
 /// an event of another mesh period.
-const AT_EXTREMES: (usize, usize) = (6, 2);
+const AT_EXTREMES: (usize, usize) = (2, 1);
 
 /// Refinement of a curve between its positions.
 ///
