@@ -65,8 +65,8 @@ struct Band {
     width: f64,
 }
 
-/// The inverse distances of a point at the first of two heights from all images of a load at the other one in both ends of the face, so far `beside` its line,
-/// less those of a line without ends in the plane.
+/// The sum of the inverse distances of a point at the height `z` from all images, in both ends of the face, of a load at the height `at`. The point stands
+/// `beside` the line of the load. The sum for a line without ends in the plane is subtracted.
 fn beyond_face(gear: &SolidGear, [z, at]: [f64; 2], beside: f64) -> f64 {
     const IMAGES: u32 = 20;
     let width = gear.face_width();

@@ -182,7 +182,7 @@ fn fewer_than_twenty_positions_a_mesh_period_are_warned_of_over_any_span() {
         };
         warnings(&case).contains(&few)
     };
-    // Between few positions the peak-to-peak of k is open also where no orders are told.
+    // The peak-to-peak of k is uncertain between few positions over a part of the period too, whose results have no orders.
     assert!(told(19, None) && told(19, Some(1)));
     assert!(!told(20, None) && !told(20, Some(1)));
 }

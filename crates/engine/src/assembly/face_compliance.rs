@@ -250,8 +250,9 @@ impl FaceCompliance {
         }
     }
 
-    /// Displacement of a piece of a contact line of the length `along` about a point, a roll length and a height, by a unit force that is spread over another
-    /// such piece of the same flank: what the tip and a narrow face add to the smooth compliance and a half space with images beyond the ends of the face.
+    /// Displacement of a piece of a contact line by a unit force on another piece of the same flank, over which it is spread. It is what the tip and a narrow face
+    /// add to the smooth compliance and to a half space with images beyond the ends of the face. Both pieces have the length `along`; each is about a point, a
+    /// roll length and a height.
     pub fn at_ends(&self, point: (f64, f64), loaded: (f64, f64), along: f64) -> f64 {
         self.plain.ends.of_pieces(point, loaded, along)
     }

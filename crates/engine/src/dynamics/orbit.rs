@@ -217,16 +217,15 @@ pub trait Repeating {
         let scales = self.scales(scale);
         let mut state = from.state.clone();
         state.resize(self.size(), 0.0);
-        let continued = |(near, nearby): (&[f64], Option<&Derivative>), repeats: u32| {
+        let continues = |near: &[f64], nearby: Option<&Derivative>, repeats: u32| {
             let orbit = self.periodic_within(ASTRAY, (near, nearby), repeats, scale)?;
             let is_near = distance(&orbit.state, near, &scales) < NEAR;
             (orbit.multiplier < 1.0 && is_near).then_some(orbit)
         };
-        let continues = |near: &[f64], repeats: u32| continued((near, None), repeats);
         let repeats = from.repeats.unwrap_or(1);
         let nearby = from.derivative.as_deref().filter(|_| self.size() > FEW);
-        let found = nearby.and_then(|nearby| continued((&state, Some(nearby)), repeats));
-        if let Some(orbit) = found.or_else(|| continues(&state, repeats)) {
+        let found = nearby.and_then(|_| continues(&state, nearby, repeats));
+        if let Some(orbit) = found.or_else(|| continues(&state, None, repeats)) {
             return orbit;
         }
         // One that goes on from a motion that does not repeat has nothing old to forget.
@@ -257,7 +256,7 @@ pub trait Repeating {
                 if distance(&later, &state, &scales) > ASTRAY {
                     continue;
                 }
-                if let Some(orbit) = continues(&state, repeats) {
+                if let Some(orbit) = continues(&state, None, repeats) {
                     return orbit;
                 }
             }

@@ -230,7 +230,8 @@ impl BlockMatrix {
 
     /// Approximate minimum degree on the `interior` blocks; the kept ones stay last, in their order.
     ///
-    /// Kept blocks meet each other and count in the degrees of those that reach them: without them the factor of a tooth took up to twice the operations.
+    /// All kept blocks couple with each other, and count in the degrees of the interior blocks that couple with them. Without them the factor of a tooth took up
+    /// to twice the operations.
     ///
     /// Blocks are nodes of a section, which is plane in three dimensions too: nested dissection (METIS) took 1.1 to 1.7 times the operations.
     pub(super) fn fill_reducing_order(&self, interior: usize) -> Result<Perm<u32>, Failure> {

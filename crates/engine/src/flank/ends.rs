@@ -143,8 +143,8 @@ impl FlankEnds {
         -self.plate / stretch * (((from + far) / self.module).ln() - (far - reach) / from)
     }
 
-    /// Displacement in the mean over a piece of a contact line, about the roll length `s` and the height `z`, by a unit force spread over another one, beside that
-    /// of a half space with images; both are so long `along` the line.
+    /// Displacement of a piece of a contact line, in the mean, by a unit force spread over another piece, beside that of a half space with images. Both have the
+    /// length `along`; the first is about the roll length `s` and the height `z`, the other about those of `loaded`.
     pub(crate) fn of_pieces(&self, (s, z): (f64, f64), loaded: (f64, f64), along: f64) -> f64 {
         let (lines, factor) = self.beyond_tip(s, loaded.0);
         // The line leans against the tip, and its image the other way: pieces of both move apart as their projections on the tip do.

@@ -4,9 +4,9 @@
 //! with further loads of the same size: its images in both ends, the images of those, and so on. Unrolled, the ends of a flank are perpendicular to its
 //! contact lines: all images of a point of a contact line stand on that line. Twice the length of the face along the line moves them onto each other.
 //!
-//! The sum of 1/√(x² + d²) over them has no limit, but its changes have. With the constant that is chosen here, the mean of both sums, over x from end to
-//! end, is that of a line without ends in the plane, −(2/L) ln(d/m); what varies along the line is positive definite for each d, as K_0(n π d/L) is, the factor
-//! of cos(n π x/L).
+//! The sum of 1/√(x² + d²) over them has no limit, but its changes have. The constant is chosen so that the mean of both sums, over x from end to end, is
+//! that of a line without ends in the plane, −(2/L) ln(d/m). The factor of cos(n π x/L) is K_0(n π d/L), so what varies along the line is positive definite
+//! for each d.
 
 /// Images to either side of which the inverse distances are summed one by one.
 const DIRECT: i32 = 2;

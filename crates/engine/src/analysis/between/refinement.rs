@@ -27,9 +27,9 @@ const FURTHER: (usize, f64) = (20, 0.2);
 /// Further positions that each mesh period may have: four for each of its two events, as one pair takes up the load and another one leaves it.
 const FURTHER_AT_EVENTS: usize = 2 * 4;
 
-/// Further fractions at extremes that are still open then, and how many of them are solved at a time: an extreme may stand beside a fraction that was chosen for
-/// an event of another mesh period.
-const AT_EXTREMES: (usize, usize) = (2, 1);
+/// Further fractions at extremes that are still open then, each solved by itself: an extreme may stand beside a fraction that was chosen for an event of another
+/// mesh period.
+const AT_EXTREMES: usize = 2;
 
 /// Refinement of a curve between its positions.
 ///
@@ -51,7 +51,7 @@ pub(in crate::analysis) struct Refinement {
 pub(in crate::analysis) fn most_further(positions: usize, periods: u32) -> usize {
     let of_positions = (FURTHER.1 * positions as f64) as usize;
     let at_events = FURTHER_AT_EVENTS * periods as usize + 1;
-    FURTHER.0.max(of_positions).max(at_events) + AT_EXTREMES.0 * periods as usize
+    FURTHER.0.max(of_positions).max(at_events) + AT_EXTREMES * periods as usize
 }
 
 /// A position at which the curve is little known.
@@ -99,46 +99,34 @@ impl Refinement {
             left -= 1;
         }
         let fractions = left / self.repeats_after as usize;
-        let at_extremes = AT_EXTREMES.0.min(fractions);
+        let at_extremes = AT_EXTREMES.min(fractions);
         let mut left = fractions - at_extremes;
         let mut sections = Sections::new(self.span, &samples);
+        // How many fractions were solved.
+        let mut refine = |sections: &mut Sections, open: Vec<Candidate>, most| {
+            let fractions = self.chosen(open, &samples, most);
+            if !fractions.is_empty() {
+                samples.extend(solve(&self.in_each_period(&fractions, &samples))?);
+                samples.sort_by(|a, b| a.position.total_cmp(&b.position));
+                *sections = Sections::new(self.span, &samples);
+            }
+            Ok(fractions.len())
+        };
         for part in ROUNDS {
             let most = (part * left as f64).ceil() as usize;
-            let fractions = self.chosen(candidates(&sections), &samples, most);
-            if fractions.is_empty() {
-                break;
+            let open = candidates(&sections);
+            match refine(&mut sections, open, most)? {
+                0 => break,
+                solved => left -= solved,
             }
-            left -= fractions.len();
-            samples.extend(solve(&self.in_each_period(&fractions, &samples))?);
-            samples.sort_by(|a, b| a.position.total_cmp(&b.position));
-            sections = Sections::new(self.span, &samples);
         }
-        for _ in 0..at_extremes / AT_EXTREMES.1 {
-            let fractions = self.of_open_extremes(&sections, &samples);
-            if fractions.is_empty() {
+        for _ in 0..at_extremes {
+            let (open, _) = open_extremes(&sections);
+            if refine(&mut sections, open, 1)? == 0 {
                 break;
             }
-            samples.extend(solve(&self.in_each_period(&fractions, &samples))?);
-            samples.sort_by(|a, b| a.position.total_cmp(&b.position));
-            sections = Sections::new(self.span, &samples);
         }
         Ok(sections)
-    }
-
-    /// The fractions of the most open extremes, so many as are solved at a time, none of them beside a sample of its own mesh period.
-    fn of_open_extremes(&self, sections: &Sections, samples: &[Sample]) -> Vec<f64> {
-        let (mut open, _) = at_extremes(sections);
-        open.sort_by(|a, b| b.priority.total_cmp(&a.priority));
-        let places = open.iter().map(|candidate| self.place(candidate));
-        let solved = |place: &f64| !self.is_beside(self.span.first + place, samples);
-        let mut fractions: Vec<f64> = Vec::new();
-        for fraction in places.filter(solved).map(|place| place.rem_euclid(1.0)) {
-            let is_near = |other: &f64| (other - fraction).abs() < NEAREST * self.span.step();
-            if fractions.len() < AT_EXTREMES.1 && !fractions.iter().any(is_near) {
-                fractions.push(fraction);
-            }
-        }
-        fractions
     }
 
     /// Where a candidate stands, counted from the first position, in the mesh periods after which contact repeats.
@@ -196,7 +184,7 @@ impl Refinement {
 
 /// Where the curve of `sections` leaves most open.
 fn candidates(sections: &Sections) -> Vec<Candidate> {
-    let (mut candidates, are_extreme) = at_extremes(sections);
+    let (mut candidates, are_extreme) = open_extremes(sections);
     let [(low, _), (high, _)] = sections.extremes(|section| section.delta);
     let tolerance = tolerance(high - low);
     let others = sections.sections.iter().zip(are_extreme);
@@ -212,7 +200,7 @@ fn candidates(sections: &Sections) -> Vec<Candidate> {
 }
 
 /// Where the extremes of δ are open, with and without its slow wave, and of which sections those with it are.
-fn at_extremes(sections: &Sections) -> (Vec<Candidate>, Vec<bool>) {
+fn open_extremes(sections: &Sections) -> (Vec<Candidate>, Vec<bool>) {
     let mut candidates = Vec::new();
     let are_extreme = add_extremes(&mut candidates, sections, 1e3, |_| 0.0);
     if let Some(long) = sections.long_wave() {

@@ -563,21 +563,15 @@ fn curve_of(nodes: &[(f64, f64)], i: usize) -> (Cubic, f64, f64) {
     };
     let difference = |other: Cubic| (other.at(middle) - even.at(middle)).abs();
     let lower = || windows(degree).map(difference);
-    let (error, open) = match (found.len(), degree) {
-        (1, 0 | 1) => {
-            let unknown = UNKNOWN * (ends[1].1 - ends[0].1).abs();
-            (unknown, unknown)
-        }
-        (1, _) => {
-            let error = LOWER_DEGREE * lower().fold(0.0, f64::max);
-            (error, error)
-        }
-        _ => {
-            let error = found.iter().copied().map(difference).fold(0.0, f64::max);
-            // One through two nodes that stand close together swings.
-            let least = lower().fold(f64::INFINITY, f64::min);
-            (error, error.max(LOWER_DEGREE * least))
-        }
+    let error = match (found.len(), degree) {
+        (1, 0 | 1) => UNKNOWN * (ends[1].1 - ends[0].1).abs(),
+        (1, _) => LOWER_DEGREE * lower().fold(0.0, f64::max),
+        _ => found.iter().copied().map(difference).fold(0.0, f64::max),
+    };
+    let open = match found.len() {
+        1 => error,
+        // One through two nodes that stand close together swings.
+        _ => error.max(LOWER_DEGREE * lower().fold(f64::INFINITY, f64::min)),
     };
     (curve, error, open)
 }

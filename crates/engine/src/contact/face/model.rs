@@ -28,8 +28,8 @@ pub trait FlankCompliance: Send + Sync {
     /// The number of teeth after which all that they yield repeats.
     fn repeats_after(&self) -> usize;
 
-    /// Displacement of a piece of a contact line of the length `along` about a point of a tooth, a roll length and a height, by a unit force that is spread
-    /// over another such piece of the same tooth, beside the smooth compliance and the half space.
+    /// Displacement of a piece of a contact line by a unit force on another piece of the same tooth, over which it is spread, beside the smooth compliance and
+    /// the half space. Both pieces have the length `along`; each is about a point, a roll length and a height.
     fn at_ends(&self, point: (f64, f64), loaded: (f64, f64), along: f64) -> f64;
 }
 

@@ -1,8 +1,8 @@
 //! The spring at a place of a contact line: how much farther the flanks close up there than where the line load is blurred.
 //!
-//! The linear compliance has the half space's 1/√(x² + ρ_0²) along lines, with one blur ρ_0 for all. A line load q, spread over a contact of the width ρ,
-//! presses the flanks farther together by K q ln(ρ_0/ρ), K = Σ 2(1 − ν²)/(πE) of both bodies. ρ is the width of a contact of no shape, (a/2) e^(−1/2) of
-//! Hertz's; for any other contact the plane's cells give it. It grows with the load: the closing rises only as far as ρ is below ρ_0 e^(−1/2).
+//! The linear compliance has the half space's 1/√(x² + ρ_0²) along lines, with one blur ρ_0 for all. A line load q over a contact of the width ρ presses
+//! the flanks farther together by K q ln(ρ_0/ρ), with K = Σ 2(1 − ν²)/(πE) of both bodies. For Hertz's contact ρ is (a/2) e^(−1/2); for any other the plane's
+//! cells give it. It grows with the load: the closing rises only as far as ρ is below ρ_0 e^(−1/2).
 
 use std::f64::consts::LN_2;
 use std::sync::{Mutex, OnceLock, PoisonError};
