@@ -263,7 +263,7 @@ class Page {
     });
     return {
       "run-up": runUp,
-      sweep: new Sweep(byId("sweep"), design, form, () => this.#store.current),
+      sweep: new Sweep(byId("sweep"), design, form),
       study: new StudyOfAxes(byId("study"), design, form, open),
       sensitivity: new Sensitivity(byId("sensitivity"), design, form, () => this.#current()),
       population: new Population(byId("population"), design, form, limits, open),

@@ -11,6 +11,7 @@ import { offerTold, StudyPanel } from "./panel.js";
 import { Search } from "./search.js";
 import { json, request } from "../state/api.js";
 import { at, nameOf, withValue } from "../state/design.js";
+import { markInRow } from "../state/marks.js";
 import { number } from "../state/numbers.js";
 import { calledOf, inRow, inUnit, inWords, quantityOf, shown, worstInRow } from "../state/quantities.js";
 import { usualAt } from "../state/schema.js";
@@ -25,7 +26,8 @@ import { fileOfDesign } from "../state/tables.js";
 const [ACROSS, UP] = ["pair_mass_kg", "transmission_error_um.peak_to_peak"];
 /** The columns of the table before the torque, of the gear of the study where they are of one, and behind it. */
 const OF_ROW = ["pair_mass_kg", "mass_removed_percent", "least_ligament_mm"];
-const OF_CURVE = [UP, "mesh_stiffness_tangent_n_per_m.mean", "hole_order_um", "mesh_order_um"];
+const STIFFNESS = "mesh_stiffness_tangent_n_per_m.mean";
+const OF_CURVE = [UP, STIFFNESS, "hole_order_um", "mesh_order_um"];
 
 const TORQUE = "/output_torques_n_m";
 /** With which field the first axis begins until somebody chooses another one, and the values of such a field. */
@@ -92,7 +94,7 @@ export class StudyOfAxes extends StudyPanel {
     this.details = h("details", { id: "search" }, h("summary", {}, "Let a search choose the values"), searched);
     place.replaceChildren(
       note(
-        "Every combination of these values is computed from the design; values stand apart by spaces. “Best” is a design that no other beats: none is at least as good in mass, peak-to-peak and mean stiffness, and better in one.",
+        "Every combination of these values is computed from the design; values stand apart by spaces. “Best” is a design that no other beats: none is at least as good in mass, peak-to-peak and mean stiffness, and better in one. Where one of these numbers has a mark, the design is not called best.",
       ),
       asking(
         () => void this.start(),
@@ -188,7 +190,7 @@ export class StudyOfAxes extends StudyPanel {
     /** @type {(quantity: Quantity, row: TableRow) => number} */
     const readOf = (quantity, row) => quantity.factor * worstInRow(quantity, row, results.gear);
     const points = computed
-      .map((row) => ({ x: readOf(x, row), y: readOf(y, row), label: this.#nameOfRow(row), strong: row.pareto }))
+      .map((row) => ({ x: readOf(x, row), y: readOf(y, row), label: this.#nameOfRow(row), strong: isBest(row) }))
       .filter((point) => Number.isFinite(point.x) && Number.isFinite(point.y));
     this.picker.hidden = computed.length < 2;
     const title = `Designs by ${inWords(x)} and ${inWords(y)}, of several torques the worst; large points are the best`;
@@ -206,10 +208,15 @@ export class StudyOfAxes extends StudyPanel {
     /** @type {(quantity: Quantity) => string} */
     const named = (quantity) => `${calledOf(quantity)} ${quantity.printed}`;
     const names = ["Design", "Best", ...ofRow.map(named), "Torque N m", ...ofCurve.map(named), unseen("Actions")];
-    /** @type {(row: TableRow, curve: RowCurve) => string[]} */
+    /** @type {(row: TableRow, curve: RowCurve) => (string | HTMLElement)[]} */
     const cells = (row, curve) => {
-      /** @type {(quantity: Quantity) => string} */
-      const each = (quantity) => shown(quantity, inRow(quantity, row, curve, gear));
+      /** @type {(quantity: Quantity) => string | HTMLElement} */
+      const each = (quantity) => {
+        const value = inRow(quantity, row, curve, gear);
+        const mark = typeof value === "number" ? markInRow(quantity.name, row) : undefined;
+        const told = shown(quantity, value);
+        return mark ? h("span", {}, told, h("small", { title: mark.detail }, ` ${mark.word}`)) : told;
+      };
       return [...ofRow.map(each), number(curve.output_torque_n_m), ...ofCurve.map(each)];
     };
     return table(
@@ -220,7 +227,7 @@ export class StudyOfAxes extends StudyPanel {
 
   /**
    * @param {TableRow} row
-   * @param {(row: TableRow, curve: RowCurve) => string[]} cells
+   * @param {(row: TableRow, curve: RowCurve) => (string | HTMLElement)[]} cells
    */
   #rowsOf(row, cells) {
     const lead = [
@@ -228,7 +235,7 @@ export class StudyOfAxes extends StudyPanel {
       h(
         "td",
         {},
-        row.pareto
+        isBest(row)
           ? h(
               "strong",
               { title: "No other design is at least as good in mass, peak-to-peak and stiffness, and better in one" },
@@ -250,7 +257,7 @@ export class StudyOfAxes extends StudyPanel {
     return row.curves.map((curve, i) =>
       h(
         "tr",
-        { className: row.pareto ? "strong" : "" },
+        { className: isBest(row) ? "strong" : "" },
         ...(i ? [h("th", { scope: "row" }, this.#nameOfRow(row)), h("td")] : lead),
         ...cells(row, curve).map((cell) => h("td", {}, cell)),
         h("td", {}, i ? "" : open),
@@ -277,6 +284,13 @@ export class StudyOfAxes extends StudyPanel {
     this.onOpen(job.submission, null);
   }
 }
+
+/**
+ * Whether no other design beats that of a row, and no mark limits the numbers by which they are compared.
+ *
+ * @type {(row: TableRow) => boolean}
+ */
+const isBest = (row) => row.pareto && ![UP, STIFFNESS].some((name) => markInRow(name, row));
 
 /** Values over a field that is chosen from all that the form has. */
 class Axis extends FieldChoice {

@@ -8,19 +8,18 @@ import { given, numeric, put } from "../draw/inputs.js";
 import { StudyPanel } from "./panel.js";
 import { ProblemError } from "../state/api.js";
 import { apart, nameOf, withValue } from "../state/design.js";
-import { markOf } from "../state/marks.js";
+import { markInRow } from "../state/marks.js";
 import { fixed, number } from "../state/numbers.js";
 
 /** @import { Dot, Figure } from "../draw/figure.js" */
 /** @import { Design } from "../state/design.js" */
-/** @import { AskedStudy, NamedDesign, StudyResults, Warning } from "../state/documents.js" */
+/** @import { AskedStudy, StudyResults } from "../state/documents.js" */
 /** @import { Form } from "../views/form.js" */
+/** @typedef {Dot & { mark?: { word: string, detail: string } }} SweptDot a torque, with the mark of its number */
 
 const MOST_TORQUES = 24;
 const TORQUE = "/output_torques_n_m";
 const PEAK_TO_PEAK = "transmission_error_um.peak_to_peak";
-/** The mark of a sweep that is found again while another design is shown. */
-const NOT_SHOWN = { word: "warnings not known", detail: "They come with the design of the sweep, once it is shown." };
 
 /**
  * The sweep of a design.
@@ -29,29 +28,19 @@ const NOT_SHOWN = { word: "warnings not known", detail: "They come with the desi
  */
 export class Sweep extends StudyPanel {
   /**
-   * The warnings of the design that is swept, which rows do not tell; null before it has been shown.
-   *
-   * @type {Warning[] | null}
-   */
-  #warnings = null;
-
-  /**
-   * The sweep of `design` in `place`; `form` names fields, and `current` gives the design that is
-   * shown.
+   * The sweep of `design` in `place`; `form` names fields.
    *
    * @param {HTMLElement} place
    * @param {Design} design
    * @param {Form} form
-   * @param {() => NamedDesign | null} current
    */
-  constructor(place, design, form, current) {
+  constructor(place, design, form) {
     super(place, design, {
       id: "sweep",
       words: "Sweep",
       inWords: (detail) => form.names.inWords(detail),
       ignored: [TORQUE],
     });
-    this.current = current;
     this.ends = ["from", "to"].map((end) => numeric({ id: `sweep-${end}`, ariaLabel: `Torque ${end}` }));
     for (const input of this.ends)
       input.addEventListener("input", () => {
@@ -72,9 +61,8 @@ export class Sweep extends StudyPanel {
     this.refresh();
   }
 
-  /** Shows from a tenth to twice the torque of the design, until others are typed, and the marks that are known now. */
+  /** Shows from a tenth to twice the torque of the design, until others are typed. */
   refresh() {
-    if (this.last && !this.#warnings && this.#learn()) this.show(this.last.found);
     const torque = this.design.get(`${TORQUE}/0`) ?? 100;
     for (const [i, part] of [0.1, 2].entries()) {
       const input = this.ends[i];
@@ -82,24 +70,11 @@ export class Sweep extends StudyPanel {
     }
   }
 
-  clear() {
-    super.clear();
-    this.#warnings = null;
-  }
-
-  /** Takes the warnings of the design that is swept, where it is the one that is shown. */
-  #learn() {
-    const now = this.current();
-    if (now && this.isOf(now.submission)) this.#warnings = now.results.warnings;
-    return this.#warnings !== null;
-  }
-
   /** @returns {AskedStudy} */
   asked() {
     const [low = 0, high = 0] = this.ends.map(given);
     if (!(low > 0 && high > low))
       throw new ProblemError({ detail: "The torques have to be positive, the second larger than the first." });
-    this.#learn();
     this.say("Computing");
     const torques = Array.from({ length: MOST_TORQUES }, (_, i) =>
       Number((low + ((high - low) * i) / (MOST_TORQUES - 1)).toPrecision(6)),
@@ -140,13 +115,13 @@ export class Sweep extends StudyPanel {
 
   /** @param {StudyResults} found */
   show({ rows, status }) {
-    this.#learn();
     const points = rows
       .flatMap((row) =>
         row.curves.map((curve) => ({
           x: curve.output_torque_n_m,
           y: curve.statistics?.transmission_error_um.peak_to_peak ?? NaN,
           label: `${number(curve.output_torque_n_m)} N m`,
+          mark: markInRow(PEAK_TO_PEAK, row),
         })),
       )
       .filter(({ y }) => Number.isFinite(y))
@@ -168,7 +143,7 @@ export class Sweep extends StudyPanel {
   /**
    * The least of the points in words; its point is larger than the others, unless a warning limits what they say.
    *
-   * @param {Dot[]} points
+   * @param {SweptDot[]} points
    */
   #leastOf(points) {
     const least = points.reduce((best, point) => (point.y < best.y ? point : best));
@@ -176,7 +151,7 @@ export class Sweep extends StudyPanel {
     const use = button(`Show ${number(least.x)} N m`, () => this.#open(least.x));
     const atEnd = least === points[0] || least === points.at(-1);
     const words = atEnd ? "The least lies at an end of the sweep; a wider one may find less." : "";
-    const mark = this.#warnings ? markOf(PEAK_TO_PEAK, this.#warnings) : NOT_SHOWN;
+    const mark = points.map((point) => point.mark).find(Boolean);
     if (mark) {
       const said = `Smallest number of these torques: ${told}, which is not called the least: `;
       return [h("p", {}, said, h("span", { className: "mark" }, mark.word), ` ${mark.detail} `, use)];

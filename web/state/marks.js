@@ -1,7 +1,7 @@
 // @ts-check
 // Marks of numbers: where a warning limits what a number says, and is told beside it.
 
-/** @import { Warning } from "./documents.js" */
+/** @import { TableRow, Warning } from "./documents.js" */
 
 const PEAK_TO_PEAK = "transmission_error_um.peak_to_peak";
 const MEAN = "transmission_error_um.mean";
@@ -43,4 +43,24 @@ export function markOf(name, warnings) {
     if (warning) return { word, detail: warning.detail };
   }
   return undefined;
+}
+
+/** The mark of every number of a row that a version before 0.6 computed. */
+const UNKNOWN = {
+  word: "warnings not known",
+  detail: "An older version of the service computed this design, and tables did not tell warnings then.",
+};
+
+/**
+ * The mark of the number of this name in a row of the table of a study, which tells the codes of its warnings alone.
+ *
+ * @type {(name: string, row: Pick<TableRow, "warnings">) => { word: string, detail: string } | undefined}
+ */
+export function markInRow(name, { warnings }) {
+  if (!warnings) return MARKS.some(({ of }) => of.includes(name)) ? UNKNOWN : undefined;
+  const detail = "The design has a warning about this number: open it to read the sentence.";
+  return markOf(
+    name,
+    warnings.map((code) => ({ code, detail })),
+  );
 }

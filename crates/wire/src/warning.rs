@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::fmt;
 
 use meshwright_engine::analysis::{
     FEW_POSITIONS, FormulaQuantity, FormulaRange, PLANE_RIM, PLANE_WEB, Warning,
@@ -91,6 +92,13 @@ pub enum WarningCode {
     ProjectionDoubtful,
     /// The decomposition leaves out too much of how the holed blanks turn.
     DecompositionDoubtful,
+}
+
+/// Writes the code as it stands on the wire.
+impl fmt::Display for WarningCode {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.serialize(formatter)
+    }
 }
 
 impl WarningDocument {

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { markOf } from "../../../web/state/marks.js";
+import { markInRow, markOf } from "../../../web/state/marks.js";
 
 const warning = (code) => ({ code, detail: `because of ${code}` });
 
@@ -24,4 +24,11 @@ test("every warning that sets a mark is one that the service gives", () => {
   );
   const contract = readFileSync(new URL("../../../api/openapi.json", import.meta.url), "utf8");
   for (const [, code] of codes) assert.ok(contract.includes(`"${code}"`), code);
+});
+
+test("a row of a table marks its numbers by the codes of its warnings, and says so where it has none", () => {
+  assert.equal(markInRow("hole_order_um", { warnings: ["thin_ligament", "few_positions"] })?.word, "few positions");
+  assert.equal(markInRow("hole_order_um", { warnings: ["thin_ligament"] }), undefined);
+  assert.equal(markInRow("hole_order_um", {})?.word, "warnings not known");
+  assert.equal(markInRow("mass_kg", {}), undefined);
 });

@@ -42,7 +42,7 @@ impl CsvTable {
         }
         let curves = self.quantities.columns();
         curves.for_each(|quantity| text.text(&quantity.column()));
-        for name in ["problem.code", "problem.detail"] {
+        for name in ["problem.code", "problem.detail", "warnings"] {
             text.text(name);
         }
         text.end_line();
@@ -80,6 +80,8 @@ impl CsvTable {
         for part in ["code", "detail"] {
             text.value(row.problem.as_ref().and_then(|problem| problem.get(part)));
         }
+        let codes = row.warnings.iter().flatten().map(|code| code.to_string());
+        text.text(&codes.collect::<Vec<_>>().join(" "));
         text.end_line();
     }
 }

@@ -5,7 +5,7 @@ use meshwright_wire::Status;
 use meshwright_wire::declare::{Kind as _, utoipa_schema, word};
 use meshwright_wire::problem::Problem;
 use meshwright_wire::results::StatisticsDocument;
-use meshwright_wire::warning::GearName;
+use meshwright_wire::warning::{GearName, WarningCode};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use utoipa::ToSchema;
@@ -96,6 +96,9 @@ pub struct TableRow {
     pub pareto: bool,
     /// One entry for each output torque.
     pub curves: Vec<RowCurve>,
+    /// The codes of the warnings of its results, each once; absent until then, and in results of versions before 0.6.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub warnings: Option<Vec<WarningCode>>,
     /// Why the design has no results; its pointers lead into the design's submission.
     #[schema(value_type = Option<Problem>)]
     pub problem: Option<Value>,
@@ -225,6 +228,7 @@ impl TableRow {
                 .into_iter()
                 .map(|curve| RowCurve::of(gear, curve))
                 .collect(),
+            warnings: summary.warnings,
             problem: state.problem,
             known,
         }

@@ -9,7 +9,7 @@ use meshwright_wire::results::{
     CurveDocument, ErrorEstimateDocument, MOST_MESH_ORDERS, Results, StatisticsDocument,
 };
 use meshwright_wire::units::{rounded, significant};
-use meshwright_wire::warning::GearName;
+use meshwright_wire::warning::{GearName, WarningCode};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -35,6 +35,9 @@ pub struct Summary {
     /// Change by a second grid level, if requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     error_estimate: Option<ErrorEstimateDocument>,
+    /// The codes of its warnings, each once; none in summaries that versions before 0.6 kept.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) warnings: Option<Vec<WarningCode>>,
 }
 
 /// The mass of a gear, and the share that holes leave of it.
@@ -113,8 +116,15 @@ impl Summary {
             curves,
             hole_phase,
             evidence,
+            warnings,
             ..
         } = results;
+        let mut codes: Vec<WarningCode> = Vec::new();
+        for warning in warnings {
+            if !codes.contains(&warning.code) {
+                codes.push(warning.code);
+            }
+        }
         let exact = Self {
             method: Some(method.to_string()),
             driving: GearSummary::of(&pair.driving),
@@ -127,6 +137,7 @@ impl Summary {
                 turn_of_driving_deg: phase.turn_of_driving_deg,
             }),
             error_estimate: evidence.error_estimate.clone(),
+            warnings: Some(codes),
         };
         rounded(&exact).map_err(|error| Problem::new(Code::InternalError, error.to_string()))
     }

@@ -41,6 +41,13 @@ fn document(mass: f64, ranges: [f64; 2], stiffness: f64) -> Value {
         ],
     });
     document["curves"] = json!(curves);
+    let warning =
+        |code: &str, gear: &str| json!({ "code": code, "detail": "About it.", "gear": gear });
+    document["warnings"] = json!([
+        warning("thin_ligament", "driving"),
+        warning("few_positions", "driven"),
+        warning("thin_ligament", "driven"),
+    ]);
     document
 }
 
@@ -213,12 +220,12 @@ fn the_csv_has_a_line_for_each_row_and_torque_and_names_joined_by_dots() {
              statistics.transmission_error_um.mean,statistics.transmission_error_um.rms,\
              statistics.transmission_error_um.peak_to_peak,statistics.mesh_stiffness_tangent_n_per_m.mean,\
              statistics.mesh_stiffness_tangent_n_per_m.rms,statistics.mesh_stiffness_tangent_n_per_m.peak_to_peak,\
-             hole_order_um,mesh_order_um,mesh_order_1_um,problem.code,problem.detail",
+             hole_order_um,mesh_order_um,mesh_order_1_um,problem.code,problem.detail,warnings",
             "10R34,10,flexible,00000000-0000-0000-0000-000000000000,successful,flexible,0.9,25.0,5.5,0.0009,1.9,1.61,0.34,true,\
-             115.0,13.79,0.38,1.7,220000000.0,24000000.0,68000000.0,0.31,0.42,0.42,,",
+             115.0,13.79,0.38,1.7,220000000.0,24000000.0,68000000.0,0.31,0.42,0.42,,,thin_ligament few_positions",
             "10R34,10,flexible,00000000-0000-0000-0000-000000000000,successful,flexible,0.9,25.0,5.5,0.0009,1.9,1.61,0.34,true,\
-             20.0,13.79,0.38,2.5,220000000.0,24000000.0,68000000.0,,,,,",
-            "\"a, \"\"b\"\"\",,,,failed,,,,,,,,,false,,,,,,,,,,,holes_overlap,\"Too many, \"\"far\"\" too many.\"",
+             20.0,13.79,0.38,2.5,220000000.0,24000000.0,68000000.0,,,,,,thin_ligament few_positions",
+            "\"a, \"\"b\"\"\",,,,failed,,,,,,,,,false,,,,,,,,,,,holes_overlap,\"Too many, \"\"far\"\" too many.\",",
             "",
         ]
     );
@@ -383,7 +390,8 @@ fn a_row_and_its_line_of_csv_have_every_quantity_under_one_name() {
                 "pareto",
                 "output_torque_n_m",
                 "problem.code",
-                "problem.detail"
+                "problem.detail",
+                "warnings"
             ]
         );
     }
