@@ -8,8 +8,8 @@ use meshwright_engine::analysis::{
 };
 use meshwright_engine::assembly::FaceResolution;
 use meshwright_engine::gear::{
-    Alignment, BlankRegion, GearData, GearPair, Helix, HolePattern, LeadModification, Material,
-    Rack, SolidGear, SolidPair, SpurGear, TipEdge, ToolDepth, ToothDeviations, Web,
+    Alignment, GearData, GearPair, Helix, HolePattern, LeadModification, SolidGear, SolidPair,
+    SpurGear, Web,
 };
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
@@ -18,24 +18,8 @@ use meshwright_engine::run::Run;
 /// A gear of module 2 mm with a solid blank; of a helical gear, in its normal section.
 fn drawn(tooth_count: u32, bore_radius: f64) -> GearData {
     GearData {
-        tooth_count,
-        rack: Rack {
-            module: 2e-3,
-            pressure_angle: 20_f64.to_radians(),
-            addendum: 2e-3,
-            dedendum: 2.5e-3,
-            tip_radius: 0.76e-3,
-            protuberance: None,
-        },
-        profile_shift: 0.0,
         thickness_deviation: -0.1e-3,
-        tool_depth: ToolDepth::ByThickness,
-        face_width: 20e-3,
-        material: Material::STEEL,
-        tip_edge: TipEdge::Sharp,
-        modifications: Vec::new(),
-        deviations: ToothDeviations::default(),
-        blank: BlankRegion::solid(bore_radius),
+        ..GearData::plain(tooth_count, 2e-3, bore_radius)
     }
 }
 

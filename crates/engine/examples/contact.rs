@@ -8,8 +8,8 @@ use meshwright_engine::contact::{
     solve_augmented_lagrangian,
 };
 use meshwright_engine::gear::{
-    BlankRegion, GearData, GearPair, HolePattern, Material, ModificationData, Rack, ReliefData,
-    ReliefShape, ReliefStart, SpurGear, TipEdge, ToolDepth, ToothDeviations,
+    GearData, GearPair, HolePattern, ModificationData, ReliefData, ReliefShape, ReliefStart,
+    SpurGear,
 };
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::run::Run;
@@ -18,28 +18,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // 1. The drawing. A gear is what a rack cuts, less a relief at the tips, on a blank. `SpurGear::new` refuses what cannot be made,
     //    `GearPair::new` what cannot mesh.
     let solid = GearData {
-        tooth_count: 50,
-        rack: Rack {
-            module: 2e-3,
-            pressure_angle: 20_f64.to_radians(),
-            addendum: 2e-3,
-            dedendum: 2.5e-3,
-            tip_radius: 0.76e-3,
-            protuberance: None,
-        },
-        profile_shift: 0.0,
-        thickness_deviation: 0.0,
-        tool_depth: ToolDepth::ByThickness,
-        face_width: 20e-3,
-        material: Material::STEEL,
-        tip_edge: TipEdge::Sharp,
         modifications: vec![ModificationData::TipRelief(ReliefData {
             amount: 5e-6,
             shape: ReliefShape::Linear,
             start: ReliefStart::RadialLength(1.75e-3),
         })],
-        deviations: ToothDeviations::default(),
-        blank: BlankRegion::solid(15e-3),
+        ..GearData::plain(50, 2e-3, 15e-3)
     };
     let mut holed = solid.clone();
     let pattern = HolePattern {

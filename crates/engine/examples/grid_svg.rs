@@ -1,10 +1,7 @@
 //! Draws a grid: `cargo run -p meshwright-engine --example grid_svg -- tooth 50 45.5 > tooth.svg`, or
 //! `-- blank BORE INTERFACE TEETH [COUNT CIRCLE RADIUS]`, with lengths in millimeters.
 
-use meshwright_engine::gear::{
-    BlankRegion, GearData, HolePattern, Material, Rack, SpurGear, TipEdge, ToolDepth,
-    ToothDeviations,
-};
+use meshwright_engine::gear::{GearData, HolePattern, SpurGear};
 use meshwright_engine::grid::ring_grid::ELEMENTS_PER_TOOTH;
 use meshwright_engine::grid::{BlankGrid, Grid, GridLevel, ToothGrid};
 
@@ -62,24 +59,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 fn gear(tooth_count: u32, profile_shift: f64) -> Result<SpurGear, Box<dyn std::error::Error>> {
     Ok(SpurGear::new(GearData {
-        tooth_count,
-        rack: Rack {
-            module: 2e-3,
-            pressure_angle: 20_f64.to_radians(),
-            addendum: 2e-3,
-            dedendum: 2.5e-3,
-            tip_radius: 0.76e-3,
-            protuberance: None,
-        },
         profile_shift,
-        thickness_deviation: 0.0,
-        tool_depth: ToolDepth::ByThickness,
-        tip_edge: TipEdge::Sharp,
-        face_width: 20e-3,
-        modifications: Vec::new(),
-        deviations: ToothDeviations::default(),
-        material: Material::STEEL,
-        blank: BlankRegion::solid(1e-3),
+        ..GearData::plain(tooth_count, 2e-3, 1e-3)
     })?)
 }
 

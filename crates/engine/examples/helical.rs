@@ -8,8 +8,7 @@ use std::sync::Arc;
 use meshwright_engine::assembly::{FaceCompliance, FaceResolution};
 use meshwright_engine::contact::face::{FaceModel, FlankCompliance, SLICES};
 use meshwright_engine::gear::{
-    Alignment, BlankRegion, GearData, Helix, LeadModification, Material, Member, Rack, SolidGear,
-    SolidPair, TipEdge, ToolDepth, ToothDeviations, Web,
+    Alignment, GearData, Helix, LeadModification, Member, SolidGear, SolidPair, Web,
 };
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::run::Run;
@@ -19,24 +18,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     //    left-handed one.
     let helix_angle = 20_f64.to_radians();
     let section = |tooth_count, bore_radius| GearData {
-        tooth_count,
-        rack: Rack {
-            module: 2e-3,
-            pressure_angle: 20_f64.to_radians(),
-            addendum: 2e-3,
-            dedendum: 2.5e-3,
-            tip_radius: 0.76e-3,
-            protuberance: None,
-        },
-        profile_shift: 0.0,
         thickness_deviation: -0.1e-3,
-        tool_depth: ToolDepth::ByThickness,
-        face_width: 20e-3,
-        material: Material::STEEL,
-        tip_edge: TipEdge::Sharp,
-        modifications: Vec::new(),
-        deviations: ToothDeviations::default(),
-        blank: BlankRegion::solid(bore_radius),
+        ..GearData::plain(tooth_count, 2e-3, bore_radius)
     };
     let mut webbed = section(50, 15e-3);
     webbed.blank.web = Some(Web {

@@ -475,11 +475,8 @@ fn rounded_fzg_c() -> GearPair {
     let of = |teeth, shift| {
         let mut data = gear(teeth, 15e-3);
         data.rack = Rack {
-            module: 4.5e-3,
-            addendum: 4.5e-3,
-            dedendum: 5.625e-3,
             tip_radius: 1.125e-3,
-            ..data.rack
+            ..Rack::profile_a(4.5e-3)
         };
         data.face_width = 14e-3;
         data.profile_shift = shift;
@@ -565,11 +562,8 @@ fn drawn_rounded(seed: u64, parts: [f64; 2]) -> Option<(GearPair, f64)> {
         let teeth = (17.0 * between(0.0, (90.0_f64 / 17.0).ln()).exp()) as u32;
         let mut data = gear(teeth, 0.25 * f64::from(teeth) * module);
         data.rack = Rack {
-            module,
-            addendum: module,
-            dedendum: 1.25 * module,
             tip_radius: 0.25 * module,
-            ..data.rack
+            ..Rack::profile_a(module)
         };
         data.face_width = width;
         data.profile_shift = shift;

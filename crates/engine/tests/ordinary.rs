@@ -134,12 +134,9 @@ fn gears(draw: &mut Draw) -> Option<[GearData; 2]> {
     let module = 1e-3 * (draw.between(0.5_f64.ln(), 8.0_f64.ln())).exp();
     let pressure_angle = draw.one_of(&[20.0_f64, 20.0, 20.0, 14.5, 17.5, 25.0]);
     let rack = Rack {
-        module,
         pressure_angle: pressure_angle.to_radians(),
-        addendum: module,
-        dedendum: 1.25 * module,
         tip_radius: draw.between(0.1, 0.3) * module,
-        protuberance: None,
+        ..Rack::profile_a(module)
     };
     let width = module * draw.between(5.0, 14.0);
     let mut gears = Vec::new();

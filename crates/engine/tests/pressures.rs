@@ -28,14 +28,7 @@ const POM: Material = Material {
 fn fzg(tooth_count: u32, profile_shift: f64) -> GearData {
     let module = 4.5e-3;
     GearData {
-        rack: Rack {
-            module,
-            pressure_angle: 20_f64.to_radians(),
-            addendum: module,
-            dedendum: 1.25 * module,
-            tip_radius: 0.38 * module,
-            protuberance: None,
-        },
+        rack: Rack::profile_a(module),
         profile_shift,
         face_width: 14e-3,
         material: Material {
@@ -267,13 +260,7 @@ fn the_root_of_an_undercut_tooth_is_pressed_by_bending_and_not_by_its_corner() {
     // coarse to standard. The levels differ by what they do at roots.
     let of = |tooth_count: u32| {
         let mut data = gear(tooth_count, 0.15e-3 * f64::from(tooth_count));
-        data.rack = Rack {
-            module: 1e-3,
-            addendum: 1e-3,
-            dedendum: 1.25e-3,
-            tip_radius: 0.38e-3,
-            ..data.rack
-        };
+        data.rack = Rack::profile_a(1e-3);
         data.face_width = 5e-3;
         data
     };

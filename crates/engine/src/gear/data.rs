@@ -51,6 +51,24 @@ pub struct GearData {
 }
 
 impl GearData {
+    /// A gear that differs from its rack, profile A of ISO 53, in nothing: sharp and even teeth, 10 modules wide, of steel, on a solid blank with this
+    /// bore. Lengths are in meters. Other gears name the values in which they differ from it.
+    pub fn plain(tooth_count: u32, module: f64, bore_radius: f64) -> Self {
+        Self {
+            tooth_count,
+            rack: Rack::profile_a(module),
+            profile_shift: 0.0,
+            thickness_deviation: 0.0,
+            tool_depth: ToolDepth::ByThickness,
+            tip_edge: TipEdge::Sharp,
+            face_width: 10.0 * module,
+            modifications: Vec::new(),
+            deviations: ToothDeviations::default(),
+            material: Material::STEEL,
+            blank: BlankRegion::solid(bore_radius),
+        }
+    }
+
     /// The generating profile shift x_E, in modules of this section.
     pub fn generating_profile_shift(&self) -> f64 {
         match self.tool_depth {

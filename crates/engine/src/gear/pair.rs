@@ -625,11 +625,8 @@ mod tests {
         let [one, other] = teeth.map(|tooth_count| {
             let mut data = paper_gear(tooth_count);
             data.rack = crate::gear::Rack {
-                module,
-                addendum: module,
-                dedendum: 1.25 * module,
                 tip_radius: tip_radius * module,
-                ..data.rack
+                ..crate::gear::Rack::profile_a(module)
             };
             data.blank.bore_radius = module;
             SpurGear::new(data).expect("can be made")

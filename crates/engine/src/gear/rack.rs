@@ -22,6 +22,20 @@ pub struct Rack {
     pub protuberance: Option<Protuberance>,
 }
 
+impl Rack {
+    /// Profile A of ISO 53 for this module: 20 degrees, addendum m, dedendum 1.25 m, rounding 0.38 m.
+    pub fn profile_a(module: f64) -> Self {
+        Self {
+            module,
+            pressure_angle: 20_f64.to_radians(),
+            addendum: module,
+            dedendum: 1.25 * module,
+            tip_radius: 0.38 * module,
+            protuberance: None,
+        }
+    }
+}
+
 /// Difference of a hob that cuts before grinding from the rack of the ground flanks. Lengths are in meters.
 ///
 /// Its flank stands back by the stock q for grinding, and is parallel to that of the rack. From the height h above its tip line down a straight flank leads to

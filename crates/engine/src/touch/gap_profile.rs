@@ -573,13 +573,7 @@ pub(crate) mod tests {
     pub(crate) fn undercut_pair() -> GearPair {
         let gear = |tooth_count| {
             let mut data = paper_gear(tooth_count);
-            data.rack = crate::gear::Rack {
-                module: 1e-3,
-                addendum: 1e-3,
-                dedendum: 1.25e-3,
-                tip_radius: 0.38e-3,
-                ..data.rack
-            };
+            data.rack = crate::gear::Rack::profile_a(1e-3);
             data.blank.bore_radius = 0.15e-3 * f64::from(tooth_count);
             data.face_width = 5e-3;
             SpurGear::new(data).expect("can be made")

@@ -15,9 +15,9 @@ use meshwright_engine::assembly::{FaceCompliance, FaceResolution};
 use meshwright_engine::contact::face::{FaceModel, FlankCompliance, SLICES};
 use meshwright_engine::contact::{MeshContact, PairModel, PositionError, WarmStart};
 use meshwright_engine::gear::{
-    Alignment, BlankRegion, FaceEnds, GearData, GearPair, Helix, HolePattern, LeadModification,
-    Material, Member, ModificationData, PairDeviations, Rack, ReliefData, ReliefShape, ReliefStart,
-    SolidGear, SolidPair, SpurGear, TipEdge, ToolDepth, ToothDeviations,
+    Alignment, FaceEnds, GearData, GearPair, Helix, HolePattern, LeadModification, Member,
+    ModificationData, PairDeviations, ReliefData, ReliefShape, ReliefStart, SolidGear, SolidPair,
+    SpurGear,
 };
 use meshwright_engine::grid::GridLevel;
 use meshwright_engine::library::Library;
@@ -26,26 +26,7 @@ use meshwright_engine::substructures::FARTHEST_COUPLED;
 
 /// The gears of the paper and of CalculiX but for their tooth counts and blanks: m 2 mm, α 20°, b 20 mm.
 pub(crate) fn gear(tooth_count: u32, bore_radius: f64) -> GearData {
-    GearData {
-        tooth_count,
-        rack: Rack {
-            module: 2e-3,
-            pressure_angle: 20_f64.to_radians(),
-            addendum: 2e-3,
-            dedendum: 2.5e-3,
-            tip_radius: 0.76e-3,
-            protuberance: None,
-        },
-        profile_shift: 0.0,
-        thickness_deviation: 0.0,
-        tool_depth: ToolDepth::ByThickness,
-        tip_edge: TipEdge::Sharp,
-        face_width: 20e-3,
-        modifications: Vec::new(),
-        deviations: ToothDeviations::default(),
-        material: Material::STEEL,
-        blank: BlankRegion::solid(bore_radius),
-    }
+    GearData::plain(tooth_count, 2e-3, bore_radius)
 }
 
 /// The relief of the paper: 5 µm, linear, from 1.75 mm below the tip circle.

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use meshwright_engine::gear::{
     BlankRegion, Core, Eccentricity, GearData, GearPair, Hole, HolePattern, HoleShape, Material,
     Member, ModificationData, Rack, ReliefData, ReliefShape, ReliefStart, SpurGear, TablePlaces,
-    TipEdge, ToolDepth, ToothDeviations, Web,
+    TipEdge, ToothDeviations, Web,
 };
 
 /// A stream of pseudo-random numbers (xorshift*), so that a seed names a draw forever.
@@ -336,22 +336,17 @@ impl DrawnPair {
         };
         let mut gears = Vec::new();
         for profile_shift in shifts {
+            let tooth_count = tooth_count(draw);
             let mut data = GearData {
-                tooth_count: tooth_count(draw),
                 rack,
                 profile_shift,
-                thickness_deviation: 0.0,
-                tool_depth: ToolDepth::ByThickness,
-                tip_edge: TipEdge::Sharp,
                 face_width: if draw.chance(0.3) {
                     width * draw.between(1.0, 2.0)
                 } else {
                     width
                 },
-                modifications: Vec::new(),
-                deviations: ToothDeviations::default(),
                 material: material(draw),
-                blank: BlankRegion::solid(1e-6),
+                ..GearData::plain(tooth_count, rack.module, 1e-6)
             };
             let bare = SpurGear::new(data.clone()).ok()?;
             data.blank = blank(draw, bare.root_radius(), module);

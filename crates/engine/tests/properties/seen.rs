@@ -1,8 +1,8 @@
 //! Pairs on which a defect was once seen, each the instance of a class; what must hold of drawn pairs must hold of them.
 
 use meshwright_engine::gear::{
-    BlankRegion, GearData, GearPair, HolePattern, Material, ModificationData, Rack, ReliefData,
-    ReliefShape, ReliefStart, SpurGear, TipEdge, ToolDepth, ToothDeviations,
+    GearData, GearPair, HolePattern, Material, ModificationData, Rack, ReliefData, ReliefShape,
+    ReliefStart, SpurGear,
 };
 
 use crate::drawn::DrawnPair;
@@ -19,29 +19,22 @@ fn gear(
 ) -> GearData {
     let [module, pressure_angle, addendum, dedendum, tip_radius] = rack;
     GearData {
-        tooth_count,
         rack: Rack {
-            module: module * 1e-3,
             pressure_angle: pressure_angle.to_radians(),
             addendum: addendum * 1e-3,
             dedendum: dedendum * 1e-3,
             tip_radius: tip_radius * 1e-3,
-            protuberance: None,
+            ..Rack::profile_a(module * 1e-3)
         },
         profile_shift,
-        thickness_deviation: 0.0,
-        tool_depth: ToolDepth::ByThickness,
-        tip_edge: TipEdge::Sharp,
         face_width: face_width * 1e-3,
-        modifications: Vec::new(),
-        deviations: ToothDeviations::default(),
         material: Material {
             youngs_modulus: youngs_modulus * 1e9,
             poisson_ratio,
             density,
             yield_strength: None,
         },
-        blank: BlankRegion::solid(bore_radius * 1e-3),
+        ..GearData::plain(tooth_count, module * 1e-3, bore_radius * 1e-3)
     }
 }
 

@@ -25,13 +25,7 @@ const COARSE: (FaceResolution, usize) = (
 /// Teeth of module 1 mm by the rack of ISO 53.
 fn toothed(tooth_count: u32, face_width: f64) -> GearData {
     let mut data = gear(tooth_count, 0.15e-3 * f64::from(tooth_count));
-    data.rack = Rack {
-        module: 1e-3,
-        addendum: 1e-3,
-        dedendum: 1.25e-3,
-        tip_radius: 0.38e-3,
-        ..data.rack
-    };
+    data.rack = Rack::profile_a(1e-3);
     data.face_width = face_width;
     data
 }

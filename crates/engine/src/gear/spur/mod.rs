@@ -403,30 +403,11 @@ impl SpurGear {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::gear::{ModificationData, ReliefData, ReliefShape, ReliefStart, ToolDepth};
+    use crate::gear::{ModificationData, ReliefData, ReliefShape, ReliefStart};
 
     /// The paper's gears (Table 1): module 2 mm, 20 degrees, addendum 2 mm, dedendum 2.5 mm, width 20 mm, steel.
     pub(crate) fn paper_gear(tooth_count: u32) -> GearData {
-        GearData {
-            tooth_count,
-            rack: Rack {
-                module: 2e-3,
-                pressure_angle: 20_f64.to_radians(),
-                addendum: 2e-3,
-                dedendum: 2.5e-3,
-                tip_radius: 0.76e-3,
-                protuberance: None,
-            },
-            profile_shift: 0.0,
-            thickness_deviation: 0.0,
-            tool_depth: ToolDepth::ByThickness,
-            tip_edge: TipEdge::Sharp,
-            face_width: 20e-3,
-            modifications: Vec::new(),
-            deviations: ToothDeviations::default(),
-            material: Material::STEEL,
-            blank: BlankRegion::solid(15e-3),
-        }
+        GearData::plain(tooth_count, 2e-3, 15e-3)
     }
 
     fn with_holes(count: u32, circle_radius: f64, radius: f64) -> Result<SpurGear, GearError> {
@@ -450,13 +431,7 @@ pub(crate) mod tests {
 
     fn of_module(tooth_count: u32, profile_shift: f64) -> GearData {
         let mut data = paper_gear(tooth_count);
-        data.rack = Rack {
-            module: 1e-3,
-            addendum: 1e-3,
-            dedendum: 1.25e-3,
-            tip_radius: 0.38e-3,
-            ..data.rack
-        };
+        data.rack = Rack::profile_a(1e-3);
         data.profile_shift = profile_shift;
         data.blank.bore_radius = 0.5e-3;
         data
