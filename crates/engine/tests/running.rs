@@ -184,6 +184,98 @@ fn what_rotation_does_to_a_narrow_pair_in_space_is_what_it_does_in_the_plane() {
     );
 }
 
+/// The driven gear's largest stresses at roots and holes by the plane and along faces, as `bore` holds it at `rpm`, under `torque`.
+fn stresses_of_both(bore: Bore, rpm: f64, torque: f64) -> [[f64; 2]; 2] {
+    let library = Library::default();
+    let mut case = narrow_at_speed(rpm);
+    case.stress = true;
+    case.output_torques = vec![torque];
+    case.resolution.span_mesh_periods = Some(1);
+    case.resolution.positions_per_mesh_period = 2;
+    let running = case.running.as_mut().expect("it runs");
+    running.gears = gears(0.0, bore);
+    let (section, model) = (case.pair.clone(), case.model.clone());
+    [Method::Flexible, Method::ThreeDimensional].map(|method| {
+        let case = Case {
+            pair: section.clone(),
+            model: model_by(method, &model),
+            ..case.clone()
+        };
+        let [_, driven] = solved(&case, &library).stresses.expect("asked for");
+        [&driven.root, &driven.holes].map(|peaks| {
+            let stresses = peaks.iter().map(|peak| peak.stress);
+            stresses.fold(0.0, f64::max)
+        })
+    })
+}
+
+/// Asserts that these stresses along a narrow face are those of the plane.
+fn assert_as_in_the_plane(bore: Bore, rpm: f64, torque: f64) {
+    let [plane, space] = stresses_of_both(bore, rpm, torque);
+    println!("{bore:?} {rpm} {torque}: {plane:?} {space:?}");
+    for (plane, space) in plane.into_iter().zip(space) {
+        assert!(
+            (space / plane - 1.0).abs() < 0.03,
+            "{bore:?}: {space} {plane}"
+        );
+    }
+}
+
+const FITTED: Bore = Bore::PressFit {
+    interference: 10e-6,
+};
+
+#[test]
+fn a_fit_and_rotation_stress_a_loaded_narrow_face_as_the_plane() {
+    assert_as_in_the_plane(FITTED, 12_000.0, TORQUE / 10.0);
+}
+
+#[test]
+#[ignore = "./test all"]
+fn rotation_and_a_fit_without_load_stress_a_narrow_face_as_the_plane() {
+    for (bore, rpm) in [
+        (Bore::Free, 20_000.0),
+        (Bore::Held, 20_000.0),
+        (FITTED, 0.0),
+    ] {
+        assert_as_in_the_plane(bore, rpm, 0.01);
+    }
+}
+
+#[test]
+#[ignore = "./test all"]
+fn what_a_fit_does_to_a_narrow_pair_in_space_is_what_it_does_in_the_plane() {
+    let library = Library::default();
+    let mut case = narrow_at_speed(0.0);
+    case.running.as_mut().expect("it runs").gears = gears(0.0, FITTED);
+    let (section, model) = (case.pair.clone(), case.model.clone());
+    let found = [
+        Method::Flexible,
+        Method::ThreeDimensional,
+        Method::ThreeDimensionalProjected,
+    ]
+    .map(|method| {
+        let case = Case {
+            pair: section.clone(),
+            model: model_by(method, &model),
+            ..case.clone()
+        };
+        let curve = solved(&case, &library);
+        let growth = curve.running.expect("it runs").radial_growth;
+        (growth, at_hole_order(&curve, 10))
+    });
+    println!("{found:?}");
+    let [(plane, at_holes), others @ ..] = found;
+    for (space, in_space) in others {
+        for (plane, space) in plane.into_iter().zip(space) {
+            assert!((space / plane - 1.0).abs() < 5e-3, "{space} {plane}");
+        }
+        let apart = (in_space[0] - at_holes[0]).hypot(in_space[1] - at_holes[1]);
+        let whole = at_holes[0].hypot(at_holes[1]);
+        assert!(apart < 0.03 * whole, "{in_space:?} {at_holes:?}");
+    }
+}
+
 #[test]
 fn what_rotation_does_grows_with_the_square_of_the_speed_and_costs_no_part_anew() {
     let library = Library::default();

@@ -19,8 +19,7 @@ words! {
 
 document! {
     /// How the pair runs. Rotation, heat and press fits move the flanks, which the contact takes as deviations of the drawn flanks, and stress roots and hole
-    /// edges beside the load. Compliances stay those of the drawing, and a load acts on bores that are held. All methods by finite elements see it;
-    /// press fits and stresses of rotation are seen in the plane alone.
+    /// edges beside the load. Compliances stay those of the drawing, and a load acts on bores that are held. All methods by finite elements see it.
     pub struct RunningDocument as "Running", "Running" {
         /// The speed of the driving gear, whose square the pull of rotation grows with.
         pub(crate) driving_speed_rpm: f64 =
@@ -105,6 +104,25 @@ impl RunningDocument {
         }
     }
 
+    /// Refuses a gear of `pair` along its face whose holes pull its axis to one side while no hub holds it.
+    fn check_uneven(&self, running: &Running, pair: &GearPair, errors: &Errors) {
+        for (member, own) in Member::BOTH.into_iter().zip(&running.gears) {
+            let gear = pair.gear(member);
+            if !gear.has_holes() || gear.hole_repeats() > 1 || gear.data().blank.shaft().is_some() {
+                continue;
+            }
+            let pointer = match own.bore {
+                Bore::PressFit { .. } => format!("/running/press_fit_um/{member}"),
+                Bore::Free if self.driving_speed_rpm > 0.0 => "/running/bore".to_owned(),
+                Bore::Free | Bore::Held => continue,
+            };
+            let detail = format!(
+                "{pointer}: the holes of the {member} gear do not repeat around it. Along faces such a gear is followed on a held bore alone; the method flexible follows it on any."
+            );
+            errors.push(FieldError::new(pointer, Code::NotInThreeDimensions, detail));
+        }
+    }
+
     fn press_fits(&self) -> [Option<f64>; 2] {
         let fits = self.press_fit_um.as_ref();
         [
@@ -124,30 +142,16 @@ impl RunningDocument {
     /// Refuses what goes together with no method, gear or backlash of the submission: `pair` at its warm center distance.
     pub(super) fn check(
         &self,
-        (method, stress): (Method, bool),
+        method: Method,
         (document, pair): (&PairDocument, &GearPair),
         errors: &Errors,
     ) {
-        let unseen = |pointer: &str, code| {
+        if !method.sees_running() {
             let detail = format!(
-                "{pointer} is not seen by the method {}; flexible sees it.",
+                "/running is not seen by the method {}; flexible sees it.",
                 method.word()
             );
-            errors.push(FieldError::new(pointer, code, detail));
-        };
-        if !method.sees_running() {
-            unseen("/running", Code::QuantityNotTold);
-        }
-        if method.sees_faces() && self.press_fit_um.is_some() {
-            unseen("/running/press_fit_um", Code::NotInThreeDimensions);
-        }
-        if method.sees_faces() && stress {
-            let detail = "/stress is asked for beside /running: along faces stresses are those of the load alone. The method flexible adds those of rotation; leave one of them out.";
-            errors.push(FieldError::new(
-                "/stress",
-                Code::NotInThreeDimensions,
-                detail.to_owned(),
-            ));
+            errors.push(FieldError::new("/running", Code::QuantityNotTold, detail));
         }
         for (member, fit) in Member::BOTH.into_iter().zip(self.press_fits()) {
             let shaft = pair.gear(member).data().blank.shaft();
@@ -161,6 +165,9 @@ impl RunningDocument {
             }
         }
         let running = self.data(document);
+        if method.sees_faces() {
+            self.check_uneven(&running, pair, errors);
+        }
         let growth = running.thermal_growth(pair);
         let deviations = pair.deviations().growing(pair, growth.each_ref());
         let backlash = pair.backlash_with(&deviations);

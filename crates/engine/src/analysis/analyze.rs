@@ -153,7 +153,9 @@ fn passed(
         Model::Faces(faces, holes) => {
             let drawn = case.pair.deviations();
             let deviations = state.map_or(&drawn, |state| &state.deviations);
-            three_dimensional::solve((case, faces, *holes), deviations, pass, parts, run)
+            let loads = state.map_or([None; 2], |state| state.loads);
+            let of = (deviations, loads);
+            three_dimensional::solve((case, faces, *holes), of, pass, parts, run)
         }
         Model::Formulas(formulas) => load_distribution::solve(case, *formulas, pass, run),
     }

@@ -180,6 +180,9 @@ const DRAWN_MEMORY: u64 = 24 << 20;
 /// Seconds of one core for the rows that lead to the edges of the holes of one gear. Measured as [`SECONDS`].
 const EDGE_SECONDS: f64 = 1.0;
 
+/// How many times as long as the displacement of flanks by rotation that of edges takes, whose fillets are divided more finely.
+const EDGES_OF_ROTATION: f64 = 5.0;
+
 /// Seconds of one core for the rows that lead to the roots of one gear at the order 8, and for the answer of one of its teeth at a position;
 /// and bytes of such rows while they are made. Measured as [`SECONDS`].
 const ROOT_SECONDS: [f64; 2] = [2.5, 0.25e-3];
@@ -246,11 +249,13 @@ fn add_faces(estimate: &mut Estimate, plan: &Plan, faces: &Faces) {
             }
             estimate.add_part(PartSpec::Face(Box::new(spec)), seconds);
         }
-        let turns = |running: &Running| running.driving_speed.0 != 0.0;
-        if number == 0 && case.runs().is_some_and(turns) {
-            for member in Member::BOTH {
+        let is_loaded = |running: &Running| !running.grows_evenly();
+        if case.runs().is_some_and(is_loaded) {
+            let of = [(number == 0, 1.0), (pass.stress, EDGES_OF_ROTATION)].into_iter();
+            let times: f64 = of.filter(|(is, _)| *is).map(|(_, times)| times).sum();
+            for member in Member::BOTH.into_iter().filter(|_| times > 0.0) {
                 let [seconds, bytes] = rotation::estimate(faces.pair.gear(member));
-                estimate.seconds += seconds;
+                estimate.seconds += times * seconds;
                 // Both at once, before the contacts.
                 estimate.memory += bytes as u64 / 2;
             }

@@ -6,13 +6,16 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::AnalysisError;
+use super::blank_modes::of_modes;
 use super::case::Faces;
+use super::spun_pair::LoadsInside;
 use super::stress::{GearPeaks, PeakStress, PositionPeaks, REACH, RootStress, largest, teeth_away};
 use crate::assembly::{FaceCompliance, FaceComplianceSpec, FaceHoles, FaceRoots, PartError, Parts};
 use crate::contact::face::FaceContact;
 use crate::fem::surface::SurfaceStress;
 use crate::gear::{Member, SolidPair};
 use crate::run::Run;
+use crate::vibration::rotation::PulledEdges;
 
 /// Both gears of a pair, to be asked for the stresses at their roots and holes under a contact.
 pub(super) struct FaceStressModel<'a> {
@@ -25,25 +28,40 @@ struct StressedFace {
     roots: Arc<FaceRoots>,
     /// `None` without holes.
     holes: Option<Arc<FaceHoles>>,
+    /// How both move without load; empty at rest.
+    resting: [Vec<Vec<f64>>; 2],
 }
 
 impl<'a> FaceStressModel<'a> {
-    /// Stresses of the pair of `faces`, with the compliances `yields` of the `specs`.
+    /// Stresses of the pair of `faces`, with the compliances `yields` and the `loads` inside its gears.
     pub(super) fn new(
-        faces: &'a Faces,
+        (faces, loads): (&'a Faces, [Option<LoadsInside>; 2]),
         yields: &'a [Arc<FaceCompliance>; 2],
         parts: &dyn Parts,
         run: &Run,
     ) -> Result<Self, AnalysisError> {
         let of = |member: Member| {
-            let spec = FaceComplianceSpec::new(faces.pair.gear(member), faces.resolution);
+            let gear = faces.pair.gear(member);
+            let spec = FaceComplianceSpec::new(gear, faces.resolution);
+            let edges = match loads[member.index()] {
+                Some(LoadsInside { support, amounts }) => {
+                    let edges = PulledEdges::of(gear, support, amounts, run);
+                    edges.map_err(|error| of_modes(error, member))?
+                }
+                None => PulledEdges::default(),
+            };
             let made = || {
+                let roots = parts.face_roots(&spec.stack(), run)?;
+                let holes = parts.face_holes(&spec, run)?;
+                let of_holes = holes.as_ref().map(|holes| holes.resting(&edges));
                 Ok(StressedFace {
-                    roots: parts.face_roots(&spec.stack(), run)?,
-                    holes: parts.face_holes(&spec, run)?,
+                    resting: [roots.resting(&edges), of_holes.unwrap_or_default()],
+                    roots,
+                    holes,
                 })
             };
-            made().map_err(|error: PartError| error.of(member))
+            let made = made().map_err(|error: PartError| error.of(member))?;
+            Ok::<StressedFace, AnalysisError>(made)
         };
         let (driving, driven) = rayon::join(|| of(Member::Driving), || of(Member::Driven));
         Ok(Self {
@@ -68,12 +86,17 @@ impl<'a> FaceStressModel<'a> {
 
     fn peaks(&self, member: Member, contact: &FaceContact) -> GearPeaks {
         let g = member.index();
-        let StressedFace { roots, holes } = &self.gears[g];
+        let StressedFace {
+            roots,
+            holes,
+            resting: [of_roots, of_holes],
+        } = &self.gears[g];
         let loads: Vec<_> = contact
             .pressing(self.pair, member)
             .map(|(tooth, pressing)| roots.forces(tooth, pressing))
             .collect();
         let answer = roots.under(Some(&self.yields[g]), &loads);
+        let answer = answer.beside(of_roots);
         let z = roots.tooth_count();
         let away = |tooth| teeth_away(tooth, loads.iter().map(|load| load.tooth()), z);
         let at = |tooth: usize, of: &SurfaceStress, stress: f64| PeakStress {
@@ -83,7 +106,7 @@ impl<'a> FaceStressModel<'a> {
             z: Some(of.z),
         };
         let hole = holes.as_ref().map(|holes| {
-            let answer = holes.under(&self.yields[g], &loads);
+            let answer = holes.under(&self.yields[g], &loads).beside(of_holes);
             let stresses = answer.stresses();
             largest(stresses.iter().map(|of| at(0, of, of.von_mises())))
         });

@@ -22,6 +22,16 @@ pub enum Bore {
     },
 }
 
+impl Bore {
+    /// Half of the interference of the diameters of bore and shaft in meters, 0 without a press fit.
+    pub(super) fn interference(self) -> f64 {
+        match self {
+            Self::PressFit { interference } => interference,
+            Self::Held | Self::Free => 0.0,
+        }
+    }
+}
+
 /// Running of one gear.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RunningGear {
@@ -61,7 +71,7 @@ impl Running {
 
     /// True if all teeth of a gear grow by the same amount, whatever its holes are: at rest, and without a press fit.
     pub(super) fn grows_evenly(&self) -> bool {
-        let is_fitted = |gear: &RunningGear| matches!(gear.bore, Bore::PressFit { .. });
+        let is_fitted = |gear: &RunningGear| gear.bore.interference() != 0.0;
         self.driving_speed.0 == 0.0 && !self.gears.iter().any(is_fitted)
     }
 

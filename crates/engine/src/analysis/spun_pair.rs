@@ -17,7 +17,7 @@ use crate::grid::GridLevel;
 use crate::ring::blank::Hold;
 use crate::run::Run;
 use crate::vibration::BoreSupport;
-use crate::vibration::rotation::PulledTeeth;
+use crate::vibration::rotation::{MovedTeeth, PulledTeeth, RunningSupport};
 
 /// How far apart loaded teeth are coupled in the gears whose rotation is solved: nothing depends on it.
 const COUPLED: usize = 4;
@@ -27,12 +27,23 @@ const COUPLED: usize = 4;
 pub(super) struct PairState {
     /// Deviations of its teeth, including those by running.
     pub(super) deviations: PairDeviations,
-    /// Stresses of its gears without load.
+    /// Stresses of its gears without load, in the plane.
     pub(super) stresses: [RestingStresses; 2],
+    /// The loads inside its gears along faces.
+    pub(super) loads: [Option<LoadsInside>; 2],
     /// How far its tips have moved outward in the mean.
     pub(super) radial_growth: [f64; 2],
     /// Warnings about it.
     pub(super) warnings: Vec<Warning>,
+}
+
+/// Loads inside a gear along its face.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct LoadsInside {
+    /// How it is carried.
+    pub(super) support: RunningSupport,
+    /// ω² in 1/s², and by how much its shaft is larger in radius than the bore, in meters.
+    pub(super) amounts: [f64; 2],
 }
 
 /// One gear that runs.
@@ -41,6 +52,7 @@ struct GearState {
     growth: FlankGrowth,
     tips: f64,
     stresses: RestingStresses,
+    loads: Option<LoadsInside>,
     loose: Option<Warning>,
 }
 
@@ -77,6 +89,7 @@ impl PairState {
             warnings: warnings.collect(),
             radial_growth: [driving.tips, driven.tips],
             stresses: [driving.stresses, driven.stresses],
+            loads: [driving.loads, driven.loads],
             deviations,
         }))
     }
@@ -95,7 +108,7 @@ impl GearState {
         state
     }
 
-    /// The gear `member` of a case in three dimensions: its bore is held or free, and its stresses are not found.
+    /// The gear `member` of a case in three dimensions.
     fn along_faces(
         (case, running): (&Case, &Running),
         gear: &SolidGear,
@@ -105,28 +118,55 @@ impl GearState {
         let (pair, own) = (&case.pair, &running.gears[member.index()]);
         let mut state = Self::warm(pair, running, member);
         let speed = running.angular_speed(pair, member);
-        if speed == 0.0 {
+        let mut interference = own.bore.interference();
+        if speed == 0.0 && interference == 0.0 {
             return Ok(state);
         }
         let section = pair.gear(member);
-        let bore = match (section.data().blank.core, own.bore) {
-            (Core::Bore, Bore::Free) => BoreSupport::Free,
-            (Core::Shaft { .. }, _) | (_, Bore::Held | Bore::PressFit { .. }) => BoreSupport::Held,
+        let mut support = match (section.data().blank.core, own.bore) {
+            (Core::Shaft { .. }, _) | (_, Bore::Held) => RunningSupport::Bore(BoreSupport::Held),
+            (Core::Bore, Bore::Free) => RunningSupport::Bore(BoreSupport::Free),
+            (Core::Bore, Bore::PressFit { .. }) => RunningSupport::Shaft,
         };
-        let pulled = PulledTeeth::of(gear, bore, run).map_err(|error| of_modes(error, member))?;
-        let square = speed * speed;
-        state.tips += square * pulled.tips;
+        let of =
+            |support| PulledTeeth::of(gear, support, run).map_err(|error| of_modes(error, member));
+        let mut pulled = of(support)?;
+        if let Some(fit) = &pulled.fit
+            && let Some(loose) = loose_from([pulled.spin.pressure, fit.pressure], interference)
+            && speed >= loose
+        {
+            state.loose = Some(running.loose((member, speed), loose));
+            (support, interference) = (RunningSupport::Bore(BoreSupport::Free), 0.0);
+            pulled = of(support)?;
+        }
+        let amounts = [speed * speed, interference];
+        for (moved, amount) in [Some(&pulled.spin), pulled.fit.as_ref()]
+            .into_iter()
+            .zip(amounts)
+        {
+            if let Some(moved) = moved.filter(|_| amount != 0.0) {
+                state.bear_along(section, (&pulled, moved), amount);
+            }
+        }
+        state.loads = Some(LoadsInside { support, amounts });
+        Ok(state)
+    }
+
+    /// Adds so much of the displacement `moved` of the teeth `pulled`.
+    fn bear_along(
+        &mut self,
+        section: &SpurGear,
+        (pulled, moved): (&PulledTeeth, &MovedTeeth),
+        amount: f64,
+    ) {
+        self.tips += amount * moved.tips;
         let shares: Vec<f64> = pulled.heights.iter().map(|(_, share)| *share).collect();
         let heights: Vec<f64> = pulled.heights.iter().map(|(z, _)| *z).collect();
-        let means: Vec<Vec<f64>> = pulled
-            .flanks
-            .iter()
-            .map(|rows| mean(rows, &shares))
-            .collect();
+        let flanks = moved.flanks.iter();
+        let means: Vec<Vec<f64>> = flanks.map(|rows| mean(rows, &shares)).collect();
         let roll_lengths = &pulled.roll_lengths;
-        state
-            .growth
-            .add_flanks(section, roll_lengths, &means, square);
+        self.growth
+            .add_flanks(section, roll_lengths, &means, amount);
         let along = |rows: &Vec<Vec<f64>>| -> Vec<f64> {
             let of_rows: Vec<f64> = rows
                 .iter()
@@ -139,9 +179,8 @@ impl GearState {
                 .sum();
             of_rows.iter().map(|row| row - middle).collect()
         };
-        let along: Vec<Vec<f64>> = pulled.flanks.iter().map(along).collect();
-        state.growth.add_along(&heights, &along, square);
-        Ok(state)
+        let along: Vec<Vec<f64>> = moved.flanks.iter().map(along).collect();
+        self.growth.add_along(&heights, &along, amount);
     }
 
     fn of(setup: &Setup<'_>, running: &Running, member: Member) -> Result<Self, AnalysisError> {
@@ -149,10 +188,7 @@ impl GearState {
         let (gear, own) = (pair.gear(member), &running.gears[member.index()]);
         let mut state = Self::warm(pair, running, member);
         let speed = running.angular_speed(pair, member);
-        let interference = match own.bore {
-            Bore::PressFit { interference } => interference,
-            Bore::Held | Bore::Free => 0.0,
-        };
+        let mut interference = own.bore.interference();
         if speed == 0.0 && interference == 0.0 {
             return Ok(state);
         }
@@ -165,15 +201,12 @@ impl GearState {
         let Some(mut found) = spun(hold)? else {
             return Ok(state);
         };
-        let mut interference = interference;
         if let Bore::PressFit { .. } = own.bore
-            && let Some(loose) = loose_from(&found, interference)
+            && let Some(fit) = &found.fit
+            && let Some(loose) = loose_from([found.spin.pressure, fit.pressure], interference)
             && speed >= loose
         {
-            state.loose = Some(Warning::FitComesLoose {
-                member,
-                speed: running.driving_speed.0 * loose / speed,
-            });
+            state.loose = Some(running.loose((member, speed), loose));
             let Some(free) = spun(Hold::Free)? else {
                 return Ok(state);
             };
@@ -243,11 +276,21 @@ fn add_lists(sums: &mut Vec<Vec<f64>>, lists: &[Vec<f64>], amount: f64) {
     }
 }
 
-/// The angular speed from which the shaft of `spun`, too large by the `interference` in radius, no longer presses on the bore in the mean.
-fn loose_from(spun: &Spun, interference: f64) -> Option<f64> {
-    let fit = spun.fit.as_ref()?;
-    let (cold, lost) = (interference * fit.pressure, -spun.spin.pressure);
+/// The angular speed from which a shaft that is too large by the `interference` in radius no longer presses on its bore in the mean: pressures are those of
+/// rotation for ω² = 1 in 1/s², and of a shaft that is larger by one meter.
+fn loose_from([spin, fit]: [f64; 2], interference: f64) -> Option<f64> {
+    let (cold, lost) = (interference * fit, -spin);
     (lost > 0.0).then(|| (cold.max(0.0) / lost).sqrt())
+}
+
+impl Running {
+    /// The warning of a gear, at this angular speed, whose shaft is loose from the angular speed `loose` on.
+    fn loose(&self, (member, speed): (Member, f64), loose: f64) -> Warning {
+        Warning::FitComesLoose {
+            member,
+            speed: self.driving_speed.0 * loose / speed,
+        }
+    }
 }
 
 /// The place of a gear that is stretched most for its strength.
@@ -373,7 +416,10 @@ mod tests {
     fn a_narrow_face_moves_in_space_as_in_the_plane() {
         // One body, two solutions: the plane by grids of its own, space by others of half the fineness.
         let pair = pair(1e-3, 0.0, Some([0.4e-3, 0.0]));
-        for bore in [Bore::Held, Bore::Free] {
+        let fitted = Bore::PressFit {
+            interference: 10e-6,
+        };
+        for bore in [Bore::Held, Bore::Free, fitted] {
             let [plane, space] = [false, true].map(|along_faces| state(&pair, along_faces, bore));
             for member in Member::BOTH {
                 let gear = pair.section().gear(member);

@@ -12,7 +12,7 @@ use super::first_order::with_holes;
 use super::found::{Found, Kept};
 use super::plan::{Pass, Sweep};
 use super::setup::Solved;
-use super::spun_pair::PairState;
+use super::spun_pair::{LoadsInside, PairState};
 use super::stress::{GearStresses, PositionPeaks};
 use super::under_load::curves;
 use super::warning::warn_of_corner;
@@ -29,10 +29,10 @@ use crate::run::Run;
 /// Part of the load from which a tip corner is warned of: one of many slices touches nearly always.
 const WARNED_OF: f64 = 0.005;
 
-/// Computes `case` along its faces at the grid level of `pass`; its teeth have these `deviations`.
+/// Computes `case` along its faces at the grid level of `pass`; its teeth have these `deviations`, and its gears these `loads` inside them.
 pub(super) fn solve(
     (case, asked, holes): (&Case, &Faces, FaceHoles),
-    deviations: &PairDeviations,
+    (deviations, loads): (&PairDeviations, [Option<LoadsInside>; 2]),
     pass: &Pass,
     parts: &dyn Parts,
     run: &Run,
@@ -42,7 +42,7 @@ pub(super) fn solve(
     let unknowns = yields.iter().map(|of| of.degrees_of_freedom()).sum();
     let stress = pass
         .stress
-        .then(|| FaceStressModel::new(faces, &yields, parts, run));
+        .then(|| FaceStressModel::new((faces, loads), &yields, parts, run));
     let stress = stress.transpose()?;
     let pair = OfFaces::new((case, faces, deviations), &yields, parts, run);
     let find = |load: f64, sweep: &Sweep| {

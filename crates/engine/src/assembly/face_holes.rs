@@ -15,6 +15,7 @@ use crate::fem::surface::{Surface, SurfaceStress};
 use crate::ring::solid::sector::SolidSector;
 use crate::ring::solid::web::ClassRows;
 use crate::run::Run;
+use crate::vibration::rotation::PulledEdges;
 
 /// The edges of the holes of a gear, by the loads on its flanks.
 #[derive(Debug)]
@@ -33,6 +34,8 @@ pub struct HoleAnswer<'a> {
     holes: &'a FaceHoles,
     /// How the outer circle of the web moves.
     circle: Vec<f64>,
+    /// The displacements of the nodes along the holes of each sector without load.
+    resting: &'a [Vec<f64>],
 }
 
 impl FaceHoles {
@@ -63,7 +66,25 @@ impl FaceHoles {
         HoleAnswer {
             holes: self,
             circle: yields.circle(&loads).unwrap_or_default(),
+            resting: &[],
         }
+    }
+
+    /// Displacements of the holes of each sector of a gear whose edges move by `edges` without load.
+    pub fn resting(&self, edges: &PulledEdges) -> Vec<Vec<f64>> {
+        if edges.holes.is_empty() {
+            return Vec::new();
+        }
+        let of_sector = |sector| {
+            self.edges
+                .moved_by(self.turn(sector), |place| edges.holes.at(place))
+        };
+        (0..self.sector_count).map(of_sector).collect()
+    }
+
+    /// The angle of `sector` from the centerline of tooth 0.
+    fn turn(&self, sector: usize) -> f64 {
+        self.phase + TAU / self.sector_count as f64 * sector as f64
     }
 
     /// The number of entries, for the size limit of the cache.
@@ -76,14 +97,18 @@ impl FaceHoles {
     }
 }
 
-impl HoleAnswer<'_> {
+impl<'a> HoleAnswer<'a> {
+    /// The same with these displacements of the holes beside those of the loads, of [`FaceHoles::resting`].
+    pub fn beside(self, resting: &'a [Vec<f64>]) -> Self {
+        Self { resting, ..self }
+    }
+
     /// The stresses along all edges of holes, all across the web: polar angles are those from the centerline of tooth 0.
     pub fn stresses(&self) -> Vec<SurfaceStress> {
         let holes = self.holes;
-        let pitch = TAU / holes.sector_count as f64;
         (0..holes.sector_count)
             .flat_map(|sector| {
-                let turn = holes.phase + pitch * sector as f64;
+                let turn = holes.turn(sector);
                 let stresses = holes.edges.stresses(&self.displacements(sector));
                 stresses.into_iter().map(move |of| SurfaceStress {
                     angle: of.angle + turn,
@@ -96,7 +121,8 @@ impl HoleAnswer<'_> {
     /// The displacements of the nodes along the holes of `sector`: node by node, component by component, function by function.
     fn displacements(&self, sector: usize) -> Vec<f64> {
         let holes = self.holes;
-        let mut moved = vec![0.0; holes.classes.first().map_or(0, |class| class.rows.nrows())];
+        let nothing = || vec![0.0; holes.classes.first().map_or(0, |class| class.rows.nrows())];
+        let mut moved = self.resting.get(sector).cloned().unwrap_or_else(nothing);
         for of in &holes.classes {
             let size = of.rows.ncols() / of.orders.len();
             let turn = SolidSector::part(of.class, sector, holes.sector_count);
@@ -200,6 +226,7 @@ pub(super) mod tests {
             let answer = HoleAnswer {
                 holes: &holes,
                 circle,
+                resting: &[],
             };
             let stresses = answer.stresses();
             assert!(

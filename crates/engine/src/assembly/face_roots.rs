@@ -3,6 +3,8 @@
 //! Rows lead from the forces on the flanks to the displacements of the fillets, as in the plane ([`super::inside`]), and these say the
 //! stress ([`crate::fem::surface`]).
 
+use std::f64::consts::TAU;
+
 use faer::Mat;
 
 use super::flank_fit::{FlankFit, smoothed_rows};
@@ -20,6 +22,7 @@ use crate::grid::{GridLevel, ToothGrid};
 use crate::ring::solid::gear::{interfaces, motions};
 use crate::ring::solid::tooth::{SolidTooth, flank_compliance_alone};
 use crate::run::Run;
+use crate::vibration::rotation::PulledEdges;
 
 /// How far from a loaded tooth, in teeth, the roots are stressed by it.
 const REACH: usize = 10;
@@ -52,6 +55,8 @@ pub struct RootAnswer<'a> {
     yields: Option<&'a FaceCompliance>,
     loads: &'a [FlankForces],
     on_web: Option<Vec<f64>>,
+    /// The displacements of the nodes of the fillets of each tooth without load.
+    resting: &'a [Vec<f64>],
 }
 
 impl FaceRoots {
@@ -189,7 +194,20 @@ impl FaceRoots {
             yields,
             loads,
             on_web,
+            resting: &[],
         }
+    }
+
+    /// Displacements of the fillets of each tooth of a gear whose edges move by `edges` without load.
+    pub fn resting(&self, edges: &PulledEdges) -> Vec<Vec<f64>> {
+        if edges.fillets.is_empty() {
+            return Vec::new();
+        }
+        let of_tooth = |tooth: usize| {
+            let turn = TAU * tooth as f64 / self.tooth_count as f64;
+            self.fillets.moved_by(turn, |place| edges.fillets.at(place))
+        };
+        (0..self.tooth_count).map(of_tooth).collect()
     }
 
     /// The number of teeth of the gear.
@@ -204,7 +222,12 @@ impl FaceRoots {
     }
 }
 
-impl RootAnswer<'_> {
+impl<'a> RootAnswer<'a> {
+    /// The same with these displacements of the fillets beside those of the loads, of [`FaceRoots::resting`].
+    pub fn beside(self, resting: &'a [Vec<f64>]) -> Self {
+        Self { resting, ..self }
+    }
+
     /// The stresses on the fillets of tooth `tooth`, on both sides and all across the face, but for places under a contact.
     pub fn stresses(&self, tooth: usize) -> Vec<SurfaceStress> {
         let FaceRoots {
@@ -231,7 +254,8 @@ impl RootAnswer<'_> {
     fn displacements(&self, tooth: usize) -> Vec<f64> {
         let roots = self.roots;
         let (z, reach) = (roots.tooth_count, roots.others.len() / 2);
-        let mut moved = vec![0.0; roots.own.nrows()];
+        let resting = self.resting.get(tooth).cloned();
+        let mut moved = resting.unwrap_or_else(|| vec![0.0; roots.own.nrows()]);
         // Forces press into the tooth, and rows are of forces outward.
         let mut add = |rows: &Mat<f64>, by: &[f64]| {
             for (j, by) in by.iter().enumerate().take(rows.ncols()) {

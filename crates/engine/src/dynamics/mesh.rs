@@ -139,12 +139,18 @@ pub(super) struct Mesh<'a> {
 
 impl<'a> Mesh<'a> {
     pub(super) fn new(data: &'a RunUpData, table: &ForceTable) -> Self {
+        let coupled = data.coupled(table.least_compliance());
+        let yields = match &coupled {
+            Some(coupled) => 1.0 / data.stiffness - 1.0 / coupled.stiffness,
+            None => 0.0,
+        };
         let computed = table.positions() / table.period() as usize;
-        let table = table.refined(
+        // Rows between those that were computed rise, but may do so by less than the bodies yield: the teeth are refined alone.
+        let table = table.stiffer_by(yields).refined(
             STEPS_A_PERIOD.div_ceil(computed),
             PIECES.div_ceil(table.loads().len() - 1),
         );
-        let deflection = table.transmission_error(data.load);
+        let of_teeth = table.transmission_error(data.load);
         let loads = table.loads();
         let forces: Vec<f64> = loads
             .iter()
@@ -152,25 +158,18 @@ impl<'a> Mesh<'a> {
             .map(|load| -load)
             .chain(loads.iter().copied())
             .collect();
-        let coupled = data.coupled(table.least_compliance());
-        let yields = match &coupled {
-            Some(coupled) => 1.0 / data.stiffness - 1.0 / coupled.stiffness,
-            None => 0.0,
-        };
-        let yielded: Vec<f64> = forces
-            .iter()
-            .map(|force| yields * (force - data.load))
-            .collect();
         let count = table.positions();
         let mut knots = Vec::with_capacity(count * forces.len());
         for i in 0..count {
             let next = (i + 1) % count;
             let middle = |row: &[f64]| f64::midpoint(row[i], row[next]);
-            let rest = middle(&deflection);
+            let rest = middle(&of_teeth);
             let other = table.other().delta.iter().rev();
-            let rows = other.chain(&table.loaded().delta).zip(&yielded);
-            knots.extend(rows.map(|(row, yielded)| middle(row) - rest - yielded));
+            let rows = other.chain(&table.loaded().delta);
+            knots.extend(rows.map(|row| middle(row) - rest));
         }
+        let yielded = yields * data.load;
+        let deflection = of_teeth.iter().map(|delta| delta + yielded).collect();
         Self {
             data,
             laws: Cow::Owned(Laws::new(forces, knots, loads.len())),

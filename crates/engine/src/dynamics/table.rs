@@ -213,6 +213,31 @@ impl ForceTable {
         rises.fold(f64::INFINITY, f64::min)
     }
 
+    /// The table of a mesh that yields less by `compliance` in m/N under every load, which is less than its least.
+    pub(super) fn stiffer_by(&self, compliance: f64) -> Self {
+        let flank = |rows: &FlankRows, sign: f64| {
+            let delta = rows.delta.iter().zip(&self.loads);
+            let delta = delta.map(|(row, load)| {
+                let yielded = sign * load * compliance;
+                row.iter().map(|delta| delta - yielded).collect()
+            });
+            let less = |row: &Vec<f64>| row.iter().map(|own| own - compliance).collect();
+            FlankRows {
+                delta: delta.collect(),
+                compliance: rows
+                    .compliance
+                    .as_ref()
+                    .map(|rows| rows.iter().map(less).collect()),
+            }
+        };
+        Self {
+            period: self.period,
+            loads: self.loads.clone(),
+            loaded: flank(&self.loaded, 1.0),
+            other: flank(&self.other, -1.0),
+        }
+    }
+
     /// The last row but one at which `reached` holds.
     fn row_below(&self, reached: impl Fn(usize) -> bool) -> usize {
         let (mut low, mut high) = (0, self.loads.len() - 1);

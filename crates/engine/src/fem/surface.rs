@@ -12,6 +12,9 @@ use crate::gear::{Vector, radial, tangential};
 /// Heights across the body at which stresses are computed, for each degree of its functions.
 const HEIGHTS_PER_DEGREE: usize = 4;
 
+/// Points of the rule by which a displacement is projected on the functions across the body, beyond their degree.
+const RULE_BEYOND_DEGREE: usize = 3;
+
 /// The free surface over some edges of the section of a prism.
 #[derive(Debug)]
 pub(crate) struct Surface {
@@ -95,6 +98,45 @@ impl Surface {
     /// The numbers of its nodes in the grid, edge after edge.
     pub(crate) fn nodes(&self) -> Vec<u32> {
         self.nodes.iter().map(|node| node.number).collect()
+    }
+
+    /// Displacements of the nodes where its section is turned by `turn`, as [`Surface::stresses`] takes them: `at` has the displacement along the axes of the gear over
+    /// the height, at a place in the section that is turned.
+    pub(crate) fn moved_by<F: Fn(f64) -> [f64; COMPONENTS]>(
+        &self,
+        turn: f64,
+        at: impl Fn(Vector) -> F,
+    ) -> Vec<f64> {
+        let m = self.axial.len();
+        let rule = self.axial.rule(self.axial.degree() + RULE_BEYOND_DEGREE);
+        let rule: Vec<(Vec<f64>, f64)> = rule
+            .into_iter()
+            .map(|(z, w)| (self.axial.values(z).iter().map(|f| w * f).collect(), z))
+            .collect();
+        let mut moved = vec![0.0; self.nodes.len() * COMPONENTS * m];
+        for (node, moved) in self
+            .nodes
+            .iter()
+            .zip(moved.chunks_exact_mut(COMPONENTS * m))
+        {
+            let angle = node.place.y.atan2(node.place.x) + turn;
+            let over_height = at(node.place.norm() * radial(angle));
+            for (weights, z) in &rule {
+                let [x, y, along] = over_height(*z);
+                let flat = Vector::new(x, y);
+                let polar = [
+                    flat.dot(&radial(angle)),
+                    flat.dot(&tangential(angle)),
+                    along,
+                ];
+                for (moved, u) in moved.chunks_exact_mut(m).zip(polar) {
+                    for (moved, weight) in moved.iter_mut().zip(weights) {
+                        *moved += weight * u;
+                    }
+                }
+            }
+        }
+        moved
     }
 
     /// The stresses at each node and height where the nodes move by `moved`: node by node, in polar components, for each function along the

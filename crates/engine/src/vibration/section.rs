@@ -21,6 +21,9 @@ const LEAST_AROUND: usize = 36;
 /// How much of the way from holes in the rim itself to the interface circle belongs to the holed part.
 const HOLED_PART: f64 = 0.75;
 
+/// The hole that is left in the middle of a solid shaft, as a part of its radius: it moves the outside by three times its square.
+const CENTER: f64 = 4e-3;
+
 /// A section in a frame whose x axis runs through the middle of the sector.
 #[derive(Debug, Clone)]
 pub(super) struct Section {
@@ -39,6 +42,8 @@ pub(super) struct Section {
     pub(super) arc: Vec<u32>,
     /// Elements along the outer circle, of all sectors.
     pub(super) around: usize,
+    /// The nodes around each hole, counter-clockwise, each once.
+    pub(super) hole_edges: Vec<Vec<u32>>,
 }
 
 /// The blank of a gear inside the circle on which its teeth are joined to it.
@@ -59,6 +64,19 @@ impl Blank {
     ///
     /// [`GridError`] if the holes leave no room for elements.
     pub(super) fn new(gear: &SolidGear) -> Result<Self, GridError> {
+        Self::of_gear(gear, false)
+    }
+
+    /// The blank of `gear` with a solid shaft in its bore, of the width of the part around it.
+    ///
+    /// # Errors
+    ///
+    /// As [`Blank::new`].
+    pub(super) fn on_shaft(gear: &SolidGear) -> Result<Self, GridError> {
+        Self::of_gear(gear, true)
+    }
+
+    fn of_gear(gear: &SolidGear, is_on_shaft: bool) -> Result<Self, GridError> {
         let section = gear.section();
         let (root, module) = (section.root_radius(), gear.normal_rack().module);
         let mut parts = gear.layers();
@@ -66,6 +84,13 @@ impl Blank {
         let reach = holes.iter().map(Hole::outer_reach).reduce(f64::max);
         let below = parts[0].inner_radius.max(reach.unwrap_or(0.0));
         parts[0].outer_radius = (root - module).max(f64::midpoint(root, below));
+        if is_on_shaft && let Some(innermost) = parts.last().copied() {
+            parts.push(Layer {
+                inner_radius: CENTER * innermost.inner_radius,
+                outer_radius: innermost.inner_radius,
+                ..innermost
+            });
+        }
         let region = &section.data().blank;
         Self::of_region(parts, region, gear.face_width(), section.tooth_count())
     }
@@ -154,6 +179,7 @@ impl Section {
             bore,
             arc: circle,
             around: elements * sectors,
+            hole_edges: Vec::new(),
         }
     }
 
@@ -211,6 +237,7 @@ impl Section {
             bore: circle,
             arc,
             around,
+            hole_edges: grid.hole_edges.clone(),
         }
     }
 }

@@ -15,6 +15,9 @@ use crate::fem::prism::{
 };
 use crate::gear::Material;
 
+/// Radii that differ by a smaller part are one.
+const SAME: f64 = 1e-9;
+
 /// How the bore carries the gear.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum BoreSupport {
@@ -276,7 +279,12 @@ impl<'a> System<'a> {
 
     /// The functions of the outer circle: the first, and how many.
     pub(super) fn span_of_arc(&self) -> [usize; 2] {
-        self.spans[self.section.arc[0] as usize]
+        self.span_of(self.section.arc[0])
+    }
+
+    /// The functions of `node`: the first, and how many.
+    pub(super) fn span_of(&self, node: u32) -> [usize; 2] {
+        self.spans[node as usize]
     }
 
     /// The unknowns of the motions of `parity` in `class`, with these orders of the outer circle.
@@ -448,6 +456,77 @@ impl<'a> System<'a> {
             }
         }
         pull
+    }
+
+    /// The forces on the unknowns of the part `swollen` of the section that is larger in its plane by one meter at `radius` before it is joined to the others.
+    pub(super) fn swollen(&self, numbering: &Numbering, swollen: usize, radius: f64) -> Mat<c64> {
+        let grid = &self.section.grid;
+        let mut forces = Mat::<c64>::zeros(numbering.count, 1);
+        let elements = grid.elements.iter().zip(&self.section.part_of);
+        for ((element, part), matrices) in elements.zip(&self.elements) {
+            if *part != swollen {
+                continue;
+            }
+            let part = &self.parts[*part];
+            let strained = |a: usize, of: &SectionMatrix, is_back: bool| -> f64 {
+                let radii = element.nodes().iter().enumerate();
+                let by_node = radii.map(|(b, node)| {
+                    let outward = grid.nodes[*node as usize].norm() / radius;
+                    let column = COMPONENTS * b;
+                    outward
+                        * if is_back {
+                            of[(column, a)]
+                        } else {
+                            of[(a, column)]
+                        }
+                });
+                by_node.sum()
+            };
+            for (a, node) in element.nodes().iter().enumerate() {
+                for component in 0..COMPONENTS {
+                    let row = COMPONENTS * a + component;
+                    let plain = strained(row, &matrices.stiffness.plain, false);
+                    let mixed = strained(row, &matrices.stiffness.mixed, true);
+                    for p in 0..part.count() {
+                        // Of a displacement that is the same at all heights.
+                        let all = 0..part.count();
+                        let width: f64 = all.clone().map(|q| part.products[(p, q)]).sum();
+                        let rise: f64 = all.map(|q| part.slope[(q, p)]).sum();
+                        let force = plain * width + mixed * rise;
+                        let of = (*node, component, part.first + p);
+                        self.each_followed(numbering, of, |unknown, share| {
+                            forces[(unknown, 0)] += share.conj() * force;
+                        });
+                    }
+                }
+            }
+        }
+        forces
+    }
+
+    /// How far the circle of this `radius`, which nodes of the section stand on, moves outward in the mean over its angle and its width.
+    pub(super) fn mean_outward(&self, numbering: &Numbering, x: &Mat<c64>, radius: f64) -> f64 {
+        let nodes = &self.section.grid.nodes;
+        let is_on_it = |node: &u32| (nodes[*node as usize].norm() / radius - 1.0).abs() < SAME;
+        let on_it = (0..nodes.len() as u32).filter(is_on_it);
+        let mut moved: Vec<(f64, f64)> = on_it
+            .map(|node| {
+                let [outward, ..] = self.mean(numbering, x, node);
+                (self.angles[node as usize], outward.re)
+            })
+            .collect();
+        moved.sort_by(|one, other| one.0.total_cmp(&other.0));
+        if self.section.sides.0.is_empty()
+            && let Some(&(angle, outward)) = moved.first()
+        {
+            moved.push((angle + TAU, outward));
+        }
+        let pieces = moved.windows(2).map(|ends| {
+            let [(from, one), (to, other)] = [ends[0], ends[1]];
+            [to - from, (to - from) * f64::midpoint(one, other)]
+        });
+        let [angle, outward] = pieces.fold([0.0; 2], |sum, of| [sum[0] + of[0], sum[1] + of[1]]);
+        outward / angle
     }
 
     /// Calls `each` with the unknowns, and their shares, that `component` of the function `index` at `node` follows.

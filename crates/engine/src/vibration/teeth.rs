@@ -21,6 +21,8 @@ pub(super) struct ToothCell {
     pub(super) pitch_node: u32,
     /// The nodes of the loaded flank, each with its roll length, rising.
     pub(super) flank: Vec<(f64, u32)>,
+    /// The nodes of both fillets, corners and middles in turn: first of that beside the loaded flank.
+    pub(super) fillets: [Vec<u32>; 2],
 }
 
 /// A tooth under the pull of rotation for ω² = 1 in 1/s².
@@ -53,6 +55,20 @@ impl ToothCell {
     /// [`GridError`].
     pub(super) fn new(gear: &SpurGear, interface_radius: f64) -> Result<Self, GridError> {
         let tooth = ToothGrid::of_prism(gear, interface_radius, GridLevel::Coarse)?;
+        Ok(Self::of_grid(gear, tooth))
+    }
+
+    /// The same with fillets that tell the stress along them.
+    ///
+    /// # Errors
+    ///
+    /// [`GridError`].
+    pub(super) fn with_fillets(gear: &SpurGear, interface_radius: f64) -> Result<Self, GridError> {
+        let tooth = ToothGrid::of_stressed_prism(gear, interface_radius, GridLevel::Standard)?;
+        Ok(Self::of_grid(gear, tooth))
+    }
+
+    fn of_grid(gear: &SpurGear, tooth: ToothGrid) -> Self {
         let radius = gear.reference_radius();
         let from_pitch = |node: &&u32| (tooth.grid.nodes[**node as usize].norm() - radius).abs();
         let pitch_node = tooth
@@ -60,8 +76,9 @@ impl ToothCell {
             .iter()
             .min_by(|one, other| from_pitch(one).total_cmp(&from_pitch(other)));
         let z = gear.tooth_count() as usize;
-        Ok(Self {
+        Self {
             pitch_node: pitch_node.copied().unwrap_or(0),
+            fillets: [tooth.fillet_nodes, tooth.back_fillet_nodes],
             flank: tooth
                 .flank_roll_lengths
                 .iter()
@@ -76,8 +93,9 @@ impl ToothCell {
                 around: z * (tooth.arc_nodes.len() / 2),
                 arc: tooth.arc_nodes,
                 grid: tooth.grid,
+                hole_edges: Vec::new(),
             },
-        })
+        }
     }
 
     /// Its system between the faces of the teeth.

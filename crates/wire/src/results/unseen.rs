@@ -105,7 +105,7 @@ fn running_does_not_see(case: &Case) -> Vec<&'static str> {
         "what speed and heat make of stiffness: a load acts on the drawn gears, their bores held; displacement fields are those of the load alone",
     ];
     if case.faces().is_some() {
-        unseen.push("that the growth of a flank by its roll length varies along its face; whether rotation breaks a rim; the shaft of a gear of one piece with it, which holds it as it turns");
+        unseen.push("that the growth of a flank by its roll length varies along its face; whether rotation and fit break a rim; the shaft of a gear of one piece with it, which holds it as it turns; a shaft that is pressed in beyond the width of its hub");
     } else {
         unseen
             .push("rotation that a web or a hub out of the middle of its face turns into bending");

@@ -69,7 +69,7 @@ impl SubmissionDocument {
         let Some(running) = &self.running else {
             return;
         };
-        running.check((self.method, self.stress), (&self.pair, pair), errors);
+        running.check(self.method, (&self.pair, pair), errors);
         let forces = [
             (self.force_table.is_some(), Self::force_table.name),
             (self.dynamics.is_some(), Self::dynamics.name),

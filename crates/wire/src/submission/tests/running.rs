@@ -81,12 +81,44 @@ fn what_cannot_run_is_refused_with_its_place() {
     ] {
         parse(&by(method)).expect("it sees what rotation does");
     }
+    // Along faces too, with stresses.
     let fitted = running(&json!({ "press_fit_um": { "driving": 20 } }));
-    let fitted = with(fitted, &[("/method", json!("three_dimensional"))]);
-    let place = "/running/press_fit_um";
-    fault(&fitted, place, Code::NotInThreeDimensions);
-    let stressed = with(by("three_dimensional"), &[("/stress", json!(true))]);
-    fault(&stressed, "/stress", Code::NotInThreeDimensions);
+    let along = [
+        ("/method", json!("three_dimensional")),
+        ("/stress", json!(true)),
+    ];
+    let fitted = parse(&with(fitted, &along)).expect("it sees fits");
+    let bores = fitted
+        .case()
+        .running
+        .expect("it runs")
+        .gears
+        .map(|gear| gear.bore);
+    let interference = 10e-6;
+    assert_eq!(bores, [Bore::PressFit { interference }, Bore::Held]);
+    // But for a gear that its holes pull to one side.
+    let uneven = json!([
+        { "at_deg": [0, 140], "circle_radius_mm": 34, "radius_mm": 7.5 },
+        { "at_deg": [250], "circle_radius_mm": 34, "radius_mm": 6 }
+    ]);
+    for (bore, place) in [
+        (
+            json!({ "press_fit_um": { "driven": 20 } }),
+            "/running/press_fit_um/driven",
+        ),
+        (
+            json!({ "driving_speed_rpm": 9000, "bore": "free" }),
+            "/running/bore",
+        ),
+    ] {
+        let along = [
+            ("/method", json!("three_dimensional")),
+            ("/pair/driven/blank/holes", uneven.clone()),
+        ];
+        let along = with(running(&bore), &along);
+        fault(&along, place, Code::NotInThreeDimensions);
+        parse(&with(along, &[("/method", json!("flexible"))])).expect("seen in the plane");
+    }
     let run_up = json!({ "driving_speed_rpm": 3000 });
     let run_up = with(running(&turning), &[("/dynamics", run_up)]);
     fault(&run_up, "/dynamics", Code::QuantityNotTold);
