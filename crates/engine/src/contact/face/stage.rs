@@ -213,7 +213,8 @@ impl<'a> Sliced<'a> {
         })
     }
 
-    /// Calls `each` with the places of the loaded `part` of slice `i` that are nearest to kinks beside which a contact of this `half_width` reaches.
+    /// Calls `each` with the places of the loaded `part` of slice `i` that are nearest to kinks beside which a contact of this `half_width` reaches. Where that
+    /// is an end of the load within the slice, nothing presses there.
     pub(super) fn each_kink(
         &self,
         i: usize,
@@ -228,16 +229,13 @@ impl<'a> Sliced<'a> {
             nearest,
         } in self.slicer.near_kinks(slice, part, half_width)
         {
-            let within = || self.slicer.within(slice, nearest);
-            let ends;
-            let within = if stands == nearest {
+            if stands == nearest {
                 let known = &self.at_kinks[i * self.slicer.kink_count() + number];
-                known.get_or_init(within)
-            } else {
-                ends = within();
-                &ends
-            };
-            within.iter().for_each(&mut each);
+                let known = known.get_or_init(|| self.slicer.within(slice, nearest));
+                known.iter().for_each(&mut each);
+            } else if nearest.abs() == 1.0 {
+                slice.at_end(nearest).iter().for_each(&mut each);
+            }
         }
     }
 
