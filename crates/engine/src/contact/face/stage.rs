@@ -1,8 +1,8 @@
 //! The mesh at one fraction of its period along faces: all that positions whole mesh periods apart have in common.
 //!
-//! As in the plane ([`crate::contact::Stage`]) the same flanks face each other in every mesh period. Slices, their springs, the half space along their lines
-//! and the compliance at the ends of flanks are computed once, and each period adds the common compliance of its teeth. Where teeth deviate, every position is
-//! a stage by itself.
+//! As in the plane ([`crate::contact::Stage`]) the same flanks face each other in every mesh period. Slices, their springs, the half space along their lines,
+//! the compliance at the ends of flanks and that of gears whose teeth are all alike are computed once, and each period adds the common compliance of its teeth of
+//! a gear with holes. Where teeth deviate, every position is a stage by itself.
 
 use std::sync::{Arc, OnceLock};
 
