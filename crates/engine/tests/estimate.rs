@@ -10,6 +10,7 @@ use meshwright_engine::gear::{
     Alignment, GearData, GearPair, Hole, HoleShape, SolidPair, SpurGear, Web,
 };
 use meshwright_engine::grid::GridLevel;
+use meshwright_engine::vibration;
 
 /// The largest gears that are taken, 299 and 300 teeth with unlike holes, under 830 N for each millimeter of width.
 fn largest(positions: u32, span: u32) -> Case {
@@ -96,5 +97,71 @@ fn an_estimate_is_within_a_factor_of_two_of_what_was_measured() {
             told.memory / 1_000_000
         );
         assert!(parts.iter().all(|part| (0.5..2.0).contains(part)), "{name}");
+    }
+}
+
+#[test]
+fn modes_are_said_to_take_within_a_factor_of_two_of_what_was_measured() {
+    let plain = || gear(50, 16e-3);
+    let webbed = |mut data: GearData| {
+        data.blank.web = Some(Web {
+            inner_radius: 22e-3,
+            outer_radius: 43e-3,
+            thickness: 8e-3,
+        });
+        data
+    };
+    let unlike = |mut data: GearData, holes: &[f64], shape: &HoleShape| {
+        let hole = |angle: &f64| Hole {
+            circle_radius: 34e-3,
+            angle: angle.to_radians(),
+            shape: shape.clone(),
+        };
+        data.blank.holes = holes.iter().map(hole).collect();
+        data
+    };
+    let round = HoleShape::Round { radius: 7.5e-3 };
+    let slot = HoleShape::Slot {
+        width: 9e-3,
+        angle: 36_f64.to_radians(),
+    };
+    let slots = [0.0, 72.0, 144.0, 216.0, 288.0];
+    // Seconds of one busy core.
+    for (name, data, web_offset, seconds) in [
+        ("a disk", plain(), 0.0, 0.84),
+        ("90 teeth", gear(90, 16e-3), 0.0, 1.3),
+        ("six holes", holed(plain(), 6, 32.5e-3, 6e-3, 0.0), 0.0, 2.7),
+        ("a web", webbed(plain()), 0.0, 2.2),
+        (
+            "six holes in a web",
+            webbed(holed(plain(), 6, 32.5e-3, 6e-3, 0.0)),
+            0.0,
+            5.2,
+        ),
+        (
+            "ten holes in a web",
+            webbed(holed(plain(), 10, 32.5e-3, 4e-3, 0.0)),
+            0.0,
+            5.2,
+        ),
+        ("a web off the middle", webbed(plain()), 3e-3, 8.8),
+        (
+            "six holes in a web off the middle",
+            webbed(holed(plain(), 6, 32.5e-3, 6e-3, 0.0)),
+            3e-3,
+            19.7,
+        ),
+        (
+            "unlike holes",
+            unlike(plain(), &[0.0, 85.0, 185.0, 268.0], &round),
+            0.0,
+            13.4,
+        ),
+        ("slots", unlike(plain(), &slots, &slot), 0.0, 21.0),
+    ] {
+        let [told, _] = vibration::estimate(&helical(data, 0.0, web_offset));
+        let part = told / seconds;
+        println!("{name}: {told:.2} s, {part:.2} of what was measured");
+        assert!((0.5..2.0).contains(&part), "{name}");
     }
 }

@@ -70,13 +70,13 @@ impl<T: ComplexField> Cholesky<T> {
 impl Cholesky<f64> {
     /// L, with zeros above the diagonal.
     pub(crate) fn lower(&self) -> Mat<f64> {
-        Mat::from_fn(self.0.nrows(), self.0.ncols(), |row, column| {
-            if row < column {
-                0.0
-            } else {
-                self.0[(row, column)]
-            }
-        })
+        let size = self.0.nrows();
+        let mut lower = Mat::zeros(size, size);
+        for j in 0..size {
+            let own = &self.0.col_as_slice(j)[j..];
+            lower.col_as_slice_mut(j)[j..].copy_from_slice(own);
+        }
+        lower
     }
 
     /// As [`Cholesky::new`], for matrices that take long: asks `run` after each panel of columns.

@@ -5,6 +5,7 @@
 
 use faer::Mat;
 
+use crate::gear::Layer;
 use crate::quadrature::gauss_legendre;
 
 /// Nodes of a piece.
@@ -57,6 +58,14 @@ impl PartHeights {
 }
 
 impl Heights {
+    /// The functions for these parts of a gear.
+    pub fn of_layers(parts: &[Layer]) -> Self {
+        let faces: Vec<[f64; 2]> = parts.iter().map(|part| part.heights).collect();
+        let depth = |part: &Layer| part.outer_radius - part.inner_radius;
+        let narrowest = parts.iter().map(depth).fold(f64::INFINITY, f64::min);
+        Self::new(&faces, narrowest)
+    }
+
     /// The functions for parts with these faces; `depth` is that of the narrowest part along the radius.
     pub fn new(parts: &[[f64; 2]], depth: f64) -> Self {
         let width = parts.iter().flatten().fold(0.0, |w: f64, z| w.max(z.abs()));

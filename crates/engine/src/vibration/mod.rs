@@ -31,7 +31,7 @@ use self::system::{Numbering, System};
 use self::teeth::{TeethOrder, ToothCell};
 use crate::fem::FemError;
 use crate::fem::eigen::{Entry, Lanczos, Pencil, inner};
-use crate::gear::{Layer, Material, SolidGear};
+use crate::gear::{Material, SolidGear};
 use crate::grid::GridError;
 use crate::run::Run;
 
@@ -133,30 +133,41 @@ pub fn most_modes(tooth_count: u32) -> usize {
     2 * (section::least_around(tooth_count as usize) / 2).min(MOST_ORDERS)
 }
 
-/// Seconds of one core for an order of teeth in one parity, for a class of sectors with holes, and for a gear without symmetry; bytes of the first two
-/// and of the last. Measured on gears of 50 teeth, good to a factor of two.
-const SECONDS: [f64; 3] = [0.05, 0.3, 25.0];
-const BYTES: [f64; 2] = [150e6, 900e6];
-/// How much longer a gear takes that is not its own image in the middle of its face.
+/// Seconds of one core in each parity, with [`HEIGHTS`] functions along the axis: for an order of teeth, for an element along the arc of a sector with a hole in
+/// a class, and for a gear without symmetry. Measured on gears of 25 to 90 teeth, good to a factor of two.
+const SECONDS: [f64; 3] = [0.013, 0.025, 9.0];
+const HEIGHTS: f64 = 3.0;
+/// The powers of the functions along the axis by which these grow. Only some of them reach into a web, where holes are.
+const GROWTH: [f64; 3] = [2.2, 1.5, 1.5];
+/// Bytes of the first two, and of the last in one parity.
+const BYTES: [f64; 2] = [150e6, 450e6];
+/// How much more memory a gear takes that is not its own image in the middle of its face than one parity of one that is.
 const WHOLE_WIDTH: f64 = 6.0;
 
 /// Rough cost of [`modes`] of `gear`: seconds of one core, and bytes.
 pub fn estimate(gear: &SolidGear) -> [f64; 2] {
     let section = gear.section();
-    let faces: Vec<[f64; 2]> = gear.layers().iter().map(|part| part.heights).collect();
-    let is_half = Heights::new(&faces, f64::INFINITY).is_half;
-    let times = if is_half { 2.0 } else { WHOLE_WIDTH };
+    let heights = Heights::of_layers(&gear.layers());
+    let parities = heights.parities().len() as f64;
+    let grown = heights.nodes.len() as f64 / HEIGHTS;
+    let each = |of: usize| parities * SECONDS[of] * grown.powf(GROWTH[of]);
     let orders = most_modes(section.tooth_count()) as f64 / 2.0;
-    let teeth = SECONDS[0] * orders * times;
     let [seconds, bytes] = match section.hole_pattern() {
         Some(pattern) => {
+            let count = f64::from(pattern.count);
             let classes = f64::from(pattern.count / 2 + 1);
-            [SECONDS[1] * classes * times, BYTES[0]]
+            [
+                each(1) * classes * section::around_holes(count) / count,
+                BYTES[0],
+            ]
         }
-        None if section.has_holes() => [SECONDS[2] / 2.0 * times, BYTES[1] / 2.0 * times],
+        None if section.has_holes() => {
+            let copies = if heights.is_half { 2.0 } else { WHOLE_WIDTH };
+            [each(2), BYTES[1] * copies]
+        }
         None => [0.0, BYTES[0]],
     };
-    [teeth + seconds, bytes]
+    [each(0) * orders + seconds, bytes]
 }
 
 /// A blank with or without teeth.
@@ -203,10 +214,8 @@ impl Body<'_> {
     /// The functions along the axis of all parts, and where the faces of each part are.
     fn heights(&self) -> (Heights, Vec<[f64; 2]>) {
         let parts = &self.blank.parts;
-        let faces: Vec<[f64; 2]> = parts.iter().map(|part| part.heights).collect();
-        let depth = |part: &Layer| part.outer_radius - part.inner_radius;
-        let narrowest = parts.iter().map(depth).fold(f64::INFINITY, f64::min);
-        (Heights::new(&faces, narrowest), faces)
+        let faces = parts.iter().map(|part| part.heights).collect();
+        (Heights::of_layers(parts), faces)
     }
 
     /// The largest order of the circle on which the teeth stand.

@@ -46,6 +46,11 @@ pub(super) struct Section {
     pub(super) hole_edges: Vec<Vec<u32>>,
 }
 
+/// Elements around a ring with a pattern of `count` holes, about.
+pub(super) fn around_holes(count: f64) -> f64 {
+    AROUND.max(AROUND_HOLE * count)
+}
+
 /// The blank of a gear inside the circle on which its teeth are joined to it.
 #[derive(Debug, Clone)]
 pub(super) struct Blank {
@@ -126,9 +131,8 @@ impl Blank {
         let count = region
             .pattern()
             .map_or(1.0, |pattern| f64::from(pattern.count));
-        let around = AROUND.max(AROUND_HOLE * count);
         // The coarse level halves.
-        let per_tooth = 2.0 * around / z as f64;
+        let per_tooth = 2.0 * around_holes(count) / z as f64;
         let grid = BlankGrid::of_region(
             &region,
             face_width,

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::section::Blank;
 use super::*;
-use crate::gear::{BlankRegion, HolePattern};
+use crate::gear::{BlankRegion, HolePattern, Layer};
 
 fn layer(inner_radius: f64, outer_radius: f64, width: f64) -> Layer {
     Layer {

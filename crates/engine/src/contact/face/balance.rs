@@ -12,7 +12,7 @@
 //! q rises with p, and H = L Lᵀ: with N = L⁻ᵀ y these are the conditions for the least of a convex function of y and δ, and there is one
 //! balance. A step of Newton's method is shortened where the function would rise again before its end.
 
-use faer::linalg::matmul::matmul;
+use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::{Accum, Mat, MatRef, Par};
 
 use super::compliance::BlurredLine;
@@ -356,11 +356,14 @@ impl Problem<'_> {
             }
         }
         let mut whole = Mat::<f64>::identity(size, size);
-        matmul(
+        triangular::matmul(
             whole.as_mut(),
+            BlockStructure::TriangularLower,
             Accum::Add,
             lower.transpose(),
+            BlockStructure::TriangularUpper,
             moved,
+            BlockStructure::Rectangular,
             1.0,
             Par::Seq,
         );

@@ -1,5 +1,7 @@
 //! The linear part of the compliance between slices: the smooth yield of both gears, and the blurred half space along each line.
 
+use std::sync::OnceLock;
+
 use faer::Mat;
 
 use super::FaceModel;
@@ -15,6 +17,8 @@ pub(super) struct SliceCompliance {
     /// The functions over the flank of each gear in the middles of the slices, a column each.
     bases: [Mat<f64>; 2],
     lines: Vec<BlurredLine>,
+    /// `held` and the smooth yield of gears whose teeth are all alike, once it is asked for.
+    alike: OnceLock<Mat<f64>>,
 }
 
 impl SliceCompliance {
@@ -37,35 +41,47 @@ impl SliceCompliance {
             held,
             bases: Member::BOTH.map(|member| basis(model, member, slices)),
             lines,
+            alike: OnceLock::new(),
         }
     }
 
     /// H without the springs of the slices in m/N, `period` mesh periods on: Φ R Φᵀ of both gears beside the common part.
     pub(super) fn of_teeth(&self, model: &FaceModel, period: i64) -> Mat<f64> {
-        let mut h = self.held.clone();
-        let (Some(first), Some(last)) = (self.lines.first(), self.lines.last()) else {
-            return h;
-        };
-        for member in Member::BOTH {
-            let smooth = model.smooth(
-                member,
-                first.pair + period,
-                1 + (last.pair - first.pair) as usize,
-            );
-            let basis = &self.bases[member.index()];
-            let lines = self.lines.iter().map(|line| {
-                let count = line.numbers.len();
-                LoadedPair {
-                    pair: line.pair + period,
-                    start: line.start,
-                    shapes: basis.as_ref().subcols(line.start, count).transpose(),
-                }
-            });
-            let lines: Vec<LoadedPair<'_>> = lines.collect();
-            add_coupled(&mut h, &lines, |a, b| smooth.block(a, b));
-        }
+        let are_alike = |member: &Member| model.yields[member.index()].repeats_after() == 1;
+        let (alike, unlike): (Vec<_>, Vec<_>) = Member::BOTH.into_iter().partition(are_alike);
+        let all = self.alike.get_or_init(|| {
+            let mut h = self.held.clone();
+            alike
+                .iter()
+                .for_each(|of| self.add_smooth(&mut h, model, *of, 0));
+            h
+        });
+        let mut h = all.clone();
+        unlike
+            .iter()
+            .for_each(|of| self.add_smooth(&mut h, model, *of, period));
         mirror(&mut h);
         h
+    }
+
+    /// Adds Φ R Φᵀ of one gear, so many mesh periods on, to the lower triangle of `h`.
+    fn add_smooth(&self, h: &mut Mat<f64>, model: &FaceModel, member: Member, period: i64) {
+        let (Some(first), Some(last)) = (self.lines.first(), self.lines.last()) else {
+            return;
+        };
+        let count = 1 + (last.pair - first.pair) as usize;
+        let smooth = model.smooth(member, first.pair + period, count);
+        let basis = &self.bases[member.index()];
+        let lines = self.lines.iter().map(|line| LoadedPair {
+            pair: line.pair + period,
+            start: line.start,
+            shapes: basis
+                .as_ref()
+                .subcols(line.start, line.numbers.len())
+                .transpose(),
+        });
+        let lines: Vec<LoadedPair<'_>> = lines.collect();
+        add_coupled(h, &lines, |a, b| smooth.block(a, b));
     }
 
     /// The lines of the slices.

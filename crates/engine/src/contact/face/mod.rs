@@ -662,6 +662,61 @@ mod tests {
         );
     }
 
+    /// A gear that does not yield.
+    struct Rigid;
+
+    impl FlankCompliance for Rigid {
+        fn basis_len(&self) -> usize {
+            1
+        }
+
+        fn basis(&self, _roll_length: f64, _z: f64, row: &mut [f64]) {
+            row.fill(0.0);
+        }
+
+        fn smooth(&self, teeth: &[usize]) -> Mat<f64> {
+            Mat::zeros(teeth.len(), teeth.len())
+        }
+
+        fn repeats_after(&self) -> usize {
+            1
+        }
+
+        fn at_ends(&self, _point: (f64, f64), _loaded: (f64, f64), _along: f64) -> f64 {
+            0.0
+        }
+    }
+
+    #[test]
+    fn the_ends_of_a_slice_are_the_places_within_it_there() {
+        let gears = [0.35, -0.35].map(|beta| {
+            let made = SolidGear::new(paper_gear(40), Helix::right(beta), 0.0, None);
+            made.expect("a gear that can be made")
+        });
+        let a = 2.0 * gears[0].section().reference_radius() + 0.1e-3;
+        let leads = [vec![LeadModification::Slope { amount: 10e-6 }], Vec::new()];
+        let pair = SolidPair::new(gears, leads, a, Alignment::default()).expect("meshes");
+        let yields: [Arc<dyn FlankCompliance>; 2] = [Arc::new(Rigid), Arc::new(Rigid)];
+        let load = pair.section().load(100.0);
+        let model = FaceModel::new(pair, yields, SLICES, FARTHEST_COUPLED);
+        let lines = Stretches::whole(&model, 0.3, model.flanks.phases_within(20e-6));
+        let heaviest = HEAVIER * lines.mean_load(load);
+        let slicer = Slicer::new(&model, 0.3, &lines, Loading { load, heaviest });
+        let mut seen = 0;
+        for slice in &slicer.slices(&lines) {
+            for at in [-1.0, 1.0] {
+                let known = slice.at_end(at).expect("flanks face each other");
+                let anew = slicer.within(slice, at).expect("flanks face each other");
+                assert!((known.z - anew.z).abs() < 1e-15);
+                assert!((known.place.gap - anew.place.gap).abs() < 1e-14);
+                let [one, other] = [known, anew].map(|of| of.place.spring.load(1e-6)[0]);
+                assert!((one / other - 1.0).abs() < 1e-8, "{one} {other}");
+                seen += 1;
+            }
+        }
+        assert!(seen > 2 * SLICES);
+    }
+
     /// A gear somewhere between two others.
     struct Mixed {
         of: [Arc<FaceCompliance>; 2],

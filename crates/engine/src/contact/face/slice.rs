@@ -29,6 +29,19 @@ pub(super) struct Slice {
     pub(super) factors: [f64; 2],
 }
 
+impl Slice {
+    /// Its beginning (−1) or its end (1); `None` where flanks do not face each other there.
+    pub(super) fn at_end(&self, at: f64) -> Option<Within> {
+        let place = &self.ends[usize::from(at > 0.0)];
+        let faces = !Arc::ptr_eq(&place.spring, &self.middle.spring);
+        faces.then(|| Within {
+            at,
+            z: self.z + at * 0.5 * self.length,
+            place: place.clone(),
+        })
+    }
+}
+
 /// A place of a contact line.
 #[derive(Clone)]
 pub(super) struct Place {

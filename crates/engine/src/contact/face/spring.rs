@@ -70,6 +70,8 @@ struct Cells {
     scale: f64,
     sharp: [bool; 2],
     active: Mutex<Option<Vec<bool>>>,
+    /// The load for which the response was asked last, and that: neighboring slices ask for that at their common end.
+    pressed: Mutex<Option<(f64, Pressed)>>,
     /// The logarithm of the load for which the cells are made, and ln ρ and d ln ρ/d ln q at those that are solved.
     made_for: f64,
     widths: [OnceLock<[f64; 2]>; SOLVED],
@@ -149,6 +151,7 @@ impl Spring {
                     sharp: Member::BOTH
                         .map(|member| gears.gear(member).data().tip_edge == TipEdge::Sharp),
                     active: Mutex::default(),
+                    pressed: Mutex::default(),
                     made_for: densities[0].ln(),
                     widths: Default::default(),
                     patch,
@@ -301,6 +304,18 @@ impl Cells {
     }
 
     fn pressed(&self, q: f64) -> Pressed {
+        let mut last = self.pressed.lock().unwrap_or_else(PoisonError::into_inner);
+        match *last {
+            Some((load, pressed)) if load == q => pressed,
+            _ => {
+                let pressed = self.pressed_anew(q);
+                *last = Some((q, pressed));
+                pressed
+            }
+        }
+    }
+
+    fn pressed_anew(&self, q: f64) -> Pressed {
         let Some(solution) = self.solved(q) else {
             return Pressed::default();
         };

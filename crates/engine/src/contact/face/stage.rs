@@ -1,8 +1,8 @@
 //! The mesh at one fraction of its period along faces: all that positions whole mesh periods apart have in common.
 //!
-//! As in the plane ([`crate::contact::Stage`]) the same flanks face each other in every mesh period. Slices, their springs, the half space along their lines
-//! and the compliance at the ends of flanks are computed once, and each period adds the common compliance of its teeth. Where teeth deviate, every position is
-//! a stage by itself.
+//! As in the plane ([`crate::contact::Stage`]) the same flanks face each other in every mesh period. Slices, their springs, the half space along their lines,
+//! the compliance at the ends of flanks and that of gears whose teeth are all alike are computed once, and each period adds the common compliance of its teeth of
+//! a gear with holes. Where teeth deviate, every position is a stage by itself.
 
 use std::sync::{Arc, OnceLock};
 
@@ -213,7 +213,8 @@ impl<'a> Sliced<'a> {
         })
     }
 
-    /// Calls `each` with the places of the loaded `part` of slice `i` that are nearest to kinks beside which a contact of this `half_width` reaches.
+    /// Calls `each` with the places of the loaded `part` of slice `i` that are nearest to kinks beside which a contact of this `half_width` reaches. Where that
+    /// is an end of the load within the slice, nothing presses there.
     pub(super) fn each_kink(
         &self,
         i: usize,
@@ -228,16 +229,13 @@ impl<'a> Sliced<'a> {
             nearest,
         } in self.slicer.near_kinks(slice, part, half_width)
         {
-            let within = || self.slicer.within(slice, nearest);
-            let ends;
-            let within = if stands == nearest {
+            if stands == nearest {
                 let known = &self.at_kinks[i * self.slicer.kink_count() + number];
-                known.get_or_init(within)
-            } else {
-                ends = within();
-                &ends
-            };
-            within.iter().for_each(&mut each);
+                let known = known.get_or_init(|| self.slicer.within(slice, nearest));
+                known.iter().for_each(&mut each);
+            } else if nearest.abs() == 1.0 {
+                slice.at_end(nearest).iter().for_each(&mut each);
+            }
         }
     }
 
