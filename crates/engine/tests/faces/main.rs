@@ -27,6 +27,7 @@ struct Manufactured {
     ends: [f64; 2],
     /// In m/N.
     compliance: f64,
+    tooth_count: usize,
 }
 
 const ACROSS: usize = 5;
@@ -39,6 +40,7 @@ impl Manufactured {
             half: gear.face_width() / 2.0,
             ends: [section.form_roll_length(), section.tip_roll_length()],
             compliance: 10.0 / (material.youngs_modulus * gear.face_width()),
+            tooth_count: section.tooth_count() as usize,
         }
     }
 }
@@ -74,11 +76,8 @@ impl FlankCompliance for Manufactured {
             }
             let order = (row % size) % ACROSS;
             let own = 1.0 / (1.0 + order as f64).powi(2);
-            let near = if a == b {
-                1.0
-            } else {
-                0.3_f64.powi(a.abs_diff(b) as i32)
-            };
+            let apart = teeth[a].abs_diff(teeth[b]);
+            let near = 0.3_f64.powi(apart.min(self.tooth_count - apart) as i32);
             self.compliance * own * near
         })
     }
@@ -287,8 +286,6 @@ fn flanks_of_pairs_drawn_at_random_penetrate_nowhere_on_a_net_of_points_over_bot
                 deviations.lead_slope = any(10e-6);
             }
         }
-        // F/(b m) of 600 N/mm² is several times what teeth bear: seed 2, under 960, comes to 4.5 % at a sharp edge.
-        let overloaded = load > 600e6 * 2e-3;
         let model = drawing.model();
         let load = model.pair().common_face_width() * drawing.scale * load;
         let positions = [0.1, 0.43, 0.77];
@@ -303,13 +300,9 @@ fn flanks_of_pairs_drawn_at_random_penetrate_nowhere_on_a_net_of_points_over_bot
             });
             let found = net.deepest(*eta);
             // Beside a sharp edge flanks yield as a wedge does, and where a contact is no longer than wide as no line does, which the half space
-            // of the net leaves out. Where a line or a pair is missed they penetrate by all that load brings them together.
+            // of the net leaves out: 1.5 % at most. Where a line or a pair is missed they penetrate by all that load brings them together.
             let lines = net.are_lines();
-            let most = match lines {
-                true => 0.01,
-                false if overloaded => 0.05,
-                false => 0.03,
-            };
+            let most = if lines { 0.005 } else { 0.02 };
             assert!(
                 found.depth < most * pressed,
                 "seed {seed} at {eta}: {:e} at {:?} of {pressed:e}",
@@ -319,7 +312,7 @@ fn flanks_of_pairs_drawn_at_random_penetrate_nowhere_on_a_net_of_points_over_bot
             looked[usize::from(lines)] += 1;
         }
     }
-    assert_eq!(looked, [53, 67]);
+    assert_eq!(looked, [52, 68]);
 }
 
 #[test]
@@ -595,30 +588,39 @@ fn the_last_digits_of_a_drawing_move_no_more_than_those_of_the_contact() {
     }
 }
 
-#[test]
-#[ignore = "./test all"]
-fn the_largest_pressure_at_the_start_of_a_relief_is_not_a_chance_of_where_slices_lie() {
-    // A line crosses it within one of its slices, which are longer than the contact is wide there.
+/// How far the largest pressure with 40 slices is from that with 160, at these positions of a pair with relief, and the largest of all.
+fn apart_at_a_relief(positions: &[f64]) -> (Vec<f64>, f64) {
+    // A line crosses the start of the relief within one of its slices, which are longer than the contact is wide there.
     let drawing = Drawing {
         relief: 20e-6,
         ..Drawing::default()
     };
-    let positions = period(48);
     let told = |slices: usize| -> Vec<f64> {
-        let contacts = contacts(&drawing.model_of(slices), 1500.0, &positions);
+        let contacts = contacts(&drawing.model_of(slices), 1500.0, positions);
         let told = contacts.iter().map(|contact| contact.mesh.peak_pressure);
         told.map(|told| told.expect("no sharp edge carries"))
             .collect()
     };
-    let (usual, fine) = (told(40), told(160));
+    let (usual, fine) = (told(SLICES), told(4 * SLICES));
     let apart = usual.iter().zip(&fine).map(|(a, b)| (a / b - 1.0).abs());
-    let mut apart: Vec<f64> = apart.collect();
-    println!("{apart:.4?}\n{usual:.0?}\n{fine:.0?}");
-    apart.sort_by(f64::total_cmp);
-    // Where a line that ends under load has the kink at that end, its load falls within one slice.
-    assert!(apart[43] < 0.01 && apart[47] < 0.05, "{apart:.4?}");
     let largest = |of: &[f64]| of.iter().copied().fold(0.0, f64::max);
-    assert!((largest(&usual) / largest(&fine) - 1.0).abs() < 0.03);
+    let of_all = (largest(&usual) / largest(&fine) - 1.0).abs();
+    (apart.collect(), of_all)
+}
+
+#[test]
+fn the_largest_pressure_of_lines_that_end_under_load_on_a_relief_settles_with_the_slices() {
+    let (apart, _) = apart_at_a_relief(&[11.0, 12.0, 36.0].map(|i| i / 48.0));
+    assert!(apart.iter().all(|apart| *apart < 0.01), "{apart:.4?}");
+}
+
+#[test]
+#[ignore = "./test all"]
+fn the_largest_pressure_at_the_start_of_a_relief_is_not_a_chance_of_where_slices_lie() {
+    let (mut apart, of_all) = apart_at_a_relief(&period(48));
+    apart.sort_by(f64::total_cmp);
+    assert!(apart[46] < 0.01 && apart[47] < 0.012, "{apart:.4?}");
+    assert!(of_all < 0.012, "{of_all}");
 }
 
 /// A face that closes at one end.

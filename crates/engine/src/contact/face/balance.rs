@@ -1,9 +1,9 @@
 //! The balance of forces on slices whose springs are not linear.
 //!
 //! The linear yield of a line is computed in the middles of its slices and interpolated linearly between them; gaps are interpolated linearly from the
-//! middles to the ends of slices. So the depth p by which flanks are pressed together is piecewise linear along z, and the line load q(p) of the springs
-//! is continuous and ends where p does. It is integrated over the loaded part of each half slice. The forces in the middles have
-//! the same moments, so that the work is the same:
+//! middles to the ends of slices. At the end of a line the yield is that of the parabola through the last two middles that is even about that end. So the depth
+//! p by which flanks are pressed together is piecewise linear along z, and the line load q(p) of the springs is continuous and ends where p does. It is
+//! integrated over the loaded part of each half slice. The forces in the middles have the same moments, so that the work is the same:
 //!
 //! ```text
 //! p = δ w − g − P H N,   N = ∫ Pᵀ q(p) dz,   ∫ w q(p) dz = F
@@ -16,7 +16,7 @@ use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::{Accum, Mat, MatRef, Par};
 
 use super::compliance::BlurredLine;
-use super::slice::{Carried, Place, Slice, Within};
+use super::slice::{Carried, Slice, Within};
 use crate::contact::{ContactError, PositionError};
 use crate::fem::dense::Cholesky;
 
@@ -46,10 +46,13 @@ const PART: [[f64; 2]; 4] = [
 const UNEVEN: f64 = 0.5;
 const EVEN: f64 = 0.75;
 
+/// The beginning and the end of a slice.
+const SIDES: [f64; 2] = [-1.0, 1.0];
+
 /// A loaded point of integration.
 struct Point {
     slice: usize,
-    /// The neighbor on its side, or its own slice at an end of the line, and the weight of that one's middle in the interpolation.
+    /// The slice of [`Beside`] on its side, and the weight of that one's middle in the interpolation.
     beside: usize,
     share: f64,
     /// On which half of the slice, and where: from the middle (0) to the end (1).
@@ -271,7 +274,7 @@ impl Problem<'_> {
         let mut points = Vec::with_capacity(4 * self.slices.len());
         for (i, slice) in self.slices.iter().enumerate() {
             for (end, edge) in slice.ends.iter().enumerate() {
-                let beside = beside(self.slices, i, end);
+                let beside = Beside::of(self.slices, i, end);
                 let [middle, outer] = self.depths(state, i, end);
                 let Some([from, to]) = loaded_part(middle, outer) else {
                     continue;
@@ -289,11 +292,12 @@ impl Problem<'_> {
                         continue;
                     }
                     let along = 0.5 * weight * slice.along * (to - from);
-                    let [force, growth] = load(slice, edge, place, depth).map(|of| along * of);
+                    let [force, growth] =
+                        slice.load(SIDES[end] * place, depth).map(|of| along * of);
                     points.push(Point {
                         slice: i,
-                        beside,
-                        share: 0.5 * place,
+                        beside: beside.slice,
+                        share: beside.share * place,
                         end,
                         place,
                         weight: slice.middle.weights[1]
@@ -309,8 +313,8 @@ impl Problem<'_> {
 
     /// How far flanks are pressed together at `state` in the middle of slice `i` and at one of its ends.
     fn depths(&self, state: &State, i: usize, end: usize) -> [f64; 2] {
-        let (slice, beside) = (&self.slices[i], beside(self.slices, i, end));
-        let outer = 0.5 * (state.opened[i] + state.opened[beside]);
+        let slice = &self.slices[i];
+        let outer = Beside::of(self.slices, i, end).at_end(&state.opened, i);
         [(&slice.middle, state.opened[i]), (&slice.ends[end], outer)]
             .map(|(place, opened)| state.delta * place.weights[1] - place.gap - opened)
     }
@@ -419,7 +423,7 @@ impl Problem<'_> {
         let mut gaps = Vec::with_capacity(size);
         for (i, carried) in carried.iter_mut().enumerate() {
             gaps.push(-self.depths(&state, i, 0)[0]);
-            for (end, sign) in [-1.0, 1.0].into_iter().enumerate() {
+            for (end, sign) in SIDES.into_iter().enumerate() {
                 let [middle, outer] = self.depths(&state, i, end);
                 let [low, high] = &mut carried.part;
                 for place in loaded_part(middle, outer).into_iter().flatten() {
@@ -485,11 +489,17 @@ impl Balance {
         in_middles(&self.points, self.forces.len(), |point| point.growth)
     }
 
-    /// How far flanks are pressed together at a place of slice `i`.
-    pub(super) fn depth(&self, slices: &[Slice], i: usize, within: &Within) -> f64 {
-        let beside = beside(slices, i, usize::from(within.at > 0.0));
-        let share = 0.5 * within.at.abs();
-        let opened = (1.0 - share) * self.opened[i] + share * self.opened[beside];
+    /// How far flanks are pressed together at a place of slice `i`, whose line is blurred by `blur`.
+    pub(super) fn depth(&self, slices: &[Slice], i: usize, within: &Within, blur: f64) -> f64 {
+        let (end, place) = (usize::from(within.at > 0.0), within.at.abs());
+        let Beside { slice, share } = Beside::of(slices, i, end);
+        let share = if is_line_end(slices, i, end) && slice != i {
+            let along = slices[i].along;
+            share_near_end(along / blur, 0.5 * (1.0 - place) * along / blur)
+        } else {
+            share * place
+        };
+        let opened = (1.0 - share) * self.opened[i] + share * self.opened[slice];
         self.transmission_error * within.place.weights[1] - within.place.gap - opened
     }
 
@@ -534,31 +544,71 @@ fn loaded_part(middle: f64, outer: f64) -> Option<[f64; 2]> {
     }
 }
 
-/// The slice beside slice `i` of the same line towards its beginning or its `end`, or itself: beyond an end of a face stands its image.
-fn beside(slices: &[Slice], i: usize, end: usize) -> usize {
+/// Half by half, the other slice of the same line by whose middle values are continued from the middle of a slice (0) to one of its ends (1).
+#[derive(Clone, Copy)]
+struct Beside {
+    slice: usize,
+    /// The weight of its middle at that end.
+    share: f64,
+}
+
+/// The weight that continues a parabola, even about the end of a line, from the middles of its last two slices to that end: −1/8. Contact lines have their
+/// images there.
+const EVEN_BEYOND: f64 = -0.125;
+
+impl Beside {
+    /// The neighbor of slice `i` towards its beginning (0) or its `end` (1); at an end of the line the one on the other side.
+    fn of(slices: &[Slice], i: usize, end: usize) -> Self {
+        match (neighbor(slices, i, end), neighbor(slices, i, 1 - end)) {
+            (Some(slice), _) => Self { slice, share: 0.5 },
+            (None, Some(slice)) => Self {
+                slice,
+                share: EVEN_BEYOND,
+            },
+            (None, None) => Self {
+                slice: i,
+                share: 0.0,
+            },
+        }
+    }
+
+    /// `middles`, continued to the end of slice `i`.
+    fn at_end(self, middles: &[f64], i: usize) -> f64 {
+        (1.0 - self.share) * middles[i] + self.share * middles[self.slice]
+    }
+}
+
+/// The slice of the same line before slice `i` (0) or behind its `end` (1).
+fn neighbor(slices: &[Slice], i: usize, end: usize) -> Option<usize> {
     let slice = &slices[i];
     let other = if end == 0 {
         i.checked_sub(1)
     } else {
         Some(i + 1)
     };
-    let joins = |other: &usize| {
+    other.filter(|other| {
         slices.get(*other).is_some_and(|other| {
             let apart = (other.z - slice.z).abs();
             other.pair == slice.pair && apart < 1.5 * slice.length
         })
-    };
-    other.filter(joins).unwrap_or(i)
+    })
 }
 
-/// The load a length at a `place` between the middle of `slice` and one of its ends, closed up by `depth`, and how fast that grows with it.
-fn load(slice: &Slice, end: &Place, place: f64, depth: f64) -> [f64; 2] {
-    let middle = slice.middle.spring.load(depth);
-    if slice.middle.spring.is_hertz() && end.spring.is_hertz() {
-        return middle;
-    }
-    let outer = end.spring.load(depth);
-    [0, 1].map(|i| middle[i] + (outer[i] - middle[i]) * place)
+/// True if the line of slice `i` ends at its beginning (0) or at its `end` (1).
+pub(super) fn is_line_end(slices: &[Slice], i: usize, end: usize) -> bool {
+    neighbor(slices, i, end).is_none()
+}
+
+/// The weight of the second slice from the end of a line in the yield at a distance from that end, less than half a slice, that of the last one having the rest.
+/// Slices and the distance are given over the blur ρ_0 of the line.
+///
+/// A load that falls linearly from the end, and is even about it, opens the line by x asinh x − √(1 + x²) + 1 less than at the end, in K q'ρ_0.
+fn share_near_end(slice: f64, distance: f64) -> f64 {
+    let less = |x: f64| x * x.asinh() - x.hypot(1.0) + 1.0;
+    let integral = |x: f64| (0.5 * x * x - 0.25) * x.asinh() + (1.0 - 0.75 * x.hypot(1.0)) * x;
+    let last = integral(slice) / slice;
+    let second = integral(2.0 * slice) / slice - last;
+    (less(distance) - last) / (second - last)
 }
 
 /// `of` each point, summed up in the middles of so many slices by the weights of interpolation.
@@ -611,5 +661,37 @@ impl Balance {
         };
         let moved: f64 = forces().map(|(k, n)| n * line.ahead(i - 1, k)).sum();
         0.5 * (of_middle(i - 1) + of_middle(i)) + moved
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flank::images::twice_inverse;
+
+    #[test]
+    fn the_yield_near_the_end_of_a_line_is_that_of_a_load_that_falls_from_it() {
+        // The load R − |y|, with R far beyond the slices, opens a line by the second difference of the double integral of 1/√(x² + 1).
+        const R: f64 = 1e5;
+        const PARTS: u32 = 4000;
+        let opened = |x: f64| {
+            let [before, here, after] = [x - R, x, x + R].map(|x| twice_inverse(x, 1.0));
+            after - 2.0 * here + before
+        };
+        let mean = |from: f64, length: f64| {
+            let part = |i| length * (f64::from(i) + 0.5) / f64::from(PARTS);
+            (0..PARTS).map(|i| opened(from + part(i))).sum::<f64>() / f64::from(PARTS)
+        };
+        for slice in [0.5, 1.0, 4.0, 10.0] {
+            let (last, second) = (mean(0.0, slice), mean(slice, slice));
+            for part in [0.0, 0.2, 0.5] {
+                let distance = part * slice;
+                let share = share_near_end(slice, distance);
+                let found = (1.0 - share) * last + share * second;
+                let expected = opened(distance);
+                let wrong = (found - expected).abs();
+                assert!(wrong < 1e-3 * (last - second), "{slice} {part}: {wrong}");
+            }
+        }
     }
 }

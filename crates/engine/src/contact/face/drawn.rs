@@ -107,8 +107,8 @@ struct DrawnSlice {
     /// The δ at which it touches first as drawn.
     touch: f64,
     responses: Responses,
-    /// Largest pressure over that in the middle of the slice, where a kink raises it.
-    at_kink: f64,
+    /// Largest pressure over that of the mean line load, which a kink raises, or the end of a line.
+    raised: f64,
 }
 
 /// Response of a slice to its line load.
@@ -303,7 +303,7 @@ impl DrawnStage {
                 normal: [force, rise],
             };
             let largest = slice_load.peak().map(|peak| Peak {
-                pressure: slice.at_kink * peak.pressure,
+                pressure: slice.raised * peak.pressure,
                 ..peak
             });
             gathered.add(slice_load, &pressed, largest, load);
@@ -361,7 +361,7 @@ impl DrawnSlice {
             twists: Member::BOTH.map(twist),
             touch: touches.fold(f64::INFINITY, f64::min),
             responses: Responses::new(&slice.middle.spring, mean),
-            at_kink: balanced.raised_at_kinks(i),
+            raised: balanced.raised(i),
         }
     }
 
@@ -385,8 +385,8 @@ impl DrawnSlice {
 }
 
 impl Balanced<'_> {
-    /// The largest pressure on slice `i` over that in the middle of its loaded part.
-    fn raised_at_kinks(&self, i: usize) -> f64 {
+    /// The largest pressure on slice `i` over that of its mean line load.
+    fn raised(&self, i: usize) -> f64 {
         let (slice, carried) = (&self.sliced.slices[i], &self.balance.carried[i]);
         if carried.force <= 0.0 {
             return 1.0;
@@ -401,7 +401,11 @@ impl Balanced<'_> {
                 z: Some(slice.z),
                 half_width: pressed.half_width,
             };
-            self.peak_of(i, Peak { pressure, place }).pressure / pressure
+            let at_ends = self.near_line_ends(i);
+            let of_all = at_ends.iter().find(|end| end.is_all);
+            let of_all = of_all.and_then(|end| end.within.peak(slice.pair, &end.pressed));
+            let middle = of_all.unwrap_or(Peak { pressure, place });
+            self.peak_of(i, middle, &at_ends).pressure / pressure
         })
     }
 }

@@ -71,6 +71,43 @@ pub(super) struct Within {
     pub(super) place: Place,
 }
 
+impl Slice {
+    /// The place `at` of it, from its beginning (−1) to its end (1): values between those in its middle and at its end, with the spring of the nearer one.
+    pub(super) fn between(&self, at: f64) -> Within {
+        let (middle, end, share) = (&self.middle, &self.ends[usize::from(at > 0.0)], at.abs());
+        let between = |one: f64, other: f64| one + (other - one) * share;
+        let both = |of: fn(&Place) -> [f64; 2]| {
+            let (one, other) = (of(middle), of(end));
+            [0, 1].map(|i| between(one[i], other[i]))
+        };
+        Within {
+            at,
+            z: self.z + at * 0.5 * self.length,
+            place: Place {
+                roll_lengths: both(|place| place.roll_lengths),
+                weights: both(|place| place.weights),
+                gap: between(middle.gap, end.gap),
+                spring: Arc::clone(if share < 0.5 {
+                    &middle.spring
+                } else {
+                    &end.spring
+                }),
+            },
+        }
+    }
+
+    /// The load a length `at` a place, from its beginning (−1) to its end (1), closed up by `depth`, and how fast that grows with it.
+    pub(super) fn load(&self, at: f64, depth: f64) -> [f64; 2] {
+        let end = &self.ends[usize::from(at > 0.0)];
+        let middle = self.middle.spring.load(depth);
+        if self.middle.spring.is_hertz() && end.spring.is_hertz() {
+            return middle;
+        }
+        let outer = end.spring.load(depth);
+        [0, 1].map(|i| middle[i] + (outer[i] - middle[i]) * at.abs())
+    }
+}
+
 /// The load on one slice.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Carried {
