@@ -650,9 +650,9 @@ fn along_faces_the_projection_is_the_whole_solution_without_holes_and_near_it_wi
                 "{error:e} of {delta:e}"
             );
         }
-        // One mesh period of four positions instead of ten; about twelve more between them are solved by both.
+        // One mesh period of four positions instead of ten. The whole solution starts each further one from the balance before it, so that they take few.
         let iterations = |by: &Analysis| by.evidence.contact_iterations;
-        assert!(2 * iterations(&projected) < iterations(&whole));
+        assert!(iterations(&projected) < iterations(&whole));
         let face = |by: &Analysis| by.curves[0].face.clone().expect("along the faces");
         let (one, other) = (face(&projected), face(&whole));
         assert_eq!(one.load_centroid.len(), other.load_centroid.len());
@@ -681,7 +681,8 @@ fn along_faces_a_moved_hole_costs_one_web() {
     };
     let one = solve(28e-3);
     assert_eq!((uses("faces"), uses("yields")), ((2, 0), (2, 0)));
-    let other = solve(28.5e-3);
+    // So small a move needs as many orders of the holes.
+    let other = solve(28.05e-3);
     // Of teeth, rims and plain webs nothing is made anew, of the gear without holes nothing at all.
     assert_eq!((uses("faces"), uses("yields")), ((2, 1), (3, 1)));
     assert_ne!(
@@ -739,7 +740,10 @@ fn a_library_changes_no_digit_whether_it_is_cold_warm_too_small_or_absent() {
         for (shelf, usage) in library.usage() {
             assert!(usage.bytes <= usage.capacity, "{shelf}: {usage:?}");
             if capacity == 0 {
-                assert!(usage.hits == 0 && usage.evictions > 0, "{shelf}: {usage:?}");
+                assert!(
+                    usage.hits == 0 && usage.evictions == usage.misses,
+                    "{shelf}: {usage:?}"
+                );
             }
             if capacity == ROOMY {
                 let computed_once = usage.misses == usage.entries as u64;
