@@ -427,8 +427,7 @@ impl Done {
         }
         app.bodies.check_answer(sent)?;
         let took = job.elapsed.map_or(0.0, |elapsed| elapsed.as_secs_f64());
-        let again = Duration::try_from_secs_f64(JOBS_LONG * seconds.max(took)).unwrap_or(LONGEST);
-        let least = (app.previews.rules().time_limit * PREVIEWS_LONG).min(LONGEST);
+        let time_limit = time_limit(app.previews.rules().time_limit, [seconds, took]);
         let (library, bodies, files) = (app.library.clone(), app.bodies.clone(), app.files.clone());
         let client = client.name().to_owned();
         let work = move |run: &Run| {
@@ -439,10 +438,17 @@ impl Done {
         };
         Ok(Making {
             memory,
-            time_limit: least.max(again),
+            time_limit,
             work,
         })
     }
+}
+
+/// Time limit of a file of a job, whose seconds are those of its estimate and those that it took, beside previews of at most `preview`.
+fn time_limit(preview: Duration, [estimated, took]: [f64; 2]) -> Duration {
+    let again = JOBS_LONG * estimated.max(took);
+    let again = Duration::try_from_secs_f64(again).unwrap_or(LONGEST);
+    again.max((preview * PREVIEWS_LONG).min(LONGEST))
 }
 
 /// The answer until a file is made.
@@ -631,5 +637,15 @@ mod tests {
         let divided: u64 = divided.map(|gear| gear.bytes()).sum();
         println!("{field} and {divided} bytes, {sent} packed; {made} and {most} said");
         assert!(field + divided + sent <= made && sent <= most);
+    }
+
+    #[test]
+    fn a_file_may_take_as_long_as_its_job_however_short_previews_are() {
+        let seconds = Duration::from_secs;
+        assert_eq!(time_limit(Duration::ZERO, [5.0, 2.0]), seconds(20));
+        assert_eq!(time_limit(Duration::ZERO, [5.0, 30.0]), seconds(120));
+        assert_eq!(time_limit(seconds(10), [5.0, 2.0]), seconds(40));
+        assert_eq!(time_limit(seconds(1000), [5.0, 2.0]), LONGEST);
+        assert_eq!(time_limit(seconds(10), [f64::MAX, 2.0]), LONGEST);
     }
 }

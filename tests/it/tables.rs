@@ -447,22 +447,6 @@ async fn the_contact_pattern_of_a_pair_along_its_faces_comes_as_numbers_and_as_a
 }
 
 #[tokio::test]
-#[ignore = "./test all"]
-async fn a_contact_pattern_takes_as_long_as_its_job_however_short_previews_are() {
-    let bench = Bench::start(
-        |config| config.preview_time_limit_seconds = 0,
-        Arc::new(|_, _| Ok(results())),
-    )
-    .await;
-    let path = bench.submit(&helical()).await;
-    bench.ended(&path).await;
-    let answer = bench
-        .file(&format!("{path}/results/contact-pattern.json"))
-        .await;
-    assert_eq!(answer.status(), StatusCode::OK);
-}
-
-#[tokio::test]
 async fn a_contact_pattern_of_a_job_that_failed_or_is_under_way_is_told_as_its_results_are() {
     let (bench, mut engine) = Bench::steered().await;
     let path = bench.submit(&helical()).await;

@@ -213,7 +213,8 @@ fn helical_members_share_the_slices_of_their_drawing_and_each_is_what_it_is_alon
 fn twenty_helical_pairs_as_made_are_within_three_percent_of_their_whole_contact() {
     for seed in 0..20 {
         let mut case = helical_as_made(seed, 1.0);
-        case.resolution.positions_per_mesh_period = 8;
+        // By 8 positions the whole contact of one of them reads an extreme 3.8 % too large.
+        case.resolution.positions_per_mesh_period = 12;
         case.resolution.span_mesh_periods = Some(12);
         let (apart, _) = first_order_beside_whole(&case);
         assert!(apart.abs() < 0.03, "{seed}: {apart}");

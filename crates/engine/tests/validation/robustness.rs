@@ -195,7 +195,7 @@ fn gears_that_are_odd_but_can_be_made_are_solved() {
             vec![115.0],
         ),
         (
-            // Nine tenths of the quarter of a module beyond which a result contradicts its own evidence.
+            // It deflects within the quarter of a module beyond which a result contradicts its own evidence.
             "0.01 N m and 3 kN m".to_owned(),
             meshed(wide(20e-3), wide(20e-3), 100.5e-3),
             vec![0.01, 3e3],
