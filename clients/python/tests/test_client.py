@@ -45,7 +45,9 @@ def test_what_is_solved_has_its_job_and_a_frame_its_stresses_and_orders(service)
     assert service.results(results.job.id).document == results.document
     assert results.job.id == results.job["id"] and results.job.status == "successful"
     frame = results.frame()
-    assert frame.stress_driven_hole_mpa.max() == pytest.approx(results.curves[0].statistics["stress"]["driven"]["hole_mpa"])
+    # The largest may stand between the positions of the arrays.
+    largest = results.curves[0].statistics["stress"]["driven"]["hole_mpa"]
+    assert 0.99 * largest < frame.stress_driven_hole_mpa.max() <= largest
     assert "stress_driving_hole_mpa" not in frame
     orders = results.spectrum_frame().set_index("order")
     assert orders.transmission_error_um[10] == pytest.approx(results.curves[0].order("H_N"))
