@@ -389,7 +389,8 @@ fn holes_near_roots_edges_of_webs_and_the_bore_yield_as_in_the_plane_at_length()
             narrow_pair(in_web(round_holes(8, 27.5e-3, 7e-3))),
         ),
     ] {
-        let off = off_the_plane(pair, 6, 8);
+        // By 8 positions an extreme 1.5 mm below the roots is read 2 % too small.
+        let off = off_the_plane(pair, 6, 12);
         println!("{name}: {off:.4?} ({solid:.4} solid)");
         let [mean, peak_to_peak, of_holes, _, root, hole] = off;
         assert!((mean - solid).abs() < 3e-3, "{name}");

@@ -219,9 +219,10 @@ fn along_a_narrow_face_undercut_teeth_share_the_load_as_in_the_plane_and_yield_o
         faces.transmission_error[i] / plane.transmission_error[i]
     };
     for i in 0..12 {
-        // Two modules of face are stiffer than plane stress, everywhere alike.
+        // Two modules of face are stiffer than plane stress. Without Poisson's ratio they would not be, and are by 1 to 1.4 %; where a corner carries half of the load,
+        // by 3.7 %.
         let stiffer = 1.0 - ratio(&straight, i);
-        assert!(stiffer > 0.02 && stiffer < 0.04, "{i}: {stiffer}");
+        assert!(stiffer > 0.02 && stiffer < 0.05, "{i}: {stiffer}");
     }
     // What the axial force bends out of its plane yields along the line of action by tan² β, where one pair carries.
     let square = |beta: f64| beta.to_radians().tan().powi(2);
