@@ -1,12 +1,11 @@
 //! Parts of the results as tables.
 
-use std::sync::Arc;
 use std::time::Duration;
 
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 
-use crate::bench::{Asked, Bench, problem, results, submission};
+use crate::bench::{Asked, Bench, problem, submission};
 use crate::stores;
 
 #[tokio::test]
