@@ -32,6 +32,8 @@ export async function start(env = {}) {
   };
   const child = spawn(program, ["serve"], { cwd: folder, env: all, stdio: ["ignore", "ignore", "inherit"] });
   const ended = new Promise((resolve) => child.once("exit", resolve));
+  // However this program ends: one that goes on holds the output of the run open.
+  process.once("exit", () => child.kill("SIGKILL"));
   const url = `http://127.0.0.1:${port}/`;
   const deadline = Date.now() + PATIENCE;
   while (
