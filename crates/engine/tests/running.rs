@@ -395,6 +395,22 @@ fn a_fit_that_comes_loose_is_told_with_its_speed_and_a_rim_that_breaks_is_refuse
     // Stresses grow with the square of the speed.
     let bearable = (500.0 * 500.0 * 100e6 / stress).sqrt();
     assert!((speed / bearable - 1.0).abs() < 1e-9, "{speed} {bearable}");
+
+    // Along faces the section tells, on another grid.
+    let wide = at_speed((10, 7.5e-3), Bore::Held, 30_000.0);
+    let [wide, narrow] = [wide, narrow_at_speed(30_000.0)].map(|mut case| {
+        let running = case.running.as_mut().expect("it runs");
+        running.gears[1].tensile_strength = Some(100e6);
+        match analyze(&case, &library, &Run::unattended()) {
+            Err(AnalysisError::RimBreaks {
+                member: Member::Driven,
+                stress,
+                ..
+            }) => stress,
+            _ => panic!("it breaks"),
+        }
+    });
+    assert!((narrow / wide - 1.0).abs() < 0.02, "{narrow} {wide}");
 }
 
 #[test]

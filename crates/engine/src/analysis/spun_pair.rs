@@ -69,8 +69,12 @@ impl PairState {
         };
         let drawn = case.pair.deviations();
         let setup = Setup::new((case, &drawn), level, COUPLED, parts, run);
-        let of = |member| match &case.model {
+        let of = |member: Member| match &case.model {
             Model::Faces(faces, _) => {
+                // Along the face edges are computed for stresses alone: the section tells whether it bears the speed.
+                if running.gears[member.index()].tensile_strength.is_some() {
+                    GearState::of(&setup, running, member)?;
+                }
                 GearState::along_faces((case, running), faces.pair.gear(member), member, run)
             }
             Model::Section(_) | Model::Formulas(_) => GearState::of(&setup, running, member),

@@ -29,19 +29,6 @@ pub(super) struct Slice {
     pub(super) factors: [f64; 2],
 }
 
-impl Slice {
-    /// Its beginning (−1) or its end (1); `None` where flanks do not face each other there.
-    pub(super) fn at_end(&self, at: f64) -> Option<Within> {
-        let place = &self.ends[usize::from(at > 0.0)];
-        let faces = !Arc::ptr_eq(&place.spring, &self.middle.spring);
-        faces.then(|| Within {
-            at,
-            z: self.z + at * 0.5 * self.length,
-            place: place.clone(),
-        })
-    }
-}
-
 /// A place of a contact line.
 #[derive(Clone)]
 pub(super) struct Place {
@@ -72,6 +59,17 @@ pub(super) struct Within {
 }
 
 impl Slice {
+    /// Its beginning (−1) or its end (1); `None` where flanks do not face each other there.
+    pub(super) fn at_end(&self, at: f64) -> Option<Within> {
+        let place = &self.ends[usize::from(at > 0.0)];
+        let faces = !Arc::ptr_eq(&place.spring, &self.middle.spring);
+        faces.then(|| Within {
+            at,
+            z: self.z + at * 0.5 * self.length,
+            place: place.clone(),
+        })
+    }
+
     /// The place `at` of it, from its beginning (−1) to its end (1): values between those in its middle and at its end, with the spring of the nearer one.
     pub(super) fn between(&self, at: f64) -> Within {
         let (middle, end, share) = (&self.middle, &self.ends[usize::from(at > 0.0)], at.abs());
